@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# How a module and a test are declared. Flags for us only (warnings, sanitizers) stay PRIVATE.
+add_library(lidarena_flags INTERFACE)
+target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-psabi)
+if(LIDARENA_WARNINGS_AS_ERRORS)
+  target_compile_options(lidarena_flags INTERFACE -Werror)
+endif()
+if(LIDARENA_SANITIZE)
+  target_compile_options(lidarena_flags INTERFACE -fsanitize=${LIDARENA_SANITIZE}
+                                                  -fno-omit-frame-pointer)
+  target_link_options(lidarena_flags INTERFACE -fsanitize=${LIDARENA_SANITIZE})
+endif()
+
+# lidarena_module(NAME SOURCES a.cpp ... [MODULES base ...] [PUBLIC lib ...] [PRIVATE lib ...])
+function(lidarena_module name)
+  cmake_parse_arguments(arg "" "" "SOURCES;MODULES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(lidarena_${name} STATIC ${arg_SOURCES})
+  add_library(lidarena::${name} ALIAS lidarena_${name})
+  target_include_directories(lidarena_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  target_compile_features(lidarena_${name} PUBLIC cxx_std_20)
+  list(TRANSFORM arg_MODULES PREPEND lidarena::)
+  target_link_libraries(lidarena_${name} PUBLIC Eigen3::Eigen ${arg_MODULES} ${arg_PUBLIC}
+                                         PRIVATE ${arg_PRIVATE} lidarena_flags)
+endfunction()
+
+# lidarena_test(NAME SOURCES a_test.cpp ... [MODULES world ...] [LIBRARIES lib ...])
+# One executable test_NAME; each TEST() becomes one ctest case named NAME.Suite.Case.
+function(lidarena_test name)
+  cmake_parse_arguments(arg "" "" "SOURCES;MODULES;LIBRARIES" ${ARGN})
+  add_executable(test_${name} ${arg_SOURCES})
+  list(TRANSFORM arg_MODULES PREPEND lidarena::)
+  target_link_libraries(test_${name} PRIVATE ${arg_MODULES} ${arg_LIBRARIES} GTest::gmock
+                                             GTest::gtest_main lidarena_flags)
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_compile_definitions(test_${name} PRIVATE
+    LIDARENA_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
+    LIDARENA_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
+                       PROPERTIES TIMEOUT 300)
+endfunction()

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/pose.hpp"
+
+namespace lidarena {
+
+/// What an estimator may know of a LiDAR: data-sheet facts and where it is mounted.
+struct LidarInfo {
+  std::string id;               ///< name of its topics, e.g. "mid360"
+  std::string model;            ///< e.g. "livox_mid360"
+  std::string kind = "unknown"; ///< "spinning", "rosette" or "unknown"
+  int rows = 0;                 ///< rings of a spinning sensor, laser lines of a Livox; 0 unknown
+  int columns = 0;              ///< firings per ring and scan; 0 unknown
+  double rate_hz = 10.0;        ///< scans per second
+  double min_range_m = 0.0;
+  double max_range_m = 100.0;
+  Pose body_from_lidar = Pose::Identity();
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("id", self.id, "", "name of the sensor in the dataset");
+    v("model", self.model, "", "model, e.g. livox_mid360");
+    v("kind", self.kind, "", "spinning, rosette or unknown");
+    v("rows", self.rows, "", "rings or laser lines, 0 if unknown", at_least(0));
+    v("columns", self.columns, "", "firings per ring and scan, 0 if unknown", at_least(0));
+    v("rate_hz", self.rate_hz, "Hz", "scans per second", above(0));
+    v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
+    v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
+    v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
+  }
+};
+
+/// What an estimator may know of an IMU; densities are continuous and in SI.
+struct ImuInfo {
+  std::string id;
+  std::string model;
+  double rate_hz = 200.0;
+  double gyro_noise_density = 0.0;    ///< rad/s/sqrt(Hz)
+  double accel_noise_density = 0.0;   ///< m/s^2/sqrt(Hz)
+  double gyro_bias_walk = 0.0;        ///< rad/s^2/sqrt(Hz)
+  double accel_bias_walk = 0.0;       ///< m/s^3/sqrt(Hz)
+  Pose body_from_imu = Pose::Identity();
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("id", self.id, "", "name of the sensor in the dataset");
+    v("model", self.model, "", "model of the IMU");
+    v("rate_hz", self.rate_hz, "Hz", "samples per second", above(0));
+    v("gyro_noise_density", self.gyro_noise_density, "rad/s/sqrt(Hz)", "white noise", at_least(0));
+    v("accel_noise_density", self.accel_noise_density, "m/s^2/sqrt(Hz)", "white noise",
+      at_least(0));
+    v("gyro_bias_walk", self.gyro_bias_walk, "rad/s^2/sqrt(Hz)", "bias random walk", at_least(0));
+    v("accel_bias_walk", self.accel_bias_walk, "m/s^3/sqrt(Hz)", "bias random walk", at_least(0));
+    v("body_from_imu", self.body_from_imu, "m, quaternion", "x y z qx qy qz qw");
+  }
+};
+
+/// All sensors on one body.
+struct Rig {
+  std::string body_frame = "body";
+  std::vector<LidarInfo> lidars;
+  std::vector<ImuInfo> imus;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("body_frame", self.body_frame, "", "name of the body frame");
+    v("lidars", self.lidars, "", "LiDARs and their mounting");
+    v("imus", self.imus, "", "IMUs and their mounting");
+  }
+
+  /// The LiDAR named `id`, or the only one if `id` is empty; nullptr if there is none such.
+  const LidarInfo* find_lidar(const std::string& id) const;
+};
+
+}  // namespace lidarena

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+
+namespace lidarena {
+
+/// An instant (since an epoch that the dataset names) or a duration, in integer nanoseconds.
+/// Seconds as `double` are for differences and for printing only.
+using Time = std::chrono::nanoseconds;
+
+/// Nearest nanosecond to `s` seconds.
+inline Time from_seconds(double s) { return Time{std::llround(s * 1e9)}; }
+
+/// Seconds; exact to 0.24 us for absolute times of today's epoch, so use it on differences.
+inline double to_seconds(Time t) { return static_cast<double>(t.count()) * 1e-9; }
+
+}  // namespace lidarena

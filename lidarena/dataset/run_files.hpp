@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/base/trajectory.hpp"
+#include "lidarena/dataset/cloud.hpp"
+
+namespace lidarena {
+
+/// One row of resources.csv: state after one scan.
+struct ResourceRow {
+  double t_sensor_s = 0.0;   ///< end of the scan since the first scan's stamp
+  double latency_s = 0.0;    ///< wall time that register_scan took
+  std::uint64_t rss_bytes = 0;
+  std::uint64_t pss_bytes = 0;
+  std::uint64_t map_bytes = 0;          ///< the algorithm's own parts
+  std::uint64_t scan_buffer_bytes = 0;
+  std::uint64_t backlog_bytes = 0;
+};
+
+/// A RUN folder: trajectory.tum (final), live.tum, map.ply, reprojected.ply, resources.csv,
+/// manifest.json (and, after evaluation, metrics.json).
+struct RunFiles {
+  Trajectory trajectory;  ///< after finish()
+  Trajectory live;        ///< as known at each scan
+  Cloud map;              ///< what the program publishes
+  Cloud reprojected;      ///< all returns with the continuous estimate, first point a 2 cm voxel
+  std::vector<ResourceRow> resources;
+  Json manifest;
+};
+
+/// Writes the folder; manifest.json last, so a folder without one is not whole.
+void write_run(const std::filesystem::path& folder, const RunFiles& run);
+/// Reads it back; throws InputError when manifest.json is missing or a file is broken.
+RunFiles read_run(const std::filesystem::path& folder);
+
+}  // namespace lidarena

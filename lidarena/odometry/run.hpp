@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/log.hpp"
+#include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/run_files.hpp"
+#include "lidarena/odometry/odometry.hpp"
+
+namespace lidarena {
+
+struct RunOptions {
+  std::string lidar_id;                 ///< scans of other LiDARs are skipped
+  std::string imu_id;                   ///< likewise; empty = the first IMU met
+  std::optional<std::size_t> scan_count;///< for the progress display
+  double map_voxel_m = 0.02;            ///< map.ply keeps the first point of each such cell
+};
+
+struct RunSummary {
+  std::map<ScanStatus, std::size_t> statuses;
+  std::size_t scans = 0;
+  double sensor_seconds = 0.0;
+  double compute_seconds = 0.0;   ///< wall time inside the algorithm
+  bool diverged = false;          ///< a status said so, or a pose was not finite
+  std::string reason;             ///< of the divergence
+};
+
+struct RunResult {
+  RunFiles files;      ///< all but reprojected and manifest
+  RunSummary summary;
+};
+
+/// Feeds `events` to `odometry` and keeps what comes out.
+RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log);
+
+}  // namespace lidarena

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/log.hpp"
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/dataset/event.hpp"
+#include "lidarena/flight/flight.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/world/world.hpp"
+
+namespace lidarena {
+
+struct SimulationOptions {
+  std::uint64_t seed = 1;
+  Time duration{0};   ///< 0 = the whole flight
+  bool noise = true;
+};
+
+/// The rig that these sensors make on one body (each LiDAR brings its IMU, if it has one). Ids are
+/// the sensors' names, made unique.
+Rig make_rig(const std::vector<SensorConfig>& sensors);
+
+/// The measurements of a flight, made as they are asked for: in the order that EventSource
+/// promises, the same for the same seed on any number of threads. Keeps references to `world` and
+/// `flight`. Times are since the flight's start.
+std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
+                                      const std::vector<SensorConfig>& sensors,
+                                      const SimulationOptions& options, const Parallel& parallel);
+
+}  // namespace lidarena

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/pose.hpp"
+
+namespace lidarena {
+
+/// Indices of a triangle's corners.
+using Triangle = std::array<std::uint32_t, 3>;
+
+/// A triangle soup in metres, world frame, z up. Double precision, so that a mesh far from the
+/// origin loses nothing; World re-centres it for the single-precision ray caster.
+struct TriangleMesh {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Triangle> triangles;
+
+  bool empty() const { return triangles.empty(); }
+  /// Box around the vertices that triangles use.
+  Eigen::AlignedBox3d bounds() const;
+  /// Sum of the triangles' areas, m^2.
+  double area() const;
+  /// Adds a transformed copy of `other`: vertices become placement * (scale .* v).
+  void append(const TriangleMesh& other, const Pose& placement = Pose::Identity(),
+              const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
+};
+
+/// Throws InputError (place `name`) when the mesh has no faces, an index out of range, or a vertex
+/// that is not finite. Drops degenerate triangles (no area) and returns how many.
+std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name);
+
+}  // namespace lidarena

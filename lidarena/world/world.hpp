@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/world/triangle_mesh.hpp"
+
+namespace lidarena {
+
+/// A half line; `direction` has unit length.
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3f direction;
+};
+
+/// First surface along a ray.
+struct Hit {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  float range = std::numeric_limits<float>::infinity();  ///< m; infinity when nothing was hit
+  std::uint32_t triangle = kNone;                        ///< index into mesh().triangles
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();      ///< unit, turned towards the ray's origin
+  bool valid() const { return triangle != kNone; }
+};
+
+/// Nearest point of the surface.
+struct ClosestPoint {
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  double distance = std::numeric_limits<double>::infinity();  ///< m; infinity when none in reach
+  std::uint32_t triangle = Hit::kNone;
+  bool valid() const { return triangle != Hit::kNone; }
+};
+
+/// A mesh and the structure that answers questions about it. Move only; all queries are const,
+/// thread safe, and exact up to single precision relative to the mesh's centre.
+class World {
+ public:
+  /// Takes the mesh over; throws InputError (place `name`) when it has no faces.
+  explicit World(TriangleMesh mesh, const std::string& name = "mesh");
+  ~World();
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+
+  /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`.
+  void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
+  /// Nearest surface point of each point within `max_distance` metres.
+  void closest_points(std::span<const Eigen::Vector3d> points, double max_distance,
+                      std::span<ClosestPoint> out, const Parallel& parallel) const;
+  ClosestPoint closest_point(const Eigen::Vector3d& point,
+                             double max_distance = std::numeric_limits<double>::infinity()) const;
+  /// True when nothing blocks the straight way from `a` to `b`.
+  bool visible(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
+
+  const TriangleMesh& mesh() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lidarena
