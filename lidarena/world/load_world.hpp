@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
-#include <string>
 #include <vector>
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/log.hpp"
-#include "lidarena/world/triangle_mesh.hpp"
+#include "lidarena/world/world_model.hpp"
 
 namespace lidarena {
-
-/// A world before its ray caster is built: the mesh, and ways to fly where the maker knows them.
-struct WorldModel {
-  std::string name;
-  TriangleMesh mesh;
-  /// Polylines through free space (m); worlds from files have none.
-  std::vector<std::vector<Eigen::Vector3d>> routes;
-};
 
 /// Which of an SDF model's shapes to take.
 enum class ShapeKind { kVisual, kCollision };
