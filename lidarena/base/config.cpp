@@ -53,7 +53,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 ConfigNode ConfigNode::load(const std::filesystem::path& file) {
   std::ifstream in(file);
-  if (!in) throw InputError(file.string(), "cannot be opened", "check the name and its permissions");
+  if (!in)
+    throw InputError(file.string(), "cannot be opened", "check the name and its permissions");
   std::ostringstream text;
   text << in.rdbuf();
   return parse(text.str(), file.string());
@@ -82,8 +83,9 @@ std::optional<ConfigNode> ConfigNode::find(std::string_view key) const {
   std::optional<ConfigNode> found;
   for (const auto& entry : impl_->node) {
     if (entry.first.as<std::string>() != name) continue;
-    if (found) throw InputError(place(impl_->file, entry.first.Mark()),
-                                "the key '" + name + "' stands here a second time");
+    if (found)
+      throw InputError(place(impl_->file, entry.first.Mark()),
+                       "the key '" + name + "' stands here a second time");
     const std::string path = impl_->key.empty() ? name : impl_->key + "." + name;
     found = ConfigNode(std::make_shared<const Impl>(Impl{entry.second, impl_->file, path}));
   }
@@ -148,9 +150,9 @@ void ConfigNode::reject_unknown(const std::vector<std::string>& known) const {
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     const std::string nearest = nearest_word(key, known);
-    throw InputError(where(key), "unknown key '" + key + "'",
-                     nearest.empty() ? "valid keys: " + joined(known)
-                                     : "did you mean '" + nearest + "'?");
+    throw InputError(
+        where(key), "unknown key '" + key + "'",
+        nearest.empty() ? "valid keys: " + joined(known) : "did you mean '" + nearest + "'?");
   }
 }
 

@@ -37,12 +37,15 @@ inline Limits at_least(double low) { return {low, std::numeric_limits<double>::i
 inline Limits above(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
 inline Limits between(double low, double high) { return {low, high, false}; }
 
-/// Specialise for an enum: `static constexpr std::array names{std::pair{"rolling", Mode::kRolling}};`
+/// Specialise for an enum: `static constexpr std::array names{std::pair{"rolling",
+/// Mode::kRolling}};`
 template <class E>
 struct EnumNames;
 
 template <class T>
-concept ConfigStruct = std::is_class_v<T> && requires(T& t) { T::visit(t, [](auto&&...) {}); };
+concept ConfigStruct = std::is_class_v<T> && requires(T& t) {
+  T::visit(t, [](auto&&...) {});
+};
 
 /// A parsed YAML value that knows its place in the file (yaml-cpp stays in config.cpp).
 class ConfigNode {
@@ -58,9 +61,9 @@ class ConfigNode {
   /// Keys of a map, in file order.
   std::vector<std::string> keys() const;
   std::optional<ConfigNode> find(std::string_view key) const;
-  std::vector<ConfigNode> items() const;  ///< of a list
-  std::string text() const;               ///< of a scalar; throws InputError otherwise
-  std::string where() const;              ///< "file:line", or "file:line: key" below a map
+  std::vector<ConfigNode> items() const;          ///< of a list
+  std::string text() const;                       ///< of a scalar; throws InputError otherwise
+  std::string where() const;                      ///< "file:line", or "file:line: key" below a map
   std::string where(std::string_view key) const;  ///< place of a key of this map
 
   bool as_bool() const;
@@ -102,7 +105,7 @@ void read_value(const ConfigNode& node, T& out, const Limits& limits) {
 }
 
 template <class E>
-  requires std::is_enum_v<E>
+requires std::is_enum_v<E>
 void read_value(const ConfigNode& node, E& out, const Limits&) {
   const std::string text = node.text();
   std::vector<std::string> allowed;

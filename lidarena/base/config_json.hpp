@@ -50,10 +50,9 @@ Json value_to_json(const std::vector<T>& values) {
 template <ConfigStruct C>
 Json to_json(const C& config) {
   Json json = Json::object();
-  C::visit(config, [&](std::string_view name, const auto& member, std::string_view,
-                       std::string_view, Limits = {}) {
-    json[std::string(name)] = value_to_json(member);
-  });
+  C::visit(config,
+           [&](std::string_view name, const auto& member, std::string_view, std::string_view,
+               Limits = {}) { json[std::string(name)] = value_to_json(member); });
   return json;
 }
 

@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/base/parallel.hpp"
 
+#include <tbb/global_control.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
+#include <optional>
 #include <thread>
 
 namespace lidarena {
 
 struct Parallel::Arena {
-  explicit Arena(int threads) : arena(threads) {}
+  explicit Arena(int threads) : arena(threads) {
+    // oneTBB starts no more workers than the machine has cores unless it is allowed to. Raising
+    // the ceiling changes nothing for other arenas, which keep their own limit.
+    const auto cores = static_cast<int>(std::thread::hardware_concurrency());
+    if (threads > cores) {
+      ceiling.emplace(tbb::global_control::max_allowed_parallelism,
+                      static_cast<std::size_t>(threads));
+    }
+  }
+  std::optional<tbb::global_control> ceiling;
   tbb::task_arena arena;
 };
 
@@ -25,11 +36,12 @@ void Parallel::run(std::size_t count, const std::function<void(std::size_t)>& ta
     return;
   }
   arena_->arena.execute([&] {
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) task(i);
-                      },
-                      tbb::simple_partitioner{});
+    tbb::parallel_for(
+        tbb::blocked_range<std::size_t>(0, count, 1),
+        [&](const tbb::blocked_range<std::size_t>& range) {
+          for (std::size_t i = range.begin(); i < range.end(); ++i) task(i);
+        },
+        tbb::simple_partitioner{});
   });
 }
 

@@ -23,9 +23,8 @@ class Parallel {
   template <class Body>
   void for_blocks(std::size_t count, std::size_t grain, Body&& body) const {
     grain = std::max<std::size_t>(grain, 1);
-    run((count + grain - 1) / grain, [&](std::size_t block) {
-      body(block * grain, std::min(count, (block + 1) * grain));
-    });
+    run((count + grain - 1) / grain,
+        [&](std::size_t block) { body(block * grain, std::min(count, (block + 1) * grain)); });
   }
 
   /// Calls body(i) for each i in [0, count).

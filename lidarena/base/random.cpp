@@ -33,16 +33,15 @@ std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> c,
 
 CounterRandom::CounterRandom(std::uint64_t seed, std::uint32_t stream) {
   // The stream is mixed into the key, so that (seed, stream) pairs do not overlap.
-  const auto mixed = philox({stream, 0x4C494441, 0x52454E41, 0},
-                            {static_cast<std::uint32_t>(seed),
-                             static_cast<std::uint32_t>(seed >> 32U)});
+  const auto mixed =
+      philox({stream, 0x4C494441, 0x52454E41, 0},
+             {static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32U)});
   key_ = {mixed[0], mixed[1]};
 }
 
 std::array<std::uint32_t, 4> CounterRandom::bits(std::uint64_t index, std::uint32_t draw) const {
-  return philox({static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32U), draw,
-                 0},
-                key_);
+  return philox(
+      {static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32U), draw, 0}, key_);
 }
 
 double CounterRandom::uniform(std::uint64_t index, std::uint32_t draw) const {

@@ -11,12 +11,12 @@ namespace lidarena {
 
 /// What an estimator may know of a LiDAR: data-sheet facts and where it is mounted.
 struct LidarInfo {
-  std::string id;               ///< name of its topics, e.g. "mid360"
-  std::string model;            ///< e.g. "livox_mid360"
-  std::string kind = "unknown"; ///< "spinning", "rosette" or "unknown"
-  int rows = 0;                 ///< rings of a spinning sensor, laser lines of a Livox; 0 unknown
-  int columns = 0;              ///< firings per ring and scan; 0 unknown
-  double rate_hz = 10.0;        ///< scans per second
+  std::string id;                ///< name of its topics, e.g. "mid360"
+  std::string model;             ///< e.g. "livox_mid360"
+  std::string kind = "unknown";  ///< "spinning", "rosette" or "unknown"
+  int rows = 0;                  ///< rings of a spinning sensor, laser lines of a Livox; 0 unknown
+  int columns = 0;               ///< firings per ring and scan; 0 unknown
+  double rate_hz = 10.0;         ///< scans per second
   double min_range_m = 0.0;
   double max_range_m = 100.0;
   Pose body_from_lidar = Pose::Identity();
@@ -40,10 +40,10 @@ struct ImuInfo {
   std::string id;
   std::string model;
   double rate_hz = 200.0;
-  double gyro_noise_density = 0.0;    ///< rad/s/sqrt(Hz)
-  double accel_noise_density = 0.0;   ///< m/s^2/sqrt(Hz)
-  double gyro_bias_walk = 0.0;        ///< rad/s^2/sqrt(Hz)
-  double accel_bias_walk = 0.0;       ///< m/s^3/sqrt(Hz)
+  double gyro_noise_density = 0.0;   ///< rad/s/sqrt(Hz)
+  double accel_noise_density = 0.0;  ///< m/s^2/sqrt(Hz)
+  double gyro_bias_walk = 0.0;       ///< rad/s^2/sqrt(Hz)
+  double accel_bias_walk = 0.0;      ///< m/s^3/sqrt(Hz)
   Pose body_from_imu = Pose::Identity();
 
   template <class Self, class V>

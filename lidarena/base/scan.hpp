@@ -11,11 +11,12 @@ namespace lidarena {
 
 /// One return of a LiDAR, 24 bytes.
 struct Point {
-  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m, lidar frame at the point's own instant
-  float intensity = 0.0F;     ///< sensor's own scale; simulated sensors give 0..255
-  std::int32_t dt_ns = 0;     ///< ns since Scan::stamp
-  std::uint16_t ring = 0;     ///< row of a spinning sensor, laser line of a Livox
-  std::uint8_t echo = 0;      ///< 0 = first return
+  Eigen::Vector3f position =
+      Eigen::Vector3f::Zero();  ///< m, lidar frame at the point's own instant
+  float intensity = 0.0F;       ///< sensor's own scale; simulated sensors give 0..255
+  std::int32_t dt_ns = 0;       ///< ns since Scan::stamp
+  std::uint16_t ring = 0;       ///< row of a spinning sensor, laser line of a Livox
+  std::uint8_t echo = 0;        ///< 0 = first return
 };
 static_assert(sizeof(Point) == 24);
 
@@ -27,9 +28,7 @@ struct Scan {
 };
 
 /// Instant of a point of `scan`.
-inline Time time_of(const Scan& scan, const Point& point) {
-  return scan.stamp + Time{point.dt_ns};
-}
+inline Time time_of(const Scan& scan, const Point& point) { return scan.stamp + Time{point.dt_ns}; }
 
 /// Instant of the last firing among the points; the stamp for an empty scan.
 inline Time end_of(const Scan& scan) {

@@ -35,16 +35,17 @@ std::optional<Pose> Trajectory::at(Time t) const {
   const StampedPose& a = poses_[next - 1];
   const StampedPose& b = poses_[next];
   if (t == a.stamp) return a.world_from_body;
-  const double s = static_cast<double>((t - a.stamp).count()) /
-                   static_cast<double>((b.stamp - a.stamp).count());
+  const double s =
+      static_cast<double>((t - a.stamp).count()) / static_cast<double>((b.stamp - a.stamp).count());
   return interpolate(a.world_from_body, b.world_from_body, s);
 }
 
 double Trajectory::path_length() const {
   double length = 0.0;
   for (std::size_t i = 1; i < poses_.size(); ++i) {
-    length += (poses_[i].world_from_body.translation() -
-               poses_[i - 1].world_from_body.translation()).norm();
+    length +=
+        (poses_[i].world_from_body.translation() - poses_[i - 1].world_from_body.translation())
+            .norm();
   }
   return length;
 }

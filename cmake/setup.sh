@@ -1,0 +1,60 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs what is missing from Debian's packages. Asks for root only when something is missing.
+# usage: cmake/setup.sh run|test
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(g++ cmake ninja-build pkg-config ca-certificates
+          libeigen3-dev libembree-dev libtbb-dev libassimp-dev libyaml-cpp-dev
+          nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
+          libgtest-dev libgmock-dev)
+# Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off.
+optional=(libsdformat-dev)
+
+installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
+
+missing=()
+for p in "${packages[@]}"; do installed "$p" || missing+=("$p"); done
+if [ "${1:-run}" = test ]; then
+  # the official MCAP reader is an npm package; a Node.js from elsewhere serves as well
+  command -v node >/dev/null || missing+=(nodejs)
+  command -v npm >/dev/null || missing+=(npm)
+  command -v python3 >/dev/null || missing+=(python3)
+fi
+absent_optional=()
+for p in "${optional[@]}"; do installed "$p" || absent_optional+=("$p"); done
+
+if [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    if [ "${#missing[@]}" -eq 0 ]; then
+      echo "set-up: optional, not installed: ${absent_optional[*]} (SDF worlds stay switched off)"
+      exit 0
+    fi
+    command -v sudo >/dev/null || {
+      echo "set-up: these Debian packages are missing: ${missing[*]}" >&2
+      echo "set-up: install them as root with: apt-get install ${missing[*]}" >&2
+      exit 2
+    }
+    as_root=(sudo)
+  fi
+  echo "set-up: installing ${missing[*]} ${absent_optional[*]}"
+  "${as_root[@]}" apt-get update -qq
+  for p in "${absent_optional[@]}"; do
+    if [ -n "$(apt-cache madison "$p" 2>/dev/null)" ]; then missing+=("$p"); fi
+  done
+  if [ "${#missing[@]}" -gt 0 ]; then
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+  fi
+fi
+
+if [ "${1:-run}" = test ]; then
+  reader=tests/dataset/mcap_official
+  if [ -f "$reader/package-lock.json" ] && ! cmp -s "$reader/package-lock.json" "$reader/node_modules/.lock-installed"; then
+    echo "set-up: installing the official MCAP reader from npm"
+    npm ci --prefix "$reader" --no-audit --no-fund --loglevel=error
+    cp "$reader/package-lock.json" "$reader/node_modules/.lock-installed"
+  fi
+fi

@@ -1,0 +1,74 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Who may include whom: prints each breach and exits 1 if there is any."""
+import pathlib
+import re
+import sys
+
+ALLOWED = {
+    "base": set(),
+    "world": {"base"},
+    "dataset": {"base"},
+    "map": {"base"},
+    "estimation": {"base"},
+    "flight": {"world", "base"},
+    "loop": {"estimation", "map", "base"},
+    "sensor": {"world", "flight", "dataset", "base"},
+    "evaluation": {"world", "dataset", "estimation", "map", "base"},
+    "odometry": {"loop", "estimation", "map", "dataset", "base"},
+    "study": {"base", "world", "flight", "sensor", "dataset", "map", "estimation", "loop",
+              "odometry", "evaluation"},
+    "report": {"base", "dataset", "world"},
+}
+# Where only some headers of a module are open: a sensor makes events and knows no files, and an
+# estimator must not be able to find the truth that lies beside a dataset.
+ONLY = {
+    ("sensor", "dataset"): {"event.hpp"},
+    ("odometry", "dataset"): {"event.hpp", "run_files.hpp", "cloud.hpp"},
+}
+# Third-party libraries that stay inside the .cpp files of one module.
+HIDDEN = {
+    "embree": "world", "assimp/": "world", "sdf/": "world", "yaml-cpp": "base", "tbb/": "base",
+    "zstd.h": "dataset", "png.h": "report", "ceres/": "estimation",
+}
+INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
+
+
+def breaches(root: pathlib.Path):
+    for file in sorted((root / "lidarena").rglob("*.[hc]pp")):
+        parts = file.relative_to(root / "lidarena").parts
+        module = parts[0]
+        algorithm = parts[1] if module == "odometry" and len(parts) > 2 else None
+        for number, line in enumerate(file.read_text().splitlines(), 1):
+            match = INCLUDE.match(line)
+            if not match:
+                continue
+            place = f"{file.relative_to(root)}:{number}"
+            name = match[1]
+            if not name.startswith("lidarena/"):
+                if name in ("iostream",) or name.startswith(("ros/", "rclcpp/", "pcl/", "opencv")):
+                    yield f"{place}: the library does without <{name}>"
+                for prefix, home in HIDDEN.items():
+                    if name.startswith(prefix) and (module != home or file.suffix == ".hpp"):
+                        yield f"{place}: <{name}> stays inside .cpp files of {home}"
+                continue
+            target = name.split("/")
+            if module not in ALLOWED:
+                yield f"{place}: '{module}' is no module of the architecture"
+            elif target[1] != module and target[1] not in ALLOWED[module]:
+                yield f"{place}: {module} must not include {target[1]}"
+            elif target[2] not in ONLY.get((module, target[1]), {target[2]}):
+                yield f"{place}: {module} must not include {name}"
+            elif algorithm and target[1] == "odometry" and len(target) > 3 and target[2] != algorithm:
+                yield f"{place}: one algorithm never includes another"
+
+
+def main():
+    root = pathlib.Path(__file__).resolve().parents[2]
+    found = list(breaches(root))
+    print("\n".join(found) if found else "include rules hold")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
