@@ -26,13 +26,24 @@ struct TriangleMesh {
   Eigen::AlignedBox3d bounds() const;
   /// Sum of the triangles' areas, m^2.
   double area() const;
-  /// Adds a transformed copy of `other`: vertices become placement * (scale .* v).
+  /// Twice the area times the unit normal, (b - a) x (c - a), of one triangle.
+  Eigen::Vector3d cross(std::size_t triangle) const;
+  /// Adds a transformed copy of `other`: vertices become placement * (scale .* v). A scale that
+  /// mirrors turns the triangles round, so that outward normals stay outward.
   void append(const TriangleMesh& other, const Pose& placement = Pose::Identity(),
               const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 };
 
 /// Throws InputError (place `name`) when the mesh has no faces, an index out of range, or a vertex
-/// that is not finite. Drops degenerate triangles (no area) and returns how many.
+/// that is not finite. Drops degenerate triangles (no area beyond the rounding of their
+/// coordinates) and returns how many; a mesh of nothing else has no faces.
 std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name);
+
+/// Makes vertices with equal coordinates one, in order of first use; drops those no triangle uses.
+void merge_vertices(TriangleMesh& mesh);
+
+/// The point of triangle abc nearest to p.
+Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
+                                          const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 }  // namespace lidarena

@@ -39,20 +39,24 @@ struct ClosestPoint {
 /// thread safe, and exact up to single precision relative to the mesh's centre.
 class World {
  public:
-  /// Takes the mesh over; throws InputError (place `name`) when it has no faces.
+  /// Takes the mesh over and cleans it (see clean_mesh), so mesh() may have fewer triangles; throws
+  /// InputError (place `name`) when it has no faces.
   explicit World(TriangleMesh mesh, const std::string& name = "mesh");
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`.
+  /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`. Faces are
+  /// seen from both sides.
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
-  /// Nearest surface point of each point within `max_distance` metres.
+  /// Nearest surface point of each point within `max_distance` metres, computed in double precision
+  /// from the mesh itself; of triangles equally near, the one with the lower index.
   void closest_points(std::span<const Eigen::Vector3d> points, double max_distance,
                       std::span<ClosestPoint> out, const Parallel& parallel) const;
   ClosestPoint closest_point(const Eigen::Vector3d& point,
                              double max_distance = std::numeric_limits<double>::infinity()) const;
-  /// True when nothing blocks the straight way from `a` to `b`.
+  /// True when nothing blocks the straight way from `a` to `b`. Surfaces within single-precision
+  /// rounding (about 2e-6 of the world's size) of either end do not block.
   bool visible(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   const TriangleMesh& mesh() const;

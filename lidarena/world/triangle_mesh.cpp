@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/world/triangle_mesh.hpp"
+
+#include <tsl/robin_map.h>
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+
+Eigen::AlignedBox3d TriangleMesh::bounds() const {
+  Eigen::AlignedBox3d box;
+  for (const Triangle& triangle : triangles) {
+    for (const std::uint32_t corner : triangle) box.extend(vertices[corner]);
+  }
+  return box;
+}
+
+Vector3d TriangleMesh::cross(std::size_t triangle) const {
+  const auto& [a, b, c] = triangles[triangle];
+  return (vertices[b] - vertices[a]).cross(vertices[c] - vertices[a]);
+}
+
+double TriangleMesh::area() const {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) twice += cross(i).norm();
+  return 0.5 * twice;
+}
+
+void TriangleMesh::append(const TriangleMesh& other, const Pose& placement, const Vector3d& scale) {
+  const auto first = static_cast<std::uint32_t>(vertices.size());
+  const bool mirrored = scale.prod() < 0.0;
+  vertices.reserve(vertices.size() + other.vertices.size());
+  triangles.reserve(triangles.size() + other.triangles.size());
+  for (const Vector3d& v : other.vertices) vertices.push_back(placement * scale.cwiseProduct(v));
+  for (auto [a, b, c] : other.triangles) {
+    if (mirrored) std::swap(b, c);
+    triangles.push_back({first + a, first + b, first + c});
+  }
+}
+
+namespace {
+
+/// A triangle whose height is within the rounding of its coordinates has no direction.
+bool is_degenerate(const TriangleMesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vector3d &va = mesh.vertices[a], &vb = mesh.vertices[b], &vc = mesh.vertices[c];
+  const double longest = std::max({(vb - va).norm(), (vc - vb).norm(), (va - vc).norm()});
+  const double largest = std::max(
+      {va.lpNorm<Eigen::Infinity>(), vb.lpNorm<Eigen::Infinity>(), vc.lpNorm<Eigen::Infinity>()});
+  const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * largest;
+  return !(mesh.cross(triangle).norm() > longest * rounding);
+}
+
+}  // namespace
+
+std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
+  if (mesh.empty()) throw InputError(name, "has no faces", "a surface of triangles is needed");
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    if (!mesh.vertices[i].allFinite()) {
+      throw InputError(name, "vertex " + std::to_string(i) + " is not finite");
+    }
+  }
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);
+    if (largest >= mesh.vertices.size()) {
+      throw InputError(name, "triangle " + std::to_string(i) + " names vertex " +
+                                 std::to_string(largest) + " of " +
+                                 std::to_string(mesh.vertices.size()));
+    }
+  }
+  std::vector<Triangle> kept;
+  kept.reserve(mesh.triangles.size());
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    if (!is_degenerate(mesh, i)) kept.push_back(mesh.triangles[i]);
+  }
+  if (kept.empty()) {
+    throw InputError(name, "has no faces but degenerate ones (no area)",
+                     "a surface of triangles is needed");
+  }
+  const std::size_t dropped = mesh.triangles.size() - kept.size();
+  mesh.triangles = std::move(kept);
+  return dropped;
+}
+
+namespace {
+
+struct BitsHash {
+  std::size_t operator()(const std::array<double, 3>& v) const {
+    std::uint64_t hash = 1469598103934665603U;  // FNV-1a, a word at a time
+    for (const double x : v) {
+      hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211U;  // -0 + 0 is +0
+      hash ^= hash >> 29U;
+    }
+    return hash;
+  }
+};
+
+}  // namespace
+
+void merge_vertices(TriangleMesh& mesh) {
+  tsl::robin_map<std::array<double, 3>, std::uint32_t, BitsHash> index;
+  std::vector<Vector3d> vertices;
+  for (Triangle& triangle : mesh.triangles) {
+    for (std::uint32_t& corner : triangle) {
+      const Vector3d& v = mesh.vertices[corner];
+      const auto [entry, is_new] =
+          index.try_emplace({v.x(), v.y(), v.z()}, static_cast<std::uint32_t>(vertices.size()));
+      if (is_new) vertices.push_back(v);
+      corner = entry->second;
+    }
+  }
+  mesh.vertices = std::move(vertices);
+}
+
+namespace {
+
+Vector3d closest_point_on_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d ab = b - a;
+  const double length2 = ab.squaredNorm();
+  if (length2 == 0.0) return a;
+  return a + std::clamp(ab.dot(p - a) / length2, 0.0, 1.0) * ab;
+}
+
+}  // namespace
+
+Vector3d closest_point_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b,
+                                   const Vector3d& c) {
+  const Vector3d normal = (b - a).cross(c - a);
+  const auto left_of = [&](const Vector3d& from, const Vector3d& to) {
+    return normal.dot((to - from).cross(p - from)) >= 0.0;
+  };
+  const double normal2 = normal.squaredNorm();
+  if (normal2 > 0.0 && left_of(a, b) && left_of(b, c) && left_of(c, a)) {
+    return p - normal * (normal.dot(p - a) / normal2);  // above the face
+  }
+  Vector3d best = closest_point_on_segment(p, a, b);
+  for (const Vector3d& candidate :
+       {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)}) {
+    if ((candidate - p).squaredNorm() < (best - p).squaredNorm()) best = candidate;
+  }
+  return best;
+}
+
+}  // namespace lidarena
