@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/dataset/part_file.hpp"
+
+#include <gmock/gmock.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "lidarena/base/error.hpp"
+#include "tests/dataset/temporary_folder.hpp"
+
+namespace lidarena {
+namespace {
+
+std::string read_all(const std::filesystem::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+TEST(PartFile, HasItsNameOnlyOnceCommitted) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.txt";
+  PartFile out(file);
+  out.write("hello ");
+  EXPECT_FALSE(exists(file));
+  EXPECT_TRUE(exists(folder.path() / "a.txt.part"));
+  out.write("world");
+  EXPECT_EQ(out.size(), 11U);
+  out.commit();
+  EXPECT_EQ(read_all(file), "hello world");
+  EXPECT_FALSE(exists(folder.path() / "a.txt.part"));
+}
+
+TEST(PartFile, KeepsTheOldFileUntilTheNewOneIsComplete) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.txt";
+  write_text_file(file, "old");
+  {
+    PartFile abandoned(file);
+    abandoned.write("new");
+  }
+  EXPECT_EQ(read_all(file), "old");
+  EXPECT_TRUE(exists(folder.path() / "a.txt.part"));
+}
+
+TEST(PartFile, KeepsTheOrderOfSmallAndLargePieces) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.bin";
+  const std::string large(700'000, 'x');
+  PartFile out(file);
+  out.write("head");
+  out.write(large);
+  out.write("tail");
+  out.commit();
+  EXPECT_EQ(read_all(file), "head" + large + "tail");
+}
+
+TEST(PartFile, SaysThatTheDiskIsFullAndLeavesNoWholeFile) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: full disk not tried";
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "a.txt";
+  std::filesystem::create_symlink("/dev/full", folder.path() / "a.txt.part");
+  PartFile out(file);
+  out.write("hello");
+  try {
+    out.commit();
+    FAIL() << "a full disk went unnoticed";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr(file.string()),
+                                             testing::HasSubstr("No space left")));
+  }
+  EXPECT_FALSE(exists(file));
+}
+
+TEST(PartFile, AMissingFolderIsBadInput) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(PartFile(folder.path() / "missing" / "a.txt"), InputError);
+}
+
+}  // namespace
+}  // namespace lidarena
