@@ -13,9 +13,9 @@ namespace lidarena {
 
 /// One shot of a LiDAR, in its own frame.
 struct Beam {
-  Eigen::Vector3f direction;   ///< unit
-  std::int32_t dt_ns = 0;      ///< since the scan's first firing
-  std::uint16_t ring = 0;      ///< row of a spinning sensor, laser line of a Livox
+  Eigen::Vector3f direction;  ///< unit
+  std::int32_t dt_ns = 0;     ///< since the scan's first firing
+  std::uint16_t ring = 0;     ///< row of a spinning sensor, laser line of a Livox
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< where the beam starts, m, lidar frame
 };
 
@@ -24,7 +24,7 @@ struct Beam {
 class ScanPattern {
  public:
   virtual ~ScanPattern() = default;
-  virtual Time period() const = 0;             ///< from one scan's stamp to the next
+  virtual Time period() const = 0;  ///< from one scan's stamp to the next
   virtual std::size_t beams_per_scan() const = 0;
   /// Replaces `out` by the beams of scan `index`, in firing order.
   virtual void beams(std::uint64_t index, std::vector<Beam>& out) const = 0;

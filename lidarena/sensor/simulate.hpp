@@ -18,17 +18,19 @@ namespace lidarena {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
-  Time duration{0};   ///< 0 = the whole flight
+  Time duration{0};  ///< 0 = the whole flight
   bool noise = true;
 };
 
 /// The rig that these sensors make on one body (each LiDAR brings its IMU, if it has one). Ids are
-/// the sensors' names, made unique.
+/// the sensors' names, made unique; a LiDAR and the IMU inside it share the id, as they share the
+/// topics /ID/points and /ID/imu. Throws InputError when a model has no such mode.
 Rig make_rig(const std::vector<SensorConfig>& sensors);
 
 /// The measurements of a flight, made as they are asked for: in the order that EventSource
 /// promises, the same for the same seed on any number of threads. Keeps references to `world` and
-/// `flight`. Times are since the flight's start.
+/// `flight`. Times are since the flight's start: scan k begins at k * period, and only whole scans
+/// are made. A scan comes once every IMU has given a sample at or after its last firing (or ended).
 std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
                                       const std::vector<SensorConfig>& sensors,
                                       const SimulationOptions& options, const Parallel& parallel);

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/livox.hpp"
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+constexpr std::size_t kMaxRotors = 3;
+
+using Phases = std::array<Eigen::Vector2d, kMaxRotors>;  // (cos, sin)
+
+double angle_of(const Rotor& rotor, double group) {
+  double angle = kRadians * (rotor.phase_deg + rotor.step_deg * (group + rotor.sample_offset));
+  if (rotor.modulation_rad != 0.0) {
+    const double step = kRadians * rotor.modulation_step_deg;
+    const double wave = std::sin(2.0 * step * (group + 0.5)) * step / std::sin(step);
+    angle += rotor.modulation_rad * (wave + step);
+  }
+  return angle;
+}
+
+Phases phases_of(const LivoxModel& model, std::uint64_t group) {
+  Phases phases;
+  for (std::size_t i = 0; i < model.rotors.size(); ++i) {
+    const double angle = angle_of(model.rotors[i], static_cast<double>(group));
+    phases[i] = {std::cos(angle), std::sin(angle)};
+  }
+  return phases;
+}
+
+Eigen::Vector3d direction(const LivoxModel& model, const Phases& phases, std::size_t emitter) {
+  return model.lidar_from_chain *
+         trace(model.surfaces, model.glass_index, phases, model.emitters[emitter]);
+}
+
+}  // namespace
+
+Eigen::Vector3d livox_direction(const LivoxModel& model, std::uint64_t row) {
+  const std::uint64_t emitters = model.emitters.size();
+  return direction(model, phases_of(model, row / emitters),
+                   static_cast<std::size_t>(row % emitters));
+}
+
+LivoxPattern::LivoxPattern(LivoxModel model, double rate_hz, const std::string& name)
+    : model_(std::move(model)),
+      period_(from_seconds(1.0 / rate_hz)),
+      rows_per_scan_(static_cast<std::size_t>(std::llround(model_.row_rate_hz / rate_hz))) {
+  const double rows = model_.row_rate_hz / rate_hz;
+  const bool whole = std::abs(rows - std::round(rows)) < 1e-9 * rows;
+  if (!whole || rows < 1.0 || rows_per_scan_ % model_.emitters.size() != 0) {
+    throw InputError(name, "a scan would not hold a whole number of laser groups",
+                     "choose rate_hz so that rows per second / rate_hz / emitters is whole");
+  }
+}
+
+void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
+  const std::size_t emitters = model_.emitters.size();
+  const std::uint64_t groups = rows_per_scan_ / emitters;
+  const auto row_period = static_cast<std::int32_t>(std::llround(1e9 / model_.row_rate_hz));
+  out.resize(rows_per_scan_);
+  for (std::uint64_t group = 0; group < groups; ++group) {
+    // Whole turns are taken off first, so that long flights lose no precision.
+    const Phases phases = phases_of(model_, (index * groups + group) % model_.repeat_groups);
+    for (std::size_t emitter = 0; emitter < emitters; ++emitter) {
+      const std::size_t row = group * emitters + emitter;
+      out[row].direction = direction(model_, phases, emitter).cast<float>();
+      out[row].dt_ns = static_cast<std::int32_t>(row) * row_period;
+      out[row].ring = static_cast<std::uint16_t>(emitter);
+      out[row].origin.setZero();
+    }
+  }
+}
+
+}  // namespace lidarena

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "lidarena/sensor/optics.hpp"
+#include "lidarena/sensor/scan_pattern.hpp"
+
+namespace lidarena {
+
+/// Angle of a rotor at the firing of group k, with m = modulation_step_deg:
+///   phase_deg + step_deg * (k + sample_offset)
+///   + modulation_rad * (sin(2 m (k + 1/2)) * m / sin m + m)
+/// The last term is a speed modulation as it comes out of summing speeds sample by sample.
+struct Rotor {
+  double phase_deg;
+  double step_deg;  ///< per group
+  double sample_offset;
+  double modulation_rad = 0.0;
+  double modulation_step_deg = 0.0;  ///< per group; the modulation has twice this rate
+};
+
+/// A Livox as designed: fixed emitters that fire together, and surfaces on rotors.
+struct LivoxModel {
+  double row_rate_hz;                     ///< rows (shots) per second
+  std::vector<Eigen::Vector3d> emitters;  ///< unit; row r is emitter r % size of group r / size
+  std::vector<Rotor> rotors;
+  std::vector<Surface> surfaces;
+  double glass_index;
+  std::uint64_t repeat_groups;       ///< after so many groups all rotors are back, exactly
+  Eigen::Matrix3d lidar_from_chain;  ///< optical axis of the chain is +z
+};
+
+/// Mid-360: two rotors, four refractions, one mirror; 200,000 rows/s, repeats after 12 s.
+LivoxModel livox_mid360();
+/// Mid-40 and Mid-70: two wedges; 100,000 rows/s, repeat after 30 s.
+LivoxModel livox_mid40();
+LivoxModel livox_mid70();
+
+/// Unit direction of row `row` since the sensor's start, lidar frame (x forward, y left, z up).
+Eigen::Vector3d livox_direction(const LivoxModel& model, std::uint64_t row);
+
+/// Scan m covers rows m n .. m n + n - 1 with n = row rate / scan rate; rows follow each other at
+/// the row period, as the driver stamps them; ring is the emitter.
+class LivoxPattern : public ScanPattern {
+ public:
+  /// Throws InputError (place `name`) when `rate_hz` does not cut the rows into whole groups.
+  LivoxPattern(LivoxModel model, double rate_hz, const std::string& name);
+
+  Time period() const override { return period_; }
+  std::size_t beams_per_scan() const override { return rows_per_scan_; }
+  void beams(std::uint64_t index, std::vector<Beam>& out) const override;
+
+ private:
+  LivoxModel model_;
+  Time period_;
+  std::size_t rows_per_scan_;
+};
+
+}  // namespace lidarena

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+#include <set>
+
+#include "lidarena/sensor/simulate.hpp"
+
+namespace lidarena {
+namespace {
+
+std::string unique_name(const std::string& name, std::set<std::string>& taken) {
+  std::string id = name;
+  for (int copy = 2; !taken.insert(id).second; ++copy) id = name + "_" + std::to_string(copy);
+  return id;
+}
+
+std::string model_name(LidarModel model) {
+  for (const auto& [name, value] : EnumNames<LidarModel>::names) {
+    if (value == model) return name;
+  }
+  return "unknown";
+}
+
+LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
+  std::vector<Beam> beams;
+  make_pattern(sensor)->beams(0, beams);
+  int rows = 0;
+  for (const Beam& beam : beams) rows = std::max(rows, beam.ring + 1);
+
+  LidarInfo info;
+  info.id = id;
+  info.model = model_name(sensor.model);
+  info.kind = sensor.model == LidarModel::kOusterOs0128 ? "spinning" : "rosette";
+  info.rows = rows;
+  info.columns = static_cast<int>(beams.size()) / rows;
+  info.rate_hz = sensor.rate_hz;
+  info.min_range_m = sensor.min_range_m;
+  info.max_range_m = sensor.max_range_m;
+  info.body_from_lidar = sensor.body_from_lidar;
+  return info;
+}
+
+ImuInfo describe_imu(const ImuConfig& imu, const Pose& body_from_lidar, const std::string& id) {
+  ImuInfo info;
+  info.id = id;
+  info.model = imu.model;
+  info.rate_hz = imu.rate_hz;
+  info.gyro_noise_density = imu.gyro_noise_density;
+  info.accel_noise_density = imu.accel_noise_density;
+  info.gyro_bias_walk = imu.gyro_bias_walk;
+  info.accel_bias_walk = imu.accel_bias_walk;
+  info.body_from_imu = body_from_lidar * imu.lidar_from_imu;
+  return info;
+}
+
+}  // namespace
+
+Rig make_rig(const std::vector<SensorConfig>& sensors) {
+  Rig rig;
+  std::set<std::string> taken;
+  for (const SensorConfig& sensor : sensors) {
+    const std::string id = unique_name(sensor.name.empty() ? "lidar" : sensor.name, taken);
+    rig.lidars.push_back(describe_lidar(sensor, id));
+    if (sensor.imu) rig.imus.push_back(describe_imu(*sensor.imu, sensor.body_from_lidar, id));
+  }
+  return rig;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lidarena/sensor/scan_pattern.hpp"
+
+namespace lidarena {
+
+/// Where one row of an Ouster looks, relative to the head.
+struct OusterRow {
+  double altitude;        ///< rad, up
+  double azimuth_offset;  ///< rad, clockwise seen from above (as the head turns)
+};
+
+/// Row 0 (top) .. 127 of an OS0-128: four pixel columns behind an f-theta lens with a cubic term,
+/// fitted to one unit's calibration (0.02 deg rms in altitude, 0.03 deg in azimuth).
+OusterRow os0_128_row(int row);
+
+/// OS0-128: a head that turns clockwise once a scan and fires all 128 rows at each of `columns`
+/// places. The lidar frame is the maker's: x towards the connector, where column 0 looks. Beams
+/// start on the circle of the beam origins, 27.67 mm from the axis; ring is the row.
+class OusterOs0Pattern : public ScanPattern {
+ public:
+  static constexpr int kRows = 128;
+  static constexpr double kBeamOriginRadius = 0.02767;  ///< m, units up to revision 6
+
+  /// Modes: 512, 1024 or 2048 columns at 10 Hz; 512 or 1024 at 20 Hz. Throws InputError (place
+  /// `name`) for others.
+  OusterOs0Pattern(int columns, double rate_hz, const std::string& name);
+
+  Time period() const override { return period_; }
+  std::size_t beams_per_scan() const override { return beams_.size(); }
+  /// The same beams in every scan.
+  void beams(std::uint64_t index, std::vector<Beam>& out) const override;
+
+ private:
+  Time period_;
+  std::vector<Beam> beams_;  ///< column by column
+};
+
+}  // namespace lidarena

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/pose.hpp"
+#include "lidarena/sensor/scan_pattern.hpp"
+
+namespace lidarena {
+
+enum class LidarModel { kLivoxMid360, kLivoxMid40, kLivoxMid70, kOusterOs0128 };
+template <>
+struct EnumNames<LidarModel> {
+  static constexpr std::array names{std::pair{"livox_mid360", LidarModel::kLivoxMid360},
+                                    std::pair{"livox_mid40", LidarModel::kLivoxMid40},
+                                    std::pair{"livox_mid70", LidarModel::kLivoxMid70},
+                                    std::pair{"ouster_os0_128", LidarModel::kOusterOs0128}};
+};
+
+/// How a scan relates to the motion during it. All but the first are faults of earlier simulators,
+/// kept for comparisons.
+enum class ScanMode {
+  kRolling,          ///< every shot from the pose at its own instant
+  kFrozen,           ///< all shots from the pose at the stamp, stamped as if the sensor had moved
+  kFrozenUnstamped,  ///< all shots from the pose at the stamp, without per-point times
+  kOfficial,         ///< as kFrozenUnstamped, and every range too short by the minimum range
+};
+template <>
+struct EnumNames<ScanMode> {
+  static constexpr std::array names{std::pair{"rolling", ScanMode::kRolling},
+                                    std::pair{"frozen", ScanMode::kFrozen},
+                                    std::pair{"frozen_unstamped", ScanMode::kFrozenUnstamped},
+                                    std::pair{"official", ScanMode::kOfficial}};
+};
+
+/// The IMU inside a LiDAR. Densities are continuous: a sample at rate f has density * sqrt(f).
+struct ImuConfig {
+  std::string model;
+  double rate_hz = 200.0;
+  double gyro_noise_density = 0.0;
+  double accel_noise_density = 0.0;
+  double gyro_bias_walk = 0.0;
+  double accel_bias_walk = 0.0;
+  double gyro_turn_on_bias = 0.0;
+  double accel_turn_on_bias = 0.0;
+  Pose lidar_from_imu = Pose::Identity();
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("model", self.model, "", "part number");
+    v("rate_hz", self.rate_hz, "Hz", "samples per second", above(0));
+    v("gyro_noise_density", self.gyro_noise_density, "rad/s/sqrt(Hz)", "white noise", at_least(0));
+    v("accel_noise_density", self.accel_noise_density, "m/s^2/sqrt(Hz)", "white noise",
+      at_least(0));
+    v("gyro_bias_walk", self.gyro_bias_walk, "rad/s^2/sqrt(Hz)", "bias random walk", at_least(0));
+    v("accel_bias_walk", self.accel_bias_walk, "m/s^3/sqrt(Hz)", "bias random walk", at_least(0));
+    v("gyro_turn_on_bias", self.gyro_turn_on_bias, "rad/s", "sigma of each axis' first bias",
+      at_least(0));
+    v("accel_turn_on_bias", self.accel_turn_on_bias, "m/s^2", "sigma of each axis' first bias",
+      at_least(0));
+    v("lidar_from_imu", self.lidar_from_imu, "m, quaternion", "x y z qx qy qz qw");
+  }
+};
+
+/// What a buyer asks; no part of the simulation.
+struct SensorFacts {
+  std::string source;  ///< where the figures of the file come from
+  double weight_kg = 0.0;
+  double power_min_w = 0.0;
+  double power_max_w = 0.0;
+  std::string price;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("source", self.source, "", "where the figures of the file come from");
+    v("weight_kg", self.weight_kg, "kg", "weight, 0 if unknown", at_least(0));
+    v("power_min_w", self.power_min_w, "W", "least power drawn, 0 if unknown", at_least(0));
+    v("power_max_w", self.power_max_w, "W", "most power drawn, 0 if unknown", at_least(0));
+    v("price", self.price, "", "in words, empty if unknown");
+  }
+};
+
+/// One LiDAR, its mounting, its noise, and the IMU inside it if there is one.
+struct SensorConfig {
+  std::string name;
+  LidarModel model = LidarModel::kLivoxMid360;
+  int columns = 0;
+  double rate_hz = 10.0;
+  double min_range_m = 0.1;
+  double max_range_m = 70.0;
+  double range_noise_m = 0.0;
+  ScanMode mode = ScanMode::kRolling;
+  Pose body_from_lidar = Pose::Identity();
+  std::optional<ImuConfig> imu;
+  SensorFacts facts;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("name", self.name, "", "id in the dataset; the file's stem if empty");
+    v("model", self.model, "", "scan pattern");
+    v("columns", self.columns, "", "firings per turn; spinning sensors only", at_least(0));
+    v("rate_hz", self.rate_hz, "Hz", "scans per second", above(0));
+    v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
+    v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
+    v("range_noise_m", self.range_noise_m, "m", "sigma of the range noise", at_least(0));
+    v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
+    v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
+    v("imu", self.imu, "", "the IMU inside, if any");
+    v("facts", self.facts, "", "weight, power, price, source");
+  }
+};
+
+/// Reads a file of configs/sensors. Throws InputError naming file, line and key when a key is
+/// unknown, a value is out of range, or the values do not fit together.
+SensorConfig load_sensor(const std::filesystem::path& file);
+
+/// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) when the
+/// model has no such mode.
+std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor);
+
+}  // namespace lidarena

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/simulate.hpp"
+
+#include <algorithm>
+
+#include "lidarena/sensor/imu.hpp"
+#include "lidarena/sensor/lidar.hpp"
+
+namespace lidarena {
+namespace {
+
+struct ImuStream {
+  std::string id;
+  Imu imu;
+};
+
+struct LidarStream {
+  std::string id;
+  Lidar lidar;
+  std::uint64_t next = 0;   ///< index of the scan to come
+  std::uint64_t scans = 0;  ///< only whole scans
+};
+
+class Simulation final : public EventSource {
+ public:
+  Simulation(const World& world, const Flight& flight, const std::vector<SensorConfig>& sensors,
+             const SimulationOptions& options, const Parallel& parallel)
+      : world_(world), flight_(flight), parallel_(parallel), end_(flight.duration()) {
+    if (options.duration > Time{0}) end_ = std::min(end_, options.duration);
+    const Rig rig = make_rig(sensors);
+    std::size_t imu = 0;
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      const SensorConfig& sensor = sensors[i];
+      const std::string& id = rig.lidars[i].id;
+      LidarStream stream{id, {sensor, make_pattern(sensor), id, options.seed, options.noise}};
+      stream.scans = static_cast<std::uint64_t>(end_ / stream.lidar.pattern().period());
+      lidars_.push_back(std::move(stream));
+      if (!sensor.imu) continue;
+      const ImuInfo& info = rig.imus[imu++];
+      imus_.push_back(
+          {info.id, {*sensor.imu, info.body_from_imu, info.id, options.seed, options.noise}});
+    }
+  }
+
+  std::optional<Event> next() override {
+    ImuStream* imu = next_imu();
+    LidarStream* lidar = next_lidar();
+    if (imu != nullptr && (lidar == nullptr || imu->imu.next_stamp() <= due(*lidar))) {
+      return Event{imu->id, imu->imu.measure(flight_)};
+    }
+    if (lidar == nullptr) return std::nullopt;
+    return Event{lidar->id, lidar->lidar.measure(world_, flight_, lidar->next++, parallel_)};
+  }
+
+ private:
+  /// The IMU whose sample comes next; ties go to the sensor named first.
+  ImuStream* next_imu() {
+    const auto first = std::min_element(
+        imus_.begin(), imus_.end(),
+        [](const auto& a, const auto& b) { return a.imu.next_stamp() < b.imu.next_stamp(); });
+    return first == imus_.end() || first->imu.next_stamp() > end_ ? nullptr : &*first;
+  }
+
+  /// The LiDAR whose scan is due next.
+  LidarStream* next_lidar() {
+    LidarStream* first = nullptr;
+    for (LidarStream& lidar : lidars_) {
+      if (lidar.next == lidar.scans) continue;
+      if (first == nullptr || due(lidar) < due(*first)) first = &lidar;
+    }
+    return first;
+  }
+
+  /// When a scan may be delivered: once every IMU has a sample at or after its last firing.
+  Time due(const LidarStream& stream) const {
+    const Time last = stream.lidar.last_firing(stream.next);
+    Time covered = last;
+    for (const ImuStream& stream_of_imu : imus_) {
+      covered = std::max(covered, stream_of_imu.imu.first_stamp_from(last));
+    }
+    return covered;
+  }
+
+  const World& world_;
+  const Flight& flight_;
+  Parallel parallel_;
+  Time end_;
+  std::vector<ImuStream> imus_;
+  std::vector<LidarStream> lidars_;
+};
+
+}  // namespace
+
+std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
+                                      const std::vector<SensorConfig>& sensors,
+                                      const SimulationOptions& options, const Parallel& parallel) {
+  return std::make_unique<Simulation>(world, flight, sensors, options, parallel);
+}
+
+}  // namespace lidarena
