@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/lidar.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+#include "tests/sensor/flights.hpp"
+#include "tests/sensor/worlds.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Vector3d;
+using namespace testing;
+
+// Single precision leaves 1e-5 m at 40 m; the pattern, the poses and the geometry are double.
+constexpr double kTolerance = 1e-4;
+const Parallel kOneThread(1);
+
+/// Shots that made the points of `scan`, for sensors whose (dt, ring) tell shots apart.
+std::vector<Beam> shots_of(const Lidar& lidar, const Scan& scan, std::uint64_t index) {
+  std::vector<Beam> beams;
+  lidar.pattern().beams(index, beams);
+  std::vector<Beam> shots;
+  std::size_t i = 0;
+  for (const Point& point : scan.points) {
+    while (i < beams.size() && (beams[i].dt_ns != point.dt_ns || beams[i].ring != point.ring)) ++i;
+    if (i == beams.size()) break;
+    shots.push_back(beams[i]);
+  }
+  return shots;
+}
+
+/// Range of a point from where its beam started.
+double range_of(const Point& point, const Beam& beam) {
+  return static_cast<double>((point.position - beam.origin).norm());
+}
+
+/// Largest difference between the ranges of a scan and expected(origin, direction, time), both in
+/// the world, with the lidar at its place of each instant.
+template <class Expected>
+double worst_range_error(const Lidar& lidar, const Scan& scan, const Flight& flight,
+                         const Pose& body_from_lidar, std::uint64_t index, Expected&& expected) {
+  const auto shots = shots_of(lidar, scan, index);
+  EXPECT_EQ(shots.size(), scan.points.size());
+  double worst = 0.0;
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    const Pose pose = flight.pose_at(time_of(scan, scan.points[i])) * body_from_lidar;
+    const Vector3d origin = pose * shots[i].origin.cast<double>();
+    const Vector3d direction = pose.linear() * shots[i].direction.cast<double>();
+    worst =
+        std::max(worst, std::abs(range_of(scan.points[i], shots[i]) - expected(origin, direction)));
+  }
+  return worst;
+}
+
+TEST(Lidar, ATiltedSensorMeasuresAWallWherePlaneGeometryPutsIt) {
+  const World world(wall_mesh(30.0));
+  const auto flight = rest(tilted_pose({2, 1, -3}, 0.4, -0.3, 0.2));
+  for (const SensorConfig& config : {mid360(), ouster()}) {
+    const Lidar lidar = make_lidar(config);
+    const Scan scan = lidar.measure(world, flight, 4, kOneThread);
+    EXPECT_GT(scan.points.size(), 1000U);
+    const double worst = worst_range_error(
+        lidar, scan, flight, config.body_from_lidar, 4,
+        [](const Vector3d& o, const Vector3d& d) { return (30.0 - o.x()) / d.x(); });
+    EXPECT_LT(worst, kTolerance) << config.name;
+  }
+}
+
+TEST(Lidar, InABoxEveryShotReturnsAndEveryRangeIsRight) {
+  const Vector3d low(-40, -15, -4);
+  const Vector3d high(38, 12, 5);
+  const World world(box_mesh(low, high));
+  const auto flight = rest(tilted_pose({-2, 3, 1}, -0.5, 0.6, 2.0));
+  for (const SensorConfig& config : {mid360(), ouster()}) {
+    const Lidar lidar = make_lidar(config);
+    const Scan scan = lidar.measure(world, flight, 11, kOneThread);
+    EXPECT_EQ(scan.points.size(), lidar.pattern().beams_per_scan());
+    const double worst = worst_range_error(
+        lidar, scan, flight, config.body_from_lidar, 11,
+        [&](const Vector3d& o, const Vector3d& d) { return range_in_box(low, high, o, d); });
+    EXPECT_LT(worst, kTolerance) << config.name;
+  }
+}
+
+TEST(Lidar, AWorldFarFromTheOriginLosesNothing) {
+  const Vector3d far(500'000, -300'000, 800);
+  const Vector3d low = far + Vector3d(-20, -15, -4);
+  const Vector3d high = far + Vector3d(18, 12, 5);
+  const World world(box_mesh(low, high));
+  const auto flight = rest(tilted_pose(far + Vector3d(-2, 3, 1), -0.5, 0.6, 2.0));
+  const Lidar lidar = make_lidar(mid360());
+  const Scan scan = lidar.measure(world, flight, 0, kOneThread);
+  const double worst = worst_range_error(
+      lidar, scan, flight, mid360().body_from_lidar, 0,
+      [&](const Vector3d& o, const Vector3d& d) { return range_in_box(low, high, o, d); });
+  EXPECT_EQ(scan.points.size(), 20'000U);
+  EXPECT_LT(worst, kTolerance);
+}
+
+TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
+  const TriangleMesh mesh = sphere_mesh(35.0, 3);
+  const World world(mesh);
+  const auto flight = rest(tilted_pose({3, -4, 2}, 0.3, 0.2, -1.0));
+  SensorConfig config = mid360();
+  config.rate_hz = 100.0;  // 2000 rows
+  const Lidar lidar = make_lidar(config);
+  const Scan scan = lidar.measure(world, flight, 3, kOneThread);
+  EXPECT_EQ(scan.points.size(), 2000U);
+  const double worst = worst_range_error(
+      lidar, scan, flight, config.body_from_lidar, 3,
+      [&](const Vector3d& o, const Vector3d& d) { return slow_cast(mesh, o, d); });
+  EXPECT_LT(worst, kTolerance);
+}
+
+struct Offsets {
+  double worst_at_own_instant = 0.0;  ///< m from the box, each point put back with its own pose
+  double worst_at_stamp = 0.0;        ///< m from the box, all points with the pose at the stamp
+};
+
+/// Scan 5 of a sensor on a swinging flight in a box, put back into the world in two ways.
+Offsets offsets_in_box(const SensorConfig& config) {
+  const Vector3d low(-12, -10, -6);
+  const Vector3d high(11, 9, 7);
+  const World world(box_mesh(low, high));
+  const SwingingFlight flight(10.0);
+  const Lidar lidar = make_lidar(config);
+  const Scan scan = lidar.measure(world, flight, 5, kOneThread);
+  EXPECT_EQ(scan.points.size(), lidar.pattern().beams_per_scan());
+  Offsets offsets;
+  const Pose at_stamp = flight.pose_at(scan.stamp) * config.body_from_lidar;
+  for (const Point& point : scan.points) {
+    const Vector3d position = point.position.cast<double>();
+    const Pose at_instant = flight.pose_at(time_of(scan, point)) * config.body_from_lidar;
+    offsets.worst_at_own_instant =
+        std::max(offsets.worst_at_own_instant, distance_to_box(low, high, at_instant * position));
+    offsets.worst_at_stamp =
+        std::max(offsets.worst_at_stamp, distance_to_box(low, high, at_stamp * position));
+  }
+  return offsets;
+}
+
+TEST(Lidar, ARollingScanInMotionLiesOnTheMeshOnlyWithThePoseOfEachInstant) {
+  for (const SensorConfig& config : {mid360(), ouster()}) {
+    const Offsets offsets = offsets_in_box(config);
+    EXPECT_LT(offsets.worst_at_own_instant, kTolerance) << config.name;
+    EXPECT_GT(offsets.worst_at_stamp, 0.1) << config.name;  // it moves by about 2 m/s and 1 rad/s
+  }
+}
+
+TEST(Lidar, AFrozenScanLiesOnTheMeshOnlyWithThePoseAtTheStamp) {
+  SensorConfig config = mid360();
+  config.mode = ScanMode::kFrozen;
+  const Offsets frozen = offsets_in_box(config);
+  EXPECT_LT(frozen.worst_at_stamp, kTolerance);
+  EXPECT_GT(frozen.worst_at_own_instant, 0.1);
+
+  config.mode = ScanMode::kFrozenUnstamped;
+  const Offsets unstamped = offsets_in_box(config);
+  EXPECT_LT(unstamped.worst_at_stamp, kTolerance);
+  EXPECT_LT(unstamped.worst_at_own_instant, kTolerance);
+}
+
+TEST(Lidar, OnlyRollingAndFrozenScansCarryTimes) {
+  const World world(box_mesh({-5, -5, -5}, {5, 5, 5}));
+  const SwingingFlight flight(1.0);
+  for (const ScanMode mode :
+       {ScanMode::kRolling, ScanMode::kFrozen, ScanMode::kFrozenUnstamped, ScanMode::kOfficial}) {
+    SensorConfig config = mid360();
+    config.mode = mode;
+    const Scan scan = make_lidar(config).measure(world, flight, 2, kOneThread);
+    const bool timed = mode == ScanMode::kRolling || mode == ScanMode::kFrozen;
+    EXPECT_EQ(scan.timed, timed);
+    EXPECT_EQ(scan.stamp, std::chrono::milliseconds(200));
+    EXPECT_EQ(scan.points.back().dt_ns, timed ? 19'999 * 5000 : 0);
+  }
+}
+
+TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
+  const double distance = 8.0;
+  const double rate = 2.5;
+  const World world(wall_mesh(distance));
+  const UniformFlight flight(Pose::Identity(), Vector3d::Zero(), {0, 0, rate}, 5.0);
+  SensorConfig config = mid360();
+  config.body_from_lidar.setIdentity();
+  const Lidar lidar = make_lidar(config);
+  const Scan scan = lidar.measure(world, flight, 6, kOneThread);
+  const auto shots = shots_of(lidar, scan, 6);
+  ASSERT_GT(shots.size(), 5000U);
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    const double yaw = rate * (0.6 + 1e-9 * shots[i].dt_ns);
+    const Vector3d u = shots[i].direction.cast<double>();
+    const double towards_wall = std::cos(yaw) * u.x() - std::sin(yaw) * u.y();
+    EXPECT_NEAR(range_of(scan.points[i], shots[i]), distance / towards_wall,
+                kTolerance * std::max(1.0, 0.1 / towards_wall));  // grazing rays magnify
+  }
+}
+
+TEST(Lidar, RangeLimitsFilterTheTrueRangeAndMoveNothing) {
+  const double distance = 0.08;
+  const World world(wall_mesh(distance));
+  SensorConfig config = mid360();
+  config.body_from_lidar.setIdentity();
+  config.min_range_m = 0.1;
+  config.max_range_m = 0.5;
+  const Lidar lidar = make_lidar(config);
+  const auto flight = rest(Pose::Identity());
+  std::vector<Beam> beams;
+  lidar.pattern().beams(0, beams);
+  std::size_t expected = 0;
+  for (const Beam& beam : beams) {
+    const double range = distance / static_cast<double>(beam.direction.x());
+    if (range >= 0.1 && range <= 0.5) ++expected;
+  }
+  const Scan scan = lidar.measure(world, flight, 0, kOneThread);
+  EXPECT_GT(expected, 1000U);
+  EXPECT_NEAR(static_cast<double>(scan.points.size()), static_cast<double>(expected), 1.0);
+  for (const Point& point : scan.points) EXPECT_NEAR(point.position.x(), distance, 1e-6);
+}
+
+TEST(Lidar, SomethingTooNearHidesWhatIsBehindIt) {
+  TriangleMesh mesh = wall_mesh(0.05);
+  mesh.append(wall_mesh(20.0));
+  const World world(std::move(mesh));
+  SensorConfig config = mid360();
+  config.body_from_lidar.setIdentity();
+  const auto flight = rest(Pose::Identity());
+  for (const Point& point : make_lidar(config).measure(world, flight, 0, kOneThread).points) {
+    EXPECT_LT(point.position.x(), 0.051F);
+  }
+  // The official plugin's fault: shots that start at the minimum range look through it.
+  config.mode = ScanMode::kOfficial;
+  std::size_t seen_through = 0;
+  for (const Point& point : make_lidar(config).measure(world, flight, 0, kOneThread).points) {
+    if (point.position.x() > 15.0F) ++seen_through;
+  }
+  EXPECT_GT(seen_through, 1000U);
+}
+
+TEST(Lidar, TheOfficialFaultShortensEveryRangeByTheMinimumRange) {
+  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const auto flight = rest(Pose::Identity());
+  SensorConfig config = mid360();
+  const Scan right = make_lidar(config).measure(world, flight, 0, kOneThread);
+  config.mode = ScanMode::kOfficial;
+  const Scan wrong = make_lidar(config).measure(world, flight, 0, kOneThread);
+  ASSERT_EQ(right.points.size(), wrong.points.size());
+  for (std::size_t i = 0; i < right.points.size(); ++i) {
+    EXPECT_NEAR(right.points[i].position.norm() - wrong.points[i].position.norm(), 0.1, kTolerance);
+  }
+}
+
+TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
+  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const auto flight = rest(tilted_pose({1, 1, 1}, 0.1, 0.2, 0.3));
+  SensorConfig config = mid360();
+  config.range_noise_m = 0.02;
+  const Lidar lidar = make_lidar(config);
+  double sum = 0.0, squares = 0.0;
+  std::size_t count = 0, beyond_two_sigma = 0;
+  for (std::uint64_t index = 0; index < 3; ++index) {
+    std::vector<Hit> truth;
+    const Scan scan = lidar.measure(world, flight, index, kOneThread, &truth);
+    const auto shots = shots_of(lidar, scan, index);
+    ASSERT_EQ(truth.size(), scan.points.size());
+    for (std::size_t i = 0; i < shots.size(); ++i) {
+      const Eigen::Vector3f& position = scan.points[i].position;
+      EXPECT_LT(position.cross(shots[i].direction).norm(), 1e-5F);
+      const double error = range_of(scan.points[i], shots[i]) - static_cast<double>(truth[i].range);
+      sum += error;
+      squares += error * error;
+      if (std::abs(error) > 0.04) ++beyond_two_sigma;
+      ++count;
+    }
+  }
+  const auto n = static_cast<double>(count);
+  EXPECT_EQ(count, 60'000U);
+  EXPECT_NEAR(sum / n, 0.0, 4 * 0.02 / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(squares / n), 0.02, 4 * 0.02 / std::sqrt(2 * n));
+  const double p = std::erfc(2.0 / std::sqrt(2.0));  // share of a Gaussian beyond two sigma
+  EXPECT_NEAR(static_cast<double>(beyond_two_sigma) / n, p, 4 * std::sqrt(p * (1 - p) / n));
+}
+
+TEST(Lidar, ScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
+  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const SwingingFlight flight(2.0);
+  for (SensorConfig config : {mid360(), ouster()}) {
+    config.range_noise_m = 0.02;
+    const Lidar lidar = make_lidar(config);
+    std::vector<Scan> scans;
+    for (std::uint64_t i = 0; i < 4; ++i) {
+      scans.push_back(lidar.measure(world, flight, i, kOneThread));
+    }
+    for (const int threads : {1, 2, 5}) {
+      const Parallel parallel(threads);
+      const Lidar twin = make_lidar(config);
+      for (const std::uint64_t i : {3U, 0U, 2U, 1U}) {
+        EXPECT_TRUE(same(twin.measure(world, flight, i, parallel), scans[i])) << threads;
+      }
+    }
+    EXPECT_FALSE(same(make_lidar(config, 2).measure(world, flight, 0, kOneThread), scans[0]));
+    const Lidar other_name(config, make_pattern(config), "other", 1, true);
+    EXPECT_FALSE(same(other_name.measure(world, flight, 0, kOneThread), scans[0]));
+  }
+}
+
+TEST(Lidar, IntensityIsTheCosineOfIncidence) {
+  const World world(wall_mesh(10.0));
+  SensorConfig config = mid360();
+  config.body_from_lidar.setIdentity();
+  const Scan scan = make_lidar(config).measure(world, rest(Pose::Identity()), 0, kOneThread);
+  ASSERT_GT(scan.points.size(), 1000U);
+  for (const Point& point : scan.points) {
+    EXPECT_NEAR(point.intensity, 255.0F * point.position.normalized().x(), 1e-3);
+  }
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/sensor_config.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+namespace {
+
+using ::testing::HasSubstr;
+
+namespace fs = std::filesystem;
+
+const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
+
+/// The message with which loading `yaml` fails.
+std::string failure(const std::string& yaml) {
+  const fs::path file = fs::path(::testing::TempDir()) / "sensor_under_test.yaml";
+  std::ofstream(file) << yaml;
+  try {
+    load_sensor(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no failure";
+}
+
+TEST(SensorConfig, EveryFileThatShipsLoadsAndHasAnImuAndASource) {
+  int files = 0;
+  for (const auto& entry : fs::directory_iterator(kConfigs)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const SensorConfig sensor = load_sensor(entry.path());
+    EXPECT_EQ(sensor.name, entry.path().stem());
+    EXPECT_TRUE(sensor.imu.has_value());
+    EXPECT_FALSE(sensor.facts.source.empty());
+    EXPECT_GT(sensor.facts.weight_kg, 0.0);
+    ++files;
+  }
+  EXPECT_GE(files, 5);
+}
+
+TEST(SensorConfig, ThePapersSensorsHaveItsRangesAndNoNoise) {
+  const SensorConfig livox = load_sensor(kConfigs / "livox_mid360_paper.yaml");
+  EXPECT_EQ(livox.max_range_m, 40.0);
+  EXPECT_EQ(livox.range_noise_m, 0.0);
+  EXPECT_EQ(livox.imu->gyro_noise_density, 0.0);
+  const SensorConfig ouster = load_sensor(kConfigs / "ouster_os0_128_paper.yaml");
+  EXPECT_EQ(ouster.max_range_m, 100.0);
+  EXPECT_EQ(ouster.range_noise_m, 0.0);
+  EXPECT_EQ(make_pattern(ouster)->beams_per_scan(), 262'144U);
+}
+
+TEST(SensorConfig, WhatIsSavedAsJsonLoadsAsTheSame) {
+  const SensorConfig sensor = load_sensor(kConfigs / "ouster_os0_128.yaml");
+  const Json json = to_json(sensor);
+  SensorConfig again;
+  read_config(ConfigNode::parse(json.dump(), "saved"), again);
+  EXPECT_EQ(to_json(again), json);
+}
+
+TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
+  EXPECT_THAT(failure("model: livox_mid360\nmax_rnge_m: 3\n"),
+              AllOf(HasSubstr("sensor_under_test.yaml:2"), HasSubstr("max_range_m")));
+  EXPECT_THAT(failure("model: livox_mid361\n"),
+              AllOf(HasSubstr("sensor_under_test.yaml:1"), HasSubstr("livox_mid360")));
+  EXPECT_THAT(failure("mode: melting\n"), HasSubstr("frozen_unstamped"));
+  EXPECT_THAT(failure("range_noise_m: -1\n"), HasSubstr("at least 0"));
+  EXPECT_THAT(failure("imu: {rate_hz: 0}\n"), HasSubstr("imu.rate_hz"));
+  EXPECT_THAT(failure("min_range_m: 5\nmax_range_m: 5\n"), HasSubstr("min_range_m"));
+  EXPECT_THAT(failure("model: ouster_os0_128\n"), HasSubstr("2048"));
+  EXPECT_THAT(failure("model: livox_mid40\ncolumns: 512\n"), HasSubstr("columns"));
+  EXPECT_THAT(failure("rate_hz: 30\n"), HasSubstr("whole"));
+  EXPECT_THROW(load_sensor("no_such_file.yaml"), InputError);
+}
+
+}  // namespace
+}  // namespace lidarena
