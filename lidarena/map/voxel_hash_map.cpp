@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/map/voxel_hash_map.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+
+namespace {
+
+struct Step {
+  int dx, dy, dz;
+};
+
+/// The cell itself and its 26 neighbours, those with a common face first, then edge, then corner.
+constexpr std::array<Step, 27> make_steps() {
+  std::array<Step, 27> steps{};
+  std::size_t next = 0;
+  for (int manhattan = 0; manhattan <= 3; ++manhattan) {
+    for (int i = 0; i < 27; ++i) {
+      const Step step{i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1};
+      const int distance = step.dx * step.dx + step.dy * step.dy + step.dz * step.dz;
+      if (distance == manhattan) steps[next++] = step;
+    }
+  }
+  return steps;
+}
+constexpr std::array<Step, 27> kSteps = make_steps();
+
+}  // namespace
+
+VoxelHashMap::VoxelHashMap(const Options& options)
+    : options_(options),
+      size_m_(static_cast<float>(options.voxel_size)),
+      inverse_size_(static_cast<float>(1.0 / options.voxel_size)),
+      squared_spacing_(static_cast<float>(options.min_spacing * options.min_spacing)) {
+  if (!(options.voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
+  if (options.max_points < 1 || options.max_points > 4096)
+    throw InputError("max_points", "must lie in 1..4096 points a cell");
+}
+
+bool VoxelHashMap::insert(const Eigen::Vector3f& point) {
+  if (!point.allFinite()) return false;
+  Cell& cell = cells_[voxel_key(voxel_of(point, inverse_size_))];
+  if (cell.count == options_.max_points) return false;
+  const std::span<const Eigen::Vector3f> present(cell.points, cell.count);
+  const bool crowded = std::any_of(present.begin(), present.end(), [&](const auto& other) {
+    return (other - point).squaredNorm() < squared_spacing_;
+  });
+  if (crowded) return false;
+  append(cell, point);
+  return true;
+}
+
+void VoxelHashMap::insert(std::span<const Eigen::Vector3f> points) {
+  for (const Eigen::Vector3f& point : points) insert(point);
+}
+
+void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
+  if (cell.points == nullptr) {
+    cell.points = blocks_.allocate(cell.level);
+  } else if (cell.count == PointBlocks::capacity(cell.level)) {
+    Eigen::Vector3f* const larger = blocks_.allocate(cell.level + 1);
+    std::copy_n(cell.points, cell.count, larger);
+    blocks_.release(cell.points, cell.level);
+    cell.points = larger;
+    ++cell.level;
+  }
+  cell.points[cell.count++] = point;
+  ++size_;
+}
+
+void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
+  const auto squared_radius = static_cast<float>(radius * radius);
+  for (auto it = cells_.begin(); it != cells_.end();) {
+    const Cell& cell = it->second;
+    if ((cell.points[0] - center).squaredNorm() < squared_radius) {
+      ++it;
+      continue;
+    }
+    blocks_.release(cell.points, cell.level);
+    size_ -= cell.count;
+    it = cells_.erase(it);
+  }
+}
+
+VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
+                                             float max_distance) const {
+  if (!query.allFinite()) return {};
+  const Voxel voxel = voxel_of(query, inverse_size_);
+  const VoxelKey key = voxel_key(voxel);
+  // Squared distance along each axis to the cells below, here and above: a cell that begins beyond
+  // the best distance so far need not be looked up.
+  const Eigen::Array3f above_face = query.array() - voxel.cast<float>().array() * size_m_;
+  const Eigen::Array3f below_face = size_m_ - above_face;
+  const Eigen::Array3f low = above_face.square();
+  const Eigen::Array3f high = below_face.square();
+  const auto gap = [&](int axis, int step) {
+    return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
+  };
+  Neighbor best{nullptr, max_distance * max_distance};
+  for (const auto& [dx, dy, dz] : kSteps) {
+    if (gap(0, dx) + gap(1, dy) + gap(2, dz) >= best.squared_distance) continue;
+    const auto found = cells_.find(key + voxel_key_step(dx, dy, dz));
+    if (found == cells_.end()) continue;
+    const Cell& cell = found->second;
+    for (std::size_t i = 0; i < cell.count; ++i) {
+      const float squared_distance = (cell.points[i] - query).squaredNorm();
+      if (squared_distance < best.squared_distance) best = {cell.points + i, squared_distance};
+    }
+  }
+  return best;
+}
+
+std::vector<Eigen::Vector3f> VoxelHashMap::points() const {
+  std::vector<Eigen::Vector3f> all;
+  all.reserve(size_);
+  for (const auto& [key, cell] : cells_)
+    all.insert(all.end(), cell.points, cell.points + cell.count);
+  return all;
+}
+
+std::size_t VoxelHashMap::memory_bytes() const {
+  // robin_map: one array of buckets, each the value plus 8 bytes of bookkeeping
+  constexpr std::size_t kBucketBytes = sizeof(std::pair<VoxelKey, Cell>) + 8;
+  return cells_.bucket_count() * kBucketBytes + blocks_.memory_bytes();
+}
+
+}  // namespace lidarena

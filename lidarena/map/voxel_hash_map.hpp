@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tsl/robin_map.h>
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lidarena/map/point_blocks.hpp"
+#include "lidarena/map/voxel_key.hpp"
+
+namespace lidarena {
+
+/// A local map: a hash table from cubic cells to a few points each, as in Vizzo et al., "KISS-ICP"
+/// (RA-L 2023), section III-D. Points are kept as float: 8 um at 100 m, 0.06 mm at 1 km.
+class VoxelHashMap {
+ public:
+  struct Options {
+    double voxel_size = 1.0;   ///< edge of a cell, m
+    int max_points = 20;       ///< of a cell; later ones are refused (1..4096)
+    double min_spacing = 0.0;  ///< m; a point nearer to another one of its own cell is refused
+  };
+  struct Neighbor {
+    const Eigen::Vector3f* point = nullptr;  ///< in the map; null if there is none
+    float squared_distance = 0.0F;           ///< m^2
+    explicit operator bool() const { return point != nullptr; }
+  };
+
+  /// Throws InputError on options that make no sense.
+  explicit VoxelHashMap(const Options& options);
+
+  /// Adds one point (m, map frame); whether it was taken. Points that are not finite are refused.
+  bool insert(const Eigen::Vector3f& point);
+  void insert(std::span<const Eigen::Vector3f> points);
+
+  /// Drops each cell whose first point is `radius` (m) or more from `center`.
+  void remove_far(const Eigen::Vector3f& center, double radius);
+
+  /// Nearest point to `query` among its cell and the 26 around, nearer than `max_distance`: the
+  /// true nearest one if that is at most a cell's edge away.
+  Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
+
+  bool empty() const { return cells_.empty(); }
+  std::size_t size() const { return size_; }  ///< points
+  std::size_t cell_count() const { return cells_.size(); }
+  std::vector<Eigen::Vector3f> points() const;
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Cell {
+    Eigen::Vector3f* points = nullptr;
+    std::uint16_t count = 0;
+    std::uint8_t level = 0;  ///< of the block, see PointBlocks
+  };
+
+  void append(Cell& cell, const Eigen::Vector3f& point);
+
+  Options options_;
+  float size_m_;
+  float inverse_size_;
+  float squared_spacing_;
+  tsl::robin_map<VoxelKey, Cell, VoxelKeyHash> cells_;
+  PointBlocks blocks_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace lidarena

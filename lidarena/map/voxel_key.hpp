@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+namespace lidarena {
+
+/// Integer cell of a cubic grid: floor(coordinate / edge) on each axis.
+using Voxel = Eigen::Vector3i;
+
+/// A voxel in one number, 21 bits an axis. Keys of neighbours differ by a constant.
+using VoxelKey = std::uint64_t;
+
+/// Cells further than this from the origin are one with the cell at this distance (524 km at 0.5 m,
+/// 20 km at 2 cm); one cell is left free on each side so that neighbours never wrap around.
+inline constexpr int kMaxVoxelIndex = (1 << 20) - 2;
+
+/// Cell of a finite point (m); `inverse_edge` in 1/m.
+inline Voxel voxel_of(const Eigen::Vector3f& point, float inverse_edge) {
+  const auto index = [&](float coordinate) {
+    constexpr auto kLimit = static_cast<float>(kMaxVoxelIndex);
+    const float cells = std::clamp(coordinate * inverse_edge, -kLimit, kLimit);
+    const int truncated = static_cast<int>(cells);
+    return truncated - (cells < static_cast<float>(truncated) ? 1 : 0);
+  };
+  return {index(point.x()), index(point.y()), index(point.z())};
+}
+
+/// Difference between the keys of two voxels that lie `d` cells apart.
+constexpr VoxelKey voxel_key_step(int dx, int dy, int dz) {
+  return static_cast<VoxelKey>(dx) + (static_cast<VoxelKey>(dy) << 21) +
+         (static_cast<VoxelKey>(dz) << 42);
+}
+
+inline VoxelKey voxel_key(const Voxel& voxel) {
+  constexpr VoxelKey kBias = voxel_key_step(1 << 20, 1 << 20, 1 << 20);
+  return kBias + voxel_key_step(voxel.x(), voxel.y(), voxel.z());
+}
+
+/// Spreads neighbouring keys over all bits (Fibonacci hashing, Knuth, TAOCP vol. 3, 6.4).
+struct VoxelKeyHash {
+  std::size_t operator()(VoxelKey key) const {
+    const std::uint64_t product = key * 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio
+    return static_cast<std::size_t>(product ^ (product >> 32U));
+  }
+};
+
+}  // namespace lidarena

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/kiss_icp/config.hpp"
+
+namespace lidarena::kiss_icp {
+
+namespace {
+
+Config head() { return {}; }
+
+/// The program of the paper's year, tag v0.2.
+Config original() {
+  Config config;
+  config.min_range_m = 5.0;
+  config.min_spacing = false;
+  config.pose_instant = PoseInstant::kScanMiddle;
+  config.threshold_start = ThresholdStart::kUntilMoved;
+  config.kernel_fraction = 1.0 / 3.0;
+  return config;
+}
+
+Config improved(const LidarInfo& lidar) {
+  Config config;
+  config.max_range_m = lidar.max_range_m;
+  config.min_range_m = lidar.min_range_m;
+  config.equal_times_are_no_times = true;
+  config.motion_per_second = true;
+  config.motion_kept_when_lost = 0.5;
+  config.sensor_centred = true;
+  return config;
+}
+
+}  // namespace
+
+std::vector<std::string> preset_names() { return {"improved", "head", "original"}; }
+
+Config preset(const std::string& name, const LidarInfo& lidar) {
+  if (name == "improved") return improved(lidar);
+  if (name == "head") return head();
+  if (name == "original") return original();
+  const std::string nearest = nearest_word(name, preset_names());
+  throw InputError(
+      "preset", "kiss_icp has no preset '" + name + "'",
+      nearest.empty() ? "use improved, head or original" : "did you mean '" + nearest + "'?");
+}
+
+}  // namespace lidarena::kiss_icp

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/rig.hpp"
+
+namespace lidarena::kiss_icp {
+
+/// Which instant of the scan the pose belongs to, and all points are moved to.
+enum class PoseInstant { kScanMiddle, kScanEnd };
+
+/// What the adaptive threshold is before much motion was seen.
+enum class ThresholdStart {
+  kBlended,     ///< sigma0 counts as the first sample, always
+  kUntilMoved,  ///< sigma0 alone until 5 minimum motions from the start, then samples alone
+};
+
+/// The defaults are the public program's (2025); preset() changes them.
+struct Config {
+  double max_range_m = 100.0;
+  double min_range_m = 0.0;
+  std::optional<double> voxel_size_m;  ///< unset: max_range_m / 100
+  int max_points_per_voxel = 20;
+  bool min_spacing = true;
+
+  bool deskew = true;
+  PoseInstant pose_instant = PoseInstant::kScanEnd;
+
+  double initial_threshold_m = 2.0;
+  double min_motion_m = 0.1;
+  ThresholdStart threshold_start = ThresholdStart::kBlended;
+
+  double kernel_fraction = 1.0;
+  int max_iterations = 500;
+  double convergence = 1e-4;
+
+  bool equal_times_are_no_times = false;
+  bool motion_per_second = false;
+  double motion_kept_when_lost = 1.0;
+  bool sensor_centred = false;
+
+  double voxel_size() const { return voxel_size_m.value_or(max_range_m / 100.0); }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("max_range_m", self.max_range_m, "m",
+      "farther points are dropped; also the local map's radius and the threshold's lever arm",
+      above(0));
+    v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
+    v("voxel_size_m", self.voxel_size_m, "m",
+      "edge of a map cell, null: max_range_m / 100; finer is more accurate and slower", above(0));
+    v("max_points_per_voxel", self.max_points_per_voxel, "", "points a map cell holds",
+      Limits{1, 4096});
+    v("min_spacing", self.min_spacing, "",
+      "keep the points of a cell voxel_size / sqrt(max_points_per_voxel) apart; false: the first "
+      "ones met");
+    v("deskew", self.deskew, "", "undo the motion within the scan, where points carry times");
+    v("pose_instant", self.pose_instant, "", "instant of the pose: scan_middle or scan_end");
+    v("initial_threshold_m", self.initial_threshold_m, "m",
+      "first guess of the prediction's error sigma; the search radius is 3 sigma", above(0));
+    v("min_motion_m", self.min_motion_m, "m",
+      "smaller errors of the prediction do not count into sigma", at_least(0));
+    v("threshold_start", self.threshold_start, "", "blended or until_moved");
+    v("kernel_fraction", self.kernel_fraction, "",
+      "scale of the robust kernel as a fraction of sigma", above(0));
+    v("max_iterations", self.max_iterations, "", "of ICP; bounds the time of a lost scan",
+      at_least(1));
+    v("convergence", self.convergence, "m and rad", "ICP ends below this step", at_least(0));
+    v("equal_times_are_no_times", self.equal_times_are_no_times, "",
+      "cure: a scan whose times are all equal is not de-skewed, instead of being lost");
+    v("motion_per_second", self.motion_per_second, "",
+      "cure: predict and de-skew by real time, so that a dropped scan does no harm");
+    v("motion_kept_when_lost", self.motion_kept_when_lost, "",
+      "cure below 1: factor on the predicted motion after each scan that matches nothing",
+      between(0, 1));
+    v("sensor_centred", self.sensor_centred, "",
+      "cure: increments turn about the sensor, not about the origin of the map");
+  }
+};
+
+/// Names of preset(), the default first.
+std::vector<std::string> preset_names();
+
+/// Settings for a LiDAR: "improved"; "head" and "original", the public programs of 2025 and 2023.
+/// Throws InputError for another name.
+Config preset(const std::string& name, const LidarInfo& lidar);
+
+}  // namespace lidarena::kiss_icp
+
+namespace lidarena {
+
+template <>
+struct EnumNames<kiss_icp::PoseInstant> {
+  static constexpr std::array names{std::pair{"scan_middle", kiss_icp::PoseInstant::kScanMiddle},
+                                    std::pair{"scan_end", kiss_icp::PoseInstant::kScanEnd}};
+};
+
+template <>
+struct EnumNames<kiss_icp::ThresholdStart> {
+  static constexpr std::array names{
+      std::pair{"blended", kiss_icp::ThresholdStart::kBlended},
+      std::pair{"until_moved", kiss_icp::ThresholdStart::kUntilMoved}};
+};
+
+}  // namespace lidarena

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/map/voxel_hash_map.hpp"
+#include "lidarena/odometry/kiss_icp/adaptive_threshold.hpp"
+#include "lidarena/odometry/kiss_icp/config.hpp"
+#include "lidarena/odometry/kiss_icp/preprocess.hpp"
+#include "lidarena/odometry/kiss_icp/registration.hpp"
+#include "lidarena/odometry/odometry.hpp"
+
+namespace lidarena::kiss_icp {
+
+/// LiDAR odometry by scan-to-map ICP with an adaptive search radius, after Vizzo, Guadagnino,
+/// Mersch, Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md beside.
+class KissIcp : public Odometry {
+ public:
+  KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
+
+  OdometryTraits traits() const override { return {}; }
+  ScanResult register_scan(const Scan& scan) override;
+  Trajectory trajectory() const override { return Trajectory(poses_, "kiss_icp"); }
+  std::vector<Eigen::Vector3f> map() const override;
+  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
+  std::map<std::string, std::uint64_t> memory() const override;
+
+ private:
+  /// The lidar's motion until now, if it goes on as before.
+  Pose predicted_motion(const ScanTimes& times) const;
+  ScanStatus status_of(const Registration& registration, std::size_t points) const;
+  /// Takes over the scan's pose and the motion towards it.
+  void advance(const Pose& pose, const ScanTimes& times, ScanStatus status);
+  /// Poses of the body through the scan, as assumed in de-skewing; empty if it was not.
+  std::vector<StampedPose> motion_within(const ScanTimes& times, const se3::Vector6& twist) const;
+  /// Pose of the body in its own frame at the start.
+  Pose body_pose(const Pose& map_from_lidar) const;
+  Time instant() const { return poses_.back().stamp; }
+
+  Config config_;
+  Pose body_from_lidar_;
+  Parallel parallel_;
+  VoxelHashMap map_;  ///< in the lidar's frame at its first pose
+  AdaptiveThreshold threshold_;
+
+  Pose map_from_lidar_ = Pose::Identity();
+  Pose motion_ = Pose::Identity();  ///< lidar's, between the last two scans
+  double motion_seconds_;           ///< that it took
+  Time scan_duration_;              ///< of the last scan that had times
+  std::vector<StampedPose> poses_;  ///< of the body
+  std::vector<Eigen::Vector3f> registered_scan_;
+};
+
+}  // namespace lidarena::kiss_icp

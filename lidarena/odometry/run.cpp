@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/run.hpp"
+
+#include <chrono>
+
+#include "lidarena/map/point_map.hpp"
+#include "lidarena/odometry/process_memory.hpp"
+
+namespace lidarena {
+
+namespace {
+
+constexpr std::size_t kScansPerProportional = 10;  // smaps_rollup is slow
+
+std::uint64_t part(const std::map<std::string, std::uint64_t>& memory, const char* name) {
+  const auto found = memory.find(name);
+  return found == memory.end() ? 0 : found->second;
+}
+
+/// Writes down what one odometry says and costs.
+class Recorder {
+ public:
+  Recorder(Odometry& odometry, const RunOptions& options, LogSink& log)
+      : odometry_(odometry), options_(options), log_(log), map_(options.map_voxel_m) {}
+
+  void feed(const std::string& sensor_id, const ImuSample& sample) {
+    if (imu_id_.empty()) imu_id_ = options_.imu_id.empty() ? sensor_id : options_.imu_id;
+    if (sensor_id == imu_id_) odometry_.register_imu(sample);
+  }
+
+  void feed(const std::string& sensor_id, const Scan& scan) {
+    if (lidar_id_.empty()) lidar_id_ = options_.lidar_id.empty() ? sensor_id : options_.lidar_id;
+    if (sensor_id != lidar_id_ || !in_order(scan)) return;
+    const auto start = std::chrono::steady_clock::now();
+    const ScanResult result = odometry_.register_scan(scan);
+    const std::chrono::duration<double> latency = std::chrono::steady_clock::now() - start;
+    keep_result(result);
+    keep_resources(scan, latency.count());
+    log_.progress("run", static_cast<double>(summary().scans),
+                  static_cast<double>(options_.scan_count.value_or(0)));
+  }
+
+  bool diverged() const { return result_.summary.diverged; }
+  RunResult finish();
+
+ private:
+  RunSummary& summary() { return result_.summary; }
+  bool in_order(const Scan& scan);
+  void keep_result(const ScanResult& result);
+  void keep_resources(const Scan& scan, double latency_s);
+  void diverge(const std::string& reason);
+
+  Odometry& odometry_;
+  const RunOptions& options_;
+  LogSink& log_;
+  std::string imu_id_;
+  std::string lidar_id_;
+  std::optional<Time> first_stamp_;
+  Time last_stamp_{0};
+  std::vector<StampedPose> live_;
+  PointMap map_;
+  RunResult result_;
+};
+
+bool Recorder::in_order(const Scan& scan) {
+  if (!first_stamp_)
+    first_stamp_ = scan.stamp;
+  else if (scan.stamp <= last_stamp_) {
+    log_.warn("a scan that is not later than the one before it was skipped");
+    return false;
+  }
+  last_stamp_ = scan.stamp;
+  return true;
+}
+
+void Recorder::keep_result(const ScanResult& result) {
+  ++summary().scans;
+  ++summary().statuses[result.status];
+  if (result.status == ScanStatus::kDiverged) return diverge("the algorithm says so");
+  const StampedPose& estimate = result.estimate;
+  if (!estimate.world_from_body.matrix().allFinite()) return diverge("a pose is not finite");
+  if (!live_.empty() && estimate.stamp <= live_.back().stamp)
+    return log_.warn("an estimate that is not later than the one before it was left out");
+  live_.push_back(estimate);
+  if (odometry_.traits().publishes_scans) map_.insert(odometry_.registered_scan());
+}
+
+void Recorder::keep_resources(const Scan& scan, double latency_s) {
+  auto& rows = result_.files.resources;
+  const auto memory = odometry_.memory();
+  ResourceRow row;
+  row.t_sensor_s = to_seconds(end_of(scan) - *first_stamp_);
+  row.latency_s = latency_s;
+  row.rss_bytes = resident_bytes();
+  row.pss_bytes = rows.size() % kScansPerProportional == 0 ? proportional_bytes().value_or(0)
+                                                           : rows.back().pss_bytes;
+  row.map_bytes = part(memory, "map");
+  row.scan_buffer_bytes = part(memory, "scan_buffer");
+  row.backlog_bytes = part(memory, "backlog");
+  rows.push_back(row);
+  summary().sensor_seconds = row.t_sensor_s;
+  summary().compute_seconds += latency_s;
+}
+
+void Recorder::diverge(const std::string& reason) {
+  summary().diverged = true;
+  summary().reason = "scan " + std::to_string(summary().scans - 1) + ": " + reason;
+  log_.warn("diverged at " + summary().reason);
+}
+
+RunResult Recorder::finish() {
+  RunFiles& files = result_.files;
+  files.live = Trajectory(live_, "live estimates");
+  if (diverged()) {
+    files.trajectory = files.live;  // what the algorithm held together is no longer to be asked for
+  } else {
+    odometry_.finish();
+    files.trajectory = odometry_.trajectory();
+  }
+  files.map.points = odometry_.traits().publishes_scans ? map_.take() : odometry_.map();
+  return std::move(result_);
+}
+
+}  // namespace
+
+RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log) {
+  Recorder recorder(odometry, options, log);
+  while (!recorder.diverged()) {
+    const std::optional<Event> event = events.next();
+    if (!event) break;
+    std::visit([&](const auto& data) { recorder.feed(event->sensor_id, data); }, event->data);
+  }
+  return recorder.finish();
+}
+
+}  // namespace lidarena

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/map/point_map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/base/random.hpp"
+#include "lidarena/map/voxel_filter.hpp"
+
+namespace lidarena {
+namespace {
+
+using Points = std::vector<Eigen::Vector3f>;
+using Cell = std::array<long, 3>;
+
+/// The slow, obvious way to a cell.
+Cell cell_of(const Eigen::Vector3f& p, double size) {
+  return {std::lround(std::floor(p.x() / size)), std::lround(std::floor(p.y() / size)),
+          std::lround(std::floor(p.z() / size))};
+}
+
+Points random_points(std::size_t count, double reach) {
+  SequentialRandom random(7);
+  Points points;
+  for (std::size_t i = 0; i < count; ++i) {
+    points.emplace_back(static_cast<float>(random.uniform(-reach, reach)),
+                        static_cast<float>(random.uniform(-reach, reach)),
+                        static_cast<float>(random.uniform(-reach, reach)));
+  }
+  return points;
+}
+
+/// First points of their cells, by a std::set. 0.5 m is a power of two, so float and double agree
+/// on every cell's edge.
+Points first_ones(const Points& points, double size) {
+  std::set<Cell> seen;
+  Points kept;
+  for (const auto& p : points) {
+    if (seen.insert(cell_of(p, size)).second) kept.push_back(p);
+  }
+  return kept;
+}
+
+bool before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+}
+
+TEST(PointMap, KeepsTheFirstPointOfEachVoxelInTheOrderTheyCame) {
+  const Points points = random_points(20000, 6.0);
+  PointMap map(0.5);
+  map.insert(points);
+  const Points expected = first_ones(points, 0.5);
+  ASSERT_GT(expected.size(), 5000U);
+  ASSERT_EQ(map.size(), expected.size());
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), map.points().begin()));
+}
+
+TEST(PointMap, CellsOnBothSidesOfZeroAreDifferentOnes) {
+  PointMap map(1.0);
+  EXPECT_TRUE(map.insert({0.1F, 0.1F, 0.1F}));
+  EXPECT_TRUE(map.insert({-0.1F, 0.1F, 0.1F}));
+  EXPECT_TRUE(map.insert({0.1F, -0.1F, 0.1F}));
+  EXPECT_TRUE(map.insert({0.1F, 0.1F, -0.1F}));
+  EXPECT_FALSE(map.insert({0.9F, 0.9F, 0.9F}));
+  EXPECT_FALSE(map.insert({-0.9F, 0.9F, 0.9F}));
+}
+
+TEST(PointMap, RefusesPointsThatAreNotFiniteAndBearsFarOnes) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  constexpr float kInfinite = std::numeric_limits<float>::infinity();
+  PointMap map(0.02);
+  EXPECT_FALSE(map.insert({kNan, 0.0F, 0.0F}));
+  EXPECT_FALSE(map.insert({0.0F, -kInfinite, 0.0F}));
+  EXPECT_TRUE(map.insert({3e38F, -3e38F, 0.0F}));
+  EXPECT_EQ(map.size(), 1U);
+}
+
+TEST(PointMap, TakesSome30BytesAVoxelHoweverManyPointsFallIntoIt) {
+  PointMap map(0.5);
+  const Points points = random_points(20000, 6.0);
+  for (int repeat = 0; repeat < 10; ++repeat) map.insert(points);
+  // 12 B a point, in a vector up to twice as large; 4 B a slot, table 5/16 to 5/8 full
+  EXPECT_LE(map.memory_bytes(), map.size() * (2 * 12 + 4 * 16 / 5 + 1));
+  const std::size_t voxels = map.size();
+  EXPECT_EQ(map.take().size(), voxels);
+  EXPECT_EQ(map.size(), 0U);
+  EXPECT_LT(map.memory_bytes(), 1024U);
+  EXPECT_TRUE(map.insert(points.front()));
+}
+
+TEST(PointMap, AVoxelWithoutSizeIsRefused) {
+  EXPECT_THROW(PointMap(0.0), InputError);
+  EXPECT_THROW(PointMap(std::numeric_limits<double>::quiet_NaN()), InputError);
+}
+
+TEST(VoxelFilter, IndicesNameTheFirstPointOfEachVoxel) {
+  const Points points = random_points(5000, 3.0);
+  Points kept;
+  for (const std::uint32_t i : first_of_each_voxel(points, 0.5)) kept.push_back(points[i]);
+  EXPECT_EQ(kept, first_ones(points, 0.5));
+}
+
+TEST(VoxelFilter, ThinningKeepsTheSamePointsInAnOrderOfItsOwn) {
+  const Points points = random_points(5000, 3.0);
+  Points expected = first_ones(points, 0.5);
+  Points thinned = thin(points, 0.5);
+  EXPECT_EQ(thinned, thin(points, 0.5)) << "the order must depend on the input alone";
+  EXPECT_NE(thinned, expected) << "the order must not be that of the input";
+  std::sort(expected.begin(), expected.end(), before);
+  std::sort(thinned.begin(), thinned.end(), before);
+  EXPECT_EQ(thinned, expected);
+}
+
+TEST(VoxelFilter, ASecondPassTakesItsPointsFromTheWholeScan) {
+  // A line of points 1 cm apart is a scan in order of time. Of each 1.5 m cell one of 3 points
+  // remains (0.5 m cells); taken in input order it would always be the first.
+  Points line;
+  for (int i = 0; i < 150000; ++i) line.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
+  const Points twice = thin(thin(line, 0.5), 1.5);
+  ASSERT_EQ(twice.size(), 1000U);
+  std::array<int, 3> thirds{};
+  for (const auto& p : twice) ++thirds[static_cast<std::size_t>(std::fmod(p.x(), 1.5F) / 0.499F)];
+  // 1000 draws among 3: 333 each, standard deviation 15; 5 of these
+  for (const int count : thirds) EXPECT_NEAR(count, 333, 75);
+}
+
+}  // namespace
+}  // namespace lidarena
