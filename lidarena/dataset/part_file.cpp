@@ -32,7 +32,8 @@ PartFile::~PartFile() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-void PartFile::fail(std::string_view what, int error_number) const {
+void PartFile::fail(std::string_view what, int error_number) {
+  if (descriptor_ >= 0) ::close(std::exchange(descriptor_, -1));  // no later commit can succeed
   throw Error(fmt::format("{}: {} after {} bytes: {}; {} is incomplete, free space and try again",
                           file_.string(), what, size_, reason(error_number), part_.string()));
 }

@@ -33,7 +33,7 @@ class PartFile {
  private:
   void flush();
   void write_through(std::span<const std::byte> bytes);
-  [[noreturn]] void fail(std::string_view what, int error_number) const;
+  [[noreturn]] void fail(std::string_view what, int error_number);
 
   std::filesystem::path file_;
   std::filesystem::path part_;

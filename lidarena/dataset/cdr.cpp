@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/dataset/cdr.hpp"
+
+#include <array>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+namespace {
+constexpr std::array<std::byte, 4> kLittleEndianCdr{std::byte{0}, std::byte{1}};  // then options, 0
+
+std::size_t aligned(std::size_t offset, std::size_t size) {
+  return (offset + size - 1) / size * size;
+}
+}  // namespace
+
+void CdrWriter::clear() { bytes_.assign(kLittleEndianCdr.begin(), kLittleEndianCdr.end()); }
+
+void CdrWriter::align(std::size_t size) {
+  const std::size_t header = kLittleEndianCdr.size();
+  bytes_.resize(header + aligned(bytes_.size() - header, size));
+}
+
+void CdrWriter::put(std::string_view text) {
+  put(static_cast<std::uint32_t>(text.size() + 1));
+  append(std::as_bytes(std::span(text)));
+  bytes_.push_back(std::byte{0});
+}
+
+std::span<std::byte> CdrWriter::put_octets(std::size_t size) {
+  put(static_cast<std::uint32_t>(size));
+  bytes_.resize(bytes_.size() + size);
+  return std::span(bytes_).last(size);
+}
+
+void CdrWriter::put_repeated(double value, std::size_t count) {
+  for (std::size_t i = 0; i < count; ++i) put(value);
+}
+
+CdrReader::CdrReader(Bytes message, std::string_view place) : place_(place) {
+  const std::size_t header = kLittleEndianCdr.size();
+  if (message.size() < header) throw InputError(place_, "a message is empty");
+  // The two option bytes may hold the padding at the end; they change nothing for the reader.
+  if (message[0] != kLittleEndianCdr[0] || message[1] != kLittleEndianCdr[1]) {
+    throw InputError(place_, "a message is not in little-endian plain CDR",
+                     "record on a little-endian machine with CDR version 1");
+  }
+  message_ = message.subspan(header);
+}
+
+void CdrReader::align(std::size_t size) { offset_ = aligned(offset_, size); }
+
+Bytes CdrReader::take(std::size_t size) {
+  if (offset_ > message_.size() || size > message_.size() - offset_) {
+    throw InputError(place_, "a message is shorter than its type asks for",
+                     "the schema and the messages do not belong together");
+  }
+  const Bytes taken = message_.subspan(offset_, size);
+  offset_ += size;
+  return taken;
+}
+
+std::string CdrReader::get_string() {
+  const auto length = get<std::uint32_t>();
+  if (length == 0) return {};  // some writers leave out the zero of an empty string
+  const Bytes text = take(length);
+  return {reinterpret_cast<const char*>(text.data()), length - 1};
+}
+
+Bytes CdrReader::get_octets() {
+  const auto length = get<std::uint32_t>();
+  return take(length);
+}
+
+std::uint32_t CdrReader::get_length(std::size_t element_bytes) {
+  const auto length = get<std::uint32_t>();
+  if (std::uint64_t{length} * element_bytes > message_.size() - offset_) {
+    throw InputError(place_, "a message claims more elements than it has room for",
+                     "the schema and the messages do not belong together");
+  }
+  return length;
+}
+
+void CdrReader::skip_doubles(std::size_t count) {
+  align(sizeof(double));
+  take(count * sizeof(double));
+}
+
+}  // namespace lidarena

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lidarena/dataset/byte_stream.hpp"
+
+/// Plain CDR, version 1 (OMG CORBA 3.0 chapter 15.3; DDS-XTypes 1.3, 7.4.1), little endian, as ROS
+/// 2 writes it: four bytes of encapsulation header, then the members in order. A number of N bytes
+/// starts at a multiple of N, counted from behind the header.
+namespace lidarena {
+
+/// Serialises one message after another into the same memory.
+class CdrWriter {
+ public:
+  CdrWriter() { clear(); }
+  /// Starts the next message.
+  void clear();
+
+  template <class T>
+  requires std::is_arithmetic_v<T>
+  void put(T value) {
+    static_assert(!std::is_same_v<T, long double>);
+    align(sizeof value);
+    append(std::as_bytes(std::span(&value, 1)));
+  }
+  /// Length with the closing zero, the characters, a zero.
+  void put(std::string_view text);
+  /// `sequence<octet>`: length, then the bytes. The span returned is where they are to be put.
+  std::span<std::byte> put_octets(std::size_t size);
+  /// `count` times the same number, as a fixed array has them (without a length).
+  void put_repeated(double value, std::size_t count);
+
+  Bytes bytes() const { return bytes_; }
+
+ private:
+  void align(std::size_t size);
+  void append(Bytes bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
+
+  std::vector<std::byte> bytes_;
+};
+
+/// Reads one message. Throws InputError (place `place`) when the encoding is another one or the
+/// message is shorter than its type.
+class CdrReader {
+ public:
+  CdrReader(Bytes message, std::string_view place);
+
+  template <class T>
+  requires std::is_arithmetic_v<T> T get() {
+    align(sizeof(T));
+    T value;
+    std::memcpy(&value, take(sizeof value).data(), sizeof value);
+    return value;
+  }
+  std::string get_string();
+  Bytes get_octets();
+  /// Length of a sequence; each of its elements takes at least `element_bytes`, so a damaged length
+  /// is found before it is believed.
+  std::uint32_t get_length(std::size_t element_bytes);
+  void skip_doubles(std::size_t count);
+
+ private:
+  void align(std::size_t size);
+  Bytes take(std::size_t size);
+
+  Bytes message_;  ///< behind the header
+  std::size_t offset_ = 0;
+  std::string place_;
+};
+
+}  // namespace lidarena

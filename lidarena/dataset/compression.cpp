@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/dataset/compression.hpp"
+
+#include <lz4frame.h>
+#include <zlib.h>
+#include <zstd.h>
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+
+namespace lidarena {
+namespace {
+
+struct DeleteZstd {
+  void operator()(ZSTD_DCtx* context) const { ZSTD_freeDCtx(context); }
+};
+struct DeleteLz4 {
+  void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
+};
+
+/// Calls `step(output, input)`, which uses up some of both and returns true at the end of a frame,
+/// until the input is used up. The output doubles, so a damaged size cannot claim all memory.
+template <class Step>
+void decompress_stream(Bytes input, std::uint64_t size, std::vector<std::byte>& output,
+                       const Step& step) {
+  constexpr std::uint64_t kFirstGuess = 1 << 20;  // bytes
+  std::size_t used = 0;
+  bool frame_ended = false;
+  output.resize(std::min(size, std::max<std::uint64_t>(kFirstGuess, 4 * input.size())));
+  while (!input.empty()) {
+    if (used == output.size() && used < size)
+      output.resize(std::min<std::uint64_t>(size, 2 * used));
+    std::span<std::byte> room = std::span(output).subspan(used);
+    const std::size_t input_before = input.size();
+    const std::size_t room_before = room.size();
+    frame_ended = step(room, input);
+    used += room_before - room.size();
+    const bool stuck = input.size() == input_before && room.size() == room_before;
+    if (stuck && used == size) throw std::runtime_error("holds more than it says");
+    if (stuck) throw std::runtime_error("does not unpack");
+  }
+  while (!frame_ended && used < size) {  // all input taken, output still inside the decompressor
+    if (used == output.size()) output.resize(std::min<std::uint64_t>(size, 2 * used));
+    std::span<std::byte> room = std::span(output).subspan(used);
+    const std::size_t room_before = room.size();
+    frame_ended = step(room, input);
+    if (room.size() == room_before) break;
+    used += room_before - room.size();
+  }
+  if (!frame_ended || used != size) throw std::runtime_error("holds less than it says");
+}
+
+void decompress_zstd(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
+  const std::unique_ptr<ZSTD_DCtx, DeleteZstd> context(ZSTD_createDCtx());
+  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+    ZSTD_inBuffer in{rest.data(), rest.size(), 0};
+    ZSTD_outBuffer out{room.data(), room.size(), 0};
+    const std::size_t result = ZSTD_decompressStream(context.get(), &out, &in);
+    if (ZSTD_isError(result)) throw std::runtime_error(ZSTD_getErrorName(result));
+    rest = rest.subspan(in.pos);
+    room = room.subspan(out.pos);
+    return result == 0;
+  });
+}
+
+void decompress_lz4(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
+  LZ4F_dctx* created = nullptr;
+  if (LZ4F_isError(LZ4F_createDecompressionContext(&created, LZ4F_VERSION))) throw std::bad_alloc();
+  const std::unique_ptr<LZ4F_dctx, DeleteLz4> context(created);
+  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+    std::size_t consumed = rest.size();
+    std::size_t produced = room.size();
+    const std::size_t result =
+        LZ4F_decompress(context.get(), room.data(), &produced, rest.data(), &consumed, nullptr);
+    if (LZ4F_isError(result)) throw std::runtime_error(LZ4F_getErrorName(result));
+    rest = rest.subspan(consumed);
+    room = room.subspan(produced);
+    return result == 0;
+  });
+}
+
+}  // namespace
+
+std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc) {
+  return static_cast<std::uint32_t>(
+      crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
+
+struct ZstdCompressor::Impl {
+  ZSTD_CCtx* context = ZSTD_createCCtx();
+  std::vector<std::byte> output;
+};
+
+ZstdCompressor::ZstdCompressor(int level) : impl_(std::make_unique<Impl>()) {
+  ZSTD_CCtx_setParameter(impl_->context, ZSTD_c_compressionLevel, level);
+}
+
+ZstdCompressor::~ZstdCompressor() { ZSTD_freeCCtx(impl_->context); }
+
+Bytes ZstdCompressor::compress(Bytes input) {
+  impl_->output.resize(ZSTD_compressBound(input.size()));
+  const std::size_t size = ZSTD_compress2(impl_->context, impl_->output.data(),
+                                          impl_->output.size(), input.data(), input.size());
+  if (ZSTD_isError(size)) throw std::runtime_error(ZSTD_getErrorName(size));
+  return Bytes(impl_->output).first(size);
+}
+
+void decompress(std::string_view method, Bytes input, std::uint64_t size,
+                std::vector<std::byte>& output) {
+  if (method == "zstd") return decompress_zstd(input, size, output);
+  if (method == "lz4") return decompress_lz4(input, size, output);
+  throw std::runtime_error("is compressed by the unknown method '" + std::string(method) + "'");
+}
+
+}  // namespace lidarena

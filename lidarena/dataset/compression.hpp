@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "lidarena/dataset/byte_stream.hpp"
+
+namespace lidarena {
+
+/// CRC-32 of IEEE 802.3, as zlib has it; `crc` continues an earlier one.
+std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc = 0);
+
+/// One zstd frame; the same input gives the same output (of one version of the library).
+class ZstdCompressor {
+ public:
+  explicit ZstdCompressor(int level);
+  ~ZstdCompressor();
+  /// Valid until the next call.
+  Bytes compress(Bytes input);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// Undoes `method`, "zstd" or "lz4" (frame format), into `output`, which never grows beyond `size`,
+/// nor much beyond what the input really holds. Throws std::runtime_error when the input is
+/// damaged, does not give exactly `size` bytes, or the method is unknown.
+void decompress(std::string_view method, Bytes input, std::uint64_t size,
+                std::vector<std::byte>& output);
+
+}  // namespace lidarena

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/dataset/dataset_layout.hpp"
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena::layout {
+namespace {
+
+void add(std::map<std::string, std::string>& topics, const std::string& id, const char* kind) {
+  if (!topics.emplace("/" + id + "/" + kind, id).second) {
+    throw InputError("rig", "two sensors of one kind have the id '" + id + "'", "rename one");
+  }
+}
+
+std::map<std::string, std::string> inverted(const std::map<std::string, std::string>& map) {
+  std::map<std::string, std::string> inverse;
+  for (const auto& [key, value] : map) inverse.emplace(value, key);
+  return inverse;
+}
+
+}  // namespace
+
+McapSensors topics_of(const Rig& rig) {
+  McapSensors sensors;
+  for (const LidarInfo& lidar : rig.lidars) add(sensors.lidars, lidar.id, "points");
+  for (const ImuInfo& imu : rig.imus) add(sensors.imus, imu.id, "imu");
+  return sensors;
+}
+
+Json to_json(const McapSensors& sensors) {
+  return {{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
+}
+
+McapSensors sensors_from_json(const Json& json, const std::string& place) {
+  try {
+    using Map = std::map<std::string, std::string>;
+    return {inverted(json.at("lidars").get<Map>()), inverted(json.at("imus").get<Map>())};
+  } catch (const Json::exception&) {
+    throw InputError(place, "the list of topics is not {\"lidars\": {id: topic}, \"imus\": {...}}");
+  }
+}
+
+Rig rig_from_json(const Json& json, const std::string& place) {
+  Rig rig;
+  read_config(ConfigNode::parse(json.dump(), place + ": rig"), rig);
+  return rig;
+}
+
+mcap::StringMap describe(const Description& description) {
+  return {{"format_version", std::to_string(kFormatVersion)},
+          {"rig", lidarena::to_json(description.rig).dump()},
+          {"topics", to_json(description.sensors).dump()}};
+}
+
+std::optional<Description> description_in(const McapInfo& info, const std::string& place) {
+  const auto record = info.metadata.find(kDescription);
+  if (record == info.metadata.end()) return std::nullopt;
+  try {
+    return Description{rig_from_json(Json::parse(record->second.at("rig")), place),
+                       sensors_from_json(Json::parse(record->second.at("topics")), place)};
+  } catch (const std::out_of_range&) {
+    throw InputError(place, "its 'lidarena' metadata lacks rig or topics");
+  } catch (const Json::exception&) {
+    throw InputError(place, "its 'lidarena' metadata is not JSON");
+  }
+}
+
+}  // namespace lidarena::layout

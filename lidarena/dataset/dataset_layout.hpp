@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/dataset/mcap_source.hpp"
+
+/// What writer and reader of our dataset folders agree on.
+namespace lidarena::layout {
+
+inline constexpr const char* kManifest = "manifest.json";
+inline constexpr const char* kData = "data.mcap";
+inline constexpr const char* kTruth = "truth.tum";
+inline constexpr const char* kWorld = "world.ply";
+inline constexpr const char* kRosbagMetadata = "metadata.yaml";
+
+inline constexpr const char* kFormat = "lidarena dataset";  ///< manifest.json: "format"
+inline constexpr int kFormatVersion = 1;
+inline constexpr const char* kTruthTopic = "/truth/odometry";
+inline constexpr const char* kDescription = "lidarena";  ///< name of the metadata record
+
+/// Topics of a rig: /ID/points for LiDARs, /ID/imu for IMUs (an IMU may share its LiDAR's id).
+/// Throws InputError when two LiDARs, or two IMUs, have one id.
+McapSensors topics_of(const Rig& rig);
+
+/// {"lidars": {id: topic}, "imus": {id: topic}}, and back.
+Json to_json(const McapSensors& sensors);
+McapSensors sensors_from_json(const Json& json, const std::string& place);
+
+Rig rig_from_json(const Json& json, const std::string& place);
+
+/// The description that every data.mcap carries (metadata record "lidarena"): rig and topics.
+struct Description {
+  Rig rig;
+  McapSensors sensors;
+};
+mcap::StringMap describe(const Description& description);
+/// Empty when the file is not ours.
+std::optional<Description> description_in(const McapInfo& info, const std::string& place);
+
+}  // namespace lidarena::layout

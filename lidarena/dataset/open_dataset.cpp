@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <algorithm>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/dataset_layout.hpp"
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/mcap_info.hpp"
+#include "lidarena/dataset/mcap_reader.hpp"
+#include "lidarena/dataset/room.hpp"
+#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/sweeps.hpp"
+#include "lidarena/dataset/tum.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Leaves the wanted LiDAR alone in rig and topics, and mounts it as asked.
+void apply(const ReadOptions& options, const std::string& place, layout::Description& dataset) {
+  std::vector<LidarInfo>& lidars = dataset.rig.lidars;
+  if (!options.sensor.empty()) {
+    std::string known;
+    for (const LidarInfo& lidar : lidars) known += (known.empty() ? "" : ", ") + lidar.id;
+    std::erase_if(lidars, [&](const LidarInfo& lidar) { return lidar.id != options.sensor; });
+    if (lidars.empty()) {
+      throw InputError(place, "has no LiDAR '" + options.sensor + "'", "it has: " + known);
+    }
+    std::erase_if(dataset.sensors.lidars,
+                  [&](const auto& entry) { return entry.second != options.sensor; });
+  }
+  if (!options.body_from_lidar) return;
+  if (lidars.size() != 1) {
+    throw InputError(place, "has several LiDARs, and body_from_lidar is for one",
+                     "name the sensor");
+  }
+  lidars.front().body_from_lidar = *options.body_from_lidar;
+}
+
+Dataset from_mcap(const fs::path& path, const fs::path& file, const McapInfo& info,
+                  layout::Description description, const ReadOptions& options) {
+  apply(options, file.string(), description);
+  Dataset dataset;
+  dataset.path = path;
+  const auto& lidars = description.sensors.lidars;
+  if (lidars.size() == 1 && info.damage.empty()) {
+    dataset.scan_count = info.count_of(lidars.begin()->first);
+  }
+  if (!info.damage.empty()) dataset.notes.push_back(info.damage);
+  dataset.events = open_mcap_events(file, description.sensors, info);
+  dataset.rig = std::move(description.rig);
+  return dataset;
+}
+
+Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
+  const fs::path manifest_file = folder / layout::kManifest;
+  Json manifest = read_json(manifest_file);
+  const std::string place = manifest_file.string();
+  if (!manifest.is_object() || !manifest.contains("format") ||
+      manifest["format"] != layout::kFormat) {
+    throw InputError(place, "does not describe a dataset", "give the folder of a dataset");
+  }
+  if (!manifest.contains("format_version") ||
+      manifest["format_version"] != layout::kFormatVersion) {
+    throw InputError(place, "is not of format version " + std::to_string(layout::kFormatVersion),
+                     "read it with the version of the program that wrote it");
+  }
+  const fs::path file = folder / layout::kData;
+  if (!fs::exists(file)) {
+    throw InputError(folder.string(), "has a manifest but no data.mcap: it is flown when used",
+                     "simulate it from its manifest");
+  }
+  if (!manifest.contains("rig") || !manifest.contains("topics")) {
+    throw InputError(place, "lacks \"rig\" or \"topics\"", "write the dataset anew");
+  }
+  layout::Description description{layout::rig_from_json(manifest["rig"], place),
+                                  layout::sensors_from_json(manifest["topics"], place)};
+  Dataset dataset = from_mcap(folder, file, read_mcap_info(file), std::move(description), options);
+  dataset.manifest = std::move(manifest);
+  return dataset;
+}
+
+/// "/os/points" becomes "os", "/livox/lidar" becomes "livox_lidar".
+std::string id_of_topic(std::string topic) {
+  constexpr std::string_view kPoints = "/points";
+  if (topic.starts_with('/')) topic.erase(0, 1);
+  if (topic.ends_with(kPoints)) topic.erase(topic.size() - kPoints.size());
+  std::ranges::replace(topic, '/', '_');
+  return topic;
+}
+
+std::string list_of(const std::vector<McapTopic>& topics) {
+  std::string text;
+  for (const McapTopic& topic : topics) {
+    text += (text.empty() ? "" : ", ") + topic.topic + " (" + topic.type + " in " +
+            topic.message_encoding + ")";
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+/// A file of others: the first scans and the first IMU, or the LiDAR named by topic or id. Nothing
+/// is known of the mounting, so body, LiDAR and IMU are taken to be one frame.
+layout::Description guess(const fs::path& file, const McapInfo& info, const ReadOptions& options,
+                          std::vector<std::string>& notes) {
+  layout::Description guessed;
+  for (const McapTopic& topic : info.topics) {
+    const std::string id = id_of_topic(topic.topic);
+    const bool is_wanted = options.sensor.empty()
+                               ? guessed.rig.lidars.empty()
+                               : topic.topic == options.sensor || id == options.sensor;
+    if (is_scan_type(topic) && is_wanted && topic.message_count > 0) {
+      guessed.sensors.lidars[topic.topic] = id;
+      guessed.rig.lidars.emplace_back().id = id;
+      notes.push_back("scans are those of " + topic.topic);
+    } else if (is_imu_type(topic) && guessed.rig.imus.empty() && topic.message_count > 0) {
+      guessed.sensors.imus[topic.topic] = id;
+      guessed.rig.imus.emplace_back().id = id;
+      notes.push_back("the IMU is that of " + topic.topic);
+    }
+  }
+  if (guessed.rig.lidars.empty()) {
+    const std::string wanted = options.sensor.empty() ? "" : " named '" + options.sensor + "'";
+    throw InputError(file.string(), "holds no scans" + wanted + " that can be read",
+                     "scans are PointCloud2 or Livox CustomMsg messages in CDR; it holds " +
+                         list_of(info.topics));
+  }
+  if (!options.body_from_lidar) {
+    notes.push_back(
+        "the file does not say how the LiDAR is mounted; it is taken to be in the body "
+        "frame");
+  }
+  return guessed;
+}
+
+Dataset open_mcap(const fs::path& file, const ReadOptions& options) {
+  const McapInfo info = read_mcap_info(file);
+  if (auto ours = layout::description_in(info, file.string())) {
+    return from_mcap(file, file, info, *std::move(ours), options);
+  }
+  std::vector<std::string> notes;
+  layout::Description guessed = guess(file, info, options, notes);
+  ReadOptions mounting = options;
+  mounting.sensor.clear();  // chosen already, maybe by its topic
+  Dataset dataset = from_mcap(file, file, info, std::move(guessed), mounting);
+  dataset.notes.insert(dataset.notes.end(), notes.begin(), notes.end());
+  return dataset;
+}
+
+bool is_unfinished(const fs::path& folder) {
+  return fs::exists(folder / layout::kData) ||
+         fs::exists(folder / (std::string(layout::kData) + ".part"));
+}
+
+/// The data file of a bag folder that rosbag2 wrote; empty for any other folder.
+std::optional<fs::path> rosbag_file(const fs::path& folder) {
+  if (!fs::exists(folder / layout::kRosbagMetadata)) return std::nullopt;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
+  }
+  if (files.empty()) return std::nullopt;
+  if (files.size() > 1) {
+    throw InputError(folder.string(), "is a bag split into several files",
+                     "join them with 'ros2 bag convert', or give one of them");
+  }
+  return files.front();
+}
+
+std::optional<Trajectory> truth_in_mcap(const fs::path& file) {
+  McapReader reader(file);
+  std::vector<StampedPose> poses;
+  while (const auto message = reader.next()) {
+    if (message->channel->topic != layout::kTruthTopic) continue;
+    poses.push_back(ros2::decode_odometry(message->data, file.string() + ": truth"));
+  }
+  if (poses.empty()) return std::nullopt;
+  return Trajectory(std::move(poses), file.string() + ": " + layout::kTruthTopic);
+}
+
+}  // namespace
+
+Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
+  if (!fs::exists(path)) throw InputError(path.string(), "does not exist", "check the path");
+  if (fs::is_directory(path)) {
+    if (fs::exists(path / layout::kManifest)) return open_folder(path, options);
+    if (is_unfinished(path)) {
+      throw InputError(path.string(), "is an unfinished dataset: it has no manifest.json",
+                       "write it again, or give its data file alone");
+    }
+    if (is_room(path)) return open_room(path, options);
+    if (const auto bag = rosbag_file(path)) return open_mcap(*bag, options);
+    return open_sweep_folder(path, options);
+  }
+  const bool is_mcap = path.extension() == ".mcap" || path.extension() == ".part";
+  return is_mcap ? open_mcap(path, options) : open_sweep_files({path}, options);
+}
+
+std::optional<Trajectory> load_truth(const fs::path& dataset) {
+  if (!fs::is_directory(dataset)) {
+    return dataset.extension() == ".mcap" ? truth_in_mcap(dataset) : std::nullopt;
+  }
+  if (fs::exists(dataset / layout::kTruth)) return read_tum(dataset / layout::kTruth);
+  return is_room(dataset) ? room_truth(dataset) : std::nullopt;
+}
+
+std::optional<fs::path> find_world_mesh(const fs::path& dataset) {
+  const fs::path mesh = dataset / layout::kWorld;
+  return fs::exists(mesh) ? std::optional(mesh) : std::nullopt;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lidarena/base/scan.hpp"
+#include "lidarena/dataset/cdr.hpp"
+
+namespace lidarena::ros2 {
+
+/// sensor_msgs/msg/PointField; the numbers are those of the message.
+enum class FieldType : std::uint8_t {
+  kInt8 = 1,
+  kUint8 = 2,
+  kInt16 = 3,
+  kUint16 = 4,
+  kInt32 = 5,
+  kUint32 = 6,
+  kFloat32 = 7,
+  kFloat64 = 8,
+};
+
+struct PointField {
+  std::string name;
+  std::uint32_t offset = 0;
+  FieldType type = FieldType::kFloat32;
+  bool operator==(const PointField&) const = default;
+};
+
+/// sensor_msgs/msg/PointCloud2 behind its header; `data` lies in the message.
+struct PointCloud2 {
+  std::uint32_t height = 1;
+  std::uint32_t width = 0;
+  std::vector<PointField> fields;
+  std::uint32_t point_step = 0;
+  std::uint32_t row_step = 0;
+  Bytes data;
+};
+
+/// Appends everything behind the header. Throws InputError (place `place`) when a point lies before
+/// the stamp.
+void put_cloud(const Scan& scan, std::string_view place, CdrWriter& out);
+/// Throws InputError when sizes contradict each other or the data is big endian.
+PointCloud2 get_cloud(CdrReader& in, std::string_view place);
+
+/// The scan that a cloud with this header.stamp holds. What put_cloud() wrote comes back bit by
+/// bit. Of other drivers' clouds, fields are found by name and type:
+///   x, y, z        float32 or float64, needed
+///   intensity      any type; else reflectivity, signal; else 0
+///   ring           any integer; else line, channel; else 0
+///   time           integer t, time, offset_time, timestamp: ns since header.stamp;
+///                  float t, time, offset_time, timestamp: s, us or ns, since header.stamp or
+///                  absolute (told apart by the scan's duration and by its distance from the stamp)
+/// Points without a return (not finite, or 0 0 0) are dropped, the others put in firing order. If
+/// points lie before header.stamp (drivers that stamp the last packet), the scan's stamp is the
+/// first point's time. Without a time field, or if all times are 0, the scan is untimed. Throws
+/// InputError when a layout is not understood.
+Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place);
+
+}  // namespace lidarena::ros2
