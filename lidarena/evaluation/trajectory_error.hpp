@@ -1,56 +1,67 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <cstddef>
-#include <span>
+#include <vector>
 
 #include "lidarena/base/trajectory.hpp"
+#include "lidarena/evaluation/alignment.hpp"
+#include "lidarena/evaluation/association.hpp"
+#include "lidarena/evaluation/summary.hpp"
 
 namespace lidarena {
 
-/// Statistics of a set of non-negative errors; all zero with count 0 when the set is empty.
-struct Summary {
-  std::size_t count = 0;
-  double rmse = 0.0, mean = 0.0, median = 0.0, p95 = 0.0, p99 = 0.0, max = 0.0;
+/// Relative error of one piece of the flight.
+struct SegmentError {
+  Time begin{0};
+  Time end{0};
+  double translation_m = 0.0;
+  double rotation_rad = 0.0;
 };
-Summary summarize(std::span<const double> errors);
 
-/// Relative pose error over fixed lengths of reference path (paper eq. 1; definition `rpe_1m` of
-/// docs/metrics.md).
+/// Relative pose error over pieces of equal path, or of equal time (paper eq. 1; definitions
+/// `rpe_*` of docs/metrics.md).
 struct RelativePoseError {
-  double segment_m = 1.0;
-  std::size_t used = 0;          ///< segments scored
-  std::size_t total = 0;         ///< segments that the common time span has
+  double segment_m = 0.0;  ///< length of reference path of a piece, or
+  double segment_s = 0.0;  ///< its duration; the other is zero
+  double step = 0.0;       ///< between starts of pieces, in the same unit
+  std::size_t used = 0;    ///< pieces scored
+  std::size_t total = 0;   ///< pieces that the common time span has
   Summary translation_m;
   Summary rotation_rad;
+  std::vector<SegmentError> segments;  ///< the scored ones, by time
 };
 
-/// How the estimate's frame was laid over the truth's.
-enum class Gauge { kFirstPose, kSe3 };
+/// The ladder of lengths reported beside the paper's 1 m.
+inline constexpr std::array kLadder_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
 
-struct AbsoluteTrajectoryError {
-  Gauge gauge = Gauge::kSe3;
-  Pose truth_from_estimate = Pose::Identity();
-  Summary translation_m;
-  Summary rotation_rad;
-};
-
-/// Share of the truth's time with an estimate, 0..1, and what the association found.
-struct Association {
-  std::size_t estimates = 0;   ///< poses of the estimate
-  std::size_t matched = 0;     ///< of these, inside the truth's span
-  double coverage = 0.0;
-  double overlap_s = 0.0;
-  double longest_gap_s = 0.0;  ///< between consecutive estimates
-};
-
-Association associate(const Trajectory& estimate, const Trajectory& truth);
+/// Error per `segment_m` of reference path. Arc length is taken on the truth within the common time
+/// span; ends are interpolated in both trajectories; a piece with an end in a gap is dropped.
+/// Throws InputError when a length is not positive.
 RelativePoseError relative_pose_error(const Trajectory& estimate, const Trajectory& truth,
                                       double segment_m = 1.0, double step_m = 1.0);
+
+/// Error per `segment_s` of time, which hovering counts in, too.
+RelativePoseError relative_pose_error_over_time(const Trajectory& estimate, const Trajectory& truth,
+                                                double segment_s = 1.0, double step_s = 1.0);
+
+/// Errors of one instant after alignment.
+struct PoseError {
+  Time stamp{0};
+  double translation_m = 0.0;
+  double rotation_rad = 0.0;
+};
+
+struct AbsoluteTrajectoryError {
+  Alignment alignment;
+  Summary translation_m;  ///< count 0 when the alignment is refused
+  Summary rotation_rad;
+  std::vector<PoseError> poses;
+};
+
+/// Absolute error at each estimate's instant, truth interpolated there (definition `ate`).
 AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
                                                   const Trajectory& truth, Gauge gauge);
-
-/// truth_from_estimate by the first common pose, or by Umeyama's least squares over all (no scale).
-Pose align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge);
 
 }  // namespace lidarena

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+
+#include "lidarena/base/trajectory.hpp"
+#include "lidarena/evaluation/association.hpp"
+
+namespace lidarena {
+
+/// How the estimate's frame is laid over the truth's.
+enum class Gauge {
+  kFirstPose,  ///< the first common pose; nothing is fitted
+  kSe3,        ///< least squares over all positions, 6 unknowns (Umeyama, no scale)
+  kPosYaw,     ///< position and heading only, 4 unknowns; needs an estimate with z straight up
+};
+/// "first_pose", "se3", "posyaw".
+const char* to_string(Gauge gauge);
+
+/// The similarity q ~ scale * rotation * p + translation of least squares, and what it rests on.
+struct Similarity {
+  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+  double scale = 1.0;
+  /// Singular values of the positions' cross covariance, m^2, falling.
+  Eigen::Vector3d singular_values = Eigen::Vector3d::Zero();
+};
+
+/// Umeyama, "Least-squares estimation of transformation parameters between two point patterns"
+/// (PAMI 1991), eq. 34-43: from estimate to truth, with or without scale.
+Similarity umeyama(std::span<const PosePair> pairs, bool with_scale);
+
+/// truth_from_estimate, or why there is none.
+struct Alignment {
+  Gauge gauge = Gauge::kSe3;
+  Pose truth_from_estimate = Pose::Identity();
+  std::string refusal;      ///< empty when the transform is determined
+  std::string warning;      ///< e.g. a heading-only fit of an estimate that leans
+  double scale_hint = 1.0;  ///< scale that a similarity fit would find; never applied
+  double tilt_rad = 0.0;    ///< how far the SE(3) fit turns the estimate's z axis
+  bool determined() const { return refusal.empty(); }
+};
+
+/// Refuses with fewer than 3 poses, with positions that spread less than 1 cm, and (for kSe3) with
+/// positions on a line: the roll about it would be arbitrary.
+Alignment align(std::span<const PosePair> pairs, Gauge gauge);
+Alignment align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge);
+
+}  // namespace lidarena

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/evaluate_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lidarena/evaluation/metrics_json.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr double kLowCoverage = 0.9;     // below, numbers speak of a part of the flight alone
+constexpr double kLateStamps_s = 0.005;  // 5 cm at 10 m/s
+
+struct Status {
+  std::string name = "ok";
+  std::string reason;
+};
+
+Status status_of(const Trajectory& estimate, const Trajectory& truth) {
+  if (estimate.empty()) return {"no_output", "the estimate has no poses"};
+  const std::string divergence = divergence_of(estimate, truth);
+  if (!divergence.empty()) return {"diverged", divergence};
+  if (matched_poses(estimate, truth).empty()) {
+    return {"no_overlap", "no estimate lies inside the truth's time span"};
+  }
+  return {};
+}
+
+/// What the runner said, else what the poses say.
+Status status_of(const RunFiles& run, const Trajectory& truth) {
+  if (run.manifest.is_object()) {
+    const std::string said = run.manifest.value("status", "ok");
+    if (said != "ok") return {said, run.manifest.value("reason", "the run says so")};
+  }
+  return status_of(run.trajectory, truth);
+}
+
+Json describe_truth(const Trajectory& truth) {
+  if (truth.empty()) return nullptr;
+  return {{"poses", truth.size()},
+          {"rate_hz", 1.0 / std::max(1e-9, to_seconds(median_period(truth)))},
+          {"duration_s", to_seconds(truth.end_time() - truth.begin_time())},
+          {"path_m", truth.path_length()}};
+}
+
+Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
+  Json warnings = Json::array();
+  const Association found = associate(estimate, truth);
+  if (found.coverage < kLowCoverage) {
+    warnings.push_back(
+        fmt::format("the estimate covers {:.0f} % of the flight", 100.0 * found.coverage));
+  }
+  const std::optional<TimeOffset> offset = time_offset(estimate, truth);
+  if (offset && std::abs(offset->late_s) > kLateStamps_s + 3.0 * offset->sigma_s) {
+    warnings.push_back(fmt::format("the estimate's stamps seem {:.0f} ms late (not corrected)",
+                                   1e3 * offset->late_s));
+  }
+  return warnings;
+}
+
+/// Null for a map that was not made.
+Json evaluate_map_of(const Cloud& cloud, const RunFiles& run, const Trajectory& truth,
+                     const World& world, const Parallel& parallel) {
+  if (cloud.points.empty()) return nullptr;
+  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel);
+}
+
+}  // namespace
+
+std::string divergence_of(const Trajectory& estimate, const Trajectory& truth) {
+  const std::vector<PosePair> pairs = matched_poses(estimate, truth);
+  const Alignment alignment = align(pairs, Gauge::kFirstPose);
+  const double limit = 2.0 * truth.path_length() + 1.0;
+  for (const PosePair& pair : pairs) {
+    const Eigen::Vector3d p = alignment.truth_from_estimate * pair.estimate.translation();
+    const double error = (p - pair.truth.translation()).norm();
+    if (error <= limit) continue;
+    return fmt::format("{:.3g} m from the truth {:.1f} s into a flight of {:.3g} m", error,
+                       to_seconds(pair.stamp - truth.begin_time()), truth.path_length());
+  }
+  return {};
+}
+
+Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
+  const Status status = status_of(estimate, truth);
+  Json json{{"status", status.name}, {"reason", status.reason}};
+  const std::optional<TimeOffset> offset =
+      status.name == "ok" ? time_offset(estimate, truth) : std::nullopt;
+  json["association"] = to_json(associate(estimate, truth), offset);
+  if (status.name != "ok") return json;
+
+  Json over_time;
+  for (const double length : kLadder_m) {
+    const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
+    json["rpe"][fmt::format("{}m", length)] = to_json(rpe);
+    if (length == 1.0) over_time["rpe_1m"] = errors_over_time(rpe.segments, truth.begin_time());
+  }
+  json["rpe"]["1s"] = to_json(relative_pose_error_over_time(estimate, truth));
+  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3, Gauge::kPosYaw}) {
+    const AbsoluteTrajectoryError ate = absolute_trajectory_error(estimate, truth, gauge);
+    json["ate"][to_string(gauge)] = to_json(ate);
+    if (gauge != Gauge::kPosYaw) {
+      over_time[fmt::format("ate_{}", to_string(gauge))] =
+          errors_over_time(ate.poses, truth.begin_time());
+    }
+  }
+  json["errors_over_time"] = over_time;
+  return json;
+}
+
+Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
+                  const Trajectory& truth, const World& world, const Parallel& parallel) {
+  Json json = Json::object();
+  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
+    const Alignment alignment = align(estimate, truth, gauge);
+    Json& entry = json[to_string(gauge)];
+    if (!alignment.determined()) {
+      entry = {{"refused", alignment.refusal}};
+      continue;
+    }
+    entry = to_json(map_error(map, alignment.truth_from_estimate, world, parallel));
+    entry["mesh_from_map_m_quaternion"] = value_to_json(alignment.truth_from_estimate);
+  }
+  return json;
+}
+
+Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* world,
+                  const Parallel& parallel, LogSink& log) {
+  const Status status = status_of(run, truth);
+  Json json{{"schema", "lidarena.metrics"},
+            {"schema_version", kMetricsSchemaVersion},
+            {"status", status.name},
+            {"reason", status.reason},
+            {"warnings", Json::array()},
+            {"truth", describe_truth(truth)},
+            {"live", nullptr},
+            {"final", nullptr},
+            {"maps", {{"own", nullptr}, {"reprojected", nullptr}}}};
+  if (status.name != "ok") {
+    log.warn(fmt::format("not scored: {} ({})", status.name, status.reason));
+    return json;
+  }
+  json["warnings"] = warnings_of(run.trajectory, truth);
+  for (const Json& warning : json["warnings"]) log.warn(warning.get<std::string>());
+  json["live"] = evaluate_trajectory(run.live, truth);
+  json["final"] = evaluate_trajectory(run.trajectory, truth);
+  if (world == nullptr) return json;
+  json["maps"]["own"] = evaluate_map_of(run.map, run, truth, *world, parallel);
+  json["maps"]["reprojected"] = evaluate_map_of(run.reprojected, run, truth, *world, parallel);
+  return json;
+}
+
+}  // namespace lidarena

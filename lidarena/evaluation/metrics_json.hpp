@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/time_offset.hpp"
+#include "lidarena/evaluation/trajectory_error.hpp"
+
+/// Metrics as JSON. Units stand in the names; a number that does not exist is null, never zero or
+/// NaN; each metric carries the id of its definition in docs/metrics.md.
+namespace lidarena {
+
+/// E.g. "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]".
+std::string definition_id(const RelativePoseError& rpe);
+/// E.g. "ate_se3[est-stamps,ref-interp,gap1.5]".
+std::string definition_id(const AbsoluteTrajectoryError& ate);
+/// "map_error[point-triangle,all-points,20cm]".
+std::string definition_id(const MapError& error);
+
+/// {count, rmse_UNIT, mean_UNIT, median_UNIT, p95_UNIT, p99_UNIT, max_UNIT}; null when empty.
+Json to_json(const Summary& summary, const std::string& unit);
+Json to_json(const Association& association, const std::optional<TimeOffset>& offset);
+Json to_json(const RelativePoseError& rpe);
+Json to_json(const AbsoluteTrajectoryError& ate);
+Json to_json(const MapError& error);
+
+/// Columns t_s (since `start`), translation_m, rotation_rad; at most `limit` rows, of which each is
+/// the largest error of a run of neighbours, so that no peak is lost. Rounded to 1e-6.
+Json errors_over_time(std::span<const SegmentError> segments, Time start, std::size_t limit = 2000);
+Json errors_over_time(std::span<const PoseError> poses, Time start, std::size_t limit = 2000);
+
+}  // namespace lidarena

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/evaluate_run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flights.hpp"
+#include "lidarena/evaluation/metrics_json.hpp"
+#include "meshes.hpp"
+
+namespace lidarena {
+namespace {
+
+using namespace std::chrono_literals;
+using Eigen::Vector3d;
+using flights::level;
+using flights::mapped;
+using flights::sample;
+using flights::tour;
+using ::testing::HasSubstr;
+
+/// A run whose world frame is `truth_from_estimate` away and whose live trajectory drifts, in a
+/// room of 16 x 12 x 8 m whose walls its map shows without error.
+RunFiles perfect_run(const Pose& truth_from_estimate) {
+  const Pose back = truth_from_estimate.inverse();
+  RunFiles run;
+  const Trajectory truth = sample(tour, 100ms, 30s);
+  run.trajectory =
+      mapped(truth, [&](const StampedPose& pose) { return back * pose.world_from_body; });
+  run.live = mapped(run.trajectory, [](const StampedPose& pose) {
+    return level({0.01 * to_seconds(pose.stamp), 0, 0}) * pose.world_from_body;
+  });
+  SequentialRandom random(41);
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3d wall(8.0, random.uniform(-6, 6), random.uniform(-4, 4));
+    run.map.points.push_back((back * wall).cast<float>());
+  }
+  run.reprojected = run.map;
+  run.manifest = {{"status", "ok"}};
+  return run;
+}
+
+class EvaluateRun : public ::testing::Test {
+ protected:
+  EvaluateRun() : world_(meshes::box(Vector3d(8, 6, 4))) {
+    SequentialRandom random(40);
+    truth_from_estimate_ = flights::random_pose(random, 2.0);
+    run_ = perfect_run(truth_from_estimate_);
+  }
+  Json evaluate() { return evaluate_run(run_, truth_, &world_, Parallel(1), log_); }
+
+  World world_;
+  LogSink log_;
+  Pose truth_from_estimate_;
+  RunFiles run_;
+  Trajectory truth_ = sample(tour, 5ms, 30s);
+};
+
+TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
+  const Json m = evaluate();
+  EXPECT_EQ(m["schema"], "lidarena.metrics");
+  EXPECT_EQ(m["schema_version"], kMetricsSchemaVersion);
+  EXPECT_EQ(m["status"], "ok");
+  EXPECT_TRUE(m["warnings"].empty()) << m["warnings"];
+  EXPECT_EQ(m["final"]["association"]["matched"], 301);
+  EXPECT_EQ(m["final"]["rpe"]["1m"]["used"], m["final"]["rpe"]["1m"]["total"]);
+  // what linear interpolation at 10 Hz leaves: a T^2 / 8 = 1.6 mm at each end
+  EXPECT_LT(m["final"]["rpe"]["1m"]["translation"]["rmse_m"], 0.0033);
+  for (const char* gauge : {"first_pose", "se3"}) {
+    EXPECT_LT(m["final"]["ate"][gauge]["translation"]["rmse_m"], 1e-9);
+    for (const char* map : {"own", "reprojected"}) {
+      EXPECT_LT(m["maps"][map][gauge]["distance"]["rmse_m"], 1e-5);
+      EXPECT_EQ(m["maps"][map][gauge]["points"], 5000);
+      EXPECT_EQ(m["maps"][map][gauge]["histogram"]["counts"][0], 5000);
+    }
+  }
+}
+
+TEST_F(EvaluateRun, LiveAndFinalTrajectoriesAreScoredEach) {
+  const Json m = evaluate();
+  // the live one drifts 30 cm in 30 s
+  EXPECT_NEAR(m["live"]["ate"]["first_pose"]["translation"]["max_m"], 0.30, 1e-9);
+  EXPECT_LT(m["final"]["ate"]["first_pose"]["translation"]["max_m"], 1e-9);
+}
+
+TEST_F(EvaluateRun, EveryMetricNamesItsDefinition) {
+  const Json m = evaluate();
+  EXPECT_EQ(m["final"]["rpe"]["1m"]["definition"], "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]");
+  EXPECT_EQ(m["final"]["rpe"]["1s"]["definition"], "rpe_1s[time,1s,disjoint,interp,gap1.5]");
+  EXPECT_EQ(m["final"]["ate"]["se3"]["definition"], "ate_se3[est-stamps,ref-interp,gap1.5]");
+  EXPECT_EQ(m["maps"]["own"]["se3"]["definition"], "map_error[point-triangle,all-points,20cm]");
+  EXPECT_EQ(definition_id(relative_pose_error(truth_, truth_, 1.0, 0.1)),
+            "rpe_1m[ref-arc,1m,every0.1m,interp,gap1.5]");
+}
+
+TEST_F(EvaluateRun, RungsLongerThanTheFlightAreNullNotZero) {
+  ASSERT_LT(truth_.path_length(), 60.0);
+  truth_ = sample(tour, 5ms, 5s);
+  run_.trajectory = run_.live = sample(tour, 100ms, 5s);
+  const Json m = evaluate();
+  EXPECT_EQ(m["final"]["rpe"]["50m"]["total"], 0);
+  EXPECT_TRUE(m["final"]["rpe"]["50m"]["translation"].is_null());
+}
+
+TEST_F(EvaluateRun, ADivergedRunHasAReasonAndNoNumber) {
+  run_.trajectory = mapped(run_.trajectory, [](const StampedPose& pose) {
+    const double t = to_seconds(pose.stamp);
+    return level({0, 0, t > 20.0 ? 1e6 * (t - 20.0) : 0.0}) * pose.world_from_body;
+  });
+  const Json m = evaluate();
+  EXPECT_EQ(m["status"], "diverged");
+  EXPECT_THAT(m["reason"].get<std::string>(), HasSubstr("m from the truth 20.1 s into"));
+  EXPECT_TRUE(m["final"].is_null());
+  EXPECT_TRUE(m["maps"]["own"].is_null());
+}
+
+TEST_F(EvaluateRun, WhatTheRunnerSaysOfTheRunCounts) {
+  run_.manifest = {{"status", "diverged"}, {"reason", "pose 12 is not finite"}};
+  const Json m = evaluate();
+  EXPECT_EQ(m["status"], "diverged");
+  EXPECT_EQ(m["reason"], "pose 12 is not finite");
+  EXPECT_TRUE(m["final"].is_null());
+}
+
+TEST_F(EvaluateRun, NoPosesAndNoCommonTimeAreSaid) {
+  const RunFiles whole = run_;
+  run_.trajectory = Trajectory();
+  EXPECT_EQ(evaluate()["status"], "no_output");
+  run_.trajectory = flights::shifted(whole.trajectory, 100s);
+  EXPECT_EQ(evaluate()["status"], "no_overlap");
+}
+
+TEST_F(EvaluateRun, WithoutMeshOrMapTheMapErrorIsNull) {
+  run_.map = {};
+  const Json m = evaluate();
+  EXPECT_TRUE(m["maps"]["own"].is_null());
+  EXPECT_FALSE(m["maps"]["reprojected"].is_null());
+  const Json no_mesh = evaluate_run(run_, truth_, nullptr, Parallel(1), log_);
+  EXPECT_TRUE(no_mesh["maps"]["reprojected"].is_null());
+  EXPECT_FALSE(no_mesh["final"].is_null());
+}
+
+TEST_F(EvaluateRun, AStraightFlightHasNoSe3NumbersButAReason) {
+  const auto line = [](double t) { return level({0.1 * t, 0, 0}); };
+  truth_ = sample(line, 5ms, 30s);
+  run_.trajectory = run_.live = sample(line, 100ms, 30s);
+  const Json m = evaluate();
+  EXPECT_THAT(m["final"]["ate"]["se3"]["refused"].get<std::string>(), HasSubstr("line"));
+  EXPECT_TRUE(m["final"]["ate"]["se3"]["translation"].is_null());
+  EXPECT_TRUE(m["maps"]["own"]["se3"].contains("refused"));
+  EXPECT_LT(m["final"]["ate"]["first_pose"]["translation"]["max_m"], 1e-9);
+}
+
+TEST_F(EvaluateRun, LateStampsAndMissingPartsAreWarnedOfButNotCorrected) {
+  run_.trajectory = flights::with_gap(flights::shifted(run_.trajectory, 60ms), 10s, 20s);
+  const Json m = evaluate();
+  ASSERT_EQ(m["warnings"].size(), 2U);
+  EXPECT_THAT(m["warnings"][0].get<std::string>(), HasSubstr("covers 66 %"));
+  EXPECT_THAT(m["warnings"][1].get<std::string>(), HasSubstr("60 ms late"));
+  EXPECT_GT(m["final"]["ate"]["se3"]["translation"]["rmse_m"], 0.01);
+}
+
+TEST(ErrorsOverTime, KeepsThePeakOfEveryRunOfNeighbours) {
+  std::vector<PoseError> errors;
+  for (int i = 0; i < 1000; ++i) errors.push_back({std::chrono::milliseconds(100 * i), 0.01, 0.0});
+  errors[437].translation_m = 0.5;
+  const Json columns = errors_over_time(errors, Time(0), 100);
+  EXPECT_EQ(columns["t_s"].size(), 100U);
+  EXPECT_EQ(columns["largest_of"], 10);
+  EXPECT_EQ(columns["translation_m"][43], 0.5);
+  EXPECT_EQ(columns["t_s"][43], 43.7);
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Figures of other tools on the same trajectories, where their definitions meet ours.
+#include <gtest/gtest.h>
+
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "flights.hpp"
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/trajectory_error.hpp"
+
+namespace lidarena {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr double kDegree = M_PI / 180.0;
+
+/// "1305031102.160407" to nanoseconds without passing through a double.
+Time parse_time(const std::string& text) {
+  const std::size_t dot = text.find('.');
+  std::string digits = text.substr(0, dot);
+  std::string decimals = dot == std::string::npos ? "" : text.substr(dot + 1);
+  decimals.resize(9, '0');
+  return Time{std::stoll(digits + decimals)};
+}
+
+Trajectory parse_tum(std::istream& in) {
+  std::vector<StampedPose> poses;
+  std::string line;
+  while (std::getline(in, line)) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream row(line);
+    std::string stamp;
+    Eigen::Vector3d t;
+    Eigen::Quaterniond q;
+    row >> stamp >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
+    poses.push_back({parse_time(stamp), make_pose(q, t)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+std::filesystem::path shared(const std::string& name) {
+  return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
+}
+
+/// Small synthetic trajectories and what evo v1.36.5 says of them.
+class EvoFigures : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ifstream in(shared("../reference/evo_figures.json"));
+    if (!in) GTEST_SKIP() << "the figures of evo are not here: its comparison is skipped";
+    document_ = Json::parse(in);
+  }
+  Trajectory trajectory(const std::string& name) const {
+    std::istringstream text(document_["files"][name].get<std::string>());
+    return parse_tum(text);
+  }
+  /// RMSE that evo printed for `command`; a test that asks for one that is not there fails.
+  double rmse(const std::string& command) const {
+    for (const Json& run : document_["runs"]) {
+      if (run["command"] == command) return run["stats"]["rmse"];
+    }
+    ADD_FAILURE() << "no figure for " << command;
+    return std::nan("");
+  }
+  /// evo pairs the pose of the estimate with the nearest stamp of the reference, 13 ms before; with
+  /// its stamps made equal, nearest and interpolated reference are the same poses.
+  Trajectory uav_estimate_on_reference_stamps() const {
+    return flights::shifted(trajectory("uav_est.tum"), -13ms);
+  }
+
+  Json document_;
+};
+
+/// Frobenius norm of R - I for a rotation by `angle`.
+double frobenius(double angle) { return 2.0 * std::sqrt(2.0) * std::sin(0.5 * angle); }
+
+template <class Errors, class Value>
+double rms_of(const Errors& errors, Value value) {
+  double sum = 0.0;
+  for (const auto& error : errors) sum += std::pow(value(error), 2);
+  return std::sqrt(sum / static_cast<double>(errors.size()));
+}
+
+// The inputs are written with 6 decimals (quaternions 9), which both tools read alike; 1e-7 leaves
+// room for evo's quaternions, which it does not normalise (1e-9 off).
+constexpr double kSame = 1e-7;
+
+TEST_F(EvoFigures, RotationErrorAfterSe3AlignmentAndFromTheOriginIsTheSame) {
+  const Trajectory truth = trajectory("uav_ref.tum");
+  const Trajectory estimate = uav_estimate_on_reference_stamps();
+  const auto se3 = absolute_trajectory_error(estimate, truth, Gauge::kSe3);
+  const auto origin = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  EXPECT_EQ(se3.translation_m.count, 299U);
+  EXPECT_NEAR(se3.rotation_rad.rmse,
+              rmse("evo_ape tum uav_ref.tum uav_est.tum -r angle_rad -a --t_max_diff 0.02"), kSame);
+  EXPECT_NEAR(
+      origin.rotation_rad.rmse,
+      rmse("evo_ape tum uav_ref.tum uav_est.tum -r angle_rad --align_origin --t_max_diff 0.02"),
+      kSame);
+  EXPECT_NEAR(rms_of(se3.poses, [](const PoseError& e) { return frobenius(e.rotation_rad); }),
+              rmse("evo_ape tum uav_ref.tum uav_est.tum -r rot_part -a --t_max_diff 0.02"), kSame);
+}
+
+TEST_F(EvoFigures, ASimilarityFitLeavesTheSameTranslationError) {
+  const std::vector<PosePair> pairs =
+      matched_poses(uav_estimate_on_reference_stamps(), trajectory("uav_ref.tum"));
+  const Similarity fit = umeyama(pairs, true);
+  const double left = rms_of(pairs, [&](const PosePair& pair) {
+    const Eigen::Vector3d p = fit.scale * fit.rotation * pair.estimate.translation();
+    return (pair.truth.translation() - p - fit.translation).norm();
+  });
+  EXPECT_NEAR(left, rmse("evo_ape tum uav_ref.tum uav_est.tum -r trans_part -as --t_max_diff 0.02"),
+              kSame);
+}
+
+TEST_F(EvoFigures, AStraightLineIsRefusedByBothAndUnalignedTheSame) {
+  const Trajectory truth = trajectory("line_ref.tum");
+  const Trajectory estimate = trajectory("line_est.tum");
+  EXPECT_FALSE(align(estimate, truth, Gauge::kSe3).determined());
+  EXPECT_FALSE(align(trajectory("quarter_est.tum"), trajectory("quarter_ref.tum"), Gauge::kSe3)
+                   .determined());
+  // first poses are equal, so that the first-pose gauge is no alignment
+  const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  EXPECT_NEAR(ate.translation_m.rmse, rmse("evo_ape tum line_ref.tum line_est.tum -r trans_part"),
+              kSame);
+}
+
+TEST_F(EvoFigures, OnFlightsThatTakeNoAlignmentTranslationAndRotationAreTheSame) {
+  const auto quarter = absolute_trajectory_error(trajectory("quarter_est.tum"),
+                                                 trajectory("quarter_ref.tum"), Gauge::kFirstPose);
+  EXPECT_NEAR(quarter.translation_m.rmse,
+              rmse("evo_ape tum quarter_ref.tum quarter_est.tum -r trans_part"), kSame);
+  EXPECT_NEAR(quarter.rotation_rad.rmse,
+              rmse("evo_ape tum quarter_ref.tum quarter_est.tum -r angle_rad --align_origin"),
+              kSame);
+  const auto flip = absolute_trajectory_error(trajectory("flip_est.tum"),
+                                              trajectory("flip_ref.tum"), Gauge::kSe3);
+  EXPECT_NEAR(flip.rotation_rad.rmse, rmse("evo_ape tum flip_ref.tum flip_est.tum -r angle_rad -a"),
+              kSame);
+  EXPECT_LT(flip.translation_m.max, 1e-12);
+}
+
+TEST_F(EvoFigures, WhereSegmentsEndOnPosesTheRelativeErrorsAreTheSame) {
+  // Steps of exactly 0.25 m: evo's all pairs 1 m apart are our segments starting every 0.25 m.
+  const Trajectory truth = trajectory("quarter_ref.tum");
+  const Trajectory estimate = trajectory("quarter_est.tum");
+  // (Not so for 5 m: within its tolerance of 10 % evo adds shorter pairs at the end.)
+  const RelativePoseError rpe = relative_pose_error(estimate, truth, 1.0, 0.25);
+  EXPECT_EQ(rpe.used, 45U);  // 48 steps
+  const double full = rms_of(rpe.segments, [](const SegmentError& e) {
+    return std::hypot(e.translation_m, frobenius(e.rotation_rad));
+  });
+  const std::string tail = " -d 1 -u m --all_pairs --pairs_from_reference";
+  const std::string evo_rpe = "evo_rpe tum quarter_ref.tum quarter_est.tum -r ";
+  EXPECT_NEAR(full, rmse(evo_rpe + "full" + tail), kSame);
+  EXPECT_NEAR(rpe.rotation_rad.rmse / kDegree, rmse(evo_rpe + "angle_deg" + tail + " -t 0.02"),
+              kSame / kDegree);
+}
+
+// A script of the same definition, written apart in another language, gave these (cm, 6 decimals)
+// and these counts.
+TEST_F(EvoFigures, TheDefinitionGivesWhatAnIndependentScriptOfItGave) {
+  const Trajectory truth = trajectory("uav_ref.tum");
+  const RelativePoseError whole = relative_pose_error(trajectory("uav_est.tum"), truth);
+  EXPECT_EQ(whole.used, 53U);
+  EXPECT_NEAR(100.0 * whole.translation_m.rmse, 0.561919, 1e-6);
+  const RelativePoseError gap = relative_pose_error(trajectory("uav_est_gap.tum"), truth);
+  EXPECT_EQ(gap.used, 38U);
+  EXPECT_EQ(gap.total, 45U);
+  EXPECT_NEAR(100.0 * gap.translation_m.rmse, 0.541948, 1e-6);
+  const RelativePoseError hover =
+      relative_pose_error(trajectory("hover_est.tum"), trajectory("hover_ref.tum"));
+  EXPECT_EQ(hover.used, 15U);
+  EXPECT_NEAR(100.0 * hover.translation_m.rmse, 2.923887, 1e-6);
+}
+
+// 0.01347 m is known from a script that took the nearest stamp of the truth (100 Hz, so up to 5 ms
+// away) instead of interpolating it. At the 0.2 .. 0.4 m/s of this sequence that is a random error
+// of about 1 mm a pose: in RMSE, sqrt(13.47^2 +- 1^2) - 13.47 = 0.04 mm.
+TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
+  std::ifstream truth_file(shared("trajectories/tum_rgbd/freiburg1_xyz-groundtruth.txt"));
+  std::ifstream estimate_file(shared("trajectories/tum_rgbd/freiburg1_xyz-rgbdslam.txt"));
+  if (!truth_file || !estimate_file) {
+    GTEST_SKIP() << "the TUM RGB-D trajectories are not here: their figure is not compared";
+  }
+  const auto ate =
+      absolute_trajectory_error(parse_tum(estimate_file), parse_tum(truth_file), Gauge::kSe3);
+  EXPECT_NEAR(ate.translation_m.rmse, 0.01347, 5e-5);
+  RecordProperty("ate_rmse_m", std::to_string(ate.translation_m.rmse));
+}
+
+}  // namespace
+}  // namespace lidarena
