@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+
+namespace lidarena {
+
+/// Gradient noise on the integer lattice (Perlin, "Improving noise", SIGGRAPH 2002) with gradients
+/// drawn by hashing (seed, lattice point): smooth, mean zero, |value| <= 1, and nearly all of its
+/// variation between one half and two lattice steps.
+class GradientNoise {
+ public:
+  explicit GradientNoise(std::uint64_t seed) : seed_(seed) {}
+
+  double operator()(const Eigen::Vector3d& p) const;
+
+ private:
+  std::uint64_t seed_;
+};
+
+}  // namespace lidarena
