@@ -16,10 +16,10 @@ namespace lidarena {
 
 /// How to read folders of raw sweeps whose layout no file states.
 struct ReadOptions {
-  std::string sensor;      ///< id of the one LiDAR wanted; empty = all
-  std::string layout;      ///< of raw float32 binaries: xyz, xyzi, xyzt, xyztr; empty = must be clear
+  std::string sensor;  ///< id of the one LiDAR wanted; empty = all
+  std::string layout;  ///< of raw float32 binaries: xyz, xyzi, xyzt, xyztr; empty = must be clear
   std::optional<Pose> body_from_lidar;  ///< overrides what the dataset says
-  double rate_hz = 10.0;   ///< sweeps per second where the folder gives no times
+  double rate_hz = 10.0;                ///< sweeps per second where the folder gives no times
 };
 
 /// An opened dataset: what an estimator may see. The truth is apart, see load_truth().
@@ -28,6 +28,7 @@ struct Dataset {
   Rig rig;
   std::optional<std::size_t> scan_count;  ///< of the chosen sensor, where known beforehand
   Json manifest;                          ///< manifest.json of the folder; null for foreign data
+  std::vector<std::string> notes;         ///< what was inferred, not stated: to be shown
   std::unique_ptr<EventSource> events;
 };
 

@@ -14,11 +14,11 @@ namespace lidarena {
 
 /// One row of resources.csv: state after one scan.
 struct ResourceRow {
-  double t_sensor_s = 0.0;   ///< end of the scan since the first scan's stamp
-  double latency_s = 0.0;    ///< wall time that register_scan took
+  double t_sensor_s = 0.0;  ///< end of the scan since the first scan's stamp
+  double latency_s = 0.0;   ///< wall time that register_scan took
   std::uint64_t rss_bytes = 0;
   std::uint64_t pss_bytes = 0;
-  std::uint64_t map_bytes = 0;          ///< the algorithm's own parts
+  std::uint64_t map_bytes = 0;  ///< the algorithm's own parts
   std::uint64_t scan_buffer_bytes = 0;
   std::uint64_t backlog_bytes = 0;
 };
@@ -38,5 +38,7 @@ struct RunFiles {
 void write_run(const std::filesystem::path& folder, const RunFiles& run);
 /// Reads it back; throws InputError when manifest.json is missing or a file is broken.
 RunFiles read_run(const std::filesystem::path& folder);
+/// Reads a resources.csv alone; throws InputError naming file and line.
+std::vector<ResourceRow> read_resources(const std::filesystem::path& file);
 
 }  // namespace lidarena

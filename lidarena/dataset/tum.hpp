@@ -8,12 +8,19 @@
 
 namespace lidarena {
 
-/// Reads "t x y z qx qy qz qw" rows (seconds, metres), '#' comments. Times are read as decimal
-/// text, so nanoseconds survive. Throws InputError naming file and line.
-Trajectory read_tum(const std::filesystem::path& file);
+/// Whether a file without a row is an empty trajectory or an error.
+enum class EmptyTrajectory { kError, kAllowed };
 
-/// Writes 9 decimals of time and 9 significant digits elsewhere; `header` lines become comments
-/// (they name the frames and the instant). Throws Error when the disk is full.
+/// Reads "t x y z qx qy qz qw" rows (seconds, metres), '#' comments. Times are read as decimal
+/// text, so nanoseconds survive; blank lines, tabs, a byte order mark, CRLF and blanks at the ends
+/// do no harm. Quaternions are normalised. Throws InputError naming file and line: not 8 numbers,
+/// a value that is not finite, a norm off 1 by more than 1e-3, a time not later than the one
+/// before, no row at all (unless `empty` allows it: a run that never gave a pose).
+Trajectory read_tum(const std::filesystem::path& file,
+                    EmptyTrajectory empty = EmptyTrajectory::kError);
+
+/// Writes 9 decimals of time and 9 significant digits elsewhere, qw >= 0; `header` lines become
+/// comments (they name the frames and the instant). Throws Error when the disk is full.
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::string& header);
 

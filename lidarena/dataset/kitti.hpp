@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "lidarena/base/trajectory.hpp"
+
+namespace lidarena {
+
+/// Seconds, one a row (times.txt of KITTI), exact to the nanosecond. Throws InputError naming file
+/// and line unless they strictly increase.
+std::vector<Time> read_times(const std::filesystem::path& file);
+
+/// KITTI odometry poses: rows of 12 numbers, the 3x4 matrix [R t] row by row (m). Row i has the
+/// time `times[i]`. A 13th, leading number is the frame, counted from zero, and picks the time.
+/// Rotations are made orthonormal. Throws InputError naming file and line.
+Trajectory read_kitti_poses(const std::filesystem::path& file, const std::vector<Time>& times);
+/// The same with frame i at i / rate_hz seconds.
+Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz = 10.0);
+
+/// EuRoC ground truth: a header row naming the columns, then comma-separated rows: ns, position
+/// (m), quaternion w x y z, and more columns, which are left alone. Throws InputError naming file
+/// and line.
+Trajectory read_euroc_csv(const std::filesystem::path& file);
+
+}  // namespace lidarena

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "lidarena/dataset/point_table.hpp"
+
+namespace lidarena {
+
+/// The points of a PCD file (ascii, binary, binary_compressed) with all their fields. Points are
+/// given as stored: VIEWPOINT is not applied. The number of points is POINTS (or WIDTH * HEIGHT
+/// without it; some writers leave those zero). Padding after the points is let pass. Throws
+/// InputError naming the file and the line or byte.
+PointTable read_pcd_table(const std::filesystem::path& file);
+
+}  // namespace lidarena

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "lidarena/dataset/point_table.hpp"
+
+namespace lidarena {
+
+/// The vertices of a PLY file (ascii, or binary little endian) with all their properties; other
+/// elements are passed over. Bytes after the vertices are not looked at. Throws InputError naming
+/// the file and the line or byte.
+PointTable read_ply_table(const std::filesystem::path& file);
+
+}  // namespace lidarena
