@@ -14,10 +14,10 @@ inline constexpr double kGravity = 9.80665;
 /// State of the flying body at one instant.
 struct Motion {
   Pose world_from_body = Pose::Identity();
-  Eigen::Vector3d velocity_world = Eigen::Vector3d::Zero();              ///< m/s
-  Eigen::Vector3d acceleration_world = Eigen::Vector3d::Zero();          ///< m/s^2, without gravity
-  Eigen::Vector3d angular_rate_body = Eigen::Vector3d::Zero();           ///< rad/s
-  Eigen::Vector3d angular_acceleration_body = Eigen::Vector3d::Zero();   ///< rad/s^2 (lever arms)
+  Eigen::Vector3d velocity_world = Eigen::Vector3d::Zero();             ///< m/s
+  Eigen::Vector3d acceleration_world = Eigen::Vector3d::Zero();         ///< m/s^2, without gravity
+  Eigen::Vector3d angular_rate_body = Eigen::Vector3d::Zero();          ///< rad/s
+  Eigen::Vector3d angular_acceleration_body = Eigen::Vector3d::Zero();  ///< rad/s^2 (lever arms)
 };
 
 /// A flight: continuous in time and pure, so LiDAR, IMU and truth sample one function, each at its

@@ -6,8 +6,8 @@
 
 #include "lidarena/base/log.hpp"
 #include "lidarena/flight/flight.hpp"
-#include "lidarena/world/load_world.hpp"
 #include "lidarena/world/world.hpp"
+#include "lidarena/world/world_model.hpp"
 
 namespace lidarena {
 

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/clearance.hpp"
+
+#include <algorithm>
+
+namespace lidarena {
+
+std::optional<Encounter> first_encounter(const Flight& flight, const World& world,
+                                         double clearance) {
+  constexpr Time kStep = std::chrono::milliseconds(5);
+  Eigen::Vector3d asked = flight.pose_at(Time{0}).translation();  // where the world was asked last
+  Eigen::Vector3d last = asked;
+  double margin = 0.0;  // way that may be flown from `asked` before asking again
+  double flown = 0.0;
+  for (Time t{0};; t = std::min(t + kStep, flight.duration())) {
+    const Eigen::Vector3d here = flight.pose_at(t).translation();
+    flown += (here - last).norm();
+    last = here;
+    if (flown >= margin) {
+      const ClosestPoint nearest = world.closest_point(here);
+      const bool passes_through = here != asked && !world.visible(asked, here);
+      if (passes_through || nearest.distance < clearance) {
+        return Encounter{t, here, nearest.point, passes_through ? 0.0 : nearest.distance};
+      }
+      asked = here;
+      margin = nearest.distance - clearance;
+      flown = 0.0;
+    }
+    if (t >= flight.duration()) return std::nullopt;
+  }
+}
+
+}  // namespace lidarena

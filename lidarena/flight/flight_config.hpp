@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/pose.hpp"
+
+namespace lidarena {
+
+/// Where the path comes from.
+enum class FlightKind { kWaypoints, kRoute, kReplay };
+template <>
+struct EnumNames<FlightKind> {
+  static constexpr std::array names{std::pair{"waypoints", FlightKind::kWaypoints},
+                                    std::pair{"route", FlightKind::kRoute},
+                                    std::pair{"replay", FlightKind::kReplay}};
+};
+
+/// How hard the body is flown.
+enum class FlightStyle { kGentle, kBrisk, kAggressive };
+template <>
+struct EnumNames<FlightStyle> {
+  static constexpr std::array names{std::pair{"gentle", FlightStyle::kGentle},
+                                    std::pair{"brisk", FlightStyle::kBrisk},
+                                    std::pair{"aggressive", FlightStyle::kAggressive}};
+};
+
+/// Bounds that hold at every instant of a flight through waypoints.
+struct FlightLimits {
+  double max_speed = 0.0;         ///< m/s
+  double max_acceleration = 0.0;  ///< m/s^2, without gravity
+  double max_jerk = 0.0;          ///< m/s^3
+  double max_tilt = 0.0;          ///< rad, of the body's z axis from the vertical
+  double max_yaw_rate = 0.0;      ///< rad/s
+};
+
+/// Limits of a style: a careful inspection, an everyday flight, a race through rooms.
+FlightLimits limits_of(FlightStyle style);
+
+/// Limits that differ from the style's.
+struct LimitsConfig {
+  std::optional<double> max_speed, max_acceleration, max_jerk, max_tilt, max_yaw_rate;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("max_speed", self.max_speed, "m/s", "top speed", above(0));
+    v("max_acceleration", self.max_acceleration, "m/s^2", "without gravity", above(0));
+    v("max_jerk", self.max_jerk, "m/s^3", "lower means softer turns and brakes", above(0));
+    v("max_tilt", self.max_tilt, "rad", "of the body from the vertical", Limits{0.0, 1.5, true});
+    v("max_yaw_rate", self.max_yaw_rate, "rad/s", "of the heading", above(0));
+  }
+};
+
+enum class HeadingMode { kAlongPath, kFixed, kSweep };
+template <>
+struct EnumNames<HeadingMode> {
+  static constexpr std::array names{std::pair{"along_path", HeadingMode::kAlongPath},
+                                    std::pair{"fixed", HeadingMode::kFixed},
+                                    std::pair{"sweep", HeadingMode::kSweep}};
+};
+
+struct HeadingConfig {
+  HeadingMode mode = HeadingMode::kAlongPath;
+  double yaw = 0.0;
+  double amplitude = 0.6;
+  double period_s = 3.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("mode", self.mode, "", "along_path, fixed, or sweep: to and fro about the path's direction");
+    v("yaw", self.yaw, "rad", "heading of `fixed`, from the world's x axis");
+    v("amplitude", self.amplitude, "rad", "of `sweep`", at_least(0));
+    v("period_s", self.period_s, "s", "of `sweep`", above(0));
+  }
+};
+
+/// A file of configs/flights.
+struct FlightConfig {
+  FlightKind kind = FlightKind::kWaypoints;
+  std::vector<Eigen::Vector3d> waypoints;
+  int route = 0;
+  std::string replay;
+  Pose placement = Pose::Identity();
+  FlightStyle style = FlightStyle::kBrisk;
+  LimitsConfig limits;
+  HeadingConfig heading;
+  double corner_m = 0.15;
+  double clearance_m = 0.3;
+  double duration_s = 0.0;
+  double hover_s = 1.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("kind", self.kind, "", "waypoints, route (one of the world's own) or replay (a TUM file)");
+    v("waypoints", self.waypoints, "m", "list of [x, y, z]; the path is the line through them");
+    v("route", self.route, "", "which of the world's routes", at_least(0));
+    v("replay", self.replay, "", "TUM file, relative to this file");
+    v("placement", self.placement, "", "world_from_recording, where a replay is flown");
+    v("style", self.style, "", "gentle, brisk or aggressive: the limits that `limits` starts from");
+    v("limits", self.limits, "", "limits that differ from the style's");
+    v("heading", self.heading, "", "where the body's x axis looks");
+    v("corner_m", self.corner_m, "m",
+      "largest distance between the path and the line; smaller means slower corners",
+      Limits{0.001, 100.0, false});
+    v("clearance_m", self.clearance_m, "m", "least distance from body centre to any surface",
+      at_least(0));
+    v("duration_s", self.duration_s, "s",
+      "length of the flight: it loops (to and fro when the line is open) or stops early; 0 = once "
+      "through",
+      at_least(0));
+    v("hover_s", self.hover_s, "s", "rest at begin and end; estimators initialise in it",
+      at_least(0));
+  }
+};
+
+/// The style's limits with the file's changes.
+FlightLimits limits_of(const FlightConfig& config);
+
+}  // namespace lidarena

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/spline_flight.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/flight/flatness.hpp"
+#include "lidarena/flight/heading.hpp"
+#include "lidarena/flight/rounded_path.hpp"
+#include "lidarena/flight/time_law.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector4d;
+using Spline = SplineFlight::Spline;
+using std::numbers::pi;
+
+/// The acceleration that keeps the tilt, and half of `corner` for what the spline smooths away:
+/// a/2 variance knot^2 <= corner/2 with knot = 2 a / j.
+double usable_acceleration(const FlightLimits& limits, double corner) {
+  const double j = limits.max_jerk;
+  return std::min({limits.max_acceleration, kGravity * std::sin(limits.max_tilt),
+                   std::cbrt(corner * j * j / (4.0 * Spline::kVariance))});
+}
+
+/// Share of a sine of this period that is left after the spline's smoothing.
+double sweep_gain(double period_s, double knot) {
+  const double x = pi * knot / period_s;
+  return std::pow(std::sin(x) / x, SplineFlight::kDegree + 1);
+}
+
+/// The waypoints, flown round again (to and fro when the line is open) for at least `length` m.
+std::vector<Vector3d> tour(std::span<const Vector3d> waypoints, double length) {
+  constexpr double kClosed = 1e-3;  // m
+  std::vector<Vector3d> lap(waypoints.begin(), waypoints.end());
+  if ((lap.front() - lap.back()).norm() > kClosed) {
+    lap.insert(lap.end(), waypoints.rbegin() + 1, waypoints.rend());
+  }
+  double lap_length = 0.0;
+  for (std::size_t i = 1; i < lap.size(); ++i) lap_length += (lap[i] - lap[i - 1]).norm();
+  std::vector<Vector3d> laps = lap;
+  for (double flown = lap_length; flown < length; flown += lap_length) {
+    laps.insert(laps.end(), lap.begin() + 1, lap.end());
+  }
+  return laps;
+}
+
+/// The amplitude that `sweep` needs before smoothing, and the yaw rate it then takes.
+struct Sweep {
+  double amplitude = 0.0, rate = 0.0;
+};
+
+Sweep sweep_of(const HeadingConfig& heading, double knot, double max_yaw_rate,
+               const std::string& place) {
+  if (heading.mode != HeadingMode::kSweep) return {};
+  const double gain = heading.period_s > knot ? sweep_gain(heading.period_s, knot) : 0.0;
+  const double amplitude = heading.amplitude / gain;
+  const double rate = 2.0 * pi * amplitude / heading.period_s;
+  if (!(rate < max_yaw_rate)) {
+    throw InputError(place,
+                     fmt::format("the heading's sweep asks for {:.2f} rad/s of at most {:.2f}",
+                                 rate, max_yaw_rate),
+                     "lower heading.amplitude or raise heading.period_s or limits.max_yaw_rate");
+  }
+  return {amplitude, rate};
+}
+
+/// Where the moving point is at the controls' instants, and when it moves.
+struct Course {
+  std::vector<Vector3d> points, directions;
+  double begin_s = 0.0, end_s = 0.0;
+};
+
+Course sample(const RoundedPath& path, const TimeLaw& law, double begin_s, double knot,
+              std::size_t count) {
+  Course course{
+      .points = {}, .directions = {}, .begin_s = begin_s, .end_s = begin_s + law.duration()};
+  for (std::size_t j = 0; j < count; ++j) {
+    const double s = law.distance_at(Spline::center(j, knot) - begin_s);
+    course.points.push_back(path.point(s));
+    course.directions.push_back(path.direction(s));
+  }
+  return course;
+}
+
+std::vector<double> headings(const Course& course, const HeadingConfig& heading, const Sweep& sweep,
+                             double knot, double max_yaw_rate) {
+  if (heading.mode == HeadingMode::kFixed) {
+    return std::vector<double>(course.points.size(), heading.yaw);
+  }
+  std::vector<double> yaw = yaw_along(course.directions);
+  for (std::size_t j = 0; j < yaw.size() && sweep.amplitude > 0.0; ++j) {
+    yaw[j] += sweep_at(Spline::center(j, knot), course.begin_s, course.end_s, sweep.amplitude,
+                       heading.period_s);
+  }
+  limit_steps(yaw, max_yaw_rate * knot);
+  return yaw;
+}
+
+}  // namespace
+
+SplineFlight::Plan SplineFlight::plan(std::span<const Vector3d> waypoints,
+                                      const FlightConfig& config, const std::string& place) {
+  check_waypoints(waypoints, place);
+  const FlightLimits limits = limits_of(config);
+  const double acceleration = usable_acceleration(limits, config.corner_m);
+  const double knot = 2.0 * acceleration / limits.max_jerk;
+  const Sweep sweep = sweep_of(config.heading, knot, limits.max_yaw_rate, place);
+  const bool turns = config.heading.mode != HeadingMode::kFixed;
+  const PathLimits path_limits{.max_speed = limits.max_speed,
+                               .max_acceleration = acceleration,
+                               .max_turn_rate = turns ? limits.max_yaw_rate - sweep.rate
+                                                      : std::numeric_limits<double>::infinity(),
+                               .stop_s = turns ? pi / limits.max_yaw_rate : 0.0};
+
+  // a control point shapes the flight half a support before its instant and after
+  const double begin_s = config.hover_s + Spline::kHalfSupport * knot;
+  const double moving_s = config.duration_s - 2.0 * begin_s;
+  if (config.duration_s > 0.0 && moving_s <= 0.0) {
+    throw InputError(
+        place, fmt::format("duration_s {:g} leaves no time to move", config.duration_s),
+        fmt::format("more than {:.3g} s go into hovering, starting and stopping", 2.0 * begin_s));
+  }
+  const bool loops = config.duration_s > 0.0;
+  const auto line = loops ? tour(waypoints, limits.max_speed * moving_s)
+                          : std::vector<Vector3d>(waypoints.begin(), waypoints.end());
+  const double smoothed_away = 0.5 * acceleration * Spline::kVariance * knot * knot;
+  const RoundedPath path = round_corners(line, config.corner_m - smoothed_away);
+  const TimeLaw law = loops ? law_of_duration(path, path_limits, moving_s)
+                            : TimeLaw(path, path_limits, path.length());
+
+  const double duration_s = loops ? config.duration_s : law.duration() + 2.0 * begin_s;
+  const auto intervals = static_cast<std::size_t>(std::ceil(duration_s / knot));
+  const Course course = sample(path, law, begin_s, knot, intervals + kDegree);
+  const auto yaw = headings(course, config.heading, sweep, knot, limits.max_yaw_rate);
+  std::vector<Vector4d> controls;
+  for (std::size_t j = 0; j < yaw.size(); ++j) {
+    controls.emplace_back(course.points[j].x(), course.points[j].y(), course.points[j].z(), yaw[j]);
+  }
+  return {Spline(controls, knot), from_seconds(duration_s)};
+}
+
+SplineFlight::SplineFlight(std::span<const Vector3d> waypoints, const FlightConfig& config,
+                           const std::string& place)
+    : SplineFlight(plan(waypoints, config, place)) {}
+
+Spline::Place SplineFlight::find(Time t) const {
+  return spline_.find(to_seconds(std::clamp(t, Time{0}, duration_)));
+}
+
+Motion SplineFlight::at(Time t) const {
+  const Spline::Place at = find(t);
+  Motion motion =
+      motion_of({spline_.derivative<0>(at), spline_.derivative<1>(at), spline_.derivative<2>(at),
+                 spline_.derivative<3>(at), spline_.derivative<4>(at)});
+  if (t < Time{0} || t > duration_) motion = {.world_from_body = motion.world_from_body};
+  return motion;
+}
+
+Pose SplineFlight::pose_at(Time t) const {
+  const Spline::Place at = find(t);
+  const Vector4d value = spline_.derivative<0>(at);
+  return make_pose(attitude_of(spline_.derivative<2>(at).head<3>(), value.w()), value.head<3>());
+}
+
+}  // namespace lidarena

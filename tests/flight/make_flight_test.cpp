@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/make_flight.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/flight/replay_flight.hpp"
+#include "tests/flight/flight_conformance.hpp"
+#include "tests/flight/flight_scenes.hpp"
+
+namespace lidarena {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+class MakeFlight : public testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() / (std::string("lidarena_") + info->name());
+    std::filesystem::create_directories(folder_);
+    model_.name = "walls";
+    model_.mesh = scenes::wall_with_door();
+    model_.routes = {{{-2, 0, 1}, {2, 0, 1}}, {{-2, 0, 1}, {-2, 2, 1}, {2, 2, 1}}};
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return folder_ / name;
+  }
+  std::unique_ptr<Flight> make(const std::filesystem::path& file) const {
+    LogSink log;
+    return make_flight(file, model_, World(TriangleMesh(model_.mesh)), log);
+  }
+  std::string error_of(const std::string& name, const std::string& text) const {
+    try {
+      make(write(name, text));
+    } catch (const InputError& e) {
+      return e.what();
+    }
+    return "no error";
+  }
+
+  std::filesystem::path folder_;
+  WorldModel model_;
+};
+
+TEST_F(MakeFlight, WaypointsAndStyleComeFromTheFile) {
+  const auto flight = make(write("a.yaml", R"(
+kind: waypoints
+waypoints: [[-2, 0, 1], [2, 0, 1.5]]
+style: gentle
+limits: {max_speed: 0.5}
+heading: {mode: fixed, yaw: 1.0}
+duration_s: 9
+)"));
+  EXPECT_EQ(flight->duration(), std::chrono::seconds(9));
+  EXPECT_NEAR(flight->pose_at(Time{0}).translation().x(), -2.0, 1e-12);
+  const Eigen::Matrix3d turned = so3::exp(Eigen::Vector3d::UnitZ());
+  EXPECT_NEAR((flight->pose_at(Time{0}).linear() - turned).norm(), 0.0, 1e-9);
+  conformance::expect_lawful(*flight, 2);
+}
+
+TEST_F(MakeFlight, ARouteIsTheWorldsOwn) {
+  const auto flight = make(write("a.yaml", "kind: route\n"));
+  const Eigen::Vector3d end = flight->pose_at(flight->duration()).translation();
+  EXPECT_NEAR((end - Eigen::Vector3d(2, 0, 1)).norm(), 0.0, 1e-12);
+  EXPECT_THAT(error_of("b.yaml", "kind: route\nroute: 2\n"),
+              HasSubstr("the world 'walls' has 2 route(s); route 2 is asked for"));
+}
+
+TEST_F(MakeFlight, AFlightThroughAWallIsRefusedWithItsPlaceAndTime) {
+  EXPECT_THAT(error_of("wall.yaml", "kind: route\nroute: 1\n"),
+              AllOf(HasSubstr("wall.yaml: the flight comes within 0.2"),
+                    HasSubstr("m of a surface at (-0."), HasSubstr(" s after its begin"),
+                    HasSubstr("clearance_m (0.3)")));
+  EXPECT_THAT(error_of("wall.yaml", "kind: route\nroute: 1\nclearance_m: 0\n"),
+              HasSubstr("the flight passes through a surface at (-0.0"));
+}
+
+TEST_F(MakeFlight, ReplaysATumFileWithNanosecondsIntact) {
+  const std::string tum =
+      "# t x y z qx qy qz qw\n"
+      "1700000000.000000001 -2 0 1 0 0 0 1\n"
+      "1700000000.250000003 -1 0 1 0 0 0 1\n"
+      "\n"
+      "1700000000.5 0 0 1 0 0 0.479425538604203 0.877582561890373\n"
+      "1.700000001e+09 2 0 1 0 0 0.8414709848078965 0.5403023058681398\n";
+  const auto bare = make(write("recorded.tum", tum));
+  EXPECT_EQ(bare->duration(), Time{999'999'999});
+  const Pose second = bare->pose_at(Time{250'000'002});
+  EXPECT_NEAR(second.translation().x(), -1.0, 1e-12);
+  const auto placed = make(write(
+      "replay.yaml", "kind: replay\nreplay: recorded.tum\nplacement: [0, 0, 0.5, 0, 0, 0, 1]\n"));
+  EXPECT_NEAR(placed->pose_at(Time{0}).translation().z(), 1.5, 1e-12);
+  const Pose end = placed->pose_at(placed->duration());
+  EXPECT_NEAR((end.linear() - so3::exp(2.0 * Eigen::Vector3d::UnitZ())).norm(), 0.0, 1e-12);
+}
+
+TEST_F(MakeFlight, BadRowsOfARecordingAreNamed) {
+  EXPECT_THAT(error_of("a.tum", "0 0 0 1 0 0 0 1\n1 0 0\n"), HasSubstr("a.tum:2: is not a row"));
+  EXPECT_THAT(error_of("a.tum", "x 0 0 1 0 0 0 1\n"), HasSubstr("a.tum:1: has no time"));
+  EXPECT_THAT(error_of("a.tum", "1.2.3 0 0 1 0 0 0 1\n"), HasSubstr("a.tum:1: has no time"));
+  EXPECT_THAT(error_of("a.tum", "0 0 0 1 0 0 0 3\n"), HasSubstr("a.tum:1: the quaternion"));
+  EXPECT_THAT(error_of("a.tum", "0 0 0 1 0 0 0 1\n0 0 0 1 0 0 0 1\n"), HasSubstr("a.tum: pose 2"));
+  EXPECT_THAT(error_of("a.tum", "0 0 0 1 0 0 0 1\n"), HasSubstr("a.tum: has 1 pose"));
+  EXPECT_THAT(error_of("a.yaml", "kind: replay\nreplay: none.tum\n"),
+              HasSubstr("none.tum: cannot be opened"));
+  EXPECT_THAT(error_of("a.yaml", "kind: replay\n"), HasSubstr("names no file to replay"));
+}
+
+TEST_F(MakeFlight, BadConfigurationsAreNamedByFileLineAndKey) {
+  EXPECT_THAT(error_of("a.yaml", "waypoints: [[0, 0, 1]]\n"), HasSubstr("has 1 waypoint"));
+  EXPECT_THAT(error_of("a.yaml", "kind: waypoints\nwaypoints: [[-2, 0, 1], [-2, 0, 1]]\n"),
+              HasSubstr("waypoint 2 repeats"));
+  EXPECT_THAT(error_of("a.yaml", "kind: waypoints\nwaypoints: [[0, 0], [1, 1]]\n"),
+              HasSubstr("a.yaml:2: waypoints[0]"));
+  EXPECT_THAT(error_of("a.yaml", "kind: route\nlimits: {max_speed: 0}\n"),
+              HasSubstr("a.yaml:2: limits.max_speed: 0 is out of range; it must be above 0"));
+  EXPECT_THAT(error_of("a.yaml", "kind: route\nlimits: {max_acceleration: -1}\n"),
+              HasSubstr("limits.max_acceleration"));
+  EXPECT_THAT(error_of("a.yaml", "kind: route\nroute: -1\n"), HasSubstr("route: -1 is out of"));
+  EXPECT_THAT(error_of("a.yaml", "kind: rout\n"), HasSubstr("use one of waypoints, route, replay"));
+  EXPECT_THAT(error_of("a.yaml", "kind: route\nhover: 1\n"), HasSubstr("did you mean 'hover_s'?"));
+  EXPECT_THAT(error_of("a.yaml", "kind: route\ncorner_m: 0\n"), HasSubstr("corner_m"));
+}
+
+TEST_F(MakeFlight, AWorldWithoutRoutesSaysSo) {
+  model_.routes.clear();
+  EXPECT_THAT(error_of("a.yaml", "kind: route\n"), HasSubstr("has 0 route(s)"));
+}
+
+TEST(Recordings, ARealFlightIsReplayedThroughItsPoses) {
+  const std::filesystem::path file = std::filesystem::path(LIDARENA_SHARED_DATA) /
+                                     "trajectories/euroc_V1_02/stamped_groundtruth.txt";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC replay was skipped: no data";
+  WorldModel model;
+  model.mesh = scenes::box({100, 100, 100}, {101, 101, 101});
+  LogSink log;
+  const auto flight = make_flight(file, model, World(TriangleMesh(model.mesh)), log);
+  EXPECT_NEAR(to_seconds(flight->duration()), 83.5, 1.0);
+  conformance::expect_lawful(*flight, 1);
+}
+
+}  // namespace
+}  // namespace lidarena
