@@ -10,6 +10,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "tests/world/shapes.hpp"
+#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -17,17 +18,6 @@ namespace {
 using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-// What `action` throws, as text; empty when it throws nothing.
-template <class Action>
-std::string input_error_of(Action&& action) {
-  try {
-    action();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return {};
-}
 
 TEST(TriangleMesh, BoxHasItsSurfaceVolumeAndBounds) {
   const TriangleMesh box = testing::box_mesh({1, 2, 3}, {2, 4, 6});
@@ -64,14 +54,14 @@ TEST(TriangleMesh, MirroringKeepsNormalsOutward) {
 TEST(CleanMesh, RefusesAMeshWithoutFaces) {
   TriangleMesh mesh;
   mesh.vertices.emplace_back(0, 0, 0);
-  EXPECT_THAT(input_error_of([&] { clean_mesh(mesh, "points.ply"); }),
+  EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "points.ply"); }),
               AllOf(HasSubstr("points.ply"), HasSubstr("no faces")));
 }
 
 TEST(CleanMesh, RefusesAnIndexOutOfRange) {
   TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
   mesh.triangles[5][1] = 8;
-  EXPECT_THAT(input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("triangle 5"));
+  EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("triangle 5"));
 }
 
 TEST(CleanMesh, RefusesAVertexThatIsNotFinite) {
@@ -79,7 +69,7 @@ TEST(CleanMesh, RefusesAVertexThatIsNotFinite) {
        {std::numeric_limits<double>::quiet_NaN(), -std::numeric_limits<double>::infinity()}) {
     TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
     mesh.vertices[3].y() = bad;
-    EXPECT_THAT(input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("vertex 3"));
+    EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("vertex 3"));
   }
 }
 
@@ -95,7 +85,7 @@ TEST(CleanMesh, DropsTrianglesWithoutAreaAndCountsThem) {
 TEST(CleanMesh, RefusesAMeshOfDegenerateTrianglesOnly) {
   TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
   mesh.triangles = {{0, 0, 1}};
-  EXPECT_THAT(input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("degenerate"));
+  EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("degenerate"));
 }
 
 TEST(CleanMesh, KeepsMicrometreTrianglesNearTheOrigin) {

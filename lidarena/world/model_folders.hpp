@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace lidarena {
+
+/// The folders in which `model://NAME/...` is looked up, in order.
+class ModelFolders {
+ public:
+  /// For a world file: ../models, models, its own folder and the one above; then `further`; then
+  /// those of the environment variable GAZEBO_MODEL_PATH (separated by colons).
+  ModelFolders(const std::filesystem::path& world_file,
+               const std::vector<std::filesystem::path>& further);
+
+  /// What `uri` names: model://NAME/..., package://NAME/..., file://PATH or a plain path. Paths
+  /// that are not absolute are looked for in `base` first. Empty when there is no such file or
+  /// folder.
+  std::optional<std::filesystem::path> find(const std::string& uri,
+                                            const std::filesystem::path& base) const;
+
+  /// The folders, separated by commas.
+  std::string listed() const;
+
+ private:
+  std::vector<std::filesystem::path> folders_;
+};
+
+}  // namespace lidarena

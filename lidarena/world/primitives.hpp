@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+
+#include "lidarena/world/triangle_mesh.hpp"
+
+/// SDF's primitive shapes as triangle meshes about their own origin, normals outward. Round shapes
+/// are inscribed: their corners lie on the surface, and between corners the mesh is inside it by at
+/// most r (1 - cos(pi / 64)), 1.2 mm for each metre of radius.
+namespace lidarena {
+
+constexpr int kSectors = 64;  ///< round the axis of a round shape
+constexpr int kStacks = 32;   ///< from pole to pole of a sphere
+
+TriangleMesh box_shape(const Eigen::Vector3d& size);
+/// Axis along z.
+TriangleMesh cylinder_shape(double radius, double length);
+TriangleMesh sphere_shape(double radius);
+TriangleMesh ellipsoid_shape(const Eigen::Vector3d& radii);
+/// A cylinder of `length` between two half spheres; axis along z.
+TriangleMesh capsule_shape(double radius, double length);
+/// A rectangle: of unlimited planes, too, only `size` is taken.
+TriangleMesh plane_shape(const Eigen::Vector3d& normal, const Eigen::Vector2d& size);
+
+}  // namespace lidarena

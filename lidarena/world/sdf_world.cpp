@@ -1,0 +1,295 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/world/sdf_world.hpp"
+
+#include "lidarena/base/error.hpp"
+
+#if LIDARENA_HAVE_SDF
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <sdf/sdf.hh>
+#include <sstream>
+
+#include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/model_folders.hpp"
+#include "lidarena/world/primitives.hpp"
+#include "lidarena/world/sdf_text.hpp"
+
+namespace lidarena {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+Eigen::Vector3d to_eigen(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
+
+Pose to_eigen(const ignition::math::Pose3d& pose) {
+  const auto& q = pose.Rot();
+  return make_pose(Eigen::Quaterniond(q.W(), q.X(), q.Y(), q.Z()), to_eigen(pose.Pos()));
+}
+
+using FindFile = std::function<std::string(const std::string&)>;
+
+/// sdformat 12 looks up an <include> inside an included file by its process-wide configuration,
+/// whatever configuration it was given (its issue 881). While this lives, that one finds files by
+/// `find`, too; loads wait for one another.
+class GlobalFindFile {
+ public:
+  explicit GlobalFindFile(FindFile find)
+      : lock_(mutex()), before_(sdf::ParserConfig::GlobalConfig().FindFileCallback()) {
+    sdf::ParserConfig::GlobalConfig().SetFindCallback(std::move(find));
+  }
+  ~GlobalFindFile() { sdf::ParserConfig::GlobalConfig().SetFindCallback(before_); }
+  GlobalFindFile(const GlobalFindFile&) = delete;
+  GlobalFindFile& operator=(const GlobalFindFile&) = delete;
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex mutex;
+    return mutex;
+  }
+  std::lock_guard<std::mutex> lock_;
+  FindFile before_;
+};
+
+/// Collects a world's shapes into one mesh; what is missing is gathered on the way, so that one
+/// message can name all of it.
+class SdfLoader {
+ public:
+  SdfLoader(const fs::path& file, const SdfOptions& options, LogSink& log)
+      : file_(file), options_(options), log_(log), folders_(file, options.model_paths) {}
+
+  TriangleMesh load() {
+    const sdf::Root root = parse();
+    if (!options_.allow_missing) report_missing();  // of models, before meshes cost time
+    if (const sdf::Model* model = root.Model()) add_model(*model, to_eigen(model->RawPose()));
+    for (std::uint64_t i = 0; i < root.WorldCount(); ++i) add_world(*root.WorldByIndex(i));
+    report_missing();
+    if (mesh_.empty()) {
+      const bool is_visual = options_.shapes == ShapeKind::kVisual;
+      throw InputError(file_.string(),
+                       is_visual ? "has no visual shapes" : "has no collision shapes",
+                       is_visual ? "try shapes: collision" : "try shapes: visual");
+    }
+    return std::move(mesh_);
+  }
+
+ private:
+  sdf::Root parse();
+  void judge(const sdf::Errors& errors);
+  void add_world(const sdf::World& world);
+  void add_model(const sdf::Model& model, const Pose& world_from_model);
+  void add_link(const sdf::Link& link, const Pose& world_from_link, const std::string& name);
+  template <class Shape>
+  void add_shape(const Shape& shape, const Pose& world_from_link, const std::string& name);
+  void add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape, const std::string& name);
+  const std::vector<MeshPart>& parts_of(const fs::path& mesh_file);
+  Pose resolved(const sdf::SemanticPose& pose, const std::string& name) const;
+  void miss(const std::string& what) { ++missing_[what]; }
+  void report_missing();
+
+  fs::path file_;
+  const SdfOptions& options_;
+  LogSink& log_;
+  ModelFolders folders_;
+  TriangleMesh mesh_;
+  std::map<fs::path, std::vector<MeshPart>> mesh_files_;  ///< each read once
+  std::map<std::string, int> missing_;                    ///< what, and how many times
+};
+
+sdf::Root SdfLoader::parse() {
+  std::ifstream in(file_);
+  std::ostringstream text;
+  text << in.rdbuf();
+  if (!in || !fs::is_regular_file(file_)) {
+    throw InputError(file_.string(), "cannot be opened", "check the name and its permissions");
+  }
+  sdf::Console::Instance()->SetQuiet(true);  // what it would print comes back as errors, too
+  const FindFile find = [this](const std::string& uri) -> std::string {
+    const auto path = folders_.find(uri, fs::absolute(file_).parent_path());
+    if (path) return path->string();
+    if (uri != "model://sun") miss(uri);
+    return {};
+  };
+  sdf::ParserConfig config;
+  config.SetFindCallback(find);
+  const GlobalFindFile for_nested_includes(find);
+  sdf::Root root;
+  judge(root.LoadSdfString(without_unseen_elements(text.str()), config));
+  if (root.WorldCount() == 0 && root.Model() == nullptr) {
+    throw InputError(file_.string(), "holds no SDF world and no model");
+  }
+  return root;
+}
+
+/// A model that sdformat finds fault with is left out of its world, so most errors are holes.
+void SdfLoader::judge(const sdf::Errors& errors) {
+  for (const sdf::Error& error : errors) {
+    switch (error.Code()) {
+      case sdf::ErrorCode::LINK_INERTIA_INVALID:  // shapes have no mass
+      case sdf::ErrorCode::VERSION_DEPRECATED:
+      case sdf::ErrorCode::ELEMENT_DEPRECATED:
+      case sdf::ErrorCode::ATTRIBUTE_DEPRECATED:
+      case sdf::ErrorCode::URI_LOOKUP:  // noted when it was looked up
+        continue;
+      default:
+        break;
+    }
+    if (error.Message() == "Failed to load a world.") continue;  // says only that others stand here
+    const std::string place = error.LineNumber()
+                                  ? fmt::format("{}:{}", file_.string(), *error.LineNumber())
+                                  : file_.string();
+    if (!options_.allow_missing) throw InputError(place, error.Message());
+    log_.warn(place + ": " + error.Message());
+  }
+}
+
+Pose SdfLoader::resolved(const sdf::SemanticPose& pose, const std::string& name) const {
+  ignition::math::Pose3d resolved;
+  const sdf::Errors errors = pose.Resolve(resolved);
+  if (errors.empty()) return to_eigen(resolved);
+  throw InputError(file_.string(),
+                   "the pose of " + name + " leads nowhere: " + errors.front().Message());
+}
+
+void SdfLoader::add_world(const sdf::World& world) {
+  for (std::uint64_t i = 0; i < world.ModelCount(); ++i) {
+    const sdf::Model& model = *world.ModelByIndex(i);
+    log_.progress("loading models", static_cast<double>(i),
+                  static_cast<double>(world.ModelCount()));
+    add_model(model, resolved(model.SemanticPose(), model.Name()));
+  }
+}
+
+void SdfLoader::add_model(const sdf::Model& model, const Pose& world_from_model) {
+  for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
+    const sdf::Link& link = *model.LinkByIndex(i);
+    const std::string name = model.Name() + "/" + link.Name();
+    add_link(link, world_from_model * resolved(link.SemanticPose(), name), name);
+  }
+  for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
+    const sdf::Model& nested = *model.ModelByIndex(i);
+    add_model(nested, world_from_model * resolved(nested.SemanticPose(), nested.Name()));
+  }
+}
+
+void SdfLoader::add_link(const sdf::Link& link, const Pose& world_from_link,
+                         const std::string& name) {
+  if (options_.shapes == ShapeKind::kVisual) {
+    for (std::uint64_t i = 0; i < link.VisualCount(); ++i) {
+      add_shape(*link.VisualByIndex(i), world_from_link, name);
+    }
+  } else {
+    for (std::uint64_t i = 0; i < link.CollisionCount(); ++i) {
+      add_shape(*link.CollisionByIndex(i), world_from_link, name);
+    }
+  }
+}
+
+template <class Shape>
+void SdfLoader::add_shape(const Shape& shape, const Pose& world_from_link,
+                          const std::string& link_name) {
+  const std::string name = link_name + "/" + shape.Name();
+  const Pose placement = world_from_link * resolved(shape.SemanticPose(), name);
+  const sdf::Geometry* geometry = shape.Geom();
+  if (geometry == nullptr) return;
+  if (const auto* box = geometry->BoxShape()) {
+    mesh_.append(box_shape(to_eigen(box->Size())), placement);
+  } else if (const auto* cylinder = geometry->CylinderShape()) {
+    mesh_.append(cylinder_shape(cylinder->Radius(), cylinder->Length()), placement);
+  } else if (const auto* sphere = geometry->SphereShape()) {
+    mesh_.append(sphere_shape(sphere->Radius()), placement);
+  } else if (const auto* ellipsoid = geometry->EllipsoidShape()) {
+    mesh_.append(ellipsoid_shape(to_eigen(ellipsoid->Radii())), placement);
+  } else if (const auto* capsule = geometry->CapsuleShape()) {
+    mesh_.append(capsule_shape(capsule->Radius(), capsule->Length()), placement);
+  } else if (const auto* plane = geometry->PlaneShape()) {
+    mesh_.append(plane_shape(to_eigen(plane->Normal()), {plane->Size().X(), plane->Size().Y()}),
+                 placement);
+  } else if (const auto* mesh = geometry->MeshShape()) {
+    add_mesh(*mesh, placement, name);
+  } else if (geometry->Element() && geometry->Element()->GetFirstElement() &&
+             geometry->Element()->GetFirstElement()->GetName() != "empty") {
+    miss("the <" + geometry->Element()->GetFirstElement()->GetName() + "> of " + name +
+         " (a kind of shape that is not supported)");
+  }
+}
+
+const std::vector<MeshPart>& SdfLoader::parts_of(const fs::path& mesh_file) {
+  const auto known = mesh_files_.find(mesh_file);
+  if (known != mesh_files_.end()) return known->second;
+  std::vector<MeshPart> parts;
+  try {
+    parts = load_mesh_parts(mesh_file, UpAxis::kZ);
+  } catch (const InputError& error) {
+    if (!options_.allow_missing) throw;
+    log_.warn(error.what());
+  }
+  return mesh_files_.emplace(mesh_file, std::move(parts)).first->second;
+}
+
+void SdfLoader::add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape,
+                         const std::string& name) {
+  const fs::path defined_in(shape.FilePath());
+  const fs::path base =
+      defined_in.is_absolute() ? defined_in.parent_path() : fs::absolute(file_).parent_path();
+  const auto mesh_file = folders_.find(shape.Uri(), base);
+  if (!mesh_file) return miss(shape.Uri() + " of " + name);
+  TriangleMesh chosen;
+  for (const MeshPart& part : parts_of(*mesh_file)) {
+    const bool is_wanted =
+        shape.Submesh().empty() || shape.Submesh() == part.node || shape.Submesh() == part.name;
+    if (is_wanted) chosen.append(part.surface);
+  }
+  if (!shape.Submesh().empty() && chosen.empty()) {
+    return miss("the submesh '" + shape.Submesh() + "' in " + shape.Uri() + " of " + name);
+  }
+  const Eigen::Vector3d scale = to_eigen(shape.Scale());
+  Pose placement = world_from_shape;
+  if (shape.CenterSubmesh() && !shape.Submesh().empty()) {
+    placement.translate(-scale.cwiseProduct(chosen.bounds().center()));
+  }
+  mesh_.append(chosen, placement, scale);
+}
+
+void SdfLoader::report_missing() {
+  if (missing_.empty()) return;
+  std::string list;
+  for (const auto& [what, times] : missing_) {
+    list += (list.empty() ? "" : ", ") + what;
+    if (times > 1) list += fmt::format(" ({} times)", times);
+  }
+  if (!options_.allow_missing) {
+    throw InputError(file_.string(), "cannot find " + list,
+                     "searched " + folders_.listed() +
+                         "; name a further folder in model_paths or GAZEBO_MODEL_PATH, or set "
+                         "allow_missing to go on without");
+  }
+  log_.warn(file_.string() + ": goes on without " + list);
+}
+
+}  // namespace
+
+TriangleMesh load_sdf(const fs::path& file, const SdfOptions& options, LogSink& log) {
+  return SdfLoader(file, options, log).load();
+}
+
+}  // namespace lidarena
+
+#else
+
+namespace lidarena {
+
+TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions&, LogSink&) {
+  throw InputError(file.string(), "this build reads no SDF worlds",
+                   "build with LIDARENA_WITH_SDF=ON where sdformat 12 is installed");
+}
+
+}  // namespace lidarena
+
+#endif

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/world/cave.hpp"
+#include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/sdf_world.hpp"
+
+namespace lidarena {
+
+enum class WorldKind { kHouse, kCave, kMesh, kSdf };
+template <>
+struct EnumNames<WorldKind> {
+  static constexpr std::array names{
+      std::pair{"house", WorldKind::kHouse}, std::pair{"cave", WorldKind::kCave},
+      std::pair{"mesh", WorldKind::kMesh}, std::pair{"sdf", WorldKind::kSdf}};
+};
+
+/// A file of configs/worlds. Each kind has its own keys; those of another kind are refused.
+struct WorldConfig {
+  WorldKind kind = WorldKind::kMesh;
+  std::uint64_t seed = 1;
+  CaveConfig cave;
+  std::string file;
+  UpAxis up_axis = UpAxis::kFile;
+  ShapeKind shapes = ShapeKind::kVisual;
+  std::vector<std::string> model_paths;
+  bool allow_missing = false;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("kind", self.kind, "", "house, cave: procedural; mesh, sdf: from a file");
+    v("seed", self.seed, "", "of a procedural world");
+    v("cave", self.cave, "", "parameters of kind cave");
+    v("file", self.file, "", "the mesh or SDF file, relative to this one");
+    v("up_axis", self.up_axis, "", "of a mesh: file (as its format says), y or z");
+    v("shapes", self.shapes, "", "of an SDF world: visual or collision");
+    v("model_paths", self.model_paths, "",
+      "further folders that may hold model://NAME, relative to this file");
+    v("allow_missing", self.allow_missing, "",
+      "warn of models and meshes that are not there, and go on without them");
+  }
+};
+
+}  // namespace lidarena
