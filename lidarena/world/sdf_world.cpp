@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <fstream>
 #include <functional>
 #include <map>
@@ -109,7 +108,6 @@ sdf::Root SdfLoader::parse() {
   if (!in || !fs::is_regular_file(file_)) {
     throw InputError(file_.string(), "cannot be opened", "check the name and its permissions");
   }
-  sdf::Console::Instance()->SetQuiet(true);  // what it would print comes back as errors, too
   const FindFile find = [this](const std::string& uri) -> std::string {
     const auto path = folders_.find(uri, fs::absolute(file_).parent_path());
     if (path) return path->string();
@@ -119,6 +117,7 @@ sdf::Root SdfLoader::parse() {
   sdf::ParserConfig config;
   config.SetFindCallback(find);
   const GlobalFindFile for_nested_includes(find);
+  sdf::Console::Instance()->SetQuiet(true);  // what it would print comes back as errors, too
   sdf::Root root;
   judge(root.LoadSdfString(without_unseen_elements(text.str()), config));
   if (root.WorldCount() == 0 && root.Model() == nullptr) {

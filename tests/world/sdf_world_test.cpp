@@ -194,6 +194,15 @@ TEST_F(SdfWorld, AModelMissingWithinAModelIsNoSilentHole) {
   EXPECT_THAT(log_.warnings, HasSubstr("model://leaf"));
 }
 
+TEST_F(SdfWorld, AModelThatCannotBeReadWithinAModelIsNoSilentHole) {
+  folder_.write("models/leaf/model.config", kModelConfig);
+  folder_.write("models/leaf/model.sdf", "<sdf version='1.6'><model name='m'><link");
+  write_model("branch", "<link name='stem'>" + visual(kUnitBox) + "</link>" +
+                            include("model://leaf", "leaf", "0 0 2 0 0 0"));
+  const std::string text = world_with(include("model://branch", "a", "0 0 0 0 0 0"));
+  EXPECT_THAT(input_error_of([&] { load(text); }), HasSubstr("branch"));
+}
+
 TEST_F(SdfWorld, AMissingLampIsNoHole) {
   const std::string text =
       world_with("<model name='m'><link name='l'>" + visual(kUnitBox) + "</link></model>" +
