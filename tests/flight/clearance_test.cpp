@@ -58,7 +58,7 @@ TEST(Clearance, AThinSheetIsNotSlippedThroughBetweenTwoSamples) {
 }
 
 TEST(Clearance, AgreesWithAskingTheWorldAtEverySample) {
-  const std::vector<Vector3d> line{{-2, 0.1, 1}, {1, 0, 1}, {1, 2, 2}, {-1, 3.5, 1}};
+  const std::vector<Vector3d> line{{-2, 0.1, 1}, {1, 0, 1}, {1, 2, 3.2}, {-1, 2, 3.2}};
   const SplineFlight flight(line, {}, "test");
   double nearest = std::numeric_limits<double>::infinity();
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(5)) {
