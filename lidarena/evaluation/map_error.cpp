@@ -4,27 +4,42 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points in flight; bounds the memory
+constexpr float kCellsPerMetre = 2.0F;
+
+/// Indices of the finite points, those of one half-metre cell together: neighbours in space walk
+/// the same branches of the mesh's tree, and what one loads the next finds in the cache.
+std::vector<std::size_t> in_order_of_cells(std::span<const Eigen::Vector3f> points) {
+  std::vector<std::pair<VoxelKey, std::size_t>> keyed;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite()) continue;
+    keyed.emplace_back(voxel_key(voxel_of(points[i], kCellsPerMetre)), i);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<std::size_t> order(keyed.size());
+  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const auto& k) { return k.second; });
+  return order;
+}
 
 /// Distances of the finite points of `map` (m), NaN for the others.
 void distances_to(const World& world, std::span<const Eigen::Vector3f> map,
                   const Pose& mesh_from_map, const Parallel& parallel, std::span<double> out) {
+  const std::vector<std::size_t> order = in_order_of_cells(map);
   std::vector<Eigen::Vector3d> moved;
-  std::vector<std::size_t> index;
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    out[i] = kNaN;
-    if (!map[i].allFinite()) continue;
-    moved.push_back(mesh_from_map * map[i].cast<double>());
-    index.push_back(i);
-  }
+  moved.reserve(order.size());
+  for (const std::size_t i : order) moved.push_back(mesh_from_map * map[i].cast<double>());
   std::vector<ClosestPoint> nearest(moved.size());
   world.closest_points(moved, std::numeric_limits<double>::infinity(), nearest, parallel);
-  for (std::size_t k = 0; k < index.size(); ++k) out[index[k]] = nearest[k].distance;
+  std::fill(out.begin(), out.end(), kNaN);
+  for (std::size_t k = 0; k < order.size(); ++k) out[order[k]] = nearest[k].distance;
 }
 
 }  // namespace

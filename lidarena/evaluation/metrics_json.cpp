@@ -113,6 +113,14 @@ Json to_json(const MapError& error) {
   return json;
 }
 
+Json to_json(const HoverJitter& jitter) {
+  if (jitter.poses == 0) return nullptr;
+  return {{"definition", "hover_jitter[below5cm/s,1s,about-mean]"},
+          {"hovered_s", jitter.seconds},
+          {"poses", jitter.poses},
+          {"rms_m", jitter.rms_m}};
+}
+
 Json errors_over_time(std::span<const SegmentError> segments, Time start, std::size_t limit) {
   return columns(segments, start, limit);
 }

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/hover_jitter.hpp"
 #include "lidarena/evaluation/map_error.hpp"
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
@@ -25,6 +26,8 @@ Json to_json(const Association& association, const std::optional<TimeOffset>& of
 Json to_json(const RelativePoseError& rpe);
 Json to_json(const AbsoluteTrajectoryError& ate);
 Json to_json(const MapError& error);
+/// Null when nothing hovered.
+Json to_json(const HoverJitter& jitter);
 
 /// Columns t_s (since `start`), translation_m, rotation_rad; at most `limit` rows, of which each is
 /// the largest error of a run of neighbours, so that no peak is lost. Rounded to 1e-6.

@@ -93,6 +93,16 @@ TEST_F(EvaluateRun, EveryMetricNamesItsDefinition) {
             "rpe_1m[ref-arc,1m,every0.1m,interp,gap1.5]");
 }
 
+TEST_F(EvaluateRun, AHoverIsScoredByItsJitterAndByTheSecondWhereThereAreNoMetres) {
+  const auto still = [](double) { return level({1, 2, 0}); };
+  truth_ = sample(still, 5ms, 30s);
+  run_.trajectory = run_.live = sample(still, 100ms, 30s);
+  const Json m = evaluate();
+  EXPECT_TRUE(m["final"]["rpe"]["1m"]["translation"].is_null());
+  EXPECT_EQ(m["final"]["rpe"]["1s"]["used"], 30);
+  EXPECT_NEAR(m["final"]["hover_jitter"]["hovered_s"], 30.0, 1e-9);
+}
+
 TEST_F(EvaluateRun, RungsLongerThanTheFlightAreNullNotZero) {
   ASSERT_LT(truth_.path_length(), 60.0);
   truth_ = sample(tour, 5ms, 5s);

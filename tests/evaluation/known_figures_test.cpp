@@ -10,6 +10,7 @@
 
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
 
 namespace lidarena {
@@ -162,7 +163,7 @@ TEST_F(EvoFigures, WhereSegmentsEndOnPosesTheRelativeErrorsAreTheSame) {
               kSame / kDegree);
 }
 
-// A script of the same definition, written apart in another language, gave these (cm, 6 decimals)
+// tests/oracle/relative_pose_error.py, written apart from the library, gave these (cm, 6 decimals)
 // and these counts.
 TEST_F(EvoFigures, TheDefinitionGivesWhatAnIndependentScriptOfItGave) {
   const Trajectory truth = trajectory("uav_ref.tum");
@@ -177,6 +178,16 @@ TEST_F(EvoFigures, TheDefinitionGivesWhatAnIndependentScriptOfItGave) {
       relative_pose_error(trajectory("hover_est.tum"), trajectory("hover_ref.tum"));
   EXPECT_EQ(hover.used, 15U);
   EXPECT_NEAR(100.0 * hover.translation_m.rmse, 2.923887, 1e-6);
+}
+
+TEST_F(EvoFigures, StampsMadeLateBy237MillisecondsAreFoundToBe) {
+  const Trajectory truth = trajectory("uav_ref.tum");
+  const auto right = time_offset(trajectory("uav_est.tum"), truth);
+  const auto late = time_offset(trajectory("uav_est_off.tum"), truth);
+  ASSERT_TRUE(right && late);
+  EXPECT_NEAR(right->late_s, 0.0, 4.0 * right->sigma_s);
+  EXPECT_NEAR(late->late_s, 0.237, 4.0 * late->sigma_s);
+  EXPECT_LT(late->sigma_s, 0.005);
 }
 
 // 0.01347 m is known from a script that took the nearest stamp of the truth (100 Hz, so up to 5 ms

@@ -121,7 +121,7 @@ TEST(MapError, OfAnEmptyMapHasNoPoints) {
 
 TEST(MapError, IsTheSameBitsOnOneTwoAndFiveThreads) {
   const World world(meshes::box(Vector3d(4, 4, 0.1)));
-  const std::vector<Vector3f> map = noisy_plane(300000, 0.15);  // more than one chunk
+  const std::vector<Vector3f> map = noisy_plane(300000, 0.15);  // more than a chunk
   const MapError one = map_error(map, Pose::Identity(), world, Parallel(1));
   for (const int threads : {2, 5}) {
     const MapError more = map_error(map, Pose::Identity(), world, Parallel(threads));
