@@ -84,7 +84,9 @@ struct FlightConfig {
   std::vector<Eigen::Vector3d> waypoints;
   int route = 0;
   std::string replay;
-  Pose placement = Pose::Identity();
+  double replay_step_s = 0.0;
+  Pose world_from_recording = Pose::Identity();
+  Pose recorded_from_body = Pose::Identity();
   FlightStyle style = FlightStyle::kBrisk;
   LimitsConfig limits;
   HeadingConfig heading;
@@ -99,7 +101,12 @@ struct FlightConfig {
     v("waypoints", self.waypoints, "m", "list of [x, y, z]; the path is the line through them");
     v("route", self.route, "", "which of the world's routes", at_least(0));
     v("replay", self.replay, "", "TUM file, relative to this file");
-    v("placement", self.placement, "", "world_from_recording, where a replay is flown");
+    v("replay_step_s", self.replay_step_s, "s",
+      "least time between poses that are used; more keeps a recording's noise out of the rates",
+      at_least(0));
+    v("world_from_recording", self.world_from_recording, "", "where a replay is flown");
+    v("recorded_from_body", self.recorded_from_body, "",
+      "our body (x forward, z up) in the frame whose poses were recorded");
     v("style", self.style, "", "gentle, brisk or aggressive: the limits that `limits` starts from");
     v("limits", self.limits, "", "limits that differ from the style's");
     v("heading", self.heading, "", "where the body's x axis looks");

@@ -3,75 +3,16 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
-#include <cmath>
-#include <fstream>
-#include <optional>
-#include <sstream>
-
 #include "lidarena/base/config.hpp"
-#include "lidarena/base/trajectory.hpp"
 #include "lidarena/flight/clearance.hpp"
 #include "lidarena/flight/figures.hpp"
 #include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 
 namespace lidarena {
 namespace {
-
-/// Decimal seconds as integer nanoseconds, so that nothing of a large stamp is lost to `double`.
-std::optional<Time> exact_seconds(const std::string& text) {
-  const std::size_t dot = std::min(text.find('.'), text.size());
-  std::int64_t seconds = 0;
-  const auto whole = std::from_chars(text.data(), text.data() + dot, seconds);
-  if (whole.ec != std::errc{} || whole.ptr != text.data() + dot) return std::nullopt;
-  std::string digits = dot < text.size() ? text.substr(dot + 1) : "";
-  if (digits.find_first_not_of("0123456789") != std::string::npos) return std::nullopt;
-  digits.resize(9, '0');
-  const std::int64_t fraction = std::stoll(digits);
-  return std::chrono::seconds(seconds) + Time{text.front() == '-' ? -fraction : fraction};
-}
-
-StampedPose tum_row(const std::string& line, const std::string& place) {
-  std::istringstream in(line);
-  std::string stamp;
-  std::array<double, 7> v{};
-  in >> stamp;
-  for (double& value : v) in >> value;
-  std::string rest;
-  if (!in || in >> rest) throw InputError(place, "is not a row 't x y z qx qy qz qw'");
-  std::optional<Time> time = exact_seconds(stamp);
-  if (!time) {  // with an exponent
-    double seconds = 0.0;
-    const auto end = stamp.data() + stamp.size();
-    const auto [ptr, error] = std::from_chars(stamp.data(), end, seconds);
-    if (error != std::errc{} || ptr != end)
-      throw InputError(place, "has no time in its first column");
-    time = from_seconds(seconds);
-  }
-  const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
-  if (!(std::abs(q.norm() - 1.0) < 1e-2)) {
-    throw InputError(place, fmt::format("the quaternion has norm {:g}", q.norm()),
-                     "the columns are t x y z qx qy qz qw");
-  }
-  return {*time, make_pose(q, {v[0], v[1], v[2]})};
-}
-
-/// The rows of a TUM file. (lidarena/dataset reads the same files; flight may not include it.)
-Trajectory read_recording(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in)
-    throw InputError(file.string(), "cannot be opened", "check the name and its permissions");
-  std::vector<StampedPose> poses;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    poses.push_back(tum_row(line, fmt::format("{}:{}", file.string(), number)));
-  }
-  return Trajectory(std::move(poses), file.string());
-}
 
 bool is_recording(const std::filesystem::path& file) {
   return file.extension() == ".tum" || file.extension() == ".txt";
@@ -105,8 +46,10 @@ std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightCon
     case FlightKind::kReplay: {
       if (config.replay.empty()) throw InputError(place, "names no file to replay", "set replay");
       const auto recording = file.parent_path() / config.replay;
-      return std::make_unique<ReplayFlight>(read_recording(recording), config.placement,
-                                            recording.string());
+      const Trajectory poses = thinned(read_recording(recording), config.replay_step_s);
+      return std::make_unique<ReplayFlight>(
+          placed(poses, config.world_from_recording, config.recorded_from_body),
+          recording.string());
     }
     case FlightKind::kRoute:
       return std::make_unique<SplineFlight>(route_of(model, config.route, place), config, place);

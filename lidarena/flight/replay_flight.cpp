@@ -98,8 +98,7 @@ Value derivatives_at(const Coefficients& c, double u, double h) {
 
 }  // namespace
 
-ReplayFlight::ReplayFlight(const Trajectory& recording, const Pose& placement,
-                           const std::string& name) {
+ReplayFlight::ReplayFlight(const Trajectory& recording, const std::string& name) {
   const auto poses = recording.poses();
   if (poses.size() < 2) {
     throw InputError(name, "has " + std::to_string(poses.size()) + " pose(s)",
@@ -112,14 +111,13 @@ ReplayFlight::ReplayFlight(const Trajectory& recording, const Pose& placement,
     const Pose& to = poses[i + 1].world_from_body;
     const double h = to_seconds(poses[i + 1].stamp - poses[i].stamp);
     const Vector3d turn = so3::log(from.linear().transpose() * to.linear());
-    Piece piece{.world_from_begin = placement.linear() * from.linear(),
-                .position = placement.linear() * quintic(from.translation(), begin.position,
-                                                         to.translation(), end.position, h),
-                .rotation = quintic(Vector3d::Zero(), begin.rotation, turn,
-                                    vector_rates(turn, end.rotation), h),
-                .begin = poses[i].stamp - recording.begin_time(),
-                .length_s = h};
-    piece.position.col(0) += placement.translation();
+    Piece piece{
+        .world_from_begin = from.linear(),
+        .position = quintic(from.translation(), begin.position, to.translation(), end.position, h),
+        .rotation =
+            quintic(Vector3d::Zero(), begin.rotation, turn, vector_rates(turn, end.rotation), h),
+        .begin = poses[i].stamp - recording.begin_time(),
+        .length_s = h};
     pieces_.push_back(piece);
     ends_.push_back(poses[i + 1].stamp - recording.begin_time());
   }

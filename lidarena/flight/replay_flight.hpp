@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
@@ -16,13 +17,12 @@ namespace lidarena {
 /// neighbours in the row (for the rotation: of rotation vectors relative to that pose); between two
 /// poses a quintic Hermite polynomial joins them. Between samples h apart of a smooth motion the
 /// position is off by O(h^5) and the acceleration by O(h^3); noise of s metres in the recording
-/// becomes noise of about 3 s / h^2 in the acceleration, so thin a noisy recording first. A
-/// recording that begins or ends in motion does so here too: outside, the body rests there.
+/// becomes noise of about 3 s / h^2 in the acceleration, so thin a noisy recording first (thinned).
+/// A recording that begins or ends in motion does so here too: outside, the body rests there.
 class ReplayFlight final : public Flight {
  public:
-  /// `placement` is world_from_recording. Throws InputError (place `name`) below two poses.
-  ReplayFlight(const Trajectory& recording, const Pose& placement = Pose::Identity(),
-               const std::string& name = "recording");
+  /// Throws InputError (place `name`) below two poses.
+  explicit ReplayFlight(const Trajectory& recording, const std::string& name = "recording");
 
   Motion at(Time t) const override;
   Pose pose_at(Time t) const override;

@@ -97,8 +97,9 @@ TEST_F(MakeFlight, ReplaysATumFileWithNanosecondsIntact) {
   EXPECT_EQ(bare->duration(), Time{999'999'999});
   const Pose second = bare->pose_at(Time{250'000'002});
   EXPECT_NEAR(second.translation().x(), -1.0, 1e-12);
-  const auto placed = make(write(
-      "replay.yaml", "kind: replay\nreplay: recorded.tum\nplacement: [0, 0, 0.5, 0, 0, 0, 1]\n"));
+  const auto placed = make(
+      write("replay.yaml",
+            "kind: replay\nreplay: recorded.tum\nworld_from_recording: [0, 0, 0.5, 0, 0, 0, 1]\n"));
   EXPECT_NEAR(placed->pose_at(Time{0}).translation().z(), 1.5, 1e-12);
   const Pose end = placed->pose_at(placed->duration());
   EXPECT_NEAR((end.linear() - so3::exp(2.0 * Eigen::Vector3d::UnitZ())).norm(), 0.0, 1e-12);

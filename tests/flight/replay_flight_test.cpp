@@ -8,6 +8,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/rotation_rates.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 #include "tests/flight/flight_conformance.hpp"
@@ -132,18 +133,42 @@ TEST(ReplayFlight, ConstantVelocityAndRateAreReproducedExactly) {
   }
 }
 
-TEST(ReplayFlight, PlacementMovesTheWholeFlight) {
-  const Pose placement = make_pose(so3::exp(Vector3d(0.1, 0.2, 1.0)), Vector3d(5, -3, 2));
+TEST(ReplayFlight, AMovedRecordingGivesTheMovedFlight) {
+  const Pose moved = make_pose(so3::exp(Vector3d(0.1, 0.2, 1.0)), Vector3d(5, -3, 2));
   const ReplayFlight here(jagged());
-  const ReplayFlight there(jagged(), placement);
+  const ReplayFlight there(placed(jagged(), moved, Pose::Identity()));
   for (Time t{0}; t < here.duration(); t += std::chrono::milliseconds(17)) {
     const Motion a = here.at(t);
     const Motion b = there.at(t);
-    EXPECT_NEAR(((placement * a.world_from_body).matrix() - b.world_from_body.matrix()).norm(), 0.0,
+    EXPECT_NEAR(((moved * a.world_from_body).matrix() - b.world_from_body.matrix()).norm(), 0.0,
                 1e-12);
-    EXPECT_NEAR((placement.linear() * a.velocity_world - b.velocity_world).norm(), 0.0, 1e-11);
+    EXPECT_NEAR((moved.linear() * a.velocity_world - b.velocity_world).norm(), 0.0, 1e-11);
     EXPECT_NEAR((a.angular_rate_body - b.angular_rate_body).norm(), 0.0, 1e-11);
   }
+}
+
+TEST(ReplayFlight, ThinningKeepsPosesAtLeastAStepApartAndQuietensTheRates) {
+  // 0.2 mm of noise at 100 Hz is 0.0002 * 3 / 0.01^2 = 6 m/s^2; at 10 Hz a hundredth of that
+  SequentialRandom random(9);
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d noise(random.normal(), random.normal(), random.normal());
+    poses.push_back({i * std::chrono::milliseconds(10),
+                     make_pose(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), 2e-4 * noise)});
+  }
+  const Trajectory recording(std::move(poses));
+  const Trajectory sparse = thinned(recording, 0.1);
+  EXPECT_EQ(sparse.size(), 50U);
+  const auto rms = [](const Flight& flight) {
+    double sum = 0.0;
+    int count = 0;
+    for (Time t{0}; t < flight.duration(); t += std::chrono::microseconds(3137), ++count) {
+      sum += flight.at(t).acceleration_world.squaredNorm() / 3.0;
+    }
+    return std::sqrt(sum / count);
+  };
+  EXPECT_NEAR(rms(ReplayFlight(recording)) / rms(ReplayFlight(sparse)), 100.0, 30.0);
+  EXPECT_EQ(thinned(recording, 0.0).size(), recording.size());
 }
 
 TEST(ReplayFlight, TwoPosesAreJoinedByASteadyMotionAndOneIsRefused) {
