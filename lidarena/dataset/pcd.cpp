@@ -160,8 +160,11 @@ PointTable read_compressed(FileText& text, const Header& header) {
 }  // namespace
 
 PointTable read_pcd_table(const std::filesystem::path& file) {
-  const std::string bytes = read_bytes(file);
-  FileText text(bytes, file.string());
+  return parse_pcd_table(read_bytes(file), file.string());
+}
+
+PointTable parse_pcd_table(std::string_view bytes, const std::string& name) {
+  FileText text(bytes, name);
   const Header header = parse_header(text);
   if (header.data == "ascii") return read_ascii_rows(text, header.fields, header.points);
   if (header.data == "binary") return read_binary_rows(text, header.fields, header.points);

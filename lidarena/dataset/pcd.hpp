@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "lidarena/dataset/point_table.hpp"
 
@@ -12,5 +14,7 @@ namespace lidarena {
 /// without it; some writers leave those zero). Padding after the points is let pass. Throws
 /// InputError naming the file and the line or byte.
 PointTable read_pcd_table(const std::filesystem::path& file);
+/// The same from the bytes of a file, which `name` names in messages.
+PointTable parse_pcd_table(std::string_view bytes, const std::string& name);
 
 }  // namespace lidarena

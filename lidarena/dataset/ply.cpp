@@ -134,19 +134,22 @@ std::vector<Field> vertex_fields(const Element& vertex, const std::string& place
 }  // namespace
 
 PointTable read_ply_table(const std::filesystem::path& file) {
-  const std::string bytes = read_bytes(file);
-  FileText text(bytes, file.string());
+  return parse_ply_table(read_bytes(file), file.string());
+}
+
+PointTable parse_ply_table(std::string_view bytes, const std::string& name) {
+  FileText text(bytes, name);
   const Header header = parse_header(text);
   for (const Element& element : header.elements) {
     if (element.name != "vertex") {
       skip_element(text, element, header.ascii);
       continue;
     }
-    const auto fields = vertex_fields(element, file.string());
+    const auto fields = vertex_fields(element, name);
     return header.ascii ? read_ascii_rows(text, fields, element.count)
                         : read_binary_rows(text, fields, element.count);
   }
-  throw InputError(file.string(), "has no element 'vertex'", "a cloud needs vertices");
+  throw InputError(name, "has no element 'vertex'", "a cloud needs vertices");
 }
 
 }  // namespace lidarena

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 #include "lidarena/dataset/point_table.hpp"
 
@@ -11,5 +13,7 @@ namespace lidarena {
 /// elements are passed over. Bytes after the vertices are not looked at. Throws InputError naming
 /// the file and the line or byte.
 PointTable read_ply_table(const std::filesystem::path& file);
+/// The same from the bytes of a file, which `name` names in messages.
+PointTable parse_ply_table(std::string_view bytes, const std::string& name);
 
 }  // namespace lidarena

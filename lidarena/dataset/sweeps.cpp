@@ -85,8 +85,11 @@ std::vector<Time> stamps_at_rate(std::size_t count, double rate_hz) {
   return stamps;
 }
 
+/// Stamps of the sweeps; adds to `notes` when nothing tells them. (64-bit times of points, known
+/// only once a sweep is read, replace them.)
 std::vector<Time> stamps_of(const std::vector<fs::path>& files,
-                            const std::optional<fs::path>& times_file, double rate_hz) {
+                            const std::optional<fs::path>& times_file, double rate_hz,
+                            std::vector<std::string>& notes) {
   if (times_file) {
     auto stamps = read_times(*times_file);
     if (stamps.size() != files.size()) {
@@ -97,7 +100,12 @@ std::vector<Time> stamps_of(const std::vector<fs::path>& files,
     return stamps;
   }
   auto stamps = stamps_of_names(files);
-  return stamps.empty() ? stamps_at_rate(files.size(), rate_hz) : stamps;
+  if (!stamps.empty()) return stamps;
+  notes.push_back(
+      fmt::format("no times.txt and no stamps in names: sweeps are taken to come at {} "
+                  "Hz, unless their points carry absolute times",
+                  rate_hz));
+  return stamps_at_rate(files.size(), rate_hz);
 }
 
 /// The layouts that divide the sizes of all files, as words.
@@ -181,7 +189,12 @@ Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
   dataset.path = place;
   const bool raw = files.front().extension() == ".bin";
   const std::string layout = raw ? layout_of(files, options, dataset.notes) : "";
-  auto stamps = stamps_of(files, times_file, options.rate_hz);
+  auto stamps = stamps_of(files, times_file, options.rate_hz, dataset.notes);
+  if (!options.body_from_lidar) {
+    dataset.notes.push_back(
+        "nothing says how the LiDAR is mounted; it is taken to be in the body "
+        "frame");
+  }
   dataset.rig = single_lidar_rig(place, options, Pose::Identity());
   dataset.rig.lidars.front().rate_hz = mean_rate(stamps, options.rate_hz);
   dataset.scan_count = files.size();
