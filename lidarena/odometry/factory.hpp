@@ -14,10 +14,10 @@ namespace lidarena {
 
 /// What to build.
 struct OdometryRequest {
-  std::string algorithm;               ///< a name of list_algorithms()
-  std::string preset = "improved";     ///< "original", "improved", or one more the algorithm has
-  std::string config_file;             ///< YAML over the preset; may be empty
-  std::vector<std::string> overrides;  ///< "key=value", over everything
+  std::string algorithm;                 ///< a name of list_algorithms()
+  std::string preset = "improved";       ///< "original", "improved", or one more the algorithm has
+  std::string config_file{};             ///< YAML over the preset; may be empty
+  std::vector<std::string> overrides{};  ///< "key=value", over everything
 };
 
 struct AlgorithmInfo {

@@ -16,11 +16,11 @@
 namespace lidarena {
 
 enum class ScanStatus {
-  kTracked,        ///< the estimate rests on this scan
-  kInitializing,   ///< still settling (first scan, IMU alignment); the estimate is provisional
-  kDegenerate,     ///< some direction was not observable
-  kTooFewPoints,   ///< nothing usable in the scan; the estimate is a prediction
-  kDiverged,       ///< the estimate must not be used
+  kTracked,       ///< the estimate rests on this scan
+  kInitializing,  ///< still settling (first scan, IMU alignment); the estimate is provisional
+  kDegenerate,    ///< some direction was not observable
+  kTooFewPoints,  ///< nothing usable in the scan; the estimate is a prediction
+  kDiverged,      ///< the estimate must not be used
 };
 const char* to_string(ScanStatus status);
 
@@ -36,8 +36,8 @@ struct ScanResult {
 
 struct OdometryTraits {
   bool needs_imu = false;
-  bool revises_past = false;      ///< trajectory() after finish() differs from the live estimates
-  bool gravity_aligned = false;   ///< its world frame has z up
+  bool revises_past = false;     ///< trajectory() after finish() differs from the live estimates
+  bool gravity_aligned = false;  ///< its world frame has z up
   /// True: its map is what it publishes scan by scan, see registered_scan(); false: map().
   bool publishes_scans = true;
   std::string pose_frame = "body";

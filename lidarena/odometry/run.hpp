@@ -13,23 +13,23 @@
 namespace lidarena {
 
 struct RunOptions {
-  std::string lidar_id;                 ///< scans of other LiDARs are skipped
-  std::string imu_id;                   ///< likewise; empty = the first IMU met
-  std::optional<std::size_t> scan_count;///< for the progress display
-  double map_voxel_m = 0.02;            ///< map.ply keeps the first point of each such cell
+  std::string lidar_id{};                   ///< scans of other LiDARs are skipped
+  std::string imu_id{};                     ///< likewise; empty = the first IMU met
+  std::optional<std::size_t> scan_count{};  ///< for the progress display
+  double map_voxel_m = 0.02;                ///< map.ply keeps the first point of each such cell
 };
 
 struct RunSummary {
   std::map<ScanStatus, std::size_t> statuses;
   std::size_t scans = 0;
   double sensor_seconds = 0.0;
-  double compute_seconds = 0.0;   ///< wall time inside the algorithm
-  bool diverged = false;          ///< a status said so, or a pose was not finite
-  std::string reason;             ///< of the divergence
+  double compute_seconds = 0.0;  ///< wall time inside the algorithm
+  bool diverged = false;         ///< a status said so, or a pose was not finite
+  std::string reason;            ///< of the divergence
 };
 
 struct RunResult {
-  RunFiles files;      ///< all but reprojected and manifest
+  RunFiles files;  ///< all but reprojected and manifest
   RunSummary summary;
 };
 

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/factory.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "lidarena/base/error.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+MadeOdometry make(const OdometryRequest& request, const std::string& lidar = "lidar") {
+  return make_odometry(request, synthetic::rig_of({}), lidar, Parallel(1));
+}
+
+std::string refusal(const OdometryRequest& request, const std::string& lidar = "lidar") {
+  try {
+    make(request, lidar);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "not refused";
+}
+
+TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesItAgain) {
+  for (const AlgorithmInfo& info : list_algorithms()) {
+    EXPECT_FALSE(info.summary.empty());
+    EXPECT_THAT(info.presets, testing::IsSupersetOf({"original", "improved"}));
+    for (const std::string& preset : info.presets) {
+      const MadeOdometry made = make({info.name, preset, "", {}});
+      ASSERT_NE(made.odometry, nullptr);
+      EXPECT_EQ(made.odometry->traits().needs_imu, info.needs_imu);
+      const auto file = std::filesystem::path(testing::TempDir()) / (info.name + preset + ".yaml");
+      std::ofstream(file) << made.config.dump(2);
+      EXPECT_EQ(make({info.name, "improved", file.string(), {}}).config, made.config);
+      std::filesystem::remove(file);
+    }
+  }
+}
+
+TEST(OdometryFactory, OverridesWinOverTheFileAndTheFileOverThePreset) {
+  const auto file = std::filesystem::path(testing::TempDir()) / "kiss.yaml";
+  std::ofstream(file) << "voxel_size_m: 0.4\nmax_iterations: 7\n";
+  const Json config =
+      make({"kiss_icp", "head", file.string(), {"max_iterations=9", "deskew=false"}}).config;
+  EXPECT_EQ(config.at("voxel_size_m"), 0.4);
+  EXPECT_EQ(config.at("max_iterations"), 9);
+  EXPECT_EQ(config.at("deskew"), false);
+  EXPECT_EQ(config.at("max_range_m"), 100.0);
+  std::filesystem::remove(file);
+}
+
+TEST(OdometryFactory, RefusalsNameTheNearestWord) {
+  EXPECT_THAT(refusal({"kis_icp", "improved", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
+  EXPECT_THAT(refusal({"orb_slam", "improved", "", {}}),
+              AllOf(HasSubstr("orb_slam"), HasSubstr("use one of")));
+  EXPECT_THAT(refusal({"kiss_icp", "haed", "", {}}), HasSubstr("did you mean 'head'"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size=1"}}),
+              HasSubstr("did you mean 'voxel_size_m'"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size_m=-1"}}), HasSubstr("above 0"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"pose_instant=end"}}),
+              HasSubstr("scan_middle, scan_end"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "/no/such.yaml", {}}), HasSubstr("/no/such.yaml"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "", {}}, "os0"),
+              AllOf(HasSubstr("os0"), HasSubstr("use one of lidar")));
+}
+
+TEST(OdometryFactory, TheOnlyLidarNeedsNoNameAndAmongSeveralOneMustBeChosen) {
+  Rig rig = synthetic::rig_of({});
+  EXPECT_NE(make_odometry({.algorithm = "kiss_icp"}, rig, "", Parallel(1)).odometry, nullptr);
+  rig.lidars.push_back(rig.lidars.front());
+  rig.lidars.back().id = "second";
+  EXPECT_THROW(make_odometry({.algorithm = "kiss_icp"}, rig, "", Parallel(1)), InputError);
+  EXPECT_NE(make_odometry({.algorithm = "kiss_icp"}, rig, "second", Parallel(1)).odometry, nullptr);
+  EXPECT_THROW(make_odometry({.algorithm = "kiss_icp"}, Rig{}, "", Parallel(1)), InputError);
+}
+
+TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsNamedAfter) {
+  const std::filesystem::path folder =
+      std::filesystem::path(LIDARENA_SOURCE_DIR) / "configs/odometry";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const std::string stem = entry.path().stem().string();
+    std::string algorithm;  // the longest name that the file's begins with
+    for (const AlgorithmInfo& info : list_algorithms()) {
+      if (stem.starts_with(info.name) && info.name.size() > algorithm.size()) algorithm = info.name;
+    }
+    ASSERT_FALSE(algorithm.empty()) << stem;
+    EXPECT_NO_THROW(make({algorithm, "improved", entry.path().string(), {}})) << stem;
+  }
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
+
+#include <gtest/gtest.h>
+
+#include "lidarena/base/so3.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena::kiss_icp {
+namespace {
+
+using synthetic::Recording;
+
+/// Rests for 1 s, then goes along x, from the third second on at 1.5 m/s.
+Pose straight(double seconds) {
+  const double moving = std::max(0.0, seconds - 1.0);
+  const double x = moving < 1.0 ? 0.75 * moving * moving : 1.5 * (moving - 0.5);
+  return make_pose(Eigen::Matrix3d::Identity(), {-3.0 + x, 0.5, 0.0});
+}
+
+Recording along_the_straight() { return {.motion = straight, .seconds = 3.0, .repeating = false}; }
+
+KissIcp made(const Config& config, const Recording& recording) {
+  return {config, synthetic::rig_of(recording).lidars.front(), Parallel(1)};
+}
+
+/// An empty scan, `periods` scans after the last of `scans`: its estimate is the bare prediction.
+Scan empty_scan(const std::vector<Scan>& scans, int periods) {
+  Scan empty;
+  empty.stamp = scans.back().stamp + periods * from_seconds(0.1);
+  return empty;
+}
+
+TEST(KissIcp, AfterADroppedScanTheOriginalPredictsOneMotionAndTheCuredOneTwo) {
+  const Recording recording = along_the_straight();
+  const std::vector<Scan> scans = synthetic::scans_of(recording);
+  for (const bool per_second : {false, true}) {
+    Config config;
+    config.motion_per_second = per_second;
+    KissIcp odometry = made(config, recording);
+    for (const Scan& scan : scans) odometry.register_scan(scan);
+    const auto poses = odometry.trajectory();
+    const Pose& last = poses.poses()[poses.size() - 1].world_from_body;
+    const Pose motion = poses.poses()[poses.size() - 2].world_from_body.inverse() * last;
+    const Pose predicted = odometry.register_scan(empty_scan(scans, 2)).estimate.world_from_body;
+    const Pose expected = last * motion * (per_second ? motion : Pose::Identity());
+    EXPECT_LT((predicted.matrix() - expected.matrix()).norm(), 1e-9);
+    ASSERT_NEAR(motion.translation().norm(), 0.15, 0.1);
+  }
+}
+
+TEST(KissIcp, WithoutPointsTheOriginalCoastsOnAndTheCuredOneComesToRest) {
+  const Recording recording = along_the_straight();
+  const std::vector<Scan> scans = synthetic::scans_of(recording);
+  for (const double kept : {1.0, 0.5}) {
+    Config config;
+    config.motion_kept_when_lost = kept;
+    KissIcp odometry = made(config, recording);
+    for (const Scan& scan : scans) odometry.register_scan(scan);
+    const auto poses = odometry.trajectory();
+    Pose expected = poses.poses()[poses.size() - 1].world_from_body;
+    se3::Vector6 step =
+        se3::log(poses.poses()[poses.size() - 2].world_from_body.inverse() * expected);
+    for (int i = 1; i <= 10; ++i, step *= kept) {
+      expected = expected * se3::exp(step);
+      const ScanResult result = odometry.register_scan(empty_scan(scans, i));
+      EXPECT_EQ(result.status, ScanStatus::kTooFewPoints);
+      EXPECT_LT((result.estimate.world_from_body.matrix() - expected.matrix()).norm(), 1e-9);
+    }
+  }
+}
+
+TEST(KissIcp, MotionWithinTheScanRunsThroughTheEstimate) {
+  for (const PoseInstant instant : {PoseInstant::kScanEnd, PoseInstant::kScanMiddle}) {
+    Config config;
+    config.pose_instant = instant;
+    const Recording recording{.seconds = 3.0};
+    KissIcp odometry = made(config, recording);
+    ScanResult result;
+    for (const Scan& scan : synthetic::scans_of(recording)) result = odometry.register_scan(scan);
+    ASSERT_EQ(result.motion.size(), 5U);
+    const auto& at = instant == PoseInstant::kScanEnd ? result.motion[4] : result.motion[2];
+    EXPECT_LE(std::abs((at.stamp - result.estimate.stamp).count()), 1);
+    EXPECT_LT((at.world_from_body.matrix() - result.estimate.world_from_body.matrix()).norm(),
+              1e-8);
+    EXPECT_GT((result.motion[4].world_from_body.translation() -
+               result.motion[0].world_from_body.translation())
+                  .norm(),
+              0.03);
+  }
+}
+
+TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {
+  const Recording recording = along_the_straight();
+  KissIcp odometry = made({}, recording);
+  ScanResult result;
+  for (Scan scan : synthetic::scans_of(recording)) {
+    scan.timed = false;
+    for (Point& point : scan.points) point.dt_ns = 0;
+    result = odometry.register_scan(scan);
+  }
+  EXPECT_EQ(result.status, ScanStatus::kTracked);
+  EXPECT_TRUE(result.motion.empty());
+  EXPECT_EQ(result.estimate.stamp, recording.epoch + from_seconds(2.9));
+  // within the way made during one scan, which is how much an untimed scan is smeared
+  const Pose truth = synthetic::truth(recording, recording.epoch, result.estimate.stamp);
+  EXPECT_LT((result.estimate.world_from_body.translation() - truth.translation()).norm(), 0.15);
+}
+
+}  // namespace
+}  // namespace lidarena::kiss_icp

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/run.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/odometry/process_memory.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena {
+namespace {
+
+class ListSource : public EventSource {
+ public:
+  explicit ListSource(std::vector<Event> events) : events_(std::move(events)) {}
+  std::optional<Event> next() override {
+    if (next_ == events_.size()) return std::nullopt;
+    return events_[next_++];
+  }
+
+ private:
+  std::vector<Event> events_;
+  std::size_t next_ = 0;
+};
+
+class KeepingSink : public LogSink {
+ public:
+  void message(LogLevel level, std::string_view text) override {
+    if (level == LogLevel::kWarning) warnings.emplace_back(text);
+  }
+  void progress(std::string_view, double done, double total) override {
+    last_done = done;
+    last_total = total;
+  }
+  std::vector<std::string> warnings;
+  double last_done = 0.0;
+  double last_total = -1.0;
+};
+
+/// Goes 1 m along x with each scan and publishes two points there.
+class Pacer : public Odometry {
+ public:
+  OdometryTraits traits() const override {
+    return {.revises_past = true, .publishes_scans = publishes};
+  }
+  void register_imu(const ImuSample&) override { ++imu_samples; }
+  ScanResult register_scan(const Scan& scan) override {
+    const auto x = static_cast<double>(++scans);
+    StampedPose pose{scan.stamp, make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0})};
+    ScanResult result;
+    result.estimate = pose;
+    if (scans == diverges_at) result.status = ScanStatus::kDiverged;
+    if (scans == not_finite_at)
+      result.estimate.world_from_body.translation().y() = std::numeric_limits<double>::quiet_NaN();
+    published = {{static_cast<float>(x), 0, 0}, {static_cast<float>(x), 5, 0}};
+    poses.push_back(pose);
+    return result;
+  }
+  void finish() override {
+    finished = true;
+    for (auto& pose : poses) pose.world_from_body.translation().z() = 1.0;  // a late correction
+  }
+  Trajectory trajectory() const override { return Trajectory(poses); }
+  std::vector<Eigen::Vector3f> map() const override { return {{7, 7, 7}}; }
+  std::span<const Eigen::Vector3f> registered_scan() const override { return published; }
+  std::map<std::string, std::uint64_t> memory() const override {
+    return {{"map", 100 * static_cast<std::uint64_t>(scans)}, {"backlog", 3}};
+  }
+
+  bool publishes = true;
+  int scans = 0, imu_samples = 0, diverges_at = 0, not_finite_at = 0;
+  bool finished = false;
+  std::vector<Eigen::Vector3f> published;
+  std::vector<StampedPose> poses;
+};
+
+Event scan_event(const std::string& sensor, int tenth) {
+  Scan scan;
+  scan.stamp = Time{5} + tenth * from_seconds(0.1);
+  Point point;
+  point.dt_ns = 90'000'000;
+  scan.points = {Point{}, point};
+  return {sensor, scan};
+}
+
+std::vector<Event> ten_scans() {
+  std::vector<Event> events;
+  for (int i = 0; i < 10; ++i) events.push_back(scan_event("a", i));
+  return events;
+}
+
+TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
+  Pacer pacer;
+  ListSource source(ten_scans());
+  KeepingSink sink;
+  const RunResult result = run(pacer, source, {.scan_count = 10}, sink);
+  EXPECT_TRUE(pacer.finished);
+  ASSERT_EQ(result.files.live.size(), 10U);
+  ASSERT_EQ(result.files.trajectory.size(), 10U);
+  EXPECT_EQ(result.files.live.poses()[3].world_from_body.translation(), Eigen::Vector3d(4, 0, 0));
+  EXPECT_EQ(result.files.trajectory.poses()[3].world_from_body.translation(),
+            Eigen::Vector3d(4, 0, 1));
+  EXPECT_EQ(result.files.map.points.size(), 20U);
+  EXPECT_EQ(result.summary.scans, 10U);
+  EXPECT_EQ(result.summary.statuses.at(ScanStatus::kTracked), 10U);
+  EXPECT_FALSE(result.summary.diverged);
+  ASSERT_EQ(result.files.resources.size(), 10U);
+  const ResourceRow& row = result.files.resources[4];
+  EXPECT_DOUBLE_EQ(row.t_sensor_s, 0.49);
+  EXPECT_EQ(row.map_bytes, 500U);
+  EXPECT_EQ(row.backlog_bytes, 3U);
+  EXPECT_EQ(row.scan_buffer_bytes, 0U);
+  EXPECT_GE(row.latency_s, 0.0);
+  EXPECT_DOUBLE_EQ(result.summary.sensor_seconds, 0.99);
+  double latency = 0.0;
+  for (const auto& r : result.files.resources) latency += r.latency_s;
+  EXPECT_NEAR(result.summary.compute_seconds, latency, 1e-12);
+  EXPECT_EQ(sink.last_done, 10.0);
+  EXPECT_EQ(sink.last_total, 10.0);
+}
+
+TEST(Run, AMethodThatDoesNotPublishScansIsAskedForItsMap) {
+  Pacer pacer;
+  pacer.publishes = false;
+  ListSource source(ten_scans());
+  LogSink sink;
+  EXPECT_EQ(run(pacer, source, {}, sink).files.map.points,
+            (std::vector<Eigen::Vector3f>{{7, 7, 7}}));
+}
+
+TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
+  Pacer pacer;
+  ListSource source(ten_scans());
+  LogSink sink;
+  const RunResult result = run(pacer, source, {.map_voxel_m = 4.0}, sink);
+  // x 1..10 falls into cells 0..3, 4..7, 8..11, at y 0 and at y 5
+  EXPECT_EQ(result.files.map.points,
+            (std::vector<Eigen::Vector3f>{
+                {1, 0, 0}, {1, 5, 0}, {4, 0, 0}, {4, 5, 0}, {8, 0, 0}, {8, 5, 0}}));
+}
+
+TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
+  for (const bool says_so : {true, false}) {
+    Pacer pacer;
+    (says_so ? pacer.diverges_at : pacer.not_finite_at) = 4;
+    ListSource source(ten_scans());
+    KeepingSink sink;
+    const RunResult result = run(pacer, source, {}, sink);
+    EXPECT_EQ(pacer.scans, 4) << "no more is fed";
+    EXPECT_TRUE(result.summary.diverged);
+    EXPECT_THAT(result.summary.reason, testing::HasSubstr("scan 3"));
+    EXPECT_EQ(result.summary.scans, 4U);
+    EXPECT_EQ(result.files.live.size(), 3U);
+    EXPECT_EQ(result.files.trajectory.size(), 3U);
+    EXPECT_EQ(result.files.resources.size(), 4U);
+    EXPECT_EQ(result.files.map.points.size(), 6U);
+    EXPECT_EQ(sink.warnings.size(), 1U);
+  }
+}
+
+TEST(Run, OtherSensorsAreLeftOutAndTheFirstImuIsTaken) {
+  std::vector<Event> events;
+  for (int i = 0; i < 5; ++i) {
+    events.push_back({"imu1", ImuSample{}});
+    events.push_back({"imu2", ImuSample{}});
+    events.push_back({"imu2", ImuSample{}});
+    events.push_back(scan_event("b", i));
+    events.push_back(scan_event("a", i));
+  }
+  LogSink sink;
+  Pacer first;
+  ListSource again(events);
+  EXPECT_EQ(run(first, again, {.lidar_id = "a"}, sink).summary.scans, 5U);
+  EXPECT_EQ(first.imu_samples, 5);
+  Pacer named;
+  ListSource once_more(events);
+  run(named, once_more, {.lidar_id = "a", .imu_id = "imu2"}, sink);
+  EXPECT_EQ(named.imu_samples, 10);
+}
+
+TEST(Run, ScansOutOfOrderAreSkippedWithAWarning) {
+  std::vector<Event> events = ten_scans();
+  events.insert(events.begin() + 5, events[2]);
+  events.insert(events.begin() + 5, events[4]);
+  Pacer pacer;
+  ListSource source(events);
+  KeepingSink sink;
+  EXPECT_EQ(run(pacer, source, {}, sink).summary.scans, 10U);
+  EXPECT_EQ(sink.warnings.size(), 2U);
+}
+
+TEST(Run, NothingGivesNothing) {
+  Pacer pacer;
+  ListSource source({});
+  LogSink sink;
+  const RunResult result = run(pacer, source, {}, sink);
+  EXPECT_EQ(result.summary.scans, 0U);
+  EXPECT_TRUE(result.files.trajectory.empty());
+}
+
+TEST(Run, KissIcpIsDrivenFromARecording) {
+  const synthetic::Recording recording{.seconds = 2.0};
+  ListSource source(synthetic::record(recording));
+  LogSink sink;
+  auto made =
+      make_odometry({.algorithm = "kiss_icp"}, synthetic::rig_of(recording), "", Parallel(1));
+  const RunResult result = run(*made.odometry, source, {.lidar_id = "lidar"}, sink);
+  EXPECT_EQ(result.summary.scans, 20U);
+  EXPECT_EQ(result.summary.statuses.at(ScanStatus::kInitializing), 1U);
+  EXPECT_EQ(result.summary.statuses.at(ScanStatus::kTracked), 19U);
+  EXPECT_GT(result.files.map.points.size(), 50000U);
+  EXPECT_GT(result.summary.compute_seconds, 0.0);
+}
+
+TEST(ProcessMemory, GrowsWithWhatIsAllocatedAndTouched) {
+  const std::uint64_t before = resident_bytes();
+  ASSERT_GT(before, 1U << 20U);
+  const std::vector<char> ballast(64U << 20U, 'x');
+  EXPECT_NEAR(static_cast<double>(resident_bytes() - before), static_cast<double>(ballast.size()),
+              4e6);
+  const auto share = proportional_bytes();
+  if (!share) GTEST_SKIP() << "skipped: this system has no /proc/self/smaps_rollup";
+  EXPECT_LE(*share, resident_bytes() + (4U << 20U));
+  EXPECT_GT(*share, ballast.size());
+}
+
+}  // namespace
+}  // namespace lidarena

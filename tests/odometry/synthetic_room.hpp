@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "lidarena/base/pose.hpp"
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/dataset/event.hpp"
+
+/// A room small enough to reason about, seen by a LiDAR and felt by an IMU in closed form. Made
+/// here and not with the library's simulator, so that an odometry is tested on its own.
+namespace lidarena::synthetic {
+
+/// Pose of the body in the room (z up, m) by seconds.
+using Motion = std::function<Pose(double seconds)>;
+
+/// Distance (m) from `origin` along the unit vector `direction` to the walls of the room, 16 x 12 x
+/// 4 m about the origin, or to one of its four pillars.
+double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
+/// Stays at the start for 1 s, then flies a curve with up to 1 m/s and 35 deg/s for some 10 s.
+Pose flight(double seconds);
+
+struct Recording {
+  Motion motion = flight;
+  Pose body_from_lidar = Pose::Identity();
+  double seconds = 4.0;
+  double range_noise_m = 0.01;
+  Time epoch{1'000'000'000};
+  std::size_t points_per_scan = 10240;
+  bool repeating = true;  ///< false: each scan's beams lie between those of the others
+};
+
+/// A spinning LiDAR of 64 rings, +-35 deg, 10 Hz, named "lidar"; an IMU at 200 Hz, named "imu", at
+/// the body's origin.
+Rig rig_of(const Recording& recording);
+
+/// All events in the order of EventSource.
+std::vector<Event> record(const Recording& recording);
+
+/// Just the scans.
+std::vector<Scan> scans_of(const Recording& recording);
+
+/// The true pose at `stamp`, in the body's frame at `start`.
+Pose truth(const Recording& recording, Time start, Time stamp);
+
+}  // namespace lidarena::synthetic
