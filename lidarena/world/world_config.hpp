@@ -9,6 +9,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/world/cave.hpp"
+#include "lidarena/world/house.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/sdf_world.hpp"
 
@@ -26,6 +27,7 @@ struct EnumNames<WorldKind> {
 struct WorldConfig {
   WorldKind kind = WorldKind::kMesh;
   std::uint64_t seed = 1;
+  HouseConfig house;
   CaveConfig cave;
   std::string file;
   UpAxis up_axis = UpAxis::kFile;
@@ -37,6 +39,7 @@ struct WorldConfig {
   static void visit(Self& self, V&& v) {
     v("kind", self.kind, "", "house, cave: procedural; mesh, sdf: from a file");
     v("seed", self.seed, "", "of a procedural world");
+    v("house", self.house, "", "parameters of kind house");
     v("cave", self.cave, "", "parameters of kind cave");
     v("file", self.file, "", "the mesh or SDF file, relative to this one");
     v("up_axis", self.up_axis, "", "of a mesh: file (as its format says), y or z");

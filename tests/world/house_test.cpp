@@ -11,6 +11,7 @@
 #include "lidarena/world/house_furnish.hpp"
 #include "lidarena/world/house_plan.hpp"
 #include "lidarena/world/house_shell.hpp"
+#include "lidarena/world/load_world.hpp"
 #include "lidarena/world/world.hpp"
 #include "shapes.hpp"
 
@@ -90,6 +91,18 @@ TEST(House, IsRichEnough) {
       EXPECT_TRUE(kinds.contains(kind)) << kind << " in seed " << seed;
     }
   }
+}
+
+TEST(House, TheShippedFileIsTheDefaultHouseWithTheCallersSeed) {
+  LogSink log;
+  WorldOptions options;
+  options.seed = 3;
+  const std::filesystem::path configs = LIDARENA_SOURCE_DIR "/configs";
+  const WorldModel loaded = load_world(configs / "worlds/house.yaml", options, log);
+  const WorldModel made = make_house(HouseConfig{}, 3);
+  EXPECT_EQ(loaded.name, "house");
+  EXPECT_EQ(loaded.mesh.vertices, made.mesh.vertices);
+  EXPECT_EQ(loaded.routes, made.routes);
 }
 
 TEST(House, RoomsFillTheHouseWithoutOverlap) {
