@@ -19,6 +19,12 @@ bool may_be_in_chunk(Opcode opcode) {
   constexpr auto kFirstExtension = static_cast<Opcode>(0x80);  // the application's own, skipped
   return (opcode >= Opcode::kSchema && opcode <= Opcode::kMessage) || opcode >= kFirstExtension;
 }
+
+bool may_be_in_summary(Opcode opcode) {
+  return opcode != Opcode::kMessage && opcode != Opcode::kChunk &&
+         opcode != Opcode::kMessageIndex && opcode != Opcode::kMetadata &&
+         opcode != Opcode::kAttachment;
+}
 }  // namespace
 
 struct McapReader::Impl {
@@ -255,6 +261,9 @@ std::optional<McapMessage> McapReader::next() {
         message = r.take(opcode, content);
       } else {
         const Opcode opcode = r.read_record();
+        if (r.summary_start != 0 && !may_be_in_summary(opcode)) {
+          r.damaged("the summary holds a record that does not belong there");
+        }
         message = r.take(opcode, r.record);
       }
       if (message) return message;

@@ -26,7 +26,9 @@ struct McapMessage {
 /// Reads any MCAP file (chunks stored, zstd or lz4; with or without summary) from front to back, in
 /// file order, one chunk in memory. Every check sum there is gets verified: of each chunk before
 /// its first message is given out, of the whole data section (attachments included) and of the
-/// summary at the end; so is the summary's count of messages.
+/// summary at the end; so is the summary's count of messages. What a chunk holds is thus given out
+/// unchanged or not at all. The bytes between chunks are vouched for at the end of the data section
+/// only: where damage hits those, a chunk may be missing before the error comes.
 class McapReader {
  public:
   /// Throws InputError when the file is missing or is not MCAP.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <utility>
 
+#include "lidarena/base/error.hpp"
 #include "lidarena/dataset/livox_message.hpp"
 #include "lidarena/dataset/mcap_reader.hpp"
 #include "lidarena/dataset/ros2_messages.hpp"
@@ -42,21 +43,26 @@ class McapSource final : public EventSource {
 
   /// Takes one message. At the end, and where the file breaks off, the scans that wait come first.
   void read_on() {
-    std::optional<McapMessage> message;
+    if (const auto message = next_message()) return deliver(*message);
+    finished_ = true;
+    merge_.finish();
+  }
+
+  std::optional<McapMessage> next_message() {
     try {
-      message = reader_.next();
-    } catch (...) {
+      return reader_.next();
+    } catch (const InputError&) {
       failure_ = std::current_exception();
     }
-    if (!message) {
-      finished_ = true;
-      return merge_.finish();
-    }
-    const std::string& topic = message->channel->topic;
+    return std::nullopt;
+  }
+
+  void deliver(const McapMessage& message) {
+    const std::string& topic = message.channel->topic;
     if (const auto imu = sensors_.imus.find(topic); imu != sensors_.imus.end()) {
-      merge_.push({imu->second, ros2::decode_imu(message->data, place_of(topic))});
+      merge_.push({imu->second, ros2::decode_imu(message.data, place_of(topic))});
     } else if (const auto lidar = sensors_.lidars.find(topic); lidar != sensors_.lidars.end()) {
-      merge_.push({lidar->second, decode_scan(*message)});
+      merge_.push({lidar->second, decode_scan(message)});
     }
   }
 

@@ -74,6 +74,7 @@ struct McapWriter::Impl {
     }
     index.message_index_length = file.size() - index.chunk_start - index.chunk_length;
     chunk_indexes.push_back(std::move(index));
+    file.flush();
     ++statistics.chunk_count;
     chunk.clear();
     chunk_messages.clear();
@@ -124,6 +125,7 @@ void McapWriter::add_metadata(const std::string& name, const mcap::StringMap& va
   impl_->write_record(mcap::Metadata{name, values});
   impl_->metadata_indexes.push_back({start, impl_->file.size() - start, name});
   ++impl_->statistics.metadata_count;
+  impl_->file.flush();
 }
 
 void McapWriter::write(std::uint16_t channel_id, Time log_time, Time publish_time, Bytes data) {

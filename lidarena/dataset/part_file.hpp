@@ -25,13 +25,14 @@ class PartFile {
   /// Appends; throws Error naming the file when the disk is full.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+  /// Hands what is buffered to the system, so that a crash of this process does not lose it.
+  void flush();
   /// Bytes written so far.
   std::uint64_t size() const { return size_; }
   /// Flushes to the disk and renames; throws Error when either fails. Nothing may be written after.
   void commit();
 
  private:
-  void flush();
   void write_through(std::span<const std::byte> bytes);
   [[noreturn]] void fail(std::string_view what, int error_number);
 

@@ -3,20 +3,12 @@
 
 #include <gmock/gmock.h>
 
-#include <fstream>
-#include <sstream>
-
 #include "lidarena/base/error.hpp"
+#include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
-
-std::string read_all(const std::filesystem::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file, std::ios::binary).rdbuf();
-  return text.str();
-}
 
 TEST(PartFile, HasItsNameOnlyOnceCommitted) {
   const TemporaryFolder folder;
@@ -28,7 +20,7 @@ TEST(PartFile, HasItsNameOnlyOnceCommitted) {
   out.write("world");
   EXPECT_EQ(out.size(), 11U);
   out.commit();
-  EXPECT_EQ(read_all(file), "hello world");
+  EXPECT_EQ(file_text(file), "hello world");
   EXPECT_FALSE(exists(folder.path() / "a.txt.part"));
 }
 
@@ -40,7 +32,7 @@ TEST(PartFile, KeepsTheOldFileUntilTheNewOneIsComplete) {
     PartFile abandoned(file);
     abandoned.write("new");
   }
-  EXPECT_EQ(read_all(file), "old");
+  EXPECT_EQ(file_text(file), "old");
   EXPECT_TRUE(exists(folder.path() / "a.txt.part"));
 }
 
@@ -53,7 +45,7 @@ TEST(PartFile, KeepsTheOrderOfSmallAndLargePieces) {
   out.write(large);
   out.write("tail");
   out.commit();
-  EXPECT_EQ(read_all(file), "head" + large + "tail");
+  EXPECT_EQ(file_text(file), "head" + large + "tail");
 }
 
 TEST(PartFile, SaysThatTheDiskIsFullAndLeavesNoWholeFile) {
