@@ -87,6 +87,32 @@ TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
   EXPECT_THAT(error_of("a.yaml", "kind: cave\ncave: {loops: -1}\n"), HasSubstr("out of range"));
 }
 
+TEST_F(LoadWorld, AHouseHasItsParametersAndItsRoute) {
+  const auto file =
+      folder_.write("home.yaml", "kind: house\nseed: 9\nhouse: {width_m: 20, detail: 0.5}\n");
+  const WorldModel home = load_world(file, {}, log_);
+  HouseConfig config;
+  config.width_m = 20;
+  config.detail = 0.5;
+  const WorldModel expected = make_house(config, 9);
+  EXPECT_EQ(home.name, "home");
+  EXPECT_EQ(home.mesh.vertices, expected.mesh.vertices);
+  EXPECT_EQ(home.routes, expected.routes);
+  EXPECT_THAT(error_of("a.yaml", "kind: house\ncave: {loops: 2}\n"), HasSubstr("a.yaml:2"));
+}
+
+TEST_F(LoadWorld, TheFilesOfConfigsWorldsAreValid) {
+  int files = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(
+           std::filesystem::path(LIDARENA_SOURCE_DIR) / "configs" / "worlds")) {
+    ++files;
+    const WorldModel model = load_world(entry.path(), {}, log_);
+    EXPECT_EQ(model.name, entry.path().stem());
+    EXPECT_GT(model.mesh.area(), 0.0) << entry.path();
+  }
+  EXPECT_GE(files, 2);
+}
+
 TEST_F(LoadWorld, ACaveHasItsParametersAndTheCallersSeed) {
   const std::string yaml = "kind: cave\nseed: 5\ncave: {loops: 1, resolution_m: 0.3}\n";
   const auto file = folder_.write("small.yaml", yaml);
