@@ -84,8 +84,10 @@ TEST(House, IsRichEnough) {
     const HouseConfig config = coarse_house();
     const auto objects = furnish_house(plan_house(config, seed), config, seed);
     EXPECT_GE(objects.size(), 40U);
-    std::set<std::string> kinds;
+    std::multiset<std::string> kinds;
     for (const PlacedObject& object : objects) kinds.insert(object.kind);
+    EXPECT_EQ(kinds.count("bed"), 2U) << "seed " << seed;
+    EXPECT_GE(kinds.count("chair"), 4U) << "seed " << seed;
     for (const char* kind : {"bed", "sofa", "dining table", "chair", "bookshelf", "stairs",
                              "gallery", "plant", "curtain", "pendant lamp", "wardrobe"}) {
       EXPECT_TRUE(kinds.contains(kind)) << kind << " in seed " << seed;
