@@ -48,10 +48,10 @@ struct CaveConfig {
   }
 };
 
-/// The cave's rock surface (one closed 2-manifold, normals into free space) and one closed route,
-/// from (near) the origin along the centrelines through every tunnel. Its first and last points are
-/// equal. The same (config, seed) give the same bits.
-/// Throws InputError when the narrowest width is above the widest, or too little for the roughness.
+/// The cave's rock surface (one closed 2-manifold, normals into free space) and one closed route
+/// along the centrelines through every tunnel. Its first and last points are equal. The same
+/// (config, seed) give the same bits. Throws InputError when the narrowest width is above the
+/// widest, or too little for the roughness.
 WorldModel make_cave(const CaveConfig& config, std::uint64_t seed);
 
 }  // namespace lidarena

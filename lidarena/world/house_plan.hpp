@@ -39,7 +39,7 @@ struct HousePlan {
   const Room& room(RoomUse use) const { return rooms[static_cast<std::size_t>(use)]; }
 };
 
-/// Walls of the gallery and stairs in the living room: where they stand.
+/// Where gallery and stairs stand in the living room.
 struct GalleryPlan {
   Eigen::AlignedBox3d floor;   ///< slab of the gallery, along the south wall
   Eigen::AlignedBox3d stairs;  ///< flight of stairs along the west wall, up towards -y
