@@ -32,8 +32,10 @@ struct Dataset {
   std::unique_ptr<EventSource> events;
 };
 
-/// Opens a dataset folder of ours, a single .mcap, a folder of PCD/PLY/bin sweeps, or a folder in
-/// the room format. Throws InputError naming file, place and remedy.
+/// Opens a dataset folder of ours, a single .mcap, a bag folder of rosbag2 with one .mcap, a folder
+/// of PCD/PLY/bin sweeps, or a folder in the room format. In an .mcap of others, topics are found by
+/// type: the first with scans (PointCloud2, Livox CustomMsg) or that of `options.sensor` (topic or
+/// id), and the first Imu. Throws InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// True motion of the body where the dataset carries one (truth.tum, or gt.tum of the room format).
@@ -43,17 +45,36 @@ std::optional<Trajectory> load_truth(const std::filesystem::path& dataset);
 /// The world's mesh beside the dataset (world.ply), if there.
 std::optional<std::filesystem::path> find_world_mesh(const std::filesystem::path& dataset);
 
-/// Writes a dataset folder: data.mcap, truth.tum, world.ply (by the caller), manifest.json,
-/// metadata.yaml. Files appear under their names only once complete.
+/// Comment at the head of truth.tum.
+inline constexpr const char* kTruthHeader =
+    "truth: pose of the body in the world (world_from_body) at the stamped instant\n"
+    "time[s] x y z[m] qx qy qz qw";
+
+/// Writes a dataset folder: data.mcap, truth.tum, metadata.yaml (so that `ros2 bag play` takes the
+/// folder), manifest.json; world.ply is the caller's. Files appear under their names only once
+/// complete, manifest.json last: a folder without one is unfinished. An older dataset in the folder
+/// is replaced.
+///
+/// data.mcap holds /ID/points and /ID/imu (an IMU may share its LiDAR's id), /truth/odometry, /tf
+/// (world to body) and /tf_static (body to ID_lidar and ID_imu). A scan's header.stamp is its first
+/// firing; its publish time the last, when a driver could send it. The log time of a measurement is
+/// its publish time, or that of the measurement before if that is later, so the order of the events
+/// survives readers that sort by log time. The rig and the topics are in the metadata record
+/// "lidarena".
 class DatasetWriter : public EventSink {
  public:
+  /// Throws InputError when the folder cannot be made or two LiDARs (or IMUs) have one id.
   DatasetWriter(const std::filesystem::path& folder, const Rig& rig);
   ~DatasetWriter() override;
+  /// In the order of EventSource. Throws InputError for a sensor that the rig lacks, a negative
+  /// time, or a point before its scan's stamp; Error when the disk is full.
   void write(const Event& event) override;
   /// True body pose, at the full rate; also written as /truth/odometry and /tf.
   void write_truth(const StampedPose& pose);
-  /// Completes all files; `manifest` becomes manifest.json, last.
+  /// Completes all files. The keys of `manifest` are added to those of manifest.json that every
+  /// dataset has: format, format_version, rig, topics, message_counts, start_ns, end_ns.
   void finish(const Json& manifest);
+  /// finish() without further keys, if that was not called.
   void close() override;
 
  private:

@@ -17,16 +17,15 @@ namespace lidarena {
 namespace {
 
 constexpr const char* kWorldFrame = "world";
-constexpr const char* kTruthHeader =
-    "truth: pose of the body in the world (world_from_body) at the stamped instant\n"
-    "time[s] x y z[m] qx qy qz qw";
 
 std::filesystem::path prepared(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
-  // What an earlier dataset left must not vouch for this one while it is being written.
-  std::filesystem::remove(folder / layout::kManifest, error);
+  // What an earlier dataset left must not vouch for this one, nor pass for its truth.
+  for (const char* stale : {layout::kManifest, layout::kTruth, layout::kRosbagMetadata}) {
+    std::filesystem::remove(folder / stale, error);
+  }
   return folder;
 }
 

@@ -159,7 +159,10 @@ std::optional<fs::path> rosbag_file(const fs::path& folder) {
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".mcap") files.push_back(entry.path());
   }
-  if (files.empty()) return std::nullopt;
+  if (files.empty()) {
+    throw InputError(folder.string(), "is a bag without an MCAP file",
+                     "convert it with 'ros2 bag convert' to the storage mcap");
+  }
   if (files.size() > 1) {
     throw InputError(folder.string(), "is a bag split into several files",
                      "join them with 'ros2 bag convert', or give one of them");
@@ -191,6 +194,10 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
     if (is_room(path)) return open_room(path, options);
     if (const auto bag = rosbag_file(path)) return open_mcap(*bag, options);
     return open_sweep_folder(path, options);
+  }
+  if (path.extension() == ".bag" || path.extension() == ".db3") {
+    throw InputError(path.string(), "is a bag in a format that is not read",
+                     "convert it to a ROS 2 bag in the storage mcap");
   }
   const bool is_mcap = path.extension() == ".mcap" || path.extension() == ".part";
   return is_mcap ? open_mcap(path, options) : open_sweep_files({path}, options);

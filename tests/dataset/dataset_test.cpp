@@ -125,6 +125,7 @@ TEST_F(DatasetFolder, WritingAgainWithdrawsTheOldManifestFirst) {
   write_dataset(folder_, events_);
   write_dataset(folder_, events_, false);
   EXPECT_THROW(open_dataset(folder_), InputError);
+  EXPECT_FALSE(fs::exists(folder_ / "truth.tum"));
 }
 
 TEST_F(DatasetFolder, ACutDataFileGivesTheEventsBeforeTheCut) {
@@ -312,6 +313,15 @@ TEST(ForeignMcap, AFolderOfRosbag2IsOpenedByItsFile) {
   write_foreign(folder.path() / "bag_0.mcap", sample::events(3, 50));
   std::ofstream(folder.path() / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
   EXPECT_EQ(open_dataset(folder.path()).scan_count, 3U);
+}
+
+TEST(ForeignMcap, BagsInOtherStoragesSayHowToConvertThem) {
+  const TemporaryFolder folder;
+  std::ofstream(folder.path() / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
+  const auto open = [](const fs::path& path) { return [path] { open_dataset(path); }; };
+  EXPECT_THAT(input_error(open(folder.path())), HasSubstr("ros2 bag convert"));
+  EXPECT_THAT(input_error(open(write_file(folder.path() / "a.bag", "#ROSBAG V2.0\n"))),
+              HasSubstr("convert it"));
 }
 
 TEST(ForeignMcap, WithoutScansTheErrorListsWhatThereIs) {
