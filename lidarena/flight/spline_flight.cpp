@@ -46,10 +46,9 @@ std::vector<Vector3d> tour(std::span<const Vector3d> waypoints, double length) {
   }
   double lap_length = 0.0;
   for (std::size_t i = 1; i < lap.size(); ++i) lap_length += (lap[i] - lap[i - 1]).norm();
+  const auto count = static_cast<int>(std::ceil(length / lap_length));
   std::vector<Vector3d> laps = lap;
-  for (double flown = lap_length; flown < length; flown += lap_length) {
-    laps.insert(laps.end(), lap.begin() + 1, lap.end());
-  }
+  for (int i = 1; i < count; ++i) laps.insert(laps.end(), lap.begin() + 1, lap.end());
   return laps;
 }
 
@@ -105,6 +104,28 @@ std::vector<double> headings(const Course& course, const HeadingConfig& heading,
   return yaw;
 }
 
+/// Seconds of a flight of `duration_s` that are left for moving.
+double moving_time(double duration_s, double begin_s, const std::string& place) {
+  const double moving_s = duration_s - 2.0 * begin_s;
+  if (moving_s > 0.0) return moving_s;
+  throw InputError(
+      place, fmt::format("duration_s {:g} leaves no time to move", duration_s),
+      fmt::format("more than {:.3g} s go into hovering, starting and stopping", 2.0 * begin_s));
+}
+
+PathLimits path_limits(const FlightLimits& limits, double acceleration, HeadingMode mode,
+                       const Sweep& sweep) {
+  PathLimits path{.max_speed = limits.max_speed,
+                  .max_acceleration = acceleration,
+                  .max_turn_rate = std::numeric_limits<double>::infinity(),
+                  .stop_s = 0.0};
+  if (mode != HeadingMode::kFixed) {
+    path.max_turn_rate = limits.max_yaw_rate - sweep.rate;
+    path.stop_s = pi / limits.max_yaw_rate;  // to turn round
+  }
+  return path;
+}
+
 }  // namespace
 
 SplineFlight::Plan SplineFlight::plan(std::span<const Vector3d> waypoints,
@@ -114,37 +135,25 @@ SplineFlight::Plan SplineFlight::plan(std::span<const Vector3d> waypoints,
   const double acceleration = usable_acceleration(limits, config.corner_m);
   const double knot = 2.0 * acceleration / limits.max_jerk;
   const Sweep sweep = sweep_of(config.heading, knot, limits.max_yaw_rate, place);
-  const bool turns = config.heading.mode != HeadingMode::kFixed;
-  const PathLimits path_limits{.max_speed = limits.max_speed,
-                               .max_acceleration = acceleration,
-                               .max_turn_rate = turns ? limits.max_yaw_rate - sweep.rate
-                                                      : std::numeric_limits<double>::infinity(),
-                               .stop_s = turns ? pi / limits.max_yaw_rate : 0.0};
-
+  const PathLimits on_path = path_limits(limits, acceleration, config.heading.mode, sweep);
+  const double smoothed_away = 0.5 * acceleration * Spline::kVariance * knot * knot;
   // a control point shapes the flight half a support before its instant and after
   const double begin_s = config.hover_s + Spline::kHalfSupport * knot;
-  const double moving_s = config.duration_s - 2.0 * begin_s;
-  if (config.duration_s > 0.0 && moving_s <= 0.0) {
-    throw InputError(
-        place, fmt::format("duration_s {:g} leaves no time to move", config.duration_s),
-        fmt::format("more than {:.3g} s go into hovering, starting and stopping", 2.0 * begin_s));
-  }
+
   const bool loops = config.duration_s > 0.0;
+  const double moving_s = loops ? moving_time(config.duration_s, begin_s, place) : 0.0;
   const auto line = loops ? tour(waypoints, limits.max_speed * moving_s)
                           : std::vector<Vector3d>(waypoints.begin(), waypoints.end());
-  const double smoothed_away = 0.5 * acceleration * Spline::kVariance * knot * knot;
   const RoundedPath path = round_corners(line, config.corner_m - smoothed_away);
-  const TimeLaw law = loops ? law_of_duration(path, path_limits, moving_s)
-                            : TimeLaw(path, path_limits, path.length());
-
+  const TimeLaw law =
+      loops ? law_of_duration(path, on_path, moving_s) : TimeLaw(path, on_path, path.length());
   const double duration_s = loops ? config.duration_s : law.duration() + 2.0 * begin_s;
+
   const auto intervals = static_cast<std::size_t>(std::ceil(duration_s / knot));
   const Course course = sample(path, law, begin_s, knot, intervals + kDegree);
   const auto yaw = headings(course, config.heading, sweep, knot, limits.max_yaw_rate);
-  std::vector<Vector4d> controls;
-  for (std::size_t j = 0; j < yaw.size(); ++j) {
-    controls.emplace_back(course.points[j].x(), course.points[j].y(), course.points[j].z(), yaw[j]);
-  }
+  std::vector<Vector4d> controls(yaw.size());
+  for (std::size_t j = 0; j < yaw.size(); ++j) controls[j] << course.points[j], yaw[j];
   return {Spline(controls, knot), from_seconds(duration_s)};
 }
 

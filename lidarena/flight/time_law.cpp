@@ -42,31 +42,30 @@ TimeLaw::TimeLaw(const RoundedPath& path, const PathLimits& limits, double end) 
     for (std::size_t i = 1; i <= count; ++i) {
       const double s = begin + length * static_cast<double>(i) / static_cast<double>(count);
       nodes_.push_back({s, cell.speed, 0.0, 0.0});
-      along.push_back(cell.along);
-      pause.push_back(false);
     }
+    along.resize(along.size() + count, cell.along);
+    pause.resize(pause.size() + count, false);
     begin += length;
   }
   nodes_.back().speed = 0.0;
+  make_reachable(along);
 
-  const auto reach = [](double speed, double acceleration, double ds) {
-    return std::sqrt(speed * speed + 2.0 * acceleration * ds);
-  };
-  for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
-    Node& next = nodes_[k + 1];
-    next.speed = std::min(next.speed, reach(nodes_[k].speed, along[k], next.s - nodes_[k].s));
-  }
-  for (std::size_t k = nodes_.size() - 1; k-- > 0;) {
-    Node& node = nodes_[k];
-    node.speed =
-        std::min(node.speed, reach(nodes_[k + 1].speed, along[k], nodes_[k + 1].s - node.s));
-  }
   for (std::size_t k = 0; k + 1 < nodes_.size(); ++k) {
     const Node& node = nodes_[k];
     Node& next = nodes_[k + 1];
     next.arrival = node.departure + 2.0 * (next.s - node.s) / (node.speed + next.speed);
     next.departure = next.arrival + (pause[k + 1] ? limits.stop_s : 0.0);
   }
+}
+
+void TimeLaw::make_reachable(const std::vector<double>& along) {
+  const auto lower = [](const Node& from, double acceleration, Node& to) {
+    const double gain = 2.0 * acceleration * std::abs(to.s - from.s);
+    to.speed = std::min(to.speed, std::sqrt(from.speed * from.speed + gain));
+  };
+  const std::size_t last = nodes_.size() - 1;
+  for (std::size_t k = 0; k < last; ++k) lower(nodes_[k], along[k], nodes_[k + 1]);
+  for (std::size_t k = last; k-- > 0;) lower(nodes_[k + 1], along[k], nodes_[k]);
 }
 
 double TimeLaw::distance_at(double t) const {

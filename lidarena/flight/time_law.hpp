@@ -32,6 +32,9 @@ class TimeLaw {
     double s, speed;
     double arrival, departure;  ///< s; they differ at stops
   };
+  /// Lowers the nodes' speeds to what neighbours allow with each cell's acceleration.
+  void make_reachable(const std::vector<double>& along);
+
   std::vector<Node> nodes_;
 };
 

@@ -26,12 +26,12 @@ class UniformSpline {
 
   /// At least D + 1 control points; knot > 0.
   UniformSpline(const std::vector<Value>& controls, double knot) : rate_(1.0 / knot) {
-    static constexpr auto weights = basis();
+    static constexpr auto kWeights = basis();
     pieces_.resize(controls.size() - D, Piece::Zero());
     for (std::size_t k = 0; k < pieces_.size(); ++k) {
       for (std::size_t j = 0; j <= D; ++j) {
         for (std::size_t power = 0; power <= D; ++power) {
-          pieces_[k].col(static_cast<int>(power)) += weights[j][power] * controls[k + j];
+          pieces_[k].col(static_cast<int>(power)) += kWeights[j][power] * controls[k + j];
         }
       }
     }
