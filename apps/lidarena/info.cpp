@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <map>
+#include <set>
+
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/load_world.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct InfoOptions {
+  std::string thing;
+  std::size_t rays = 0;
+};
+
+int print_rays(const SensorConfig& sensor, std::size_t count) {
+  const auto pattern = make_pattern(sensor);
+  std::vector<Beam> beams;
+  fmt::print("index,dt_ns,x,y,z,ring\n");
+  for (std::size_t done = 0, scan = 0; done < count; ++scan) {
+    pattern->beams(scan, beams);
+    for (const Beam& b : beams) {
+      if (done == count) break;
+      const auto dt = static_cast<std::int64_t>(scan) * pattern->period().count() + b.dt_ns;
+      fmt::print("{},{},{:.9g},{:.9g},{:.9g},{}\n", done++, dt, b.direction.x(), b.direction.y(),
+                 b.direction.z(), b.ring);
+    }
+  }
+  return kDone;
+}
+
+Json sensor_info(const SensorConfig& sensor) {
+  Json json = to_json(sensor);
+  const auto pattern = make_pattern(sensor);
+  json["beams_per_scan"] = pattern->beams_per_scan();
+  json["points_per_second"] =
+      static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
+  return json;
+}
+
+Json box_json(const Eigen::AlignedBox3d& box) {
+  return {{"min", value_to_json(Eigen::Vector3d(box.min()))},
+          {"max", value_to_json(Eigen::Vector3d(box.max()))}};
+}
+
+Json world_info(const fs::path& file, LogSink& log) {
+  const WorldModel model = load_world(file, {}, log);
+  Json routes = Json::array();
+  for (const auto& route : model.routes) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < route.size(); ++i) length += (route[i] - route[i - 1]).norm();
+    routes.push_back({{"points", route.size()}, {"length_m", length}});
+  }
+  return {{"kind", "world"},
+          {"triangles", model.mesh.triangles.size()},
+          {"vertices", model.mesh.vertices.size()},
+          {"area_m2", model.mesh.area()},
+          {"bounds_m", box_json(model.mesh.bounds())},
+          {"routes", routes}};
+}
+
+Json cloud_info(const fs::path& file) {
+  const Cloud cloud = read_cloud(file);
+  Eigen::AlignedBox3d box;
+  std::size_t invalid = 0;
+  for (const Eigen::Vector3f& p : cloud.points) {
+    if (p.allFinite())
+      box.extend(p.cast<double>());
+    else
+      ++invalid;
+  }
+  Json json{{"kind", "cloud"}, {"points", cloud.points.size()}, {"not_finite", invalid}};
+  if (!box.isEmpty()) json["bounds_m"] = box_json(box);
+  return json;
+}
+
+/// Reads a dataset through, so that a broken one is found.
+Json dataset_info(const fs::path& path) {
+  Dataset dataset = open_any_dataset(path, {}, Parallel());
+  struct Counts {
+    std::size_t messages = 0, points = 0, untimed = 0;
+    Time first{0}, last{0}, longest_gap{0};
+  };
+  std::map<std::string, Counts> topics;
+  while (const auto event = dataset.events->next()) {
+    const auto* scan = std::get_if<Scan>(&event->data);
+    Counts& c = topics[event->sensor_id + (scan != nullptr ? "/points" : "/imu")];
+    const Time stamp = scan != nullptr ? scan->stamp : std::get<ImuSample>(event->data).stamp;
+    if (c.messages == 0) c.first = stamp;
+    if (c.messages > 0) c.longest_gap = std::max(c.longest_gap, stamp - c.last);
+    c.last = stamp;
+    ++c.messages;
+    if (scan == nullptr) continue;
+    c.points += scan->points.size();
+    c.untimed += scan->timed ? 0 : 1;
+  }
+  Json json{{"kind", "dataset"}, {"rig", to_json(dataset.rig)}, {"topics", Json::object()}};
+  for (const auto& [name, c] : topics) {
+    const double seconds = to_seconds(c.last - c.first);
+    json["topics"][name] = {
+        {"messages", c.messages},
+        {"first_s", to_seconds(c.first)},
+        {"last_s", to_seconds(c.last)},
+        {"rate_hz", seconds > 0 ? static_cast<double>(c.messages - 1) / seconds : 0.0},
+        {"longest_gap_s", to_seconds(c.longest_gap)},
+        {"points", c.points},
+        {"untimed_scans", c.untimed}};
+  }
+  return json;
+}
+
+bool is_mesh_or_world(const fs::path& file) {
+  static const std::set<std::string> endings{".obj", ".stl", ".dae",  ".gltf",
+                                             ".glb", ".sdf", ".world"};
+  return endings.contains(file.extension().string());
+}
+
+/// A .ply is a mesh when it has faces, else a cloud.
+Json ply_info(const fs::path& file, LogSink& log) {
+  try {
+    return world_info(file, log);
+  } catch (const InputError&) {
+    return cloud_info(file);
+  }
+}
+
+Json info_of(const ConfigFolder& configs, const std::string& thing, LogSink& log) {
+  const fs::path path = thing;
+  if (fs::is_directory(path)) {
+    if (fs::exists(path / "manifest.json")) {
+      const Json manifest = read_json(path / "manifest.json");
+      if (manifest.value("kind", "") == "run") {
+        Json json = manifest;
+        if (fs::exists(path / "metrics.json")) json["metrics"] = read_json(path / "metrics.json");
+        return json;
+      }
+    }
+    return dataset_info(path);
+  }
+  if (fs::exists(path)) {
+    if (path.extension() == ".ply") return ply_info(path, log);
+    if (is_mesh_or_world(path)) return world_info(path, log);
+    if (path.extension() == ".mcap") return dataset_info(path);
+    if (path.extension() == ".pcd") return cloud_info(path);
+  }
+  for (const char* kind : {"sensors", "worlds"}) {
+    const auto names = configs.names(kind);
+    const bool known = std::find(names.begin(), names.end(), thing) != names.end();
+    if (!known && !(fs::exists(path) && std::string(kind) == "sensors")) continue;
+    const fs::path file = configs.resolve(kind, thing);
+    return std::string(kind) == "sensors" ? sensor_info(load_sensor(file)) : world_info(file, log);
+  }
+  std::vector<std::string> names = configs.names("sensors");
+  for (const std::string& world : configs.names("worlds")) names.push_back(world);
+  const std::string nearest = nearest_word(thing, names);
+  throw InputError(thing, "is no file, and no world or sensor is so called",
+                   nearest.empty() ? "see: lidarena list worlds, lidarena list sensors"
+                                   : "did you mean '" + nearest + "'?");
+}
+
+void print_tree(const Json& json, int depth) {
+  for (const auto& [key, value] : json.items()) {
+    const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
+    if (value.is_object() && !value.empty()) {
+      fmt::print("{}{}:\n", indent, key);
+      print_tree(value, depth + 1);
+    } else {
+      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      fmt::print("{}{}: {}\n", indent, key, text.size() > 160 ? text.substr(0, 157) + "..." : text);
+    }
+  }
+}
+
+int info_verb(const Common& common, const InfoOptions& o) {
+  Console console(common.quiet);
+  const ConfigFolder configs = common.config_folder();
+  if (o.rays > 0) return print_rays(load_sensor(configs.resolve("sensors", o.thing)), o.rays);
+  const Json json = info_of(configs, o.thing, console);
+  if (common.json) {
+    print_json(json);
+  } else {
+    print_tree(json, 0);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand(
+      "info", "What is in a world, sensor, dataset, cloud, mesh or run: sizes, times, rates");
+  auto o = std::make_shared<InfoOptions>();
+  verb->add_option("thing", o->thing, "A name or a path")->required();
+  verb->add_option("--rays", o->rays, "Of a sensor: its first N rays as CSV");
+  set_verb(
+      *verb, common, [&common, o] { return info_verb(common, *o); }, exit_code);
+}
+
+}  // namespace lidarena

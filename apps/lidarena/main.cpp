@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <exception>
+
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+
+ConfigFolder Common::config_folder() const {
+  if (!configs.empty()) return ConfigFolder(configs);
+  try {
+    return ConfigFolder::find(std::filesystem::current_path());
+  } catch (const InputError&) {
+    return ConfigFolder::find(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+  }
+}
+
+void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& exit_code) {
+  verb.add_flag("--json", common.json, "One JSON document on standard output, all else on error");
+  verb.add_flag("--quiet,-q", common.quiet, "Only warnings and errors");
+  verb.add_option("--threads", common.threads, "Threads, 0 = one per core")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option("--configs", common.configs, "Folder of named worlds, flights, sensors, ...")
+      ->check(CLI::ExistingDirectory);
+  verb.callback([action = std::move(action), &exit_code] { exit_code = action(); });
+}
+
+void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
+
+namespace {
+
+int parse_and_do(int argc, char** argv) {
+  CLI::App app{
+      "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
+      "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on what they see, and\n"
+      "scores odometry and map against the very mesh that was scanned.\n\n"
+      "The whole way by hand:\n"
+      "  lidarena simulate --world house --flight house --sensor livox_mid360 --out my_data\n"
+      "  lidarena run kiss_icp my_data --out my_run\n"
+      "  lidarena evaluate my_run\n"
+      "or in one command, with a page of results at the end:\n"
+      "  lidarena study quick --out my_study\n",
+      "lidarena"};
+  app.set_version_flag("--version", "lidarena " LIDARENA_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  Common common;
+  int exit_code = kDone;
+  add_list(app, common, exit_code);
+  add_info(app, common, exit_code);
+  add_simulate(app, common, exit_code);
+  add_run(app, common, exit_code);
+  add_evaluate(app, common, exit_code);
+  add_study(app, common, exit_code);
+  add_report(app, common, exit_code);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& e) {
+    return app.exit(e) == 0 ? kDone : kBadInput;
+  }
+  return exit_code;
+}
+
+}  // namespace
+}  // namespace lidarena
+
+int main(int argc, char** argv) {
+  try {
+    return lidarena::parse_and_do(argc, argv);
+  } catch (const lidarena::InputError& e) {
+    fmt::print(stderr, "lidarena: {}\n", e.what());
+    return lidarena::kBadInput;
+  } catch (const std::exception& e) {
+    fmt::print(stderr, "lidarena: {}\n", e.what());
+    return lidarena::kWorkFailed;
+  }
+}

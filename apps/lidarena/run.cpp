@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/study/run_algorithm.hpp"
+
+namespace lidarena {
+namespace {
+
+/// "body_from_lidar=x,y,z,qx,qy,qz,qw" to a pose.
+Pose parse_extrinsics(const std::string& text) {
+  const std::string prefix = "body_from_lidar=";
+  if (text.rfind(prefix, 0) != 0) {
+    throw InputError("--extrinsics " + text, "does not begin with " + prefix);
+  }
+  Pose pose;
+  read_value(ConfigNode::parse("[" + text.substr(prefix.size()) + "]", "--extrinsics"), pose, {});
+  return pose;
+}
+
+int run_verb(const Common& common, const RunRequest& request, const std::string& out) {
+  Console console(common.quiet);
+  const RunSummary s = run_algorithm(request, out, Parallel(common.threads), console);
+  const double factor = s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0;
+  Json statuses = Json::object();
+  std::string counts;
+  for (const auto& [status, count] : s.statuses) {
+    statuses[to_string(status)] = count;
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, to_string(status));
+  }
+  if (common.json) {
+    print_json({{"run", out},
+                {"scans", s.scans},
+                {"statuses", statuses},
+                {"sensor_seconds", s.sensor_seconds},
+                {"compute_seconds", s.compute_seconds},
+                {"diverged", s.diverged},
+                {"reason", s.reason}});
+  } else {
+    fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\nrun: {}\n", s.scans, counts,
+               s.compute_seconds, factor, out);
+  }
+  if (s.diverged) {
+    console.warn("the run diverged: " + s.reason);
+    return kWorkFailed;
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_run(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb =
+      app.add_subcommand("run", "Run an algorithm over a dataset, bag or folder of sweeps");
+  auto r = std::make_shared<RunRequest>();
+  auto out = std::make_shared<std::string>();
+  auto dataset = std::make_shared<std::string>();
+  auto extrinsics = std::make_shared<std::string>();
+  verb->add_option("algorithm", r->odometry.algorithm, "Name (see: list algorithms)")->required();
+  verb->add_option("dataset", *dataset, "Dataset folder, .mcap, or folder of sweeps")->required();
+  verb->add_option("--out", *out, "Folder to write")->required();
+  verb->add_option("--preset", r->odometry.preset, "One of the algorithm's presets")
+      ->capture_default_str();
+  verb->add_option("--sensor", r->read.sensor, "Which LiDAR, where there are several");
+  verb->add_option("--config", r->odometry.config_file, "YAML over the preset")
+      ->check(CLI::ExistingFile);
+  verb->add_option("--set", r->odometry.overrides, "key=value, over everything; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--layout", r->read.layout, "Of raw binary sweeps")
+      ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
+  verb->add_option("--extrinsics", *extrinsics, "body_from_lidar=x,y,z,qx,qy,qz,qw");
+  verb->add_option("--rate", r->read.rate_hz, "Sweeps per second, where the folder gives no times")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  set_verb(
+      *verb, common,
+      [&common, r, out, dataset, extrinsics] {
+        r->dataset = *dataset;
+        if (!extrinsics->empty()) r->read.body_from_lidar = parse_extrinsics(*extrinsics);
+        return run_verb(common, *r, *out);
+      },
+      exit_code);
+}
+
+}  // namespace lidarena

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/simulate_dataset.hpp"
+
+#include <fmt/format.h>
+
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/verbs.hpp"
+
+namespace lidarena {
+namespace {
+
+struct SimulateOptions {
+  std::string world, flight, out;
+  std::vector<std::string> sensors;
+  SimulateRequest request;
+  std::string noise = "on";
+  bool no_data = false;
+};
+
+int simulate_verb(const Common& common, const SimulateOptions& options) {
+  const ConfigFolder configs = common.config_folder();
+  SimulateRequest request = options.request;
+  request.world = configs.resolve("worlds", options.world);
+  request.flight = configs.resolve("flights", options.flight);
+  for (const std::string& sensor : options.sensors) {
+    request.sensors.push_back(configs.resolve("sensors", sensor));
+  }
+  request.noise = options.noise == "on";
+  request.data = !options.no_data;
+  Console console(common.quiet);
+  const SimulateSummary s =
+      simulate_dataset(request, options.out, Parallel(common.threads), console);
+  if (common.json) {
+    print_json({{"dataset", options.out},
+                {"triangles", s.triangles},
+                {"seconds", s.seconds},
+                {"path_m", s.path_m},
+                {"scans", s.scans},
+                {"points", s.points},
+                {"imu_samples", s.imu_samples}});
+  } else {
+    fmt::print("world {} triangles; flew {:.1f} s, {:.1f} m; {} scans, {} points, {} IMU samples\n",
+               s.triangles, s.seconds, s.path_m, s.scans, s.points, s.imu_samples);
+    fmt::print("dataset: {}\n", options.out);
+  }
+  return kDone;
+}
+
+}  // namespace
+
+void add_simulate(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand("simulate", "Fly sensors through a world; writes a dataset");
+  auto o = std::make_shared<SimulateOptions>();
+  verb->add_option("--world", o->world, "Name (see: list worlds), mesh, or SDF file")->required();
+  verb->add_option("--flight", o->flight, "Name (see: list flights), YAML, or TUM file to replay")
+      ->required();
+  verb->add_option("--sensor", o->sensors, "Name (see: list sensors) or YAML; may be repeated")
+      ->required()
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--out", o->out, "Folder to write")->required();
+  verb->add_option("--seed", o->request.seed,
+                   "Of all noise; a procedural world's own seed stands in its file")
+      ->capture_default_str();
+  verb->add_option("--seconds", o->request.seconds, "Length of the flight; 0 = all of it")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_option("--noise", o->noise, "on or off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  verb->add_flag("--no-data", o->no_data,
+                 "A manifest alone: flown anew, with the same points, whenever it is used");
+  set_verb(
+      *verb, common, [&common, o] { return simulate_verb(common, *o); }, exit_code);
+}
+
+}  // namespace lidarena

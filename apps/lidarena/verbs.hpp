@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/study/config_folder.hpp"
+
+namespace lidarena {
+
+/// Exit codes, as the contract states them.
+inline constexpr int kDone = 0;
+inline constexpr int kWorkFailed = 1;  ///< a run diverged, a check fell short
+inline constexpr int kBadInput = 2;    ///< wrong usage or bad input
+
+/// Options that every verb takes.
+struct Common {
+  bool json = false;
+  bool quiet = false;
+  int threads = 0;
+  std::string configs;  ///< folder given with --configs; empty = search
+
+  ConfigFolder config_folder() const;
+};
+
+/// Adds --json, --quiet, --threads, --configs to `verb` and sets what it does.
+void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& exit_code);
+
+void add_list(CLI::App& app, Common& common, int& exit_code);
+void add_info(CLI::App& app, Common& common, int& exit_code);
+void add_simulate(CLI::App& app, Common& common, int& exit_code);
+void add_run(CLI::App& app, Common& common, int& exit_code);
+void add_evaluate(CLI::App& app, Common& common, int& exit_code);
+void add_study(CLI::App& app, Common& common, int& exit_code);
+void add_report(CLI::App& app, Common& common, int& exit_code);
+
+/// One JSON document on standard output.
+void print_json(const Json& json);
+
+}  // namespace lidarena

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/dataset/run_files.hpp"
+
+namespace lidarena {
+
+/// Figures of one map; the gauge is SE(3) over all positions where that is determined.
+struct MapFigures {
+  std::size_t points = 0;
+  double rmse_cm = 0.0, rmse_inliers_cm = 0.0, median_cm = 0.0, p95_cm = 0.0;
+  double outliers_percent = 0.0;
+  std::vector<double> histogram_percent;  ///< 1 cm bins, 0..20 cm
+};
+
+/// One run as the report sees it. A figure that does not exist is empty, never zero.
+struct ResultRow {
+  std::string name;  ///< folder of the run
+  std::filesystem::path folder;
+  std::string world, flight, sensor, algorithm, preset;
+  std::uint64_t seed = 0;
+  std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
+  std::string reason;
+  std::optional<double> rpe_cm_per_m, rpe_deg_per_m, ate_cm, coverage_percent;
+  std::optional<MapFigures> own_map, reprojected_map;
+  std::optional<double> real_time_factor, latency_p95_ms, own_memory_mb, process_memory_mb;
+  Json metrics;   ///< metrics.json, null if there is none
+  Json manifest;  ///< manifest.json, null if there is none
+};
+
+struct Results {
+  std::string title;
+  std::vector<ResultRow> rows;
+};
+
+/// Map, scan buffer and backlog together, MB.
+double own_memory_mb(const ResourceRow& row);
+
+/// Reads a study's folder (study.json names the runs; one that left nothing is a row all the same)
+/// or one RUN folder. Throws InputError when it is neither.
+Results read_results(const std::filesystem::path& folder);
+
+/// One row a run, units in the column names, empty cells for figures that do not exist.
+std::string results_csv(const Results& results);
+/// The main figures, aligned for a terminal.
+std::string results_text(const Results& results);
+
+}  // namespace lidarena

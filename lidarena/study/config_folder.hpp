@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace lidarena {
+
+/// The folder `configs/` with its kinds worlds, flights, sensors, odometry and studies; a NAME is
+/// the stem of a file in one of them.
+class ConfigFolder {
+ public:
+  explicit ConfigFolder(std::filesystem::path root) : root_(std::move(root)) {}
+
+  /// The nearest `configs` folder at or above `start`, or `share/lidarena/configs` beside a `bin`.
+  /// Throws InputError when there is none.
+  static ConfigFolder find(const std::filesystem::path& start);
+
+  const std::filesystem::path& root() const { return root_; }
+  /// Stems of the files of a kind, sorted.
+  std::vector<std::string> names(const std::string& kind) const;
+  /// `name_or_path` itself where such a file exists, else the kind's file of that stem. Throws
+  /// InputError naming the nearest name.
+  std::filesystem::path resolve(const std::string& kind, const std::string& name_or_path) const;
+
+ private:
+  std::filesystem::path root_;
+};
+
+}  // namespace lidarena

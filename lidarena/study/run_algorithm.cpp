@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/run_algorithm.hpp"
+
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/evaluation/evaluate_run.hpp"
+#include "lidarena/evaluation/reproject.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/mesh_io.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kScoredPoints = 400'000;  // enough for a picture 2,000 pixels wide
+
+std::string chosen_lidar(const Dataset& dataset, const std::string& asked) {
+  if (const LidarInfo* lidar = dataset.rig.find_lidar(asked)) return lidar->id;
+  std::vector<std::string> ids;
+  std::string list;
+  for (const LidarInfo& lidar : dataset.rig.lidars) {
+    ids.push_back(lidar.id);
+    list += (list.empty() ? "" : ", ") + lidar.id;
+  }
+  if (asked.empty()) {
+    throw InputError(dataset.path.string(), "has several LiDARs", "choose with --sensor: " + list);
+  }
+  const std::string nearest = nearest_word(asked, ids);
+  throw InputError(dataset.path.string(), "has no LiDAR named '" + asked + "'",
+                   nearest.empty() ? "it has: " + list : "did you mean '" + nearest + "'?");
+}
+
+Json summary_json(const RunSummary& summary) {
+  Json statuses = Json::object();
+  for (const auto& [status, count] : summary.statuses) statuses[to_string(status)] = count;
+  return {{"scans", summary.scans},
+          {"statuses", statuses},
+          {"sensor_seconds", summary.sensor_seconds},
+          {"compute_seconds", summary.compute_seconds},
+          {"diverged", summary.diverged}};
+}
+
+/// `dataset` as seen from `run`, so that the two can be moved together.
+std::string relative_path(const fs::path& dataset, const fs::path& run) {
+  const fs::path relative = fs::proximate(fs::absolute(dataset), fs::absolute(run));
+  return relative.generic_string();
+}
+
+Cloud reprojected_map(const RunRequest& request, const std::string& lidar_id,
+                      const Trajectory& trajectory, const Parallel& parallel) {
+  Dataset again = open_any_dataset(request.dataset, request.read, parallel);
+  const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
+  return reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
+}
+
+/// SE(3) over all positions where that is determined, else the first pose.
+Pose mesh_from_map_of(const Trajectory& estimate, const Trajectory& truth) {
+  const Alignment best = align(estimate, truth, Gauge::kSe3);
+  return best.determined() ? best.truth_from_estimate
+                           : align(estimate, truth, Gauge::kFirstPose).truth_from_estimate;
+}
+
+/// At most kScoredPoints of the re-projected map, in the mesh's frame, each with its distance.
+Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& world,
+                   const Parallel& parallel) {
+  const std::vector<Eigen::Vector3f>& all = run.reprojected.points;
+  const std::size_t stride =
+      std::max<std::size_t>(1, (all.size() + kScoredPoints - 1) / kScoredPoints);
+  Cloud cloud;
+  for (std::size_t i = 0; i < all.size(); i += stride) cloud.points.push_back(all[i]);
+  map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
+  for (Eigen::Vector3f& p : cloud.points) p = (mesh_from_map * p.cast<double>()).cast<float>();
+  return cloud;
+}
+
+}  // namespace
+
+RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
+                         LogSink& log) {
+  Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
+  const MadeOdometry made = make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
+  RunOptions options;
+  options.lidar_id = lidar_id;
+  options.scan_count = dataset.scan_count;
+  RunResult result = run(*made.odometry, *dataset.events, options, log);
+  if (!result.files.trajectory.empty()) {
+    result.files.reprojected =
+        reprojected_map(request, lidar_id, result.files.trajectory, parallel);
+  }
+  result.files.manifest = {{"kind", "run"},
+                           {"algorithm", request.odometry.algorithm},
+                           {"preset", request.odometry.preset},
+                           {"config", made.config},
+                           {"dataset", relative_path(request.dataset, out)},
+                           {"sensor", lidar_id},
+                           {"threads", parallel.threads()},
+                           {"status", result.summary.diverged ? "diverged" : "ok"},
+                           {"reason", result.summary.reason},
+                           {"summary", summary_json(result.summary)}};
+  write_run(out, result.files);
+  return result.summary;
+}
+
+Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
+  const RunFiles run = read_run(folder);
+  const fs::path dataset = folder / run.manifest.at("dataset").get<std::string>();
+  const auto truth = load_truth(dataset);
+  if (!truth) {
+    throw InputError(dataset.string(), "carries no truth to score against",
+                     "give one: evaluate --trajectory FILE --truth FILE");
+  }
+  std::unique_ptr<World> world;
+  if (const auto mesh = find_world_mesh(dataset)) {
+    world = std::make_unique<World>(load_mesh(*mesh), mesh->string());
+  }
+  const Json metrics = evaluate_run(run, *truth, world.get(), parallel, log);
+  if (world && metrics.value("status", "") == "ok" && !run.reprojected.points.empty()) {
+    const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);
+    write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
+  }
+  write_json(folder / "metrics.json", metrics);
+  return metrics;
+}
+
+}  // namespace lidarena

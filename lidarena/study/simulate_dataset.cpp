@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/simulate_dataset.hpp"
+
+#include <fmt/format.h>
+
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/tum.hpp"
+#include "lidarena/flight/make_flight.hpp"
+#include "lidarena/sensor/simulate.hpp"
+#include "lidarena/world/load_world.hpp"
+#include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/ply.hpp"
+#include "lidarena/world/world.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Time kTruthStep = std::chrono::milliseconds(1);
+
+/// Everything that makes measurements, kept alive together.
+struct Scene {
+  WorldModel model;  ///< its mesh is moved into `world`
+  std::unique_ptr<World> world;
+  std::unique_ptr<Flight> flight;
+  std::vector<SensorConfig> sensors;
+  SimulationOptions options;
+
+  Time duration() const {
+    return options.duration > Time{0} ? std::min(options.duration, flight->duration())
+                                      : flight->duration();
+  }
+};
+
+std::unique_ptr<Scene> make_scene(WorldModel model, const fs::path& flight_file,
+                                  std::vector<SensorConfig> sensors,
+                                  const SimulationOptions& options, LogSink& log) {
+  auto scene = std::make_unique<Scene>();
+  scene->world = std::make_unique<World>(std::move(model.mesh), model.name);
+  scene->model = std::move(model);
+  scene->flight = make_flight(flight_file, scene->model, *scene->world, log);
+  scene->sensors = std::move(sensors);
+  scene->options = options;
+  return scene;
+}
+
+/// An event source that owns the scene it measures.
+class FlownSource : public EventSource {
+ public:
+  FlownSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
+      : scene_(std::move(scene)),
+        events_(simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
+                         parallel)) {}
+  std::optional<Event> next() override { return events_->next(); }
+
+ private:
+  std::unique_ptr<Scene> scene_;
+  std::unique_ptr<EventSource> events_;
+};
+
+Json manifest_of(const SimulateRequest& request, const Scene& scene) {
+  Json routes = Json::array();
+  for (const auto& route : scene.model.routes) routes.push_back(value_to_json(route));
+  Json sensors = Json::array();
+  for (const SensorConfig& sensor : scene.sensors) sensors.push_back(to_json(sensor));
+  return {{"kind", "dataset"},
+          {"rig", to_json(make_rig(scene.sensors))},
+          {"simulation",
+           {{"world", request.world.filename().string()},
+            {"flight", "flight" + request.flight.extension().string()},
+            {"flight_source", request.flight.filename().string()},
+            {"seed", request.seed},
+            {"seconds", to_seconds(scene.duration())},
+            {"noise", request.noise},
+            {"sensors", sensors},
+            {"routes", routes}}}};
+}
+
+void write_events(const Scene& scene, const fs::path& out, const Json& manifest,
+                  const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
+  DatasetWriter writer(out, make_rig(scene.sensors));
+  Time truth_time{0};
+  const auto write_truth_until = [&](Time end) {
+    for (; truth_time <= end; truth_time += kTruthStep) {
+      writer.write_truth({truth_time, scene.flight->pose_at(truth_time)});
+    }
+  };
+  const auto events = simulate(*scene.world, *scene.flight, scene.sensors, scene.options, parallel);
+  while (const auto event = events->next()) {
+    if (const auto* scan = std::get_if<Scan>(&event->data)) {
+      ++summary.scans;
+      summary.points += scan->points.size();
+      write_truth_until(scan->stamp);
+      log.progress("flying", to_seconds(scan->stamp), summary.seconds);
+    } else {
+      ++summary.imu_samples;
+    }
+    writer.write(*event);
+  }
+  write_truth_until(scene.duration());
+  log.progress("flying", summary.seconds, summary.seconds);
+  writer.finish(manifest);
+}
+
+Trajectory truth_of(const Scene& scene) {
+  std::vector<StampedPose> poses;
+  for (Time t{0}; t <= scene.duration(); t += kTruthStep) {
+    poses.push_back({t, scene.flight->pose_at(t)});
+  }
+  return Trajectory(std::move(poses));
+}
+
+double path_length(const Scene& scene) {
+  double length = 0.0;
+  Eigen::Vector3d last = scene.flight->pose_at(Time{0}).translation();
+  for (Time t{0}; t <= scene.duration(); t += std::chrono::milliseconds(10)) {
+    const Eigen::Vector3d here = scene.flight->pose_at(t).translation();
+    length += (here - last).norm();
+    last = here;
+  }
+  return length;
+}
+
+/// A dataset that is a manifest alone, as a source of events.
+Dataset fly_manifest(const fs::path& folder, const Json& manifest, const Parallel& parallel) {
+  LogSink silent;  // the flight was described when the dataset was made
+  const Json& simulation = manifest.at("simulation");
+  WorldModel model;
+  model.name = (folder / "world.ply").string();
+  model.mesh = load_mesh(folder / "world.ply");
+  const std::string place = (folder / "manifest.json").string();
+  read_value(ConfigNode::parse(simulation.at("routes").dump(), place), model.routes, {});
+  std::vector<SensorConfig> sensors;
+  read_value(ConfigNode::parse(simulation.at("sensors").dump(), place), sensors, {});
+  SimulationOptions options;
+  options.seed = simulation.at("seed").get<std::uint64_t>();
+  options.duration = from_seconds(simulation.at("seconds").get<double>());
+  options.noise = simulation.at("noise").get<bool>();
+
+  Dataset dataset;
+  dataset.path = folder;
+  dataset.rig = make_rig(sensors);
+  dataset.manifest = manifest;
+  dataset.events = std::make_unique<FlownSource>(
+      make_scene(std::move(model), folder / simulation.at("flight").get<std::string>(),
+                 std::move(sensors), options, silent),
+      parallel);
+  return dataset;
+}
+
+}  // namespace
+
+SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path& out,
+                                 const Parallel& parallel, LogSink& log) {
+  std::vector<SensorConfig> sensors;
+  for (const fs::path& file : request.sensors) sensors.push_back(load_sensor(file));
+  WorldModel model = load_world(request.world, {}, log);
+  SimulationOptions options;
+  options.seed = request.seed;
+  options.duration = from_seconds(request.seconds);
+  options.noise = request.noise;
+
+  // The flight is judged before anything is written.
+  const auto scene = make_scene(std::move(model), request.flight, std::move(sensors), options, log);
+  if (request.seconds > 0 && options.duration > scene->flight->duration()) {
+    log.warn(fmt::format("the flight ends after {:.1f} s, before the {:.1f} s asked for",
+                         to_seconds(scene->flight->duration()), request.seconds));
+  }
+  SimulateSummary summary;
+  summary.triangles = scene->world->mesh().triangles.size();
+  summary.seconds = to_seconds(scene->duration());
+  summary.path_m = path_length(*scene);
+
+  fs::create_directories(out);
+  fs::remove(out / "manifest.json");  // an old dataset here is no longer whole
+  save_ply(out / "world.ply", scene->world->mesh());
+  fs::copy_file(request.flight, out / ("flight" + request.flight.extension().string()),
+                fs::copy_options::overwrite_existing);
+  const Json manifest = manifest_of(request, *scene);
+  if (request.data) {
+    write_events(*scene, out, manifest, parallel, log, summary);
+  } else {
+    write_tum(out / "truth.tum", truth_of(*scene), kTruthHeader);
+    write_json(out / "manifest.json", manifest);
+  }
+  return summary;
+}
+
+Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
+                         const Parallel& parallel) {
+  const fs::path manifest_file = path / "manifest.json";
+  if (fs::exists(manifest_file) && !fs::exists(path / "data.mcap") &&
+      !fs::exists(path / "data.bag")) {
+    const Json manifest = read_json(manifest_file);
+    if (manifest.contains("simulation")) return fly_manifest(path, manifest, parallel);
+  }
+  return open_dataset(path, options);
+}
+
+}  // namespace lidarena

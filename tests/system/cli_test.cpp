@@ -1,0 +1,276 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The program as a user meets it: exit codes, one clear error each, and the whole way from a mesh
+// to a page.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+struct Outcome {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string content(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+bool same(const fs::path& a, const fs::path& b) { return content(a) == content(b); }
+
+class Cli : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::temp_directory_path() /
+              ("lidarena_cli_" + std::to_string(getpid()) + "_" + info->name());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome call(const std::string& arguments) const {
+    const std::string command = std::string(LIDARENA_BINARY) + " " + arguments + " >" +
+                                (folder_ / "out").string() + " 2>" + (folder_ / "err").string() +
+                                " </dev/null";
+    const int status = std::system(command.c_str());
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder_ / "out"),
+            content(folder_ / "err")};
+  }
+  /// Bad input: exit code 2 and one line of error.
+  std::string refusal(const std::string& arguments) const {
+    const Outcome outcome = call(arguments);
+    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
+    std::string last;
+    int errors = 0;
+    std::istringstream lines(outcome.err);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.rfind("lidarena: ", 0) != 0) continue;
+      ++errors;
+      last = line;
+    }
+    EXPECT_EQ(errors, 1) << outcome.err;
+    return last;
+  }
+  std::string write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name) << text;
+    return (folder_ / name).string();
+  }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+/// A closed room of 12 x 8 x 4 m around the origin's first octant, with two pillars, as OBJ.
+std::string room_obj() {
+  std::string obj;
+  int base = 1;
+  const auto box = [&](double x0, double y0, double z0, double x1, double y1, double z1) {
+    std::ostringstream o;
+    for (const double z : {z0, z1}) {
+      for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) {
+        o << "v " << x << " " << y << " " << z << "\n";
+      }
+    }
+    constexpr std::array<std::array<int, 4>, 6> kFaces{
+        {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}}};
+    for (const auto& f : kFaces) {
+      o << "f";
+      for (const int i : f) o << " " << base + i - 1;
+      o << "\n";
+    }
+    base += 8;
+    obj += o.str();
+  };
+  box(0, 0, 0, 12, 8, 4);
+  box(4, 3, 0, 4.6, 3.6, 4);
+  box(8, 5, 0, 8.6, 5.6, 4);
+  return obj;
+}
+
+constexpr const char* kRoomFlight =
+    "# A round between the pillars of the test room.\n"
+    "kind: waypoints\n"
+    "waypoints: [[2, 2, 1.5], [10, 2, 1.2], [10, 7, 1.8], [2, 6.5, 1.5], [2, 2, 1.5]]\n";
+
+TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
+  const Outcome help = call("--help");
+  EXPECT_EQ(help.exit_code, 0);
+  EXPECT_THAT(help.out, AllOf(HasSubstr("lidarena simulate --world house"), HasSubstr("evaluate"),
+                              HasSubstr("study")));
+  for (const char* verb : {"list", "info", "simulate", "run", "evaluate", "study", "report"}) {
+    const Outcome verb_help = call(std::string(verb) + " --help");
+    EXPECT_EQ(verb_help.exit_code, 0) << verb;
+    EXPECT_THAT(verb_help.out, HasSubstr("--json")) << verb;
+  }
+  EXPECT_EQ(call("--version").exit_code, 0);
+  EXPECT_THAT(call("--version").out, HasSubstr("lidarena 0."));
+  EXPECT_EQ(call("").exit_code, 2);
+  EXPECT_EQ(call("fly").exit_code, 2);
+}
+
+TEST_F(Cli, EveryListedNameIsUsable) {
+  for (const char* kind : {"worlds", "flights", "sensors", "algorithms", "studies"}) {
+    const Outcome list = call(std::string("list --json ") + kind);
+    ASSERT_EQ(list.exit_code, 0) << list.err;
+    const auto json = nlohmann::json::parse(list.out);
+    EXPECT_FALSE(json.empty()) << kind;
+    if (std::string(kind) != "sensors") continue;
+    for (const auto& entry : json) {
+      const std::string name = entry.at("name");
+      const Outcome info = call("info --json " + name);
+      EXPECT_EQ(info.exit_code, 0) << name << info.err;
+      EXPECT_GT(nlohmann::json::parse(info.out).at("points_per_second").get<double>(), 1000.0);
+    }
+  }
+}
+
+TEST_F(Cli, TheFirstRaysOfASensorComeAsCsv) {
+  const Outcome rays = call("info livox_mid360 --rays 8");
+  ASSERT_EQ(rays.exit_code, 0) << rays.err;
+  EXPECT_THAT(rays.out, HasSubstr("index,dt_ns,x,y,z,ring\n0,0,-0.0108079"));
+  EXPECT_EQ(std::count(rays.out.begin(), rays.out.end(), '\n'), 9);
+}
+
+TEST_F(Cli, BadInputIsOneClearErrorWithExitCode2) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string rest = " --sensor livox_mid360 --out " + path("data");
+
+  const std::string no_faces = write("points.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+  EXPECT_THAT(refusal("simulate --world " + no_faces + " --flight " + flight + rest),
+              AllOf(HasSubstr("points.obj"), HasSubstr("no faces")));
+
+  const std::string sdf = write("bad.sdf",
+                                "<?xml version='1.0'?><sdf version='1.6'><world name='w'>"
+                                "<include><uri>model://no_such_chair</uri></include>"
+                                "</world></sdf>");
+  EXPECT_THAT(refusal("simulate --world " + sdf + " --flight " + flight + rest),
+              AllOf(HasSubstr("bad.sdf"), HasSubstr("no_such_chair")));
+
+  const std::string through = write(
+      "through.yaml", "kind: waypoints\nwaypoints: [[2, 2, 1.5], [14, 2, 1.5], [2, 2, 1.5]]\n");
+  EXPECT_THAT(refusal("simulate --world " + room + " --flight " + through + rest),
+              AllOf(HasSubstr("through.yaml"), HasSubstr(" m")));
+
+  EXPECT_THAT(refusal("simulate --world " + room + " --flight " + flight +
+                      " --sensor livox_mid306 --out " + path("data")),
+              HasSubstr("did you mean 'livox_mid360"));
+  EXPECT_THAT(refusal("simulate --world hosue --flight " + flight + rest),
+              HasSubstr("did you mean 'house'?"));
+  EXPECT_FALSE(fs::exists(path("data") + "/manifest.json"))
+      << "nothing that looks whole may be left";
+  EXPECT_THAT(refusal("run kiss_icp " + path("nowhere") + " --out " + path("run")),
+              HasSubstr("nowhere"));
+}
+
+TEST_F(Cli, FromAMeshToAScoredMap) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string data = path("data");
+  const std::string run = path("run");
+  const Outcome simulated = call("simulate --world " + room + " --flight " + flight +
+                                 " --sensor livox_mid360 --seconds 8 --out " + data);
+  ASSERT_EQ(simulated.exit_code, 0) << simulated.err;
+  for (const char* file :
+       {"data.mcap", "truth.tum", "world.ply", "manifest.json", "metadata.yaml"}) {
+    EXPECT_TRUE(fs::exists(fs::path(data) / file)) << file;
+  }
+  const Outcome ran = call("run --json kiss_icp " + data + " --out " + run);
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(nlohmann::json::parse(ran.out).at("scans"), 80);
+
+  const Outcome scored = call("evaluate --json " + run);
+  ASSERT_EQ(scored.exit_code, 0) << scored.err;
+  const auto metrics = nlohmann::json::parse(scored.out);
+  EXPECT_EQ(metrics.at("status"), "ok");
+  // An easy room: an odometry that works stays within a tenth of the path, and a map of it lies
+  // within a few range sigmas of the mesh for the most part.
+  EXPECT_LT(metrics.at("/final/rpe/1m/translation/rmse_m"_json_pointer).get<double>(), 0.10);
+  EXPECT_LT(metrics.at("/maps/reprojected/se3/distance/median_m"_json_pointer).get<double>(), 0.10);
+  EXPECT_GT(metrics.at("/final/association/coverage"_json_pointer).get<double>(), 0.95);
+
+  const Outcome paged = call("report " + run);
+  ASSERT_EQ(paged.exit_code, 0) << paged.err;
+  const std::string page = content(fs::path(run) / "report.html");
+  EXPECT_THAT(page, AllOf(HasSubstr("<!doctype html>"), HasSubstr("base64,"),
+                          HasSubstr("point-to-mesh distance")));
+  EXPECT_THAT(
+      page, AllOf(Not(HasSubstr("http://")), Not(HasSubstr("https://")), Not(HasSubstr("<script"))))
+      << "the page needs no network and no script";
+}
+
+TEST_F(Cli, AManifestAloneIsFlownWithTheSamePoints) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string call_simulate = "simulate --world " + room + " --flight " + flight +
+                                    " --sensor livox_mid360 --seconds 3 --out ";
+  ASSERT_EQ(call(call_simulate + path("full")).exit_code, 0);
+  ASSERT_EQ(call(call_simulate + path("bare") + " --no-data").exit_code, 0);
+  EXPECT_FALSE(fs::exists(path("bare") + "/data.mcap"));
+  ASSERT_EQ(call("run kiss_icp " + path("full") + " --threads 1 --out " + path("a")).exit_code, 0);
+  ASSERT_EQ(call("run kiss_icp " + path("bare") + " --threads 2 --out " + path("b")).exit_code, 0);
+  EXPECT_TRUE(same(path("a") + "/trajectory.tum", path("b") + "/trajectory.tum"));
+  EXPECT_TRUE(same(path("a") + "/map.ply", path("b") + "/map.ply"));
+  EXPECT_TRUE(same(path("full") + "/truth.tum", path("bare") + "/truth.tum"));
+}
+
+TEST_F(Cli, SameSeedSameBytesAndATruncatedDatasetIsNeverTakenForWhole) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string call_simulate = "simulate --world " + room + " --flight " + flight +
+                                    " --sensor livox_mid360 --seconds 2 --out ";
+  ASSERT_EQ(call(call_simulate + path("one") + " --threads 1").exit_code, 0);
+  ASSERT_EQ(call(call_simulate + path("two") + " --threads 3").exit_code, 0);
+  const fs::path mcap = path("one") + "/data.mcap";
+  EXPECT_TRUE(same(mcap, path("two") + "/data.mcap"));
+  ASSERT_EQ(call(call_simulate + path("three") + " --seed 2").exit_code, 0);
+  EXPECT_FALSE(same(mcap, path("three") + "/data.mcap"));
+
+  fs::resize_file(mcap, fs::file_size(mcap) / 2);
+  const std::string error = refusal("run kiss_icp " + path("one") + " --out " + path("run"));
+  EXPECT_THAT(error, AllOf(HasSubstr("data.mcap"), HasSubstr("cut off")));
+  EXPECT_FALSE(fs::exists(path("run") + "/manifest.json"));
+}
+
+TEST_F(Cli, AStudyIsResumedAndAFailedRunIsARow) {
+  write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string through = write(
+      "through.yaml", "kind: waypoints\nwaypoints: [[2, 2, 1.5], [14, 2, 1.5], [2, 2, 1.5]]\n");
+  const std::string study = write(
+      "study.yaml", "title: A study of a test\nscenes:\n  - {world: " + path("room.obj") +
+                        ", flight: " + flight + ", seconds: 3}\n  - {world: " + path("room.obj") +
+                        ", flight: " + through +
+                        ", seconds: 3}\nsensors: [livox_mid360]\nalgorithms: [kiss_icp]\n");
+  const Outcome first = call("study --json " + study + " --out " + path("study_out"));
+  ASSERT_EQ(first.exit_code, 1) << "one of the two flights goes through a wall\n" << first.err;
+  const auto counts = nlohmann::json::parse(first.out);
+  EXPECT_EQ(counts.at("runs"), 2);
+  EXPECT_EQ(counts.at("failed"), 1);
+  EXPECT_EQ(counts.at("reused"), 0);
+  const std::string csv = content(path("study_out") + "/results.csv");
+  EXPECT_THAT(csv, AllOf(HasSubstr(",ok,"), HasSubstr(",failed,")));
+  EXPECT_THAT(content(path("study_out") + "/report.html"), HasSubstr("A study of a test"));
+  const Outcome second = call("study --json " + study + " --out " + path("study_out"));
+  EXPECT_EQ(nlohmann::json::parse(second.out).at("reused"), 1);
+  EXPECT_EQ(content(path("study_out") + "/results.csv"), csv) << "nothing measured anew";
+}
+
+}  // namespace
