@@ -123,7 +123,8 @@ double path_length(const Scene& scene) {
 }
 
 /// A dataset that is a manifest alone, as a source of events.
-Dataset fly_manifest(const fs::path& folder, const Json& manifest, const Parallel& parallel) {
+Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::string& sensor,
+                     const Parallel& parallel) {
   LogSink silent;  // the flight was described when the dataset was made
   const Json& simulation = manifest.at("simulation");
   WorldModel model;
@@ -142,6 +143,10 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const Paralle
   dataset.path = folder;
   dataset.rig = make_rig(sensors);
   dataset.manifest = manifest;
+  if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor)) {
+    dataset.scan_count =
+        static_cast<std::size_t>(to_seconds(options.duration) * lidar->rate_hz + 1e-6);
+  }
   dataset.events = std::make_unique<FlownSource>(
       make_scene(std::move(model), folder / simulation.at("flight").get<std::string>(),
                  std::move(sensors), options, silent),
@@ -193,7 +198,7 @@ Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
   if (fs::exists(manifest_file) && !fs::exists(path / "data.mcap") &&
       !fs::exists(path / "data.bag")) {
     const Json manifest = read_json(manifest_file);
-    if (manifest.contains("simulation")) return fly_manifest(path, manifest, parallel);
+    if (manifest.contains("simulation")) return fly_manifest(path, manifest, options.sensor, parallel);
   }
   return open_dataset(path, options);
 }
