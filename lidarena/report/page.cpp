@@ -25,8 +25,8 @@ body{font:15px/1.5 system-ui,sans-serif;color:#1c2430;background:#f6f7f9;margin:
 main{max-width:1220px;margin:0 auto;padding:24px 20px 60px}
 h1{font-size:26px;margin:8px 0 2px}h2{font-size:19px;margin:34px 0 6px}
 p{max-width:78ch;margin:6px 0 12px}.note{color:#5b6470;font-size:13px}
-table{border-collapse:collapse;background:#fff;font-variant-numeric:tabular-nums;font-size:13.5px}
-th,td{padding:5px 8px;border-bottom:1px solid #e3e6ea;text-align:right;white-space:nowrap}
+table{border-collapse:collapse;background:#fff;font-variant-numeric:tabular-nums;font-size:13px}
+th,td{padding:5px 6px;border-bottom:1px solid #e3e6ea;text-align:right;white-space:nowrap}
 th{font-weight:600;background:#eef1f4;vertical-align:bottom}
 td.l,th.l{text-align:left}td.best{font-weight:700}td.bad{color:#b3261e;text-align:left;white-space:normal}
 .scroll{overflow-x:auto}.row{display:flex;flex-wrap:wrap;gap:12px;align-items:flex-start}
@@ -115,15 +115,33 @@ const std::vector<Column>& table_columns() {
   return columns;
 }
 
+/// True when no other row of the same sensor has a better figure, and there is one to beat.
+bool is_best(const std::vector<const ResultRow*>& rows, const ResultRow& row,
+             const Column& column) {
+  const auto value = column.value(row);
+  bool has_rival = false;
+  for (const ResultRow* other : rows) {
+    const auto theirs = column.value(*other);
+    if (!value || !theirs || other == &row || other->sensor != row.sensor) continue;
+    has_rival = true;
+    if (column.larger_is_better ? *theirs > *value : *theirs < *value) return false;
+  }
+  return has_rival;
+}
+
 std::string table(const std::vector<const ResultRow*>& rows) {
+  const bool several_seeds = std::any_of(
+      rows.begin(), rows.end(), [&](const ResultRow* r) { return r->seed != rows[0]->seed; });
   std::string html =
-      "<div class='scroll'><table><thead><tr><th class='l'>sensor</th><th class='l'>algorithm</th>"
-      "<th>seed</th>";
+      "<div class='scroll'><table><thead><tr><th class='l'>sensor</th>"
+      "<th class='l'>algorithm</th>";
+  if (several_seeds) html += "<th>seed</th>";
   for (const Column& column : table_columns()) html += fmt::format("<th>{}</th>", column.head);
   html += "</tr></thead><tbody>";
   for (const ResultRow* row : rows) {
-    html += fmt::format("<tr><td class='l'>{}</td><td class='l'>{}</td><td>{}</td>",
-                        escaped(row->sensor), escaped(label(*row)), row->seed);
+    html += fmt::format("<tr><td class='l'>{}</td><td class='l'>{}</td>", escaped(row->sensor),
+                        escaped(label(*row)));
+    if (several_seeds) html += fmt::format("<td>{}</td>", row->seed);
     if (row->status != "ok") {
       html += fmt::format("<td class='bad' colspan='{}'>{}: {}</td></tr>", table_columns().size(),
                           escaped(row->status), escaped(row->reason));
@@ -131,13 +149,7 @@ std::string table(const std::vector<const ResultRow*>& rows) {
     }
     for (const Column& column : table_columns()) {
       const auto value = column.value(*row);
-      bool best = value.has_value() && rows.size() > 1;
-      for (const ResultRow* other : rows) {
-        const auto theirs = column.value(*other);
-        if (!best || !theirs || other->sensor != row->sensor) continue;
-        best = column.larger_is_better ? *value >= *theirs : *value <= *theirs;
-      }
-      html += fmt::format("<td{}>{}</td>", best ? " class='best'" : "",
+      html += fmt::format("<td{}>{}</td>", is_best(rows, *row, column) ? " class='best'" : "",
                           value ? fmt::format(fmt::runtime(column.format), *value) : "&ndash;");
     }
     html += "</tr>";
@@ -228,10 +240,10 @@ std::string color_key() {
 std::string charts(const std::vector<const ResultRow*>& rows) {
   static const std::vector<std::string> palette{"#2b6cb0", "#c2410c", "#4d7c0f", "#7c3aed",
                                                 "#0f766e", "#b45309", "#be185d", "#334155"};
-  LineChart error{"Error of each metre flown", "end of the metre, s", "cm", {}, 560, 230, true};
-  LineChart latency{"Time for a scan", "sensor time, s", "ms", {}, 560, 230, true};
+  LineChart error{"Error of each metre flown", "end of the metre, s", "cm", {}, 380, 220, true};
+  LineChart latency{"Time for a scan", "sensor time, s", "ms", {}, 380, 220, true};
   LineChart memory{
-      "Memory that the algorithm says it holds", "sensor time, s", "MB", {}, 560, 230, true};
+      "Memory that the algorithm says it holds", "sensor time, s", "MB", {}, 380, 220, true};
   std::size_t i = 0;
   for (const ResultRow* row : rows) {
     const std::string color = palette[i++ % palette.size()];
@@ -272,7 +284,7 @@ constexpr const char* kReading =
     "moved with the estimated path, made alike for every algorithm, the first point of each 2 cm "
     "voxel. Own memory: map, scan buffer and backlog as the algorithm itself counts them; "
     "resources.csv has the whole process beside it, which holds the simulator too when the flight "
-    "is flown on the fly. Bold: best among the rows of the same sensor.</p>"
+    "is flown on the fly. Bold: best of several rows of the same sensor.</p>"
     "<p class='note'>A run that failed or diverged stays in the table with its reason. Figures "
     "come "
     "from the final trajectory; metrics.json in each run's folder holds the live one, the other "

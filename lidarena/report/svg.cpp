@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace lidarena {
 namespace {
@@ -38,6 +39,48 @@ struct Frame {
     return svg;
   }
 };
+
+constexpr int kLegendRow = 14;     // px
+constexpr double kChartLeft = 48;  // px, room for the tick labels
+
+double legend_width(const Series& series) {
+  return 26.0 + 6.2 * static_cast<double>(series.name.size());
+}
+
+/// Where each entry of the legend goes: (x from the left, row).
+std::vector<std::pair<double, int>> legend_places(const LineChart& chart) {
+  std::vector<std::pair<double, int>> places;
+  double x = kChartLeft;
+  int row = 0;
+  for (const Series& s : chart.series) {
+    if (x > kChartLeft && x + legend_width(s) > chart.width) {
+      x = kChartLeft;
+      ++row;
+    }
+    places.emplace_back(x, row);
+    x += legend_width(s);
+  }
+  return places;
+}
+
+int legend_rows(const LineChart& chart) {
+  const auto places = legend_places(chart);
+  return places.empty() ? 1 : places.back().second + 1;
+}
+
+std::string legend(const LineChart& chart) {
+  std::string svg;
+  const auto places = legend_places(chart);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const auto [x, row] = places[i];
+    const int y = chart.height - 5 + kLegendRow * row;
+    svg += fmt::format(
+        "<rect x='{:.1f}' y='{}' width='10' height='3' fill='{}'/>"
+        "<text x='{:.1f}' y='{}' class='t'>{}</text>",
+        x, y - 4, chart.series[i].color, x + 14, y, escaped(chart.series[i].name));
+  }
+  return svg;
+}
 
 std::string open_svg(int width, int height, const std::string& title) {
   return fmt::format(
@@ -144,11 +187,12 @@ std::string line_chart_svg(const LineChart& chart) {
       y1 = std::max(y1, s.y[i]);
     }
   }
-  std::string svg = open_svg(chart.width, chart.height, chart.title);
+  std::string svg =
+      open_svg(chart.width, chart.height + kLegendRow * (legend_rows(chart) - 1), chart.title);
   if (!(x1 > x0)) return svg + "<text x='8' y='40' class='t'>no data</text></svg>";
   if (!(y1 > y0)) y1 = y0 + 1.0;
-  const Frame frame{48, 26, chart.width - 60.0,   chart.height - 80.0, x0,
-                    x1, y0, y1 + 0.05 * (y1 - y0)};
+  const Frame frame{kChartLeft, 26, chart.width - 60.0,   chart.height - 80.0, x0,
+                    x1,         y0, y1 + 0.05 * (y1 - y0)};
   svg += frame.grid(nice_ticks(x0, x1, 6), nice_ticks(y0, y1, 4));
   for (const Series& s : chart.series) {
     std::string path;
@@ -168,14 +212,7 @@ std::string line_chart_svg(const LineChart& chart) {
                      frame.left + frame.width / 2, chart.height - 25, escaped(chart.x_label));
   svg += fmt::format("<text x='{}' y='{}' class='t' text-anchor='end'>{}</text>", chart.width - 10,
                      15, escaped(chart.y_label));
-  double x = frame.left;
-  for (const Series& s : chart.series) {
-    svg += fmt::format(
-        "<rect x='{:.1f}' y='{}' width='10' height='3' fill='{}'/>"
-        "<text x='{:.1f}' y='{}' class='t'>{}</text>",
-        x, chart.height - 9, s.color, x + 14, chart.height - 5, escaped(s.name));
-    x += 26.0 + 6.2 * static_cast<double>(s.name.size());
-  }
+  svg += legend(chart);
   return svg + "</svg>";
 }
 
