@@ -33,9 +33,9 @@ struct Dataset {
 };
 
 /// Opens a dataset folder of ours, a single .mcap, a bag folder of rosbag2 with one .mcap, a folder
-/// of PCD/PLY/bin sweeps, or a folder in the room format. In an .mcap of others, topics are found by
-/// type: the first with scans (PointCloud2, Livox CustomMsg) or that of `options.sensor` (topic or
-/// id), and the first Imu. Throws InputError naming file, place and remedy.
+/// of PCD/PLY/bin sweeps, or a folder in the room format. In an .mcap of others, topics are found
+/// by type: the first with scans (PointCloud2, Livox CustomMsg) or that of `options.sensor` (topic
+/// or id), and the first Imu. Throws InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// True motion of the body where the dataset carries one (truth.tum, or gt.tum of the room format).
