@@ -14,6 +14,7 @@ struct SimulateOptions {
   std::vector<std::string> sensors;
   SimulateRequest request;
   std::string noise = "on";
+  std::string mode;
   bool no_data = false;
 };
 
@@ -27,6 +28,10 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   }
   request.noise = options.noise == "on";
   request.data = !options.no_data;
+  if (!options.mode.empty()) {
+    request.mode.emplace();
+    read_value(ConfigNode::parse(options.mode, "--mode"), *request.mode, {});
+  }
   Console console(common.quiet);
   const SimulateSummary s =
       simulate_dataset(request, options.out, Parallel(common.threads), console);
@@ -67,6 +72,9 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--noise", o->noise, "on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
+  verb->add_option("--mode", o->mode,
+                   "rolling (every ray at its own instant), or a fault of earlier simulators for "
+                   "comparison: frozen, frozen_unstamped, official; default: as the sensor's file");
   verb->add_flag("--no-data", o->no_data,
                  "A manifest alone: flown anew, with the same points, whenever it is used");
   set_verb(

@@ -78,6 +78,7 @@ Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& 
 RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
                          LogSink& log) {
   Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  for (const std::string& note : dataset.notes) log.info("note: " + note);
   const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
   const MadeOdometry made = make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
   RunOptions options;

@@ -159,7 +159,10 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::st
 SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path& out,
                                  const Parallel& parallel, LogSink& log) {
   std::vector<SensorConfig> sensors;
-  for (const fs::path& file : request.sensors) sensors.push_back(load_sensor(file));
+  for (const fs::path& file : request.sensors) {
+    sensors.push_back(load_sensor(file));
+    if (request.mode) sensors.back().mode = *request.mode;
+  }
   WorldModel model = load_world(request.world, {}, log);
   SimulationOptions options;
   options.seed = request.seed;
@@ -198,7 +201,8 @@ Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
   if (fs::exists(manifest_file) && !fs::exists(path / "data.mcap") &&
       !fs::exists(path / "data.bag")) {
     const Json manifest = read_json(manifest_file);
-    if (manifest.contains("simulation")) return fly_manifest(path, manifest, options.sensor, parallel);
+    if (manifest.contains("simulation"))
+      return fly_manifest(path, manifest, options.sensor, parallel);
   }
   return open_dataset(path, options);
 }

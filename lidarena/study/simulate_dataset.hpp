@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
 
 namespace lidarena {
 
@@ -21,7 +23,8 @@ struct SimulateRequest {
   std::uint64_t seed = 1;  ///< of all noise; a procedural world's own seed stands in its file
   double seconds = 0.0;    ///< 0 = the whole flight
   bool noise = true;
-  bool data = true;  ///< false: a manifest alone, flown anew whenever it is used
+  std::optional<ScanMode> mode;  ///< of all sensors; empty = as their files say
+  bool data = true;              ///< false: a manifest alone, flown anew whenever it is used
 };
 
 /// Counts and sizes of what was simulated.

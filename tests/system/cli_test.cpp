@@ -174,6 +174,8 @@ TEST_F(Cli, BadInputIsOneClearErrorWithExitCode2) {
               HasSubstr("did you mean 'livox_mid360"));
   EXPECT_THAT(refusal("simulate --world hosue --flight " + flight + rest),
               HasSubstr("did you mean 'house'?"));
+  EXPECT_THAT(refusal("simulate --mode frosen --world " + room + " --flight " + flight + rest),
+              HasSubstr("use one of rolling, frozen"));
   EXPECT_FALSE(fs::exists(path("data") + "/manifest.json"))
       << "nothing that looks whole may be left";
   EXPECT_THAT(refusal("run kiss_icp " + path("nowhere") + " --out " + path("run")),
@@ -229,6 +231,22 @@ TEST_F(Cli, AManifestAloneIsFlownWithTheSamePoints) {
   EXPECT_TRUE(same(path("a") + "/trajectory.tum", path("b") + "/trajectory.tum"));
   EXPECT_TRUE(same(path("a") + "/map.ply", path("b") + "/map.ply"));
   EXPECT_TRUE(same(path("full") + "/truth.tum", path("bare") + "/truth.tum"));
+}
+
+TEST_F(Cli, TheTimingModesDifferInMotionAndStampsAlone) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const auto counts = [&](const std::string& mode) {
+    EXPECT_EQ(call("simulate --noise off --seconds 2 --mode " + mode + " --world " + room +
+                   " --flight " + flight + " --sensor livox_mid360 --out " + path(mode))
+                  .exit_code,
+              0);
+    const Outcome info = call("info --json " + path(mode));
+    return nlohmann::json::parse(info.out).at("topics").at("livox_mid360/points");
+  };
+  EXPECT_EQ(counts("rolling").at("untimed_scans"), 0);
+  EXPECT_EQ(counts("frozen").at("untimed_scans"), 0);
+  EXPECT_EQ(counts("frozen_unstamped").at("untimed_scans"), 20);
 }
 
 TEST_F(Cli, SameSeedSameBytesAndATruncatedDatasetIsNeverTakenForWhole) {
