@@ -22,6 +22,7 @@ Config improved(const LidarInfo& lidar) {
   Config config;
   config.max_range_m = lidar.max_range_m;
   config.min_range_m = lidar.min_range_m;
+  config.voxel_size_m = 0.5;  // a third of the error of 1 m at three times the work, see README.md
   config.equal_times_are_no_times = true;
   config.motion_per_second = true;
   config.motion_kept_when_lost = 0.5;
