@@ -179,14 +179,14 @@ std::string results_csv(const Results& results) {
 }
 
 std::string results_text(const Results& results) {
-  std::string text = fmt::format("{:<14}{:<18}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n",
+  std::string text = fmt::format("{:<14}{:<22}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n",
                                  "world", "sensor", "algorithm", "RPE cm/m", "ATE cm",
                                  "map RMSE cm", "outliers %", "x real", "own MB", "status");
   for (const ResultRow& r : results.rows) {
     const auto shown = [](const std::optional<double>& v, const char* format) {
       return v ? cell(v, format) : std::string("-");
     };
-    text += fmt::format("{:<14}{:<18}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n", r.world,
+    text += fmt::format("{:<14}{:<22}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n", r.world,
                         r.sensor, r.algorithm + ":" + r.preset, shown(r.rpe_cm_per_m, "{:.2f}"),
                         shown(r.ate_cm, "{:.2f}"),
                         shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),

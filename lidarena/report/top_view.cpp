@@ -138,7 +138,8 @@ std::string scale_bar(const View& view) {
   const double y = view.height - 12;
   return fmt::format(
       "<line x1='{0:.1f}' x2='{1:.1f}' y1='{2:.1f}' y2='{2:.1f}' stroke='#222' stroke-width='2'/>"
-      "<text x='{0:.1f}' y='{3:.1f}' class='t'>{4:g} m</text>",
+      "<text x='{0:.1f}' y='{3:.1f}' class='t' paint-order='stroke' stroke='#fff' "
+      "stroke-width='3'>{4:g} m</text>",
       x, x + length_m * view.pixels_per_m, y, y - 5, length_m);
 }
 
