@@ -5,6 +5,7 @@
 
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/tum.hpp"
+#include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/load_world.hpp"
@@ -111,6 +112,28 @@ Trajectory truth_of(const Scene& scene) {
   return Trajectory(std::move(poses));
 }
 
+void copy_over(const fs::path& from, const fs::path& to) {
+  if (fs::exists(to) && fs::equivalent(from, to)) return;
+  fs::create_directories(to.parent_path());
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing);
+}
+
+/// Copies the flight's file into the dataset, and the recording that it replays to the same place
+/// relative to it, so that the dataset can be flown anew wherever it is.
+void copy_flight(const fs::path& flight, const fs::path& out) {
+  if (flight.extension() == ".yaml") {
+    const fs::path replay = load_config<FlightConfig>(flight).replay;
+    if (replay.is_relative() && !replay.empty()) {
+      if (*replay.lexically_normal().begin() == "..") {
+        throw InputError(flight.string(), "replays a file above its own folder",
+                         "put the recording beside it, or name it by its full path");
+      }
+      copy_over(flight.parent_path() / replay, out / replay);
+    }
+  }
+  copy_over(flight, out / ("flight" + flight.extension().string()));
+}
+
 double path_length(const Scene& scene) {
   double length = 0.0;
   Eigen::Vector3d last = scene.flight->pose_at(Time{0}).translation();
@@ -181,10 +204,10 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   summary.path_m = path_length(*scene);
 
   fs::create_directories(out);
-  fs::remove(out / "manifest.json");  // an old dataset here is no longer whole
+  // What an older dataset left here must not be taken for part of this one.
+  for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
   save_ply(out / "world.ply", scene->world->mesh());
-  fs::copy_file(request.flight, out / ("flight" + request.flight.extension().string()),
-                fs::copy_options::overwrite_existing);
+  copy_flight(request.flight, out);
   const Json manifest = manifest_of(request, *scene);
   if (request.data) {
     write_events(*scene, out, manifest, parallel, log, summary);

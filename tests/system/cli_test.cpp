@@ -233,6 +233,36 @@ TEST_F(Cli, AManifestAloneIsFlownWithTheSamePoints) {
   EXPECT_TRUE(same(path("full") + "/truth.tum", path("bare") + "/truth.tum"));
 }
 
+TEST_F(Cli, AManifestAloneLeavesNoOlderMeasurementsToBeTakenForItsOwn) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const std::string call_simulate = "simulate --world " + room + " --flight " + flight +
+                                    " --sensor livox_mid360 --out " + path("data");
+  ASSERT_EQ(call(call_simulate + " --seconds 3").exit_code, 0);
+  ASSERT_EQ(call(call_simulate + " --seconds 1 --no-data").exit_code, 0);
+  EXPECT_FALSE(fs::exists(path("data") + "/data.mcap"));
+  const Outcome ran = call("run --json kiss_icp " + path("data") + " --out " + path("run"));
+  ASSERT_EQ(ran.exit_code, 0) << ran.err;
+  EXPECT_EQ(nlohmann::json::parse(ran.out).at("scans"), 10) << "the one second, not the three";
+}
+
+TEST_F(Cli, ARecordedFlightIsFlownAnewFromTheDatasetItself) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string rest = " --sensor livox_mid360 --seconds 2 --no-data --out ";
+  ASSERT_EQ(call("simulate --world " + room + " --flight " + write("flight.yaml", kRoomFlight) +
+                 rest + path("first"))
+                .exit_code,
+            0);
+  fs::copy_file(path("first") + "/truth.tum", path("recording.tum"));
+  const std::string replay = write("replay.yaml", "kind: replay\nreplay: recording.tum\n");
+  const Outcome flown =
+      call("simulate --world " + room + " --flight " + replay + rest + path("re"));
+  ASSERT_EQ(flown.exit_code, 0) << flown.err;
+  fs::remove(path("recording.tum"));
+  const Outcome ran = call("run kiss_icp " + path("re") + " --out " + path("run"));
+  EXPECT_EQ(ran.exit_code, 0) << ran.err;
+}
+
 TEST_F(Cli, TheTimingModesDifferInMotionAndStampsAlone) {
   const std::string room = write("room.obj", room_obj());
   const std::string flight = write("flight.yaml", kRoomFlight);
