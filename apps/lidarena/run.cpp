@@ -32,14 +32,21 @@ int run_verb(const Common& common, const RunRequest& request, const std::string&
   if (common.json) {
     print_json({{"run", out},
                 {"scans", s.scans},
+                {"dropped", s.dropped},
+                {"longest_delay_s", s.longest_delay_s},
                 {"statuses", statuses},
                 {"sensor_seconds", s.sensor_seconds},
                 {"compute_seconds", s.compute_seconds},
                 {"diverged", s.diverged},
                 {"reason", s.reason}});
   } else {
-    fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\nrun: {}\n", s.scans, counts,
-               s.compute_seconds, factor, out);
+    fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
+               s.compute_seconds, factor);
+    if (request.paced) {
+      fmt::print("paced: {} scans dropped, the latest estimate came {:.3f} s after its scan\n",
+                 s.dropped, s.longest_delay_s);
+    }
+    fmt::print("run: {}\n", out);
   }
   if (s.diverged) {
     console.warn("the run diverged: " + s.reason);
@@ -68,6 +75,7 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--set", r->odometry.overrides, "key=value, over everything; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_flag("--paced", r->paced, "Drop scans when the algorithm is late, as on a live robot");
   verb->add_option("--layout", r->read.layout, "Of raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
   verb->add_option("--extrinsics", *extrinsics, "body_from_lidar=x,y,z,qx,qy,qz,qw");

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "lidarena/map/point_map.hpp"
+#include "lidarena/odometry/pacer.hpp"
 #include "lidarena/odometry/process_memory.hpp"
 
 namespace lidarena {
@@ -21,30 +22,23 @@ std::uint64_t part(const std::map<std::string, std::uint64_t>& memory, const cha
 class Recorder {
  public:
   Recorder(Odometry& odometry, const RunOptions& options, LogSink& log)
-      : odometry_(odometry), options_(options), log_(log), map_(options.map_voxel_m) {}
+      : odometry_(odometry),
+        options_(options),
+        log_(log),
+        imu_id_(options.imu_id),
+        lidar_id_(options.lidar_id),
+        map_(options.map_voxel_m) {}
 
-  void feed(const std::string& sensor_id, const ImuSample& sample) {
-    if (imu_id_.empty()) imu_id_ = options_.imu_id.empty() ? sensor_id : options_.imu_id;
-    if (sensor_id == imu_id_) odometry_.register_imu(sample);
-  }
-
-  void feed(const std::string& sensor_id, const Scan& scan) {
-    if (lidar_id_.empty()) lidar_id_ = options_.lidar_id.empty() ? sensor_id : options_.lidar_id;
-    if (sensor_id != lidar_id_ || !in_order(scan)) return;
-    const auto start = std::chrono::steady_clock::now();
-    const ScanResult result = odometry_.register_scan(scan);
-    const std::chrono::duration<double> latency = std::chrono::steady_clock::now() - start;
-    keep_result(result);
-    keep_resources(scan, latency.count());
-    log_.progress("run", static_cast<double>(summary().scans),
-                  static_cast<double>(options_.scan_count.value_or(0)));
-  }
+  /// Whether the event is of the run's LiDAR (and in order) or of its IMU.
+  bool wants(const Event& event);
+  /// Hands one of those to the odometry; returns the wall time it took, s.
+  double feed(const Event& event);
 
   bool diverged() const { return result_.summary.diverged; }
+  RunSummary& summary() { return result_.summary; }
   RunResult finish();
 
  private:
-  RunSummary& summary() { return result_.summary; }
   bool in_order(const Scan& scan);
   void keep_result(const ScanResult& result);
   void keep_resources(const Scan& scan, double latency_s);
@@ -61,6 +55,33 @@ class Recorder {
   PointMap map_;
   RunResult result_;
 };
+
+bool Recorder::wants(const Event& event) {
+  const auto* scan = std::get_if<Scan>(&event.data);
+  std::string& chosen = scan != nullptr ? lidar_id_ : imu_id_;
+  if (chosen.empty()) chosen = event.sensor_id;
+  return event.sensor_id == chosen && (scan == nullptr || in_order(*scan));
+}
+
+double Recorder::feed(const Event& event) {
+  if (diverged()) return 0.0;
+  const auto start = std::chrono::steady_clock::now();
+  const auto seconds = [&start] {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  const auto* scan = std::get_if<Scan>(&event.data);
+  if (scan == nullptr) {
+    odometry_.register_imu(std::get<ImuSample>(event.data));
+    return seconds();
+  }
+  const ScanResult result = odometry_.register_scan(*scan);
+  const double latency = seconds();
+  keep_result(result);
+  keep_resources(*scan, latency);
+  log_.progress("run", static_cast<double>(summary().scans),
+                static_cast<double>(options_.scan_count.value_or(0)));
+  return latency;
+}
 
 bool Recorder::in_order(const Scan& scan) {
   if (!first_stamp_)
@@ -125,11 +146,20 @@ RunResult Recorder::finish() {
 
 RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log) {
   Recorder recorder(odometry, options, log);
+  Pacer pacer([&](const Event& event) { return recorder.feed(event); });
   while (!recorder.diverged()) {
-    const std::optional<Event> event = events.next();
+    std::optional<Event> event = events.next();
     if (!event) break;
-    std::visit([&](const auto& data) { recorder.feed(event->sensor_id, data); }, event->data);
+    if (!recorder.wants(*event)) continue;
+    if (options.paced) {
+      pacer.offer(std::move(*event));
+    } else {
+      recorder.feed(*event);
+    }
   }
+  pacer.flush();
+  recorder.summary().dropped = pacer.dropped();
+  recorder.summary().longest_delay_s = pacer.longest_delay_s();
   return recorder.finish();
 }
 

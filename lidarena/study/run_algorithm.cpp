@@ -34,6 +34,8 @@ Json summary_json(const RunSummary& summary) {
   Json statuses = Json::object();
   for (const auto& [status, count] : summary.statuses) statuses[to_string(status)] = count;
   return {{"scans", summary.scans},
+          {"dropped", summary.dropped},
+          {"longest_delay_s", summary.longest_delay_s},
           {"statuses", statuses},
           {"sensor_seconds", summary.sensor_seconds},
           {"compute_seconds", summary.compute_seconds},
@@ -84,6 +86,7 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
   RunOptions options;
   options.lidar_id = lidar_id;
   options.scan_count = dataset.scan_count;
+  options.paced = request.paced;
   RunResult result = run(*made.odometry, *dataset.events, options, log);
   if (!result.files.trajectory.empty()) {
     result.files.reprojected =
@@ -96,6 +99,7 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
                            {"dataset", relative_path(request.dataset, out)},
                            {"sensor", lidar_id},
                            {"threads", parallel.threads()},
+                           {"paced", request.paced},
                            {"status", result.summary.diverged ? "diverged" : "ok"},
                            {"reason", result.summary.reason},
                            {"summary", summary_json(result.summary)}};

@@ -17,6 +17,7 @@ struct RunRequest {
   OdometryRequest odometry;
   std::filesystem::path dataset;
   ReadOptions read;  ///< `read.sensor` names the LiDAR where the dataset has several
+  bool paced = false;  ///< drop scans when the algorithm is late, as on a live robot
 };
 
 /// Runs one algorithm over one dataset and writes the RUN folder `out`, with the re-projected map.

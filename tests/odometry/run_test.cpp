@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <thread>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/odometry/factory.hpp"
@@ -42,13 +43,14 @@ class KeepingSink : public LogSink {
 };
 
 /// Goes 1 m along x with each scan and publishes two points there.
-class Pacer : public Odometry {
+class Walker : public Odometry {
  public:
   OdometryTraits traits() const override {
     return {.revises_past = true, .publishes_scans = publishes};
   }
   void register_imu(const ImuSample&) override { ++imu_samples; }
   ScanResult register_scan(const Scan& scan) override {
+    std::this_thread::sleep_for(std::chrono::duration<double>(seconds_per_scan));
     const auto x = static_cast<double>(++scans);
     StampedPose pose{scan.stamp, make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0})};
     ScanResult result;
@@ -72,6 +74,7 @@ class Pacer : public Odometry {
   }
 
   bool publishes = true;
+  double seconds_per_scan = 0.0;
   int scans = 0, imu_samples = 0, diverges_at = 0, not_finite_at = 0;
   bool finished = false;
   std::vector<Eigen::Vector3f> published;
@@ -94,11 +97,11 @@ std::vector<Event> ten_scans() {
 }
 
 TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
-  Pacer pacer;
+  Walker walker;
   ListSource source(ten_scans());
   KeepingSink sink;
-  const RunResult result = run(pacer, source, {.scan_count = 10}, sink);
-  EXPECT_TRUE(pacer.finished);
+  const RunResult result = run(walker, source, {.scan_count = 10}, sink);
+  EXPECT_TRUE(walker.finished);
   ASSERT_EQ(result.files.live.size(), 10U);
   ASSERT_EQ(result.files.trajectory.size(), 10U);
   EXPECT_EQ(result.files.live.poses()[3].world_from_body.translation(), Eigen::Vector3d(4, 0, 0));
@@ -124,19 +127,19 @@ TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
 }
 
 TEST(Run, AMethodThatDoesNotPublishScansIsAskedForItsMap) {
-  Pacer pacer;
-  pacer.publishes = false;
+  Walker walker;
+  walker.publishes = false;
   ListSource source(ten_scans());
   LogSink sink;
-  EXPECT_EQ(run(pacer, source, {}, sink).files.map.points,
+  EXPECT_EQ(run(walker, source, {}, sink).files.map.points,
             (std::vector<Eigen::Vector3f>{{7, 7, 7}}));
 }
 
 TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
-  Pacer pacer;
+  Walker walker;
   ListSource source(ten_scans());
   LogSink sink;
-  const RunResult result = run(pacer, source, {.map_voxel_m = 4.0}, sink);
+  const RunResult result = run(walker, source, {.map_voxel_m = 4.0}, sink);
   // x 1..10 falls into cells 0..3, 4..7, 8..11, at y 0 and at y 5
   EXPECT_EQ(result.files.map.points,
             (std::vector<Eigen::Vector3f>{
@@ -145,12 +148,12 @@ TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
 
 TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
   for (const bool says_so : {true, false}) {
-    Pacer pacer;
-    (says_so ? pacer.diverges_at : pacer.not_finite_at) = 4;
+    Walker walker;
+    (says_so ? walker.diverges_at : walker.not_finite_at) = 4;
     ListSource source(ten_scans());
     KeepingSink sink;
-    const RunResult result = run(pacer, source, {}, sink);
-    EXPECT_EQ(pacer.scans, 4) << "no more is fed";
+    const RunResult result = run(walker, source, {}, sink);
+    EXPECT_EQ(walker.scans, 4) << "no more is fed";
     EXPECT_TRUE(result.summary.diverged);
     EXPECT_THAT(result.summary.reason, testing::HasSubstr("scan 3"));
     EXPECT_EQ(result.summary.scans, 4U);
@@ -172,11 +175,11 @@ TEST(Run, OtherSensorsAreLeftOutAndTheFirstImuIsTaken) {
     events.push_back(scan_event("a", i));
   }
   LogSink sink;
-  Pacer first;
+  Walker first;
   ListSource again(events);
   EXPECT_EQ(run(first, again, {.lidar_id = "a"}, sink).summary.scans, 5U);
   EXPECT_EQ(first.imu_samples, 5);
-  Pacer named;
+  Walker named;
   ListSource once_more(events);
   run(named, once_more, {.lidar_id = "a", .imu_id = "imu2"}, sink);
   EXPECT_EQ(named.imu_samples, 10);
@@ -186,18 +189,43 @@ TEST(Run, ScansOutOfOrderAreSkippedWithAWarning) {
   std::vector<Event> events = ten_scans();
   events.insert(events.begin() + 5, events[2]);
   events.insert(events.begin() + 5, events[4]);
-  Pacer pacer;
+  Walker walker;
   ListSource source(events);
   KeepingSink sink;
-  EXPECT_EQ(run(pacer, source, {}, sink).summary.scans, 10U);
+  EXPECT_EQ(run(walker, source, {}, sink).summary.scans, 10U);
   EXPECT_EQ(sink.warnings.size(), 2U);
 }
 
+TEST(Run, APacedMethodThatIsLateLosesScansButNoImuSample) {
+  std::vector<Event> events;
+  for (int i = 0; i < 20; ++i) {
+    events.push_back({"imu", ImuSample{}});
+    Scan scan;
+    scan.stamp = i * std::chrono::milliseconds(1);
+    events.push_back({"a", scan});
+  }
+  LogSink sink;
+  Walker late;
+  late.seconds_per_scan = 5e-3;  // five scans come meanwhile
+  ListSource source(events);
+  const RunResult result = run(late, source, {.paced = true}, sink);
+  EXPECT_GE(result.summary.dropped, 12U);  // of the four between, each time
+  EXPECT_EQ(result.summary.scans + result.summary.dropped, 20U);
+  EXPECT_EQ(late.scans, static_cast<int>(result.summary.scans));
+  EXPECT_EQ(late.imu_samples, 20);
+  EXPECT_GE(result.summary.longest_delay_s, 5e-3);
+
+  Walker unhurried;
+  unhurried.seconds_per_scan = 5e-3;
+  ListSource again(events);
+  EXPECT_EQ(run(unhurried, again, {}, sink).summary.scans, 20U);
+}
+
 TEST(Run, NothingGivesNothing) {
-  Pacer pacer;
+  Walker walker;
   ListSource source({});
   LogSink sink;
-  const RunResult result = run(pacer, source, {}, sink);
+  const RunResult result = run(walker, source, {}, sink);
   EXPECT_EQ(result.summary.scans, 0U);
   EXPECT_TRUE(result.files.trajectory.empty());
 }
