@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "lidarena/world/triangle_mesh.hpp"
+
+namespace lidarena {
+
+/// Writes Wavefront OBJ: one object, metres, z up, 9 significant digits, no normals or colours.
+/// The file appears under its name only once it is whole. Throws Error when it cannot be written.
+void save_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
+
+/// Writes a world for Gazebo: `file` (an SDF world with one static model, a sun and gravity) and,
+/// beside it, models/NAME with model.config, model.sdf and meshes/NAME.obj, where NAME is the stem
+/// of `file`. Point GAZEBO_MODEL_PATH at that `models` folder; load_world() finds it by itself.
+/// Throws InputError when the stem has other characters than letters, digits, '_', '-' and '.', and
+/// Error when something cannot be written.
+void save_sdf(const std::filesystem::path& file, const TriangleMesh& mesh);
+
+/// One of save_ply(), save_obj(), save_sdf(), by the file's ending (.ply, .obj, .sdf, .world).
+/// Throws InputError for other endings.
+void save_world(const std::filesystem::path& file, const TriangleMesh& mesh);
+
+}  // namespace lidarena

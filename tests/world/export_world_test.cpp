@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/world/export_world.hpp"
+
+#include <gtest/gtest.h>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/world/load_world.hpp"
+#include "lidarena/world/primitives.hpp"
+#include "tests/world/temporary_folder.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::TemporaryFolder;
+
+/// A box and a sphere far enough apart that a mixed-up index shows in the area.
+TriangleMesh two_bodies() {
+  TriangleMesh mesh = box_shape({4.0, 3.0, 2.5});
+  mesh.append(sphere_shape(0.7), make_pose(Eigen::Matrix3d::Identity(), {9.0, -3.0, 1.25}));
+  return mesh;
+}
+
+void expect_same(const TriangleMesh& a, const TriangleMesh& b) {
+  EXPECT_EQ(a.triangles.size(), b.triangles.size());
+  EXPECT_NEAR(a.area(), b.area(), 1e-5 * b.area());
+  EXPECT_LT((a.bounds().min() - b.bounds().min()).norm(), 1e-6);
+  EXPECT_LT((a.bounds().max() - b.bounds().max()).norm(), 1e-6);
+}
+
+TEST(ExportWorld, ComesBackAsItWas) {
+  const TemporaryFolder folder;
+  LogSink log;
+  for (const char* name : {"bodies.ply", "bodies.obj", "bodies.sdf", "other.world"}) {
+    SCOPED_TRACE(name);
+    const fs::path file = folder.path() / name;
+    save_world(file, two_bodies());
+    const bool is_sdf = file.extension() == ".sdf" || file.extension() == ".world";
+    if (is_sdf && !LIDARENA_TEST_SDF) continue;
+    expect_same(load_world(file, {}, log).mesh, two_bodies());
+  }
+}
+
+TEST(ExportWorld, NamesTheFileAndTheRemedy) {
+  const TemporaryFolder folder;
+  EXPECT_THROW(save_world(folder.path() / "world.stl", two_bodies()), InputError);
+  EXPECT_THROW(save_world(folder.path() / "my world.sdf", two_bodies()), InputError);
+  EXPECT_THROW(save_world(folder.path() / "missing" / "world.obj", two_bodies()), Error);
+  EXPECT_TRUE(fs::is_empty(folder.path()));
+}
+
+}  // namespace
+}  // namespace lidarena
