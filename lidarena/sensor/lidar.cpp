@@ -14,7 +14,7 @@ constexpr std::size_t kRaysPerBlock = 1024;
 /// What one block of shots brought back; `truth` runs parallel to `points`.
 struct Returns {
   std::vector<Point> points;
-  std::vector<Hit> truth;
+  std::vector<PointTruth> truth;
 };
 
 /// Where the lidar is during a scan; shots of one instant share the pose.
@@ -62,10 +62,24 @@ void aim(std::span<const Beam> beams, double shift, LidarMotion motion, std::spa
   }
 }
 
+/// From the sensor's axis, as the sensor counts.
+double true_range(const Beam& beam, const Hit& hit) {
+  return static_cast<double>(beam.origin.norm()) + static_cast<double>(hit.range);
+}
+
 bool within_limits(const SensorConfig& config, const Beam& beam, const Hit& hit) {
   if (!hit.valid()) return false;
-  const double range = static_cast<double>(beam.origin.norm()) + static_cast<double>(hit.range);
+  const double range = true_range(beam, hit);
   return range >= config.min_range_m && range <= config.max_range_m;
+}
+
+/// `shift` as start_shift(): the truth knows where the shot should have started.
+PointTruth make_truth(const Beam& beam, const Ray& ray, const Hit& hit, double shift) {
+  const Eigen::Vector3d way = static_cast<double>(hit.range) * ray.direction.cast<double>();
+  return {.position = (ray.origin + way).cast<float>(),
+          .range = static_cast<float>(true_range(beam, hit) + shift),
+          .normal = hit.normal,
+          .triangle = hit.triangle};
 }
 
 /// Gaussian, of the same sigma at every range.
@@ -86,7 +100,8 @@ Point make_point(const SensorConfig& config, const Beam& beam, double range, flo
 
 /// Casts `shots`, which are the rays `first_ray`, `first_ray` + 1, ... since the sensor's start.
 Returns shoot(const SensorConfig& config, const World& world, const LidarMotion& motion,
-              std::span<const Beam> shots, const CounterRandom& random, std::uint64_t first_ray) {
+              std::span<const Beam> shots, const CounterRandom& random, std::uint64_t first_ray,
+              bool with_truth) {
   const double shift = start_shift(config);
   std::vector<Ray> rays(shots.size());
   std::vector<Hit> hits(shots.size());
@@ -95,14 +110,14 @@ Returns shoot(const SensorConfig& config, const World& world, const LidarMotion&
 
   Returns returns;
   returns.points.reserve(shots.size());
-  returns.truth.reserve(shots.size());
+  if (with_truth) returns.truth.reserve(shots.size());
   for (std::size_t i = 0; i < shots.size(); ++i) {
     if (!within_limits(config, shots[i], hits[i])) continue;
     const double range =
         static_cast<double>(hits[i].range) + range_error(config, random, first_ray + i);
     const float intensity = lambert_intensity(rays[i].direction, hits[i].normal);
     returns.points.push_back(make_point(config, shots[i], range, intensity));
-    returns.truth.push_back(hits[i]);
+    if (with_truth) returns.truth.push_back(make_truth(shots[i], rays[i], hits[i], shift));
   }
   return returns;
 }
@@ -144,7 +159,7 @@ Time Lidar::stamp(std::uint64_t index) const {
 Time Lidar::last_firing(std::uint64_t index) const { return stamp(index) + Time{last_dt_ns_}; }
 
 Scan Lidar::measure(const World& world, const Flight& flight, std::uint64_t index,
-                    const Parallel& parallel, std::vector<Hit>* truth) const {
+                    const Parallel& parallel, std::vector<PointTruth>* truth) const {
   std::vector<Beam> beams;
   pattern_->beams(index, beams);
   const LidarMotion motion(flight, stamp(index), config_);
@@ -152,7 +167,8 @@ Scan Lidar::measure(const World& world, const Flight& flight, std::uint64_t inde
   parallel.for_blocks(beams.size(), kRaysPerBlock, [&](std::size_t begin, std::size_t end) {
     const std::span<const Beam> shots(beams.data() + begin, end - begin);
     const std::uint64_t first_ray = index * beams.size() + begin;
-    blocks[begin / kRaysPerBlock] = shoot(config_, world, motion, shots, random_, first_ray);
+    blocks[begin / kRaysPerBlock] =
+        shoot(config_, world, motion, shots, random_, first_ray, truth != nullptr);
   });
 
   Scan scan;

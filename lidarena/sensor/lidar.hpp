@@ -9,6 +9,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/scan.hpp"
+#include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
@@ -27,10 +28,10 @@ class Lidar {
   /// Scan `index`, which begins at index * period. Each shot is cast from the pose at its own
   /// instant (see ScanMode); shots without a return are left out. Ranges count from the sensor's
   /// axis (|beam origin| + the way flown) and are kept when the true range lies within the
-  /// limits. Intensity is lambert_intensity(). `truth`, if given, receives the world's noise-free
-  /// hit of every point, in point order (its range counts from the beam's start).
+  /// limits. Intensity is lambert_intensity(). `truth`, if given, receives what every point really
+  /// hit, in point order; its range counts as the point's does.
   Scan measure(const World& world, const Flight& flight, std::uint64_t index,
-               const Parallel& parallel, std::vector<Hit>* truth = nullptr) const;
+               const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
   const ScanPattern& pattern() const { return *pattern_; }
   Time stamp(std::uint64_t index) const;

@@ -25,7 +25,11 @@ class Simulation final : public EventSource {
  public:
   Simulation(const World& world, const Flight& flight, const std::vector<SensorConfig>& sensors,
              const SimulationOptions& options, const Parallel& parallel)
-      : world_(world), flight_(flight), parallel_(parallel), end_(flight.duration()) {
+      : world_(world),
+        flight_(flight),
+        parallel_(parallel),
+        truth_(options.truth),
+        end_(flight.duration()) {
     if (options.duration > Time{0}) end_ = std::min(end_, options.duration);
     const Rig rig = make_rig(sensors);
     std::size_t imu = 0;
@@ -49,10 +53,19 @@ class Simulation final : public EventSource {
       return Event{imu->id, imu->imu.measure(flight_)};
     }
     if (lidar == nullptr) return std::nullopt;
-    return Event{lidar->id, lidar->lidar.measure(world_, flight_, lidar->next++, parallel_)};
+    return Event{lidar->id, measure(*lidar)};
   }
 
  private:
+  Scan measure(LidarStream& stream) {
+    const std::uint64_t index = stream.next++;
+    if (truth_ == nullptr) return stream.lidar.measure(world_, flight_, index, parallel_);
+    ScanTruth truth{stream.id, stream.lidar.stamp(index), {}};
+    Scan scan = stream.lidar.measure(world_, flight_, index, parallel_, &truth.points);
+    truth_->write(truth);
+    return scan;
+  }
+
   /// The IMU whose sample comes next; ties go to the sensor named first.
   ImuStream* next_imu() {
     const auto first = std::min_element(
@@ -84,6 +97,7 @@ class Simulation final : public EventSource {
   const World& world_;
   const Flight& flight_;
   Parallel parallel_;
+  ScanTruthSink* truth_;
   Time end_;
   std::vector<ImuStream> imus_;
   std::vector<LidarStream> lidars_;

@@ -10,6 +10,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/world/world.hpp"
@@ -20,6 +21,7 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   Time duration{0};  ///< 0 = the whole flight
   bool noise = true;
+  ScanTruthSink* truth = nullptr;  ///< receives a scan's truth just before next() returns the scan
 };
 
 /// The rig that these sensors make on one body (each LiDAR brings its IMU, if it has one). Ids are

@@ -253,6 +253,50 @@ TEST(Lidar, TheOfficialFaultShortensEveryRangeByTheMinimumRange) {
   }
 }
 
+TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
+  const World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
+  const SwingingFlight flight(10.0);
+  for (const SensorConfig& config : {mid360(), ouster()}) {
+    const Lidar lidar = make_lidar(config);
+    std::vector<PointTruth> truth;
+    const Scan scan = lidar.measure(world, flight, 5, Parallel(2), &truth);
+    ASSERT_EQ(truth.size(), scan.points.size());
+    const auto shots = shots_of(lidar, scan, 5);
+    double worst = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i) {
+      const Pose pose = flight.pose_at(time_of(scan, scan.points[i])) * config.body_from_lidar;
+      const Vector3d position = truth[i].position.cast<double>();
+      worst = std::max(worst, (pose * scan.points[i].position.cast<double>() - position).norm());
+      const Triangle& corners = world.mesh().triangles[truth[i].triangle];
+      const Vector3d normal = world.mesh().cross(truth[i].triangle).normalized();
+      ASSERT_NEAR(normal.dot(position - world.mesh().vertices[corners[0]]), 0.0, kTolerance);
+      ASSERT_NEAR(std::abs(normal.dot(truth[i].normal.cast<double>())), 1.0, 1e-6);
+      ASSERT_GT(truth[i].normal.cast<double>().dot(pose.translation() - position), 0.0);
+      ASSERT_NEAR(truth[i].range,
+                  shots[i].origin.norm() + (scan.points[i].position - shots[i].origin).norm(),
+                  kTolerance);
+    }
+    EXPECT_LT(worst, kTolerance) << config.name;
+  }
+}
+
+TEST(Lidar, NoiseMovesThePointsAndNotTheirTruth) {
+  const World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
+  const SwingingFlight flight(10.0);
+  SensorConfig config = mid360();
+  std::vector<PointTruth> exact, noisy;
+  const Scan right = make_lidar(config).measure(world, flight, 2, kOneThread, &exact);
+  config.range_noise_m = 0.05;
+  const Scan moved = make_lidar(config).measure(world, flight, 2, kOneThread, &noisy);
+  ASSERT_EQ(exact.size(), noisy.size());
+  for (std::size_t i = 0; i < exact.size(); ++i) {
+    EXPECT_EQ(exact[i].position, noisy[i].position);
+    EXPECT_EQ(exact[i].range, noisy[i].range);
+    EXPECT_EQ(exact[i].triangle, noisy[i].triangle);
+  }
+  EXPECT_FALSE(same(right, moved));
+}
+
 TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
   const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const auto flight = rest(tilted_pose({1, 1, 1}, 0.1, 0.2, 0.3));
@@ -262,7 +306,7 @@ TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
   double sum = 0.0, squares = 0.0;
   std::size_t count = 0, beyond_two_sigma = 0;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    std::vector<Hit> truth;
+    std::vector<PointTruth> truth;
     const Scan scan = lidar.measure(world, flight, index, kOneThread, &truth);
     const auto shots = shots_of(lidar, scan, index);
     ASSERT_EQ(truth.size(), scan.points.size());

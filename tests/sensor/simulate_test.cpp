@@ -143,6 +143,35 @@ TEST(Simulate, DurationCutsTheFlightAndNoiseCanBeSwitchedOff) {
   }
 }
 
+struct TruthRecorder : ScanTruthSink {
+  std::vector<ScanTruth> scans;
+  void write(const ScanTruth& truth) override { scans.push_back(truth); }
+};
+
+TEST(Simulate, TheTruthOfEveryScanComesJustBeforeIt) {
+  const SwingingFlight flight(0.3);
+  const std::vector<SensorConfig> sensors{with_imu(mid360(), 200), with_imu(ouster(), 100)};
+  TruthRecorder recorder;
+  SimulationOptions options;
+  options.truth = &recorder;
+  const auto source = simulate(box_world(), flight, sensors, options, Parallel(2));
+  std::size_t scans = 0;
+  while (const auto event = source->next()) {
+    const Scan* scan = scan_of(*event);
+    if (scan == nullptr) continue;
+    ASSERT_EQ(recorder.scans.size(), ++scans);
+    EXPECT_EQ(recorder.scans.back().sensor_id, event->sensor_id);
+    EXPECT_EQ(recorder.scans.back().stamp, scan->stamp);
+    EXPECT_EQ(recorder.scans.back().points.size(), scan->points.size());
+  }
+  EXPECT_EQ(scans, 6U);
+  // Watching changes nothing.
+  const auto watched = fly(sensors, 0.3, 1, options);
+  const auto unwatched = fly(sensors, 0.3);
+  EXPECT_TRUE(
+      std::equal(watched.begin(), watched.end(), unwatched.begin(), unwatched.end(), same_event));
+}
+
 TEST(Simulate, TheRigDescribesWhatIsMounted) {
   const SensorConfig sensor = with_imu(mid360(), 200);
   const Rig rig = make_rig({sensor, ouster(1024), sensor});
