@@ -2,16 +2,15 @@
 // Figures of other tools on the same trajectories, where their definitions meet ours.
 #include <gtest/gtest.h>
 
-#include <charconv>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
+#include "tum_text.hpp"
 
 namespace lidarena {
 namespace {
@@ -20,33 +19,7 @@ using namespace std::chrono_literals;
 
 constexpr double kDegree = M_PI / 180.0;
 
-/// "1305031102.160407" to nanoseconds without passing through a double.
-Time parse_time(const std::string& text) {
-  const std::size_t dot = text.find('.');
-  std::string digits = text.substr(0, dot);
-  std::string decimals = dot == std::string::npos ? "" : text.substr(dot + 1);
-  decimals.resize(9, '0');
-  return Time{std::stoll(digits + decimals)};
-}
-
-Trajectory parse_tum(std::istream& in) {
-  std::vector<StampedPose> poses;
-  std::string line;
-  while (std::getline(in, line)) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream row(line);
-    std::string stamp;
-    Eigen::Vector3d t;
-    Eigen::Quaterniond q;
-    row >> stamp >> t.x() >> t.y() >> t.z() >> q.x() >> q.y() >> q.z() >> q.w();
-    poses.push_back({parse_time(stamp), make_pose(q, t)});
-  }
-  return Trajectory(std::move(poses));
-}
-
-std::filesystem::path shared(const std::string& name) {
-  return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
-}
+using tum_text::shared;
 
 /// Small synthetic trajectories and what evo v1.36.5 says of them.
 class EvoFigures : public ::testing::Test {
@@ -57,8 +30,7 @@ class EvoFigures : public ::testing::Test {
     document_ = Json::parse(in);
   }
   Trajectory trajectory(const std::string& name) const {
-    std::istringstream text(document_["files"][name].get<std::string>());
-    return parse_tum(text);
+    return tum_text::parse(document_["files"][name].get<std::string>());
   }
   /// RMSE that evo printed for `command`; a test that asks for one that is not there fails.
   double rmse(const std::string& command) const {
@@ -199,8 +171,8 @@ TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
   if (!truth_file || !estimate_file) {
     GTEST_SKIP() << "the TUM RGB-D trajectories are not here: their figure is not compared";
   }
-  const auto ate =
-      absolute_trajectory_error(parse_tum(estimate_file), parse_tum(truth_file), Gauge::kSe3);
+  const auto ate = absolute_trajectory_error(tum_text::parse(estimate_file),
+                                             tum_text::parse(truth_file), Gauge::kSe3);
   EXPECT_NEAR(ate.translation_m.rmse, 0.01347, 5e-5);
   RecordProperty("ate_rmse_m", std::to_string(ate.translation_m.rmse));
 }
