@@ -3,11 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace lidarena {
 namespace {
 
-enum Draw : std::uint32_t { kGyroNoise, kAccelNoise, kGyroBias, kAccelBias };
+/// Two counters each, by normals(). Those of a unit's constants are used with sample 0 alone.
+enum Draw : std::uint32_t {
+  kGyroNoise,
+  kAccelNoise,
+  kGyroBias,
+  kAccelBias,
+  kGyroResponse,
+  kAccelResponse = kGyroResponse + 3,
+  kVibration = kAccelResponse + 3
+};
+
+/// What the converter makes of `value`.
+Eigen::Vector3d read_out(const Eigen::Vector3d& value, double range, double resolution) {
+  Eigen::Vector3d read = value;
+  if (resolution > 0.0) read = (value / resolution).array().round() * resolution;
+  if (range > 0.0) read = read.cwiseMax(-range).cwiseMin(range);
+  return read;
+}
 
 }  // namespace
 
@@ -31,7 +49,11 @@ Imu::Imu(const ImuConfig& config, const Pose& body_from_imu, const std::string& 
     : config_(config),
       body_from_imu_(body_from_imu),
       noise_(noise),
-      random_(seed, stream_of((id + "/imu").c_str())) {}
+      random_(seed, stream_of((id + "/imu").c_str())),
+      gyro_response_(
+          make_response(config.gyro_scale_error, config.gyro_misalignment, kGyroResponse)),
+      accel_response_(
+          make_response(config.accel_scale_error, config.accel_misalignment, kAccelResponse)) {}
 
 Time Imu::stamp(std::uint64_t sample) const {
   return from_seconds(static_cast<double>(sample) / config_.rate_hz);
@@ -44,24 +66,65 @@ Time Imu::first_stamp_from(Time t) const {
   return stamp(sample);
 }
 
-Eigen::Vector3d Imu::normals(std::uint32_t draw) const {
-  const auto [x, y] = random_.normals(next_, 2 * draw);
-  return {x, y, random_.normals(next_, 2 * draw + 1)[0]};
+Eigen::Vector3d Imu::normals(std::uint64_t sample, std::uint32_t draw) const {
+  const auto [x, y] = random_.normals(sample, 2 * draw);
+  return {x, y, random_.normals(sample, 2 * draw + 1)[0]};
+}
+
+Eigen::Matrix3d Imu::make_response(double scale_error, double misalignment,
+                                   std::uint32_t draw) const {
+  const Eigen::Vector3d above = misalignment * normals(0, draw + 1);
+  const Eigen::Vector3d below = misalignment * normals(0, draw + 2);
+  Eigen::Matrix3d response;
+  response << 1.0, above[0], above[1], below[0], 1.0, above[2], below[1], below[2], 1.0;
+  response.diagonal() += scale_error * normals(0, draw);
+  return response;
+}
+
+void Imu::vibrate(const Motion& motion, ImuSample& sample) const {
+  const Eigen::Vector3d up(0.0, 0.0, kGravity);
+  // An unbalanced propeller pulls with the square of its speed, as it lifts.
+  const double thrust = (motion.acceleration_world + up).norm() / kGravity;
+  for (std::size_t i = 0; i < config_.vibration.size(); ++i) {
+    const VibrationTone& tone = config_.vibration[i];
+    const double turns = tone.frequency_hz * to_seconds(sample.stamp);
+    const auto swing = [&](std::uint32_t axis) {
+      return std::sin(2.0 * std::numbers::pi * (turns + random_.uniform(i, 2 * kVibration + axis)));
+    };
+    const double gain = tone.grows_with_thrust ? thrust : 1.0;
+    sample.accel +=
+        gain * tone.accel_amplitude.cwiseProduct(Eigen::Vector3d(swing(0), swing(1), swing(2)));
+    sample.gyro +=
+        gain * tone.gyro_amplitude.cwiseProduct(Eigen::Vector3d(swing(3), swing(4), swing(5)));
+  }
+}
+
+void Imu::walk_biases() {
+  // A walk becomes a step's sigma by sqrt(1 / rate).
+  const double root_rate = std::sqrt(config_.rate_hz);
+  const bool first = next_ == 0;
+  gyro_bias_ += (first ? config_.gyro_turn_on_bias : config_.gyro_bias_walk / root_rate) *
+                normals(next_, kGyroBias);
+  accel_bias_ += (first ? config_.accel_turn_on_bias : config_.accel_bias_walk / root_rate) *
+                 normals(next_, kAccelBias);
 }
 
 ImuSample Imu::measure(const Flight& flight) {
-  ImuSample sample = perfect_imu(flight.at(next_stamp()), body_from_imu_);
+  const Motion motion = flight.at(next_stamp());
+  ImuSample sample = perfect_imu(motion, body_from_imu_);
   sample.stamp = next_stamp();
   if (noise_) {
-    // A density becomes a sample's sigma by sqrt(rate), a walk becomes a step's by sqrt(1 / rate).
-    const double root_rate = std::sqrt(config_.rate_hz);
-    const bool first = next_ == 0;
-    gyro_bias_ += (first ? config_.gyro_turn_on_bias : config_.gyro_bias_walk / root_rate) *
-                  normals(kGyroBias);
-    accel_bias_ += (first ? config_.accel_turn_on_bias : config_.accel_bias_walk / root_rate) *
-                   normals(kAccelBias);
-    sample.gyro += gyro_bias_ + config_.gyro_noise_density * root_rate * normals(kGyroNoise);
-    sample.accel += accel_bias_ + config_.accel_noise_density * root_rate * normals(kAccelNoise);
+    vibrate(motion, sample);
+    walk_biases();
+    const double root_rate = std::sqrt(config_.rate_hz);  // a density becomes a sample's sigma
+    const Eigen::Vector3d gyro =
+        gyro_response_ * sample.gyro +
+        (gyro_bias_ + config_.gyro_noise_density * root_rate * normals(next_, kGyroNoise));
+    const Eigen::Vector3d accel =
+        accel_response_ * sample.accel +
+        (accel_bias_ + config_.accel_noise_density * root_rate * normals(next_, kAccelNoise));
+    sample.gyro = read_out(gyro, config_.gyro_range, config_.gyro_resolution);
+    sample.accel = read_out(accel, config_.accel_range, config_.accel_resolution);
   }
   ++next_;
   return sample;

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
@@ -37,7 +38,31 @@ struct EnumNames<ScanMode> {
                                     std::pair{"official", ScanMode::kOfficial}};
 };
 
+/// A tone of the airframe's vibration as the IMU feels it (and the LiDAR does not): each axis
+/// swings as a sine of its own phase, drawn once a unit. The frequency is fixed, and there is no
+/// filter before sampling: a tone above half the IMU's rate shows up folded, as in a part without
+/// one.
+struct VibrationTone {
+  double frequency_hz = 100.0;
+  Eigen::Vector3d accel_amplitude = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyro_amplitude = Eigen::Vector3d::Zero();
+  bool grows_with_thrust = true;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("frequency_hz", self.frequency_hz, "Hz", "of the tone, e.g. turns per second of a propeller",
+      above(0));
+    v("accel_amplitude", self.accel_amplitude, "m/s^2", "x y z, when hovering", at_least(0));
+    v("gyro_amplitude", self.gyro_amplitude, "rad/s", "x y z, when hovering", at_least(0));
+    v("grows_with_thrust", self.grows_with_thrust, "",
+      "amplitudes are proportional to thrust, as an unbalanced propeller's; else they are fixed");
+  }
+};
+
 /// The IMU inside a LiDAR. Densities are continuous: a sample at rate f has density * sqrt(f).
+/// Every error is off at zero. The order in which they act: vibration is added to what the IMU
+/// feels; scale and misalignment distort that; bias and white noise are added; the result is
+/// rounded to the resolution and held within the range.
 struct ImuConfig {
   std::string model;
   double rate_hz = 200.0;
@@ -47,6 +72,15 @@ struct ImuConfig {
   double accel_bias_walk = 0.0;
   double gyro_turn_on_bias = 0.0;
   double accel_turn_on_bias = 0.0;
+  double gyro_scale_error = 0.0;
+  double accel_scale_error = 0.0;
+  double gyro_misalignment = 0.0;
+  double accel_misalignment = 0.0;
+  double gyro_range = 0.0;
+  double accel_range = 0.0;
+  double gyro_resolution = 0.0;
+  double accel_resolution = 0.0;
+  std::vector<VibrationTone> vibration;
   Pose lidar_from_imu = Pose::Identity();
 
   template <class Self, class V>
@@ -62,6 +96,22 @@ struct ImuConfig {
       at_least(0));
     v("accel_turn_on_bias", self.accel_turn_on_bias, "m/s^2", "sigma of each axis' first bias",
       at_least(0));
+    v("gyro_scale_error", self.gyro_scale_error, "", "sigma of each axis' relative scale error",
+      at_least(0));
+    v("accel_scale_error", self.accel_scale_error, "", "sigma of each axis' relative scale error",
+      at_least(0));
+    v("gyro_misalignment", self.gyro_misalignment, "rad",
+      "sigma of the two small angles by which each axis leans", at_least(0));
+    v("accel_misalignment", self.accel_misalignment, "rad",
+      "sigma of the two small angles by which each axis leans", at_least(0));
+    v("gyro_range", self.gyro_range, "rad/s", "largest rate read, 0 = no limit", at_least(0));
+    v("accel_range", self.accel_range, "m/s^2", "largest specific force read, 0 = no limit",
+      at_least(0));
+    v("gyro_resolution", self.gyro_resolution, "rad/s", "step of the read-out, 0 = none",
+      at_least(0));
+    v("accel_resolution", self.accel_resolution, "m/s^2", "step of the read-out, 0 = none",
+      at_least(0));
+    v("vibration", self.vibration, "", "tones of the airframe");
     v("lidar_from_imu", self.lidar_from_imu, "m, quaternion", "x y z qx qy qz qw");
   }
 };

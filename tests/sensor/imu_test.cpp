@@ -6,7 +6,6 @@
 #include <cmath>
 #include <vector>
 
-#include "lidarena/base/so3.hpp"
 #include "tests/sensor/flights.hpp"
 
 namespace lidarena {
@@ -46,70 +45,6 @@ TEST(Imu, OnALeverArmFeelsTheCentripetalForceOfASteadySpin) {
     EXPECT_LT((sample.accel - Vector3d(-rate * rate * 0.5, 0, kGravity)).norm(), 1e-12);
     EXPECT_LT((sample.gyro - Vector3d(0, 0, rate)).norm(), 1e-14);
   }
-}
-
-struct State {
-  Quaterniond attitude;
-  Vector3d velocity;
-  Vector3d position;
-};
-
-struct Rate {
-  Eigen::Vector4d attitude;  // x y z w
-  Vector3d velocity;
-  Vector3d position;
-};
-
-Rate rate_of(const State& s, const ImuSample& imu) {
-  const Quaterniond turning(0.0, imu.gyro.x(), imu.gyro.y(), imu.gyro.z());
-  return {0.5 * (s.attitude * turning).coeffs(),
-          s.attitude.normalized() * imu.accel - Vector3d(0, 0, kGravity), s.velocity};
-}
-
-State advanced(const State& s, const Rate& rate, double h) {
-  State next = s;
-  next.attitude.coeffs() += h * rate.attitude;
-  next.velocity += h * rate.velocity;
-  next.position += h * rate.position;
-  return next;
-}
-
-/// One step of the classical Runge-Kutta method over three samples, h apart from first to last.
-State runge_kutta(const State& s, const ImuSample* imu, double h) {
-  const Rate k1 = rate_of(s, imu[0]);
-  const Rate k2 = rate_of(advanced(s, k1, h / 2), imu[1]);
-  const Rate k3 = rate_of(advanced(s, k2, h / 2), imu[1]);
-  const Rate k4 = rate_of(advanced(s, k3, h), imu[2]);
-  State next = advanced(s, k1, h / 6);
-  next = advanced(next, k2, h / 3);
-  next = advanced(next, k3, h / 3);
-  next = advanced(next, k4, h / 6);
-  next.attitude.normalize();
-  return next;
-}
-
-TEST(Imu, NoiseFreeSamplesIntegrateToTheFlightTheyCameFrom) {
-  const testing::SwingingFlight flight(10.0);
-  const Pose body_from_imu = testing::tilted_pose({0.2, -0.1, 0.3}, 0.5, -1.0, 2.0);
-  Imu imu = perfect(4000, body_from_imu);
-  std::vector<ImuSample> samples;
-  while (imu.next_stamp() <= flight.duration()) samples.push_back(imu.measure(flight));
-  ASSERT_EQ(samples.size(), 40'001U);
-
-  const Motion start = flight.at(Time{0});
-  const Pose first = start.world_from_body * body_from_imu;
-  const Vector3d arm = body_from_imu.translation();
-  State state{
-      Quaterniond(first.linear()),
-      start.velocity_world + start.world_from_body.linear() * start.angular_rate_body.cross(arm),
-      first.translation()};
-  for (std::size_t k = 0; k + 2 < samples.size(); k += 2) {
-    state = runge_kutta(state, &samples[k], 2.0 / 4000);
-  }
-  const Pose last = flight.pose_at(flight.duration()) * body_from_imu;
-  // The method's error is of order h^4 = 6e-14 per second of second-long motions.
-  EXPECT_LT((state.position - last.translation()).norm(), 1e-8);
-  EXPECT_LT(so3::angle(state.attitude.toRotationMatrix().transpose() * last.linear()), 1e-9);
 }
 
 ImuConfig noisy() {
@@ -193,6 +128,118 @@ TEST(Imu, KnowsItsFirstSampleAtOrAfterAnInstantWhateverItsRate) {
       EXPECT_EQ(imu.first_stamp_from(found), found);
     }
   }
+}
+
+/// The first sample of an IMU with these errors alone, spinning steadily.
+ImuSample first_sample(const ImuConfig& config, std::uint64_t seed) {
+  return Imu(config, Pose::Identity(), "test", seed, true)
+      .measure(testing::UniformFlight(Pose::Identity(), Vector3d::Zero(), {0.3, -0.5, 0.8}, 1.0));
+}
+
+TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
+  // Turning steadily about one axis at a time at 1 rad/s, the gyro reads the columns of its
+  // response.
+  ImuConfig config;
+  config.gyro_scale_error = 0.004;
+  config.gyro_misalignment = 0.002;
+  config.accel_scale_error = 0.01;
+  const int units = 500;
+  double on_diagonal = 0.0;
+  double beside = 0.0;
+  double accel_scale = 0.0;
+  for (int unit = 0; unit < units; ++unit) {
+    Eigen::Matrix3d response;
+    for (int axis = 0; axis < 3; ++axis) {
+      Imu imu(config, Pose::Identity(), "test", static_cast<std::uint64_t>(unit), true);
+      const testing::UniformFlight spin(Pose::Identity(), Vector3d::Zero(), Vector3d::Unit(axis),
+                                        1.0);
+      const ImuSample sample = imu.measure(spin);
+      response.col(axis) = sample.gyro;
+      EXPECT_EQ(imu.measure(spin).gyro, sample.gyro);  // constant for a unit
+      if (axis == 0) accel_scale += std::pow(sample.accel.z() / kGravity - 1.0, 2);
+      EXPECT_EQ(sample.accel.x(), 0.0);  // the accelerometer's axes do not lean
+    }
+    response -= Eigen::Matrix3d::Identity();
+    on_diagonal += response.diagonal().squaredNorm();
+    beside += response.squaredNorm() - response.diagonal().squaredNorm();
+  }
+  const auto error = [](int draws) { return 4.0 / std::sqrt(2.0 * draws); };  // four sigma
+  EXPECT_NEAR(std::sqrt(on_diagonal / (3 * units)) / 0.004, 1.0, error(3 * units));
+  EXPECT_NEAR(std::sqrt(beside / (6 * units)) / 0.002, 1.0, error(6 * units));
+  EXPECT_NEAR(std::sqrt(accel_scale / units) / 0.01, 1.0, error(units));
+}
+
+TEST(Imu, ReadsInStepsOfItsResolutionAndNoFartherThanItsRange) {
+  ImuConfig config;
+  config.gyro_resolution = 0.1;
+  ImuSample sample = first_sample(config, 1);
+  EXPECT_LT((sample.gyro - Vector3d(0.3, -0.5, 0.8)).norm(), 1e-15);
+  config.gyro_resolution = 0.25;
+  config.gyro_range = 0.6;
+  config.accel_range = 9.0;
+  sample = first_sample(config, 1);
+  EXPECT_EQ(sample.gyro, Vector3d(0.25, -0.5, 0.6));
+  EXPECT_EQ(sample.accel, Vector3d(0, 0, 9.0));
+  config.accel_range = 0.0;
+  config.accel_resolution = 2.0;
+  EXPECT_EQ(first_sample(config, 1).accel, Vector3d(0, 0, 10.0));
+}
+
+/// Hovers for a second, then climbs at half of gravity.
+class Climb : public Flight {
+ public:
+  Motion at(Time t) const override {
+    Motion motion;
+    if (t >= from_seconds(1.0)) motion.acceleration_world.z() = kGravity / 2;
+    return motion;
+  }
+  Time duration() const override { return from_seconds(2.0); }
+};
+
+TEST(Imu, VibratesWithItsTonesAndHarderUnderMoreThrust) {
+  VibrationTone tone;
+  tone.frequency_hz = 20.0;
+  tone.accel_amplitude = {0.5, 0.2, 1.5};
+  tone.gyro_amplitude = {0.01, 0.0, 0.03};
+  for (const bool grows : {true, false}) {
+    tone.grows_with_thrust = grows;
+    ImuConfig config;
+    config.rate_hz = 1000.0;
+    config.vibration = {tone};
+    Imu imu(config, Pose::Identity(), "test", 5, true);
+    const Climb climb;
+    Vector3d accel_squares[2] = {Vector3d::Zero(), Vector3d::Zero()};
+    Vector3d gyro_squares[2] = {Vector3d::Zero(), Vector3d::Zero()};
+    for (int k = 0; k < 2000; ++k) {
+      const Vector3d quiet(0, 0, k < 1000 ? kGravity : 1.5 * kGravity);
+      const ImuSample sample = imu.measure(climb);
+      accel_squares[k / 1000] += (sample.accel - quiet).cwiseAbs2();
+      gyro_squares[k / 1000] += sample.gyro.cwiseAbs2();
+    }
+    for (int half = 0; half < 2; ++half) {
+      // Over whole periods, the mean square of a sine is half the amplitude's, whatever its phase.
+      const double gain = half == 1 && grows ? 1.5 : 1.0;
+      const Vector3d accel = (accel_squares[half] / 500).cwiseSqrt();
+      const Vector3d gyro = (gyro_squares[half] / 500).cwiseSqrt();
+      EXPECT_LT((accel - gain * tone.accel_amplitude).norm(), 1e-12);
+      EXPECT_LT((gyro - gain * tone.gyro_amplitude).norm(), 1e-12);
+    }
+  }
+}
+
+TEST(Imu, WithoutNoiseIsPerfectWhateverItsErrors) {
+  ImuConfig config = noisy();
+  config.gyro_scale_error = config.accel_scale_error = 0.1;
+  config.gyro_misalignment = config.accel_misalignment = 0.1;
+  config.gyro_range = config.accel_range = 0.01;
+  config.gyro_resolution = config.accel_resolution = 0.3;
+  config.vibration.emplace_back().accel_amplitude = Vector3d::Ones();
+  Imu imu(config, Pose::Identity(), "test", 1, false);
+  const testing::SwingingFlight flight(1.0);
+  const ImuSample truth = perfect_imu(flight.at(Time{0}), Pose::Identity());
+  const ImuSample sample = imu.measure(flight);
+  EXPECT_EQ(sample.gyro, truth.gyro);
+  EXPECT_EQ(sample.accel, truth.accel);
 }
 
 }  // namespace
