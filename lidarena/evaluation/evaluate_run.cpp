@@ -106,6 +106,8 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
           errors_over_time(ate.poses, truth.begin_time());
     }
   }
+  json["kitti"] = to_json(kitti_error(estimate, truth));
+  json["kitti_short"] = to_json(kitti_error(estimate, truth, kLadder_m));
   json["hover_jitter"] =
       to_json(hover_jitter(matched_poses(estimate, truth), max_bracket(estimate)));
   json["errors_over_time"] = over_time;

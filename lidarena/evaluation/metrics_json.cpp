@@ -50,6 +50,12 @@ std::string definition_id(const AbsoluteTrajectoryError& ate) {
   return fmt::format("ate_{}[est-stamps,ref-interp,gap1.5]", to_string(ate.alignment.gauge));
 }
 
+std::string definition_id(const KittiError& error) {
+  if (error.lengths.empty()) return "kitti[est-poses,ref-arc,every10,first-beyond]";
+  return fmt::format("kitti[est-poses,ref-arc,every10,first-beyond,{:g}-{:g}m]",
+                     error.lengths.front().length_m, error.lengths.back().length_m);
+}
+
 std::string definition_id(const MapError&) { return "map_error[point-triangle,all-points,20cm]"; }
 
 Json to_json(const Summary& summary, const std::string& unit) {
@@ -94,6 +100,27 @@ Json to_json(const AbsoluteTrajectoryError& ate) {
   if (!alignment.warning.empty()) json["warning"] = alignment.warning;
   json["translation"] = to_json(ate.translation_m, "m");
   json["rotation"] = to_json(ate.rotation_rad, "rad");
+  return json;
+}
+
+Json to_json(const KittiError& error) {
+  Json json{{"definition", definition_id(error)}};
+  if (!error.refusal.empty()) {
+    json["refused"] = error.refusal;
+    return json;
+  }
+  json["pieces"] = error.pieces;
+  json["translation_percent"] = error.translation_percent;
+  json["rotation_rad_per_m"] = error.rotation_rad_per_m;
+  json["lengths"] = Json::array();
+  for (const KittiLength& length : error.lengths) {
+    const bool some = length.pieces > 0;
+    json["lengths"].push_back(
+        {{"length_m", length.length_m},
+         {"pieces", length.pieces},
+         {"translation_percent", some ? Json(length.translation_percent) : Json(nullptr)},
+         {"rotation_rad_per_m", some ? Json(length.rotation_rad_per_m) : Json(nullptr)}});
+  }
   return json;
 }
 

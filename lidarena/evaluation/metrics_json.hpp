@@ -5,6 +5,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/evaluation/hover_jitter.hpp"
+#include "lidarena/evaluation/kitti_error.hpp"
 #include "lidarena/evaluation/map_error.hpp"
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
@@ -17,6 +18,8 @@ namespace lidarena {
 std::string definition_id(const RelativePoseError& rpe);
 /// E.g. "ate_se3[est-stamps,ref-interp,gap1.5]".
 std::string definition_id(const AbsoluteTrajectoryError& ate);
+/// "kitti[est-poses,ref-arc,every10,first-beyond,100-800m]".
+std::string definition_id(const KittiError& error);
 /// "map_error[point-triangle,all-points,20cm]".
 std::string definition_id(const MapError& error);
 
@@ -25,6 +28,8 @@ Json to_json(const Summary& summary, const std::string& unit);
 Json to_json(const Association& association, const std::optional<TimeOffset>& offset);
 Json to_json(const RelativePoseError& rpe);
 Json to_json(const AbsoluteTrajectoryError& ate);
+/// Null means for lengths without a piece; "refused" when no length has one.
+Json to_json(const KittiError& error);
 Json to_json(const MapError& error);
 /// Null when nothing hovered.
 Json to_json(const HoverJitter& jitter);

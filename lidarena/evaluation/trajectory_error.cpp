@@ -7,6 +7,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/so3.hpp"
+#include "lidarena/evaluation/arc_length.hpp"
 
 namespace lidarena {
 namespace {
@@ -15,47 +16,6 @@ namespace {
 // may be shorter by as much.
 constexpr double kLengthSlack = 1e-6;
 
-struct TimeSpan {
-  Time begin{0};
-  Time end{0};
-};
-
-/// Empty (end < begin) when the trajectories do not meet.
-TimeSpan common_span(const Trajectory& a, const Trajectory& b) {
-  if (a.empty() || b.empty()) return {Time{0}, Time{-1}};
-  return {std::max(a.begin_time(), b.begin_time()), std::min(a.end_time(), b.end_time())};
-}
-
-/// Arc length s(t) at the truth's stamps within a span.
-struct ArcLength {
-  std::vector<Time> t;
-  std::vector<double> s;
-};
-
-ArcLength arc_length(const Trajectory& truth, TimeSpan span) {
-  ArcLength arc;
-  Eigen::Vector3d last = Eigen::Vector3d::Zero();
-  for (const StampedPose& pose : truth.poses()) {
-    if (pose.stamp < span.begin || pose.stamp > span.end) continue;
-    const Eigen::Vector3d& position = pose.world_from_body.translation();
-    arc.s.push_back(arc.t.empty() ? 0.0 : arc.s.back() + (position - last).norm());
-    arc.t.push_back(pose.stamp);
-    last = position;
-  }
-  return arc;
-}
-
-/// The first instant at which the path is `s` long.
-Time time_at(const ArcLength& arc, double s) {
-  const auto next = std::lower_bound(arc.s.begin(), arc.s.end(), s);
-  if (next == arc.s.begin()) return arc.t.front();
-  if (next == arc.s.end()) return arc.t.back();
-  const auto i = static_cast<std::size_t>(next - arc.s.begin());
-  const double share = (s - arc.s[i - 1]) / (arc.s[i] - arc.s[i - 1]);
-  const auto step = static_cast<double>((arc.t[i] - arc.t[i - 1]).count());
-  return arc.t[i - 1] + Time{std::llround(share * step)};
-}
-
 /// How many pieces of `segment`, starting every `step`, fit into `length`.
 std::size_t count_pieces(double length, double segment, double step) {
   const double room = length + kLengthSlack - segment;
@@ -63,10 +23,10 @@ std::size_t count_pieces(double length, double segment, double step) {
 }
 
 std::vector<TimeSpan> pieces_of_path(const ArcLength& arc, double segment_m, double step_m) {
-  std::vector<TimeSpan> pieces(arc.s.empty() ? 0 : count_pieces(arc.s.back(), segment_m, step_m));
+  std::vector<TimeSpan> pieces(arc.empty() ? 0 : count_pieces(arc.length(), segment_m, step_m));
   for (std::size_t k = 0; k < pieces.size(); ++k) {
     const double start = static_cast<double>(k) * step_m;
-    pieces[k] = {time_at(arc, start), time_at(arc, start + segment_m)};
+    pieces[k] = {arc.time_at(start), arc.time_at(start + segment_m)};
   }
   return pieces;
 }
@@ -124,7 +84,7 @@ RelativePoseError relative_pose_error(const Trajectory& estimate, const Trajecto
                                       double segment_m, double step_m) {
   require_positive(segment_m, "segment_m");
   require_positive(step_m, "step_m");
-  const ArcLength arc = arc_length(truth, common_span(estimate, truth));
+  const ArcLength arc(truth, common_span(estimate, truth));
   RelativePoseError rpe = score(estimate, truth, pieces_of_path(arc, segment_m, step_m));
   rpe.segment_m = segment_m;
   rpe.step = step_m;

@@ -88,6 +88,10 @@ TEST_F(EvaluateRun, EveryMetricNamesItsDefinition) {
   EXPECT_EQ(m["final"]["rpe"]["1m"]["definition"], "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]");
   EXPECT_EQ(m["final"]["rpe"]["1s"]["definition"], "rpe_1s[time,1s,disjoint,interp,gap1.5]");
   EXPECT_EQ(m["final"]["ate"]["se3"]["definition"], "ate_se3[est-stamps,ref-interp,gap1.5]");
+  EXPECT_EQ(m["final"]["kitti"]["definition"],
+            "kitti[est-poses,ref-arc,every10,first-beyond,100-800m]");
+  EXPECT_EQ(m["final"]["kitti_short"]["definition"],
+            "kitti[est-poses,ref-arc,every10,first-beyond,1-50m]");
   EXPECT_EQ(m["maps"]["own"]["se3"]["definition"], "map_error[point-triangle,all-points,20cm]");
   EXPECT_EQ(definition_id(relative_pose_error(truth_, truth_, 1.0, 0.1)),
             "rpe_1m[ref-arc,1m,every0.1m,interp,gap1.5]");
@@ -110,6 +114,15 @@ TEST_F(EvaluateRun, RungsLongerThanTheFlightAreNullNotZero) {
   const Json m = evaluate();
   EXPECT_EQ(m["final"]["rpe"]["50m"]["total"], 0);
   EXPECT_TRUE(m["final"]["rpe"]["50m"]["translation"].is_null());
+}
+
+TEST_F(EvaluateRun, KittisErrorIsRefusedOnAShortFlightAndItsShortLadderIsThere) {
+  const Json m = evaluate();
+  EXPECT_THAT(m["final"]["kitti"]["refused"].get<std::string>(), HasSubstr("no piece of 100 m"));
+  EXPECT_FALSE(m["final"]["kitti"].contains("translation_percent"));
+  EXPECT_LT(m["final"]["kitti_short"]["translation_percent"], 1e-9);
+  EXPECT_GT(m["final"]["kitti_short"]["pieces"], 100);
+  EXPECT_EQ(m["final"]["kitti_short"]["lengths"].size(), 6U);
 }
 
 TEST_F(EvaluateRun, ADivergedRunHasAReasonAndNoNumber) {
