@@ -11,6 +11,7 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena {
 
@@ -42,6 +43,12 @@ Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& optio
 /// For evaluation; nothing that estimates may call it.
 std::optional<Trajectory> load_truth(const std::filesystem::path& dataset);
 
+/// What the points of the LiDAR `sensor` (empty = the only one) hit, scan after scan; null when the
+/// dataset does not carry it. For evaluation; nothing that estimates may call it. Throws InputError
+/// for a sensor that the dataset lacks; next() throws it where the file is broken.
+std::unique_ptr<ScanTruthSource> open_scan_truth(const std::filesystem::path& dataset,
+                                                 const std::string& sensor = {});
+
 /// The world's mesh beside the dataset (world.ply), if there.
 std::optional<std::filesystem::path> find_world_mesh(const std::filesystem::path& dataset);
 
@@ -61,7 +68,7 @@ inline constexpr const char* kTruthHeader =
 /// its publish time, or that of the measurement before if that is later, so the order of the events
 /// survives readers that sort by log time. The rig and the topics are in the metadata record
 /// "lidarena".
-class DatasetWriter : public EventSink {
+class DatasetWriter : public EventSink, public ScanTruthSink {
  public:
   /// Throws InputError when the folder cannot be made or two LiDARs (or IMUs) have one id.
   DatasetWriter(const std::filesystem::path& folder, const Rig& rig);
@@ -69,7 +76,10 @@ class DatasetWriter : public EventSink {
   /// In the order of EventSource. Throws InputError for a sensor that the rig lacks, a negative
   /// time, or a point before its scan's stamp; Error when the disk is full.
   void write(const Event& event) override;
-  /// True body pose, at the full rate; also written as /truth/odometry and /tf.
+  /// What a scan's points hit, before or after the scan: /truth/ID/hits. Throws InputError for a
+  /// LiDAR that the rig lacks.
+  void write(const ScanTruth& truth) override;
+  /// True body pose, at the full rate, in order of time; also written as /truth/odometry and /tf.
   void write_truth(const StampedPose& pose);
   /// Completes all files. The keys of `manifest` are added to those of manifest.json that every
   /// dataset has: format, format_version, rig, topics, message_counts, start_ns, end_ns.

@@ -27,6 +27,10 @@ McapSensors topics_of(const Rig& rig) {
   return sensors;
 }
 
+std::string truth_topic_of(const std::string& lidar_id) {
+  return kTruthPrefix + lidar_id + "/hits";
+}
+
 Json to_json(const McapSensors& sensors) {
   return {{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
 }

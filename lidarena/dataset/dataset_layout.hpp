@@ -8,7 +8,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/dataset/mcap_source.hpp"
+#include "lidarena/dataset/recording_source.hpp"
 
 /// What writer and reader of our dataset folders agree on.
 namespace lidarena::layout {
@@ -16,12 +16,17 @@ namespace lidarena::layout {
 inline constexpr const char* kManifest = "manifest.json";
 inline constexpr const char* kData = "data.mcap";
 inline constexpr const char* kTruth = "truth.tum";
+inline constexpr const char* kTruthPart = "truth.tum.part";  ///< in the making
 inline constexpr const char* kWorld = "world.ply";
 inline constexpr const char* kRosbagMetadata = "metadata.yaml";
 
 inline constexpr const char* kFormat = "lidarena dataset";  ///< manifest.json: "format"
 inline constexpr int kFormatVersion = 1;
 inline constexpr const char* kTruthTopic = "/truth/odometry";
+/// Everything below it is truth: nothing that estimates may see it.
+inline constexpr const char* kTruthPrefix = "/truth/";
+/// Topic of what the points of a LiDAR hit.
+std::string truth_topic_of(const std::string& lidar_id);
 inline constexpr const char* kDescription = "lidarena";  ///< name of the metadata record
 
 /// Topics of a rig: /ID/points for LiDARs, /ID/imu for IMUs (an IMU may share its LiDAR's id).

@@ -9,7 +9,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/mcap_writer.hpp"
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/rosbag2_metadata.hpp"
 #include "lidarena/dataset/tum.hpp"
 
@@ -23,7 +23,8 @@ std::filesystem::path prepared(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
   // What an earlier dataset left must not vouch for this one, nor pass for its truth.
-  for (const char* stale : {layout::kManifest, layout::kTruth, layout::kRosbagMetadata}) {
+  for (const char* stale :
+       {layout::kManifest, layout::kTruth, layout::kTruthPart, layout::kRosbagMetadata}) {
     std::filesystem::remove(folder / stale, error);
   }
   return folder;
@@ -41,17 +42,16 @@ struct DatasetWriter::Impl {
         sensors(layout::topics_of(r)),
         mcap(folder / layout::kData) {
     mcap.add_metadata(layout::kDescription, layout::describe({rig, sensors}));
-    tf_static = add_topic("/tf_static", ros2::kTfMessage, latched_qos());
-    for (const auto& [topic, id] : sensors.lidars)
-      lidars[id] = add_topic(topic, ros2::kPointCloud2);
-    for (const auto& [topic, id] : sensors.imus) imus[id] = add_topic(topic, ros2::kImu);
+    tf_static = add_topic("/tf_static", ros::kTfMessage, latched_qos());
+    for (const auto& [topic, id] : sensors.lidars) lidars[id] = add_topic(topic, ros::kPointCloud2);
+    for (const auto& [topic, id] : sensors.imus) imus[id] = add_topic(topic, ros::kImu);
   }
 
   std::uint16_t add_topic(const std::string& name, std::string_view type,
                           const std::string& qos = default_qos()) {
     std::uint16_t& schema = schemas[std::string(type)];
     if (schema == 0) {
-      schema = mcap.add_schema(std::string(type), "ros2msg", ros2::definition_of(type));
+      schema = mcap.add_schema(std::string(type), "ros2msg", ros::definition_of(type));
     }
     topics.push_back({name, std::string(type), qos});
     return mcap.add_channel(name, schema, "cdr", {{"offered_qos_profiles", qos}});
@@ -61,14 +61,14 @@ struct DatasetWriter::Impl {
   void write_mounting(Time time) {
     if (mounting_written) return;
     mounting_written = true;
-    std::vector<ros2::StampedTransform> mounting;
+    std::vector<ros::StampedTransform> mounting;
     for (const LidarInfo& lidar : rig.lidars) {
       mounting.push_back({time, rig.body_frame, lidar_frame(lidar.id), lidar.body_from_lidar});
     }
     for (const ImuInfo& imu : rig.imus) {
       mounting.push_back({time, rig.body_frame, imu_frame(imu.id), imu.body_from_imu});
     }
-    ros2::encode_transforms(mounting, message);
+    ros::encode_transforms(mounting, message);
     mcap.write(tf_static, time, time, message.bytes());
   }
 
@@ -90,15 +90,25 @@ struct DatasetWriter::Impl {
   void write(const std::string& id, const ImuSample& sample) {
     const std::uint16_t channel = channel_of(imus, id);
     write_mounting(sample.stamp);
-    ros2::encode_imu(sample, imu_frame(id), message);
+    ros::encode_imu(sample, imu_frame(id), message);
     write_measurement(channel, sample.stamp);
   }
 
   void write(const std::string& id, const Scan& scan) {
     const std::uint16_t channel = channel_of(lidars, id);
     write_mounting(scan.stamp);
-    ros2::encode_scan(scan, lidar_frame(id), message);
+    ros::encode_scan(scan, lidar_frame(id), message);
     write_measurement(channel, end_of(scan));
+  }
+
+  void write(const ScanTruth& scan_truth) {
+    channel_of(lidars, scan_truth.sensor_id);  // says so if the rig lacks it
+    const auto [entry, is_new] = hits.try_emplace(scan_truth.sensor_id, 0);
+    if (is_new) {
+      entry->second = add_topic(layout::truth_topic_of(scan_truth.sensor_id), ros::kPointCloud2);
+    }
+    ros::encode_scan_truth(scan_truth, kWorldFrame, message);
+    mcap.write(entry->second, scan_truth.stamp, scan_truth.stamp, message.bytes());
   }
 
   void write_rosbag_metadata();
@@ -111,14 +121,15 @@ struct DatasetWriter::Impl {
   std::map<std::string, std::uint16_t> schemas;
   std::map<std::string, std::uint16_t> lidars;  ///< sensor id -> channel
   std::map<std::string, std::uint16_t> imus;
-  std::vector<RosbagTopic> topics;  ///< by channel id - 1
+  std::map<std::string, std::uint16_t> hits;  ///< truth of the points
+  std::vector<RosbagTopic> topics;            ///< by channel id - 1
   std::uint16_t tf_static = 0;
   std::uint16_t tf = 0;
   std::uint16_t odometry = 0;
-  CdrWriter message;
+  MessageWriter message;
   bool mounting_written = false;
   Time latest{0};  ///< log time of the measurement last written
-  std::vector<StampedPose> truth;
+  std::optional<TumWriter> truth;
   bool finished = false;
 };
 
@@ -131,20 +142,23 @@ void DatasetWriter::write(const Event& event) {
   std::visit([&](const auto& data) { impl_->write(event.sensor_id, data); }, event.data);
 }
 
+void DatasetWriter::write(const ScanTruth& truth) { impl_->write(truth); }
+
 void DatasetWriter::write_truth(const StampedPose& pose) {
   Impl& w = *impl_;
-  if (w.odometry == 0) {
-    w.odometry = w.add_topic(layout::kTruthTopic, ros2::kOdometry);
-    w.tf = w.add_topic("/tf", ros2::kTfMessage);
+  if (!w.truth) {
+    w.truth.emplace(w.folder / layout::kTruth, kTruthHeader);
+    w.odometry = w.add_topic(layout::kTruthTopic, ros::kOdometry);
+    w.tf = w.add_topic("/tf", ros::kTfMessage);
   }
   w.write_mounting(pose.stamp);
-  ros2::encode_odometry(pose, kWorldFrame, w.rig.body_frame, w.message);
+  ros::encode_odometry(pose, kWorldFrame, w.rig.body_frame, w.message);
   w.mcap.write(w.odometry, pose.stamp, pose.stamp, w.message.bytes());
-  const ros2::StampedTransform transform{pose.stamp, kWorldFrame, w.rig.body_frame,
-                                         pose.world_from_body};
-  ros2::encode_transforms(std::span(&transform, 1), w.message);
+  const ros::StampedTransform transform{pose.stamp, kWorldFrame, w.rig.body_frame,
+                                        pose.world_from_body};
+  ros::encode_transforms(std::span(&transform, 1), w.message);
   w.mcap.write(w.tf, pose.stamp, pose.stamp, w.message.bytes());
-  w.truth.push_back(pose);
+  w.truth->write(pose);
 }
 
 /// The bag's description twice, as rosbag2 itself writes it: beside the file and in it. Without the
@@ -184,9 +198,7 @@ void DatasetWriter::finish(const Json& manifest) {
   if (w.finished) return;
   w.write_rosbag_metadata();
   w.mcap.close();
-  if (!w.truth.empty()) {
-    write_tum(w.folder / layout::kTruth, Trajectory(std::move(w.truth), "truth"), kTruthHeader);
-  }
+  if (w.truth) w.truth->close();
   write_json(w.folder / layout::kManifest, w.manifest_with(manifest));
   w.finished = true;
 }

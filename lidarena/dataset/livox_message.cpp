@@ -5,8 +5,8 @@
 #include <limits>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/cdr.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/message_stream.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 
 namespace lidarena {
 
@@ -15,11 +15,11 @@ bool is_livox_type(std::string_view type) {
          type == "livox_interfaces/msg/CustomMsg";
 }
 
-Scan decode_livox(Bytes message, std::string_view place) {
+Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
   constexpr std::size_t kLeastPointBytes = 19;  // without the padding behind the last
-  CdrReader in(message, place);
+  MessageReader in(message, place, encoding);
   Scan scan;
-  scan.stamp = ros2::get_header(in).stamp;
+  scan.stamp = ros::get_header(in).stamp;
   in.get<std::uint64_t>();  // timebase: header.stamp again, or the sensor's own clock
   in.get<std::uint32_t>();  // point_num: the sequence has its own length
   for (int i = 0; i < 4; ++i) in.get<std::uint8_t>();  // lidar_id, rsvd[3]

@@ -4,7 +4,7 @@
 #include <string_view>
 
 #include "lidarena/base/scan.hpp"
-#include "lidarena/dataset/byte_stream.hpp"
+#include "lidarena/dataset/message_stream.hpp"
 
 namespace lidarena {
 
@@ -14,6 +14,6 @@ bool is_livox_type(std::string_view type);
 /// A CustomMsg in CDR as a scan: header.stamp (the first point's time), offset_time (ns), position
 /// (m), reflectivity as intensity, line as ring. Points without a return (0 0 0) are dropped, tags
 /// are not looked at. Throws InputError (place `place`) when the message is broken.
-Scan decode_livox(Bytes message, std::string_view place);
+Scan decode_livox(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
 
 }  // namespace lidarena

@@ -8,7 +8,7 @@
 #include "lidarena/dataset/mcap_info.hpp"
 #include "lidarena/dataset/mcap_reader.hpp"
 #include "lidarena/dataset/room.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/sweeps.hpp"
 #include "lidarena/dataset/tum.hpp"
 
@@ -17,12 +17,17 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string ids_of(const Rig& rig) {
+  std::string ids;
+  for (const LidarInfo& lidar : rig.lidars) ids += (ids.empty() ? "" : ", ") + lidar.id;
+  return ids;
+}
+
 /// Leaves the wanted LiDAR alone in rig and topics, and mounts it as asked.
 void apply(const ReadOptions& options, const std::string& place, layout::Description& dataset) {
   std::vector<LidarInfo>& lidars = dataset.rig.lidars;
   if (!options.sensor.empty()) {
-    std::string known;
-    for (const LidarInfo& lidar : lidars) known += (known.empty() ? "" : ", ") + lidar.id;
+    const std::string known = ids_of(dataset.rig);
     std::erase_if(lidars, [&](const LidarInfo& lidar) { return lidar.id != options.sensor; });
     if (lidars.empty()) {
       throw InputError(place, "has no LiDAR '" + options.sensor + "'", "it has: " + known);
@@ -106,6 +111,7 @@ layout::Description guess(const fs::path& file, const McapInfo& info, const Read
   layout::Description guessed;
   for (const McapTopic& topic : info.topics) {
     const std::string id = id_of_topic(topic.topic);
+    if (topic.topic.starts_with(layout::kTruthPrefix)) continue;
     const bool is_wanted = options.sensor.empty()
                                ? guessed.rig.lidars.empty()
                                : topic.topic == options.sensor || id == options.sensor;
@@ -175,11 +181,52 @@ std::optional<Trajectory> truth_in_mcap(const fs::path& file) {
   std::vector<StampedPose> poses;
   while (const auto message = reader.next()) {
     if (message->channel->topic != layout::kTruthTopic) continue;
-    poses.push_back(ros2::decode_odometry(message->data, file.string() + ": truth"));
+    poses.push_back(ros::decode_odometry(message->data, file.string() + ": truth"));
   }
   if (poses.empty()) return std::nullopt;
   return Trajectory(std::move(poses), file.string() + ": " + layout::kTruthTopic);
 }
+
+/// The topic of the truth of `sensor`'s points in a file; empty when there is none.
+std::optional<std::string> find_truth_topic(const fs::path& file, const std::string& sensor) {
+  const McapInfo info = read_mcap_info(file);
+  const auto ours = layout::description_in(info, file.string());
+  if (!ours) return std::nullopt;
+  const LidarInfo* lidar = ours->rig.find_lidar(sensor);
+  if (lidar == nullptr) {
+    throw InputError(
+        file.string(),
+        sensor.empty() ? std::string("has several LiDARs") : "has no LiDAR '" + sensor + "'",
+        "name the sensor: one of " + ids_of(ours->rig));
+  }
+  std::string topic = layout::truth_topic_of(lidar->id);
+  return info.count_of(topic) > 0 ? std::optional(std::move(topic)) : std::nullopt;
+}
+
+class McapTruthSource final : public ScanTruthSource {
+ public:
+  McapTruthSource(const fs::path& file, std::string sensor, std::string topic)
+      : reader_(file),
+        sensor_(std::move(sensor)),
+        topic_(std::move(topic)),
+        place_(file.string() + ": " + topic_) {}
+
+  std::optional<ScanTruth> next() override {
+    while (const auto message = reader_.next()) {
+      if (message->channel->topic != topic_) continue;
+      ScanTruth truth = ros::decode_scan_truth(message->data, place_);
+      truth.sensor_id = sensor_;
+      return truth;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  McapReader reader_;
+  std::string sensor_;
+  std::string topic_;
+  std::string place_;
+};
 
 }  // namespace
 
@@ -209,6 +256,16 @@ std::optional<Trajectory> load_truth(const fs::path& dataset) {
   }
   if (fs::exists(dataset / layout::kTruth)) return read_tum(dataset / layout::kTruth);
   return is_room(dataset) ? room_truth(dataset) : std::nullopt;
+}
+
+std::unique_ptr<ScanTruthSource> open_scan_truth(const fs::path& dataset,
+                                                 const std::string& sensor) {
+  const fs::path file = fs::is_directory(dataset) ? dataset / layout::kData : dataset;
+  if (file.extension() != ".mcap" || !fs::exists(file)) return nullptr;
+  const auto topic = find_truth_topic(file, sensor);
+  if (!topic) return nullptr;
+  const std::string id = topic->substr(std::string(layout::kTruthPrefix).size());
+  return std::make_unique<McapTruthSource>(file, id.substr(0, id.find('/')), *topic);
 }
 
 std::optional<fs::path> find_world_mesh(const fs::path& dataset) {

@@ -13,7 +13,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena::ros2 {
+namespace lidarena::ros {
 namespace {
 
 /// How a Point lies in memory. Its last byte is padding, written as 0.
@@ -199,18 +199,23 @@ void set_times(Scan& scan, const std::vector<std::int64_t>& times, std::string_v
   }
 }
 
-}  // namespace
+const std::vector<PointField>& truth_fields() {
+  static_assert(offsetof(PointTruth, range) == 12 && offsetof(PointTruth, normal) == 16 &&
+                offsetof(PointTruth, triangle) == 28);
+  static const std::vector<PointField> kFields{
+      {"x", 0, FieldType::kFloat32},   {"y", 4, FieldType::kFloat32},
+      {"z", 8, FieldType::kFloat32},   {"range", 12, FieldType::kFloat32},
+      {"nx", 16, FieldType::kFloat32}, {"ny", 20, FieldType::kFloat32},
+      {"nz", 24, FieldType::kFloat32}, {"triangle", 28, FieldType::kUint32}};
+  return kFields;
+}
 
-void put_cloud(const Scan& scan, std::string_view place, CdrWriter& out) {
-  if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {
-    throw InputError(place, "a point lies before its scan's stamp",
-                     "a scan's stamp is its first firing");
-  }
-  const auto width = static_cast<std::uint32_t>(scan.points.size());
-  constexpr auto kStep = static_cast<std::uint32_t>(sizeof(Point));
-  out.put(std::uint32_t{1});  // height
-  out.put(width);
-  const std::vector<PointField>& fields = own_fields(scan.timed);
+/// Appends a cloud of `height` x `width` points of `step` bytes up to its data, which the caller
+/// fills in: the span returned. What follows it, is_dense, is the caller's too.
+std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size_t step,
+                                const std::vector<PointField>& fields, MessageWriter& out) {
+  out.put(static_cast<std::uint32_t>(height));
+  out.put(static_cast<std::uint32_t>(width));
   out.put(static_cast<std::uint32_t>(fields.size()));
   for (const PointField& field : fields) {
     out.put(std::string_view(field.name));
@@ -219,15 +224,45 @@ void put_cloud(const Scan& scan, std::string_view place, CdrWriter& out) {
     out.put(std::uint32_t{1});  // count
   }
   out.put(std::uint8_t{0});  // is_bigendian
-  out.put(kStep);
-  out.put(kStep * width);  // row_step
-  const std::span<std::byte> data = out.put_octets(scan.points.size() * sizeof(Point));
+  out.put(static_cast<std::uint32_t>(step));
+  out.put(static_cast<std::uint32_t>(step * width));
+  return out.put_octets(step * width * height);
+}
+
+}  // namespace
+
+void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out) {
+  if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {
+    throw InputError(place, "a point lies before its scan's stamp",
+                     "a scan's stamp is its first firing");
+  }
+  const std::span<std::byte> data =
+      put_layout(1, scan.points.size(), sizeof(Point), own_fields(scan.timed), out);
   if (!data.empty()) std::memcpy(data.data(), scan.points.data(), data.size());
   for (std::size_t at = kPaddingAt; at < data.size(); at += sizeof(Point)) data[at] = std::byte{0};
   out.put(std::uint8_t{1});  // is_dense: no point is invalid
 }
 
-PointCloud2 get_cloud(CdrReader& in, std::string_view place) {
+void put_truth_cloud(const std::vector<PointTruth>& points, MessageWriter& out) {
+  const std::span<std::byte> data =
+      put_layout(1, points.size(), sizeof(PointTruth), truth_fields(), out);
+  if (!data.empty()) std::memcpy(data.data(), points.data(), data.size());
+  out.put(std::uint8_t{1});  // is_dense
+}
+
+std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_view place) {
+  if (cloud.point_step != sizeof(PointTruth) || cloud.fields != truth_fields()) {
+    throw InputError(place, "is no truth of points; it has: " + list_of_fields(cloud),
+                     "its fields are x y z range nx ny nz triangle");
+  }
+  std::vector<PointTruth> points(std::size_t{cloud.width} * cloud.height);
+  if (!points.empty()) {
+    std::memcpy(static_cast<void*>(points.data()), cloud.data.data(), cloud.data.size());
+  }
+  return points;
+}
+
+PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
   PointCloud2 cloud;
   cloud.height = in.get<std::uint32_t>();
   cloud.width = in.get<std::uint32_t>();
@@ -299,4 +334,4 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
   return scan;
 }
 
-}  // namespace lidarena::ros2
+}  // namespace lidarena::ros

@@ -7,9 +7,10 @@
 #include <vector>
 
 #include "lidarena/base/scan.hpp"
-#include "lidarena/dataset/cdr.hpp"
+#include "lidarena/dataset/message_stream.hpp"
+#include "lidarena/dataset/point_truth.hpp"
 
-namespace lidarena::ros2 {
+namespace lidarena::ros {
 
 /// sensor_msgs/msg/PointField; the numbers are those of the message.
 enum class FieldType : std::uint8_t {
@@ -42,9 +43,14 @@ struct PointCloud2 {
 
 /// Appends everything behind the header. Throws InputError (place `place`) when a point lies before
 /// the stamp.
-void put_cloud(const Scan& scan, std::string_view place, CdrWriter& out);
+void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out);
 /// Throws InputError when sizes contradict each other or the data is big endian.
-PointCloud2 get_cloud(CdrReader& in, std::string_view place);
+PointCloud2 get_cloud(MessageReader& in, std::string_view place);
+
+/// The same for the truth of points, as PointTruth lies in memory: x y z range nx ny nz triangle.
+void put_truth_cloud(const std::vector<PointTruth>& points, MessageWriter& out);
+/// Reads exactly that layout; throws InputError (place `place`) for another.
+std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_view place);
 
 /// The scan that a cloud with this header.stamp holds. What put_cloud() wrote comes back bit by
 /// bit. Of other drivers' clouds, fields are found by name and type:
@@ -60,4 +66,4 @@ PointCloud2 get_cloud(CdrReader& in, std::string_view place);
 /// InputError when a layout is not understood.
 Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place);
 
-}  // namespace lidarena::ros2
+}  // namespace lidarena::ros

@@ -55,10 +55,36 @@ Trajectory read_tum(const std::filesystem::path& file, EmptyTrajectory empty) {
 
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::string& header) {
-  std::string text;
-  append_comments(text, header);
-  for (const StampedPose& pose : trajectory.poses()) append_row(text, pose);
-  write_text_file(file, text);
+  TumWriter out(file, header);
+  for (const StampedPose& pose : trajectory.poses()) out.write(pose);
+  out.close();
 }
+
+TumWriter::TumWriter(const std::filesystem::path& file, const std::string& header)
+    : place_(file.string()), out_(file) {
+  std::string comments;
+  append_comments(comments, header);
+  out_.write(comments);
+}
+
+void TumWriter::write(const StampedPose& pose) {
+  if (latest_ && pose.stamp <= *latest_) {
+    throw InputError(place_,
+                     fmt::format("a pose at {} s comes after one at {} s",
+                                 format_seconds(pose.stamp), format_seconds(*latest_)),
+                     "poses are written in order of time, each instant once");
+  }
+  if (!pose.world_from_body.matrix().allFinite()) {
+    throw InputError(place_,
+                     fmt::format("the pose at {} s is not finite", format_seconds(pose.stamp)),
+                     "what gave it had diverged");
+  }
+  latest_ = pose.stamp;
+  std::string row;
+  append_row(row, pose);
+  out_.write(row);
+}
+
+void TumWriter::close() { out_.commit(); }
 
 }  // namespace lidarena

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "lidarena/base/trajectory.hpp"
+#include "lidarena/dataset/part_file.hpp"
 
 namespace lidarena {
 
@@ -23,5 +25,22 @@ Trajectory read_tum(const std::filesystem::path& file,
 /// comments (they name the frames and the instant). Throws Error when the disk is full.
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::string& header);
+
+/// Writes the same file row by row, as the poses come: nothing of it stays in memory.
+class TumWriter {
+ public:
+  /// Throws InputError when the file cannot be created.
+  TumWriter(const std::filesystem::path& file, const std::string& header);
+  /// Throws InputError (place: the file) when the stamp is not later than the one before or the
+  /// pose is not finite; Error when the disk is full.
+  void write(const StampedPose& pose);
+  /// Gives the file its name.
+  void close();
+
+ private:
+  std::string place_;
+  PartFile out_;
+  std::optional<Time> latest_;
+};
 
 }  // namespace lidarena

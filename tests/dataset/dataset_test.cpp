@@ -8,7 +8,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/mcap_reader.hpp"
 #include "lidarena/dataset/mcap_writer.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
@@ -166,14 +166,14 @@ TEST_F(DatasetFolder, TransformsAndTruthAreInTheBagForRos) {
     const std::string& topic = message->channel->topic;
     if (counts[topic]++ > 0) continue;
     if (topic == "/tf_static") {
-      const auto mounting = ros2::decode_transforms(message->data, topic);
+      const auto mounting = ros::decode_transforms(message->data, topic);
       ASSERT_EQ(mounting.size(), 2U);
       EXPECT_EQ(mounting[0].parent, "base_link");
       EXPECT_EQ(mounting[0].child, "mid360_lidar");
       EXPECT_EQ(mounting[1].child, "mid360_imu");
       EXPECT_TRUE(mounting[0].parent_from_child.isApprox(sample::rig().lidars[0].body_from_lidar));
     } else if (topic == "/tf") {
-      const auto pose = ros2::decode_transforms(message->data, topic);
+      const auto pose = ros::decode_transforms(message->data, topic);
       ASSERT_EQ(pose.size(), 1U);
       EXPECT_EQ(pose[0].parent, "world");
       EXPECT_EQ(pose[0].child, "base_link");
@@ -265,19 +265,19 @@ TEST_F(DatasetFolder, FoldersThatAreNoDatasetAreRefused) {
 void write_foreign(const fs::path& file, const std::vector<Event>& events) {
   McapWriter out(file);
   const auto schema = [&](std::string_view type) {
-    return out.add_schema(std::string(type), "ros2msg", ros2::definition_of(type));
+    return out.add_schema(std::string(type), "ros2msg", ros::definition_of(type));
   };
-  const std::uint16_t imu = out.add_channel("/os/imu", schema(ros2::kImu), "cdr");
-  const std::uint16_t points = out.add_channel("/os/points", schema(ros2::kPointCloud2), "cdr");
-  const std::uint16_t derived = out.add_channel("/map", schema(ros2::kPointCloud2), "cdr");
-  CdrWriter message;
+  const std::uint16_t imu = out.add_channel("/os/imu", schema(ros::kImu), "cdr");
+  const std::uint16_t points = out.add_channel("/os/points", schema(ros::kPointCloud2), "cdr");
+  const std::uint16_t derived = out.add_channel("/map", schema(ros::kPointCloud2), "cdr");
+  MessageWriter message;
   for (const Event& event : events) {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
-      ros2::encode_imu(*sample, "os_imu", message);
+      ros::encode_imu(*sample, "os_imu", message);
       out.write(imu, sample->stamp, sample->stamp, message.bytes());
     } else {
       const Scan& scan = std::get<Scan>(event.data);
-      ros2::encode_scan(scan, "os_lidar", message);
+      ros::encode_scan(scan, "os_lidar", message);
       out.write(points, scan.stamp, scan.stamp, message.bytes());
       out.write(derived, scan.stamp, scan.stamp, message.bytes());
     }

@@ -8,9 +8,9 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/livox_message.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 
-namespace lidarena::ros2 {
+namespace lidarena::ros {
 namespace {
 
 constexpr Time kStamp{1'700'000'000'123'456'789};  // of today's epoch
@@ -41,7 +41,7 @@ class CloudMessage {
   std::uint32_t extra_width = 0;
 
   Scan decode() const {
-    CdrWriter out;
+    MessageWriter out;
     put_header(stamp_, "lidar", out);
     out.put(std::uint32_t{1});
     out.put(static_cast<std::uint32_t>(data_.size() / step_) + extra_width);
@@ -251,7 +251,7 @@ TEST(PointCloud2, SaysWhatItDoesNotUnderstand) {
 
 // CDR aligns the uint32 of the next point, so points take 20 bytes but for the last.
 TEST(LivoxMessage, ReadsACustomMsg) {
-  CdrWriter out;
+  MessageWriter out;
   put_header(kStamp, "livox_frame", out);
   out.put(static_cast<std::uint64_t>(kStamp.count()));
   out.put(std::uint32_t{3});
@@ -276,4 +276,4 @@ TEST(LivoxMessage, ReadsACustomMsg) {
 }
 
 }  // namespace
-}  // namespace lidarena::ros2
+}  // namespace lidarena::ros

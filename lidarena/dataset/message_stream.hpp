@@ -9,15 +9,23 @@
 
 #include "lidarena/dataset/byte_stream.hpp"
 
-/// Plain CDR, version 1 (OMG CORBA 3.0 chapter 15.3; DDS-XTypes 1.3, 7.4.1), little endian, as ROS
-/// 2 writes it: four bytes of encapsulation header, then the members in order. A number of N bytes
-/// starts at a multiple of N, counted from behind the header.
+/// How ROS messages become bytes: their members in order, little endian.
 namespace lidarena {
 
+enum class Encoding {
+  /// Plain CDR, version 1 (OMG CORBA 3.0 chapter 15.3; DDS-XTypes 1.3, 7.4.1), as ROS 2 writes it:
+  /// four bytes of encapsulation header; a number of N bytes starts at a multiple of N, counted
+  /// from behind the header; a string's length counts its closing zero.
+  kCdr,
+  /// ROS 1: without header, padding and closing zeros.
+  kRos1,
+};
+
 /// Serialises one message after another into the same memory.
-class CdrWriter {
+class MessageWriter {
  public:
-  CdrWriter() { clear(); }
+  explicit MessageWriter(Encoding encoding = Encoding::kCdr) : encoding_(encoding) { clear(); }
+  Encoding encoding() const { return encoding_; }
   /// Starts the next message.
   void clear();
 
@@ -28,9 +36,9 @@ class CdrWriter {
     align(sizeof value);
     append(std::as_bytes(std::span(&value, 1)));
   }
-  /// Length with the closing zero, the characters, a zero.
   void put(std::string_view text);
-  /// `sequence<octet>`: length, then the bytes. The span returned is where they are to be put.
+  /// A sequence of bytes: length, then the bytes. The span returned is where they are to be put; it
+  /// is zero until then.
   std::span<std::byte> put_octets(std::size_t size);
   /// `count` times the same number, as a fixed array has them (without a length).
   void put_repeated(double value, std::size_t count);
@@ -41,14 +49,16 @@ class CdrWriter {
   void align(std::size_t size);
   void append(Bytes bytes) { bytes_.insert(bytes_.end(), bytes.begin(), bytes.end()); }
 
+  Encoding encoding_;
   std::vector<std::byte> bytes_;
 };
 
 /// Reads one message. Throws InputError (place `place`) when the encoding is another one or the
 /// message is shorter than its type.
-class CdrReader {
+class MessageReader {
  public:
-  CdrReader(Bytes message, std::string_view place);
+  MessageReader(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
+  Encoding encoding() const { return encoding_; }
 
   template <class T>
   requires std::is_arithmetic_v<T> T get() {
@@ -68,6 +78,7 @@ class CdrReader {
   void align(std::size_t size);
   Bytes take(std::size_t size);
 
+  Encoding encoding_;
   Bytes message_;  ///< behind the header
   std::size_t offset_ = 0;
   std::string place_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,12 +7,12 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/sample_events.hpp"
 
-namespace lidarena::ros2 {
+namespace lidarena::ros {
 namespace {
 
 TEST(Ros2Messages, AScanComesBackBitByBit) {
   const Scan scan = sample::scan(3, 1000);
-  CdrWriter out;
+  MessageWriter out;
   encode_scan(scan, "mid360", out);
   expect_same(decode_scan(out.bytes(), "test"), scan);
 }
@@ -21,25 +21,25 @@ TEST(Ros2Messages, AScanWithoutTimesStaysSo) {
   Scan scan = sample::scan(3, 10);
   scan.timed = false;
   for (Point& point : scan.points) point.dt_ns = 0;
-  CdrWriter out;
+  MessageWriter out;
   encode_scan(scan, "mid360", out);
   expect_same(decode_scan(out.bytes(), "test"), scan);
 }
 
 TEST(Ros2Messages, AnEmptyScanComesBackEmpty) {
   const Scan scan{Time{5}, {}, true};
-  CdrWriter out;
+  MessageWriter out;
   encode_scan(scan, "mid360", out);
   expect_same(decode_scan(out.bytes(), "test"), scan);
 }
 
 TEST(Ros2Messages, ThePaddingOfPointsIsWrittenAsZero) {
   Scan scan = sample::scan(0, 2);
-  CdrWriter clean;
+  MessageWriter clean;
   encode_scan(scan, "mid360", clean);
   const std::vector<std::byte> expected(clean.bytes().begin(), clean.bytes().end());
   for (Point& point : scan.points) reinterpret_cast<unsigned char*>(&point)[23] = 0xAB;
-  CdrWriter dirty;
+  MessageWriter dirty;
   encode_scan(scan, "mid360", dirty);
   EXPECT_TRUE(std::ranges::equal(dirty.bytes(), expected));
 }
@@ -47,18 +47,18 @@ TEST(Ros2Messages, ThePaddingOfPointsIsWrittenAsZero) {
 TEST(Ros2Messages, APointBeforeItsScansStampIsRefused) {
   Scan scan = sample::scan(0, 2);
   scan.points[0].dt_ns = -1;
-  CdrWriter out;
+  MessageWriter out;
   EXPECT_THROW(encode_scan(scan, "mid360", out), InputError);
 }
 
 TEST(Ros2Messages, AnImuSampleComesBackBitByBit) {
-  CdrWriter out;
+  MessageWriter out;
   encode_imu(sample::imu(17), "imu", out);
   expect_same(decode_imu(out.bytes(), "test"), sample::imu(17));
 }
 
 TEST(Ros2Messages, APoseComesBackToTheLastDigitsOfItsQuaternion) {
-  CdrWriter out;
+  MessageWriter out;
   const StampedPose pose = sample::truth(77);
   encode_odometry(pose, "world", "body", out);
   const StampedPose back = decode_odometry(out.bytes(), "test");
@@ -72,7 +72,7 @@ TEST(Ros2Messages, TransformsComeBack) {
   const std::vector<StampedTransform> transforms{
       {Time{1}, "world", "body", sample::truth(5).world_from_body},
       {Time{2}, "body", "a name of odd length", sample::rig().lidars[0].body_from_lidar}};
-  CdrWriter out;
+  MessageWriter out;
   encode_transforms(transforms, out);
   const std::vector<StampedTransform> back = decode_transforms(out.bytes(), "test");
   ASSERT_EQ(back.size(), 2U);
@@ -85,7 +85,7 @@ TEST(Ros2Messages, TransformsComeBack) {
 }
 
 TEST(Ros2Messages, EveryShorterMessageIsBadInputAndNoCrash) {
-  CdrWriter out;
+  MessageWriter out;
   encode_scan(sample::scan(0, 3), "mid360", out);
   // Only the closing is_dense is not looked at.
   for (std::size_t size = 0; size + 1 < out.bytes().size(); ++size) {
@@ -94,7 +94,7 @@ TEST(Ros2Messages, EveryShorterMessageIsBadInputAndNoCrash) {
 }
 
 TEST(Ros2Messages, AStampBeyond2038DoesNotFit) {
-  CdrWriter out;
+  MessageWriter out;
   EXPECT_THROW(encode_imu({.stamp = std::chrono::seconds(std::int64_t{1} << 31)}, "imu", out),
                InputError);
 }
@@ -119,4 +119,4 @@ TEST(Ros2Messages, DefinitionsBringAlongWhatTheyUse) {
 }
 
 }  // namespace
-}  // namespace lidarena::ros2
+}  // namespace lidarena::ros

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/cdr.hpp"
+#include "lidarena/dataset/message_stream.hpp"
 
 #include <gmock/gmock.h>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 
 namespace lidarena {
 namespace {
@@ -18,7 +18,7 @@ std::vector<int> numbers(Bytes bytes) {
 // Worked out by hand from the rules of CDR: a number of N bytes starts at a multiple of N, counted
 // from behind the header of four bytes.
 TEST(Cdr, PadsNumbersToTheirOwnSize) {
-  CdrWriter out;
+  MessageWriter out;
   out.put(std::uint8_t{1});
   out.put(std::uint16_t{0x0203});
   out.put(std::uint8_t{4});
@@ -34,7 +34,7 @@ TEST(Cdr, PadsNumbersToTheirOwnSize) {
 }
 
 TEST(Cdr, StringsCarryTheirLengthAndAZero) {
-  CdrWriter out;
+  MessageWriter out;
   out.put(std::string_view("ab"));
   out.put(std::uint32_t{7});
   EXPECT_THAT(numbers(out.bytes()), testing::ElementsAre(0, 1, 0, 0, 3, 0, 0, 0, 'a', 'b', 0, 0,  //
@@ -42,15 +42,15 @@ TEST(Cdr, StringsCarryTheirLengthAndAZero) {
 }
 
 TEST(Cdr, AnEmptySequenceOfDoublesIsItsLengthAlone) {
-  CdrWriter out;
+  MessageWriter out;
   out.put(std::uint32_t{0});
   out.put(std::uint8_t{5});
   EXPECT_THAT(numbers(out.bytes()), testing::ElementsAre(0, 1, 0, 0, 0, 0, 0, 0, 5));
 }
 
 TEST(Cdr, TheHeaderOfAMessageLiesAsRosWritesIt) {
-  CdrWriter out;
-  ros2::put_header(std::chrono::seconds(2) + Time{3}, "os", out);
+  MessageWriter out;
+  ros::put_header(std::chrono::seconds(2) + Time{3}, "os", out);
   out.put(1.0);
   EXPECT_THAT(numbers(out.bytes()),
               testing::ElementsAre(0, 1, 0, 0, 2, 0, 0, 0, 3, 0, 0, 0,  // sec, nanosec
@@ -59,23 +59,23 @@ TEST(Cdr, TheHeaderOfAMessageLiesAsRosWritesIt) {
 }
 
 TEST(Cdr, TimesBeforeTheEpochHaveNegativeSecondsAndPositiveNanoseconds) {
-  CdrWriter out;
-  ros2::put_header(Time{-1}, "", out);
-  CdrReader in(out.bytes(), "test");
+  MessageWriter out;
+  ros::put_header(Time{-1}, "", out);
+  MessageReader in(out.bytes(), "test");
   EXPECT_EQ(in.get<std::int32_t>(), -1);
   EXPECT_EQ(in.get<std::uint32_t>(), 999'999'999U);
-  CdrReader again(out.bytes(), "test");
-  EXPECT_EQ(ros2::get_header(again).stamp, Time{-1});
+  MessageReader again(out.bytes(), "test");
+  EXPECT_EQ(ros::get_header(again).stamp, Time{-1});
 }
 
 TEST(Cdr, WhatIsWrittenIsRead) {
-  CdrWriter out;
+  MessageWriter out;
   out.put(std::int16_t{-2});
   out.put(std::string_view("hello"));
   out.put(3.5F);
   out.put(std::uint64_t{1} << 40);
   out.put(std::string_view(""));
-  CdrReader in(out.bytes(), "test");
+  MessageReader in(out.bytes(), "test");
   EXPECT_EQ(in.get<std::int16_t>(), -2);
   EXPECT_EQ(in.get_string(), "hello");
   EXPECT_EQ(in.get<float>(), 3.5F);
@@ -84,19 +84,19 @@ TEST(Cdr, WhatIsWrittenIsRead) {
 }
 
 TEST(Cdr, AMessageThatEndsTooEarlyIsBadInput) {
-  CdrWriter out;
+  MessageWriter out;
   out.put(std::uint32_t{1000});  // a length with nothing behind it
-  EXPECT_THROW(CdrReader(out.bytes(), "test").get_string(), InputError);
-  EXPECT_THROW(CdrReader(out.bytes(), "test").get_octets(), InputError);
-  EXPECT_THROW(CdrReader(out.bytes(), "test").get_length(1), InputError);
-  EXPECT_THROW(CdrReader(out.bytes(), "test").get<double>(), InputError);
-  EXPECT_THROW(CdrReader(Bytes{}, "test"), InputError);
+  EXPECT_THROW(MessageReader(out.bytes(), "test").get_string(), InputError);
+  EXPECT_THROW(MessageReader(out.bytes(), "test").get_octets(), InputError);
+  EXPECT_THROW(MessageReader(out.bytes(), "test").get_length(1), InputError);
+  EXPECT_THROW(MessageReader(out.bytes(), "test").get<double>(), InputError);
+  EXPECT_THROW(MessageReader(Bytes{}, "test"), InputError);
 }
 
 TEST(Cdr, OtherEncodingsAreRefused) {
   for (const int second : {0, 2, 3, 7}) {  // big endian, parameter lists, CDR version 2
     const std::array<std::byte, 8> bytes{std::byte{0}, static_cast<std::byte>(second)};
-    EXPECT_THROW(CdrReader(bytes, "test"), InputError) << second;
+    EXPECT_THROW(MessageReader(bytes, "test"), InputError) << second;
   }
 }
 

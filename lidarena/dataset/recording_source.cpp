@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/mcap_source.hpp"
+#include "lidarena/dataset/recording_source.hpp"
 
 #include <array>
 #include <exception>
@@ -8,7 +8,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/livox_message.hpp"
 #include "lidarena/dataset/mcap_reader.hpp"
-#include "lidarena/dataset/ros2_messages.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/stream_merge.hpp"
 
 namespace lidarena {
@@ -60,7 +60,7 @@ class McapSource final : public EventSource {
   void deliver(const McapMessage& message) {
     const std::string& topic = message.channel->topic;
     if (const auto imu = sensors_.imus.find(topic); imu != sensors_.imus.end()) {
-      merge_.push({imu->second, ros2::decode_imu(message.data, place_of(topic))});
+      merge_.push({imu->second, ros::decode_imu(message.data, place_of(topic))});
     } else if (const auto lidar = sensors_.lidars.find(topic); lidar != sensors_.lidars.end()) {
       merge_.push({lidar->second, decode_scan(message)});
     }
@@ -70,7 +70,7 @@ class McapSource final : public EventSource {
     const std::string place = place_of(message.channel->topic);
     const auto schema = reader_.schemas().find(message.channel->schema_id);
     const bool is_livox = schema != reader_.schemas().end() && is_livox_type(schema->second.name);
-    return is_livox ? decode_livox(message.data, place) : ros2::decode_scan(message.data, place);
+    return is_livox ? decode_livox(message.data, place) : ros::decode_scan(message.data, place);
   }
 
   std::string place_of(const std::string& topic) const { return file_ + ": " + topic; }
@@ -87,11 +87,11 @@ class McapSource final : public EventSource {
 
 bool is_scan_type(const McapTopic& topic) {
   return topic.message_encoding == "cdr" &&
-         (topic.type == ros2::kPointCloud2 || is_livox_type(topic.type));
+         (topic.type == ros::kPointCloud2 || is_livox_type(topic.type));
 }
 
 bool is_imu_type(const McapTopic& topic) {
-  return topic.message_encoding == "cdr" && topic.type == ros2::kImu;
+  return topic.message_encoding == "cdr" && topic.type == ros::kImu;
 }
 
 std::unique_ptr<EventSource> open_mcap_events(const std::filesystem::path& file,

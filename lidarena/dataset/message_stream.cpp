@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/cdr.hpp"
+#include "lidarena/dataset/message_stream.hpp"
 
 #include <array>
 
@@ -14,30 +14,37 @@ std::size_t aligned(std::size_t offset, std::size_t size) {
 }
 }  // namespace
 
-void CdrWriter::clear() { bytes_.assign(kLittleEndianCdr.begin(), kLittleEndianCdr.end()); }
+void MessageWriter::clear() {
+  bytes_.clear();
+  if (encoding_ == Encoding::kCdr) append(kLittleEndianCdr);
+}
 
-void CdrWriter::align(std::size_t size) {
+void MessageWriter::align(std::size_t size) {
+  if (encoding_ != Encoding::kCdr) return;
   const std::size_t header = kLittleEndianCdr.size();
   bytes_.resize(header + aligned(bytes_.size() - header, size));
 }
 
-void CdrWriter::put(std::string_view text) {
-  put(static_cast<std::uint32_t>(text.size() + 1));
+void MessageWriter::put(std::string_view text) {
+  const bool closed = encoding_ == Encoding::kCdr;
+  put(static_cast<std::uint32_t>(text.size() + (closed ? 1 : 0)));
   append(std::as_bytes(std::span(text)));
-  bytes_.push_back(std::byte{0});
+  if (closed) bytes_.push_back(std::byte{0});
 }
 
-std::span<std::byte> CdrWriter::put_octets(std::size_t size) {
+std::span<std::byte> MessageWriter::put_octets(std::size_t size) {
   put(static_cast<std::uint32_t>(size));
   bytes_.resize(bytes_.size() + size);
   return std::span(bytes_).last(size);
 }
 
-void CdrWriter::put_repeated(double value, std::size_t count) {
+void MessageWriter::put_repeated(double value, std::size_t count) {
   for (std::size_t i = 0; i < count; ++i) put(value);
 }
 
-CdrReader::CdrReader(Bytes message, std::string_view place) : place_(place) {
+MessageReader::MessageReader(Bytes message, std::string_view place, Encoding encoding)
+    : encoding_(encoding), message_(message), place_(place) {
+  if (encoding_ != Encoding::kCdr) return;
   const std::size_t header = kLittleEndianCdr.size();
   if (message.size() < header) throw InputError(place_, "a message is empty");
   // The two option bytes may hold the padding at the end; they change nothing for the reader.
@@ -48,9 +55,11 @@ CdrReader::CdrReader(Bytes message, std::string_view place) : place_(place) {
   message_ = message.subspan(header);
 }
 
-void CdrReader::align(std::size_t size) { offset_ = aligned(offset_, size); }
+void MessageReader::align(std::size_t size) {
+  if (encoding_ == Encoding::kCdr) offset_ = aligned(offset_, size);
+}
 
-Bytes CdrReader::take(std::size_t size) {
+Bytes MessageReader::take(std::size_t size) {
   if (offset_ > message_.size() || size > message_.size() - offset_) {
     throw InputError(place_, "a message is shorter than its type asks for",
                      "the schema and the messages do not belong together");
@@ -60,19 +69,20 @@ Bytes CdrReader::take(std::size_t size) {
   return taken;
 }
 
-std::string CdrReader::get_string() {
+std::string MessageReader::get_string() {
   const auto length = get<std::uint32_t>();
   if (length == 0) return {};  // some writers leave out the zero of an empty string
   const Bytes text = take(length);
-  return {reinterpret_cast<const char*>(text.data()), length - 1};
+  const std::size_t closing = encoding_ == Encoding::kCdr ? 1 : 0;
+  return {reinterpret_cast<const char*>(text.data()), length - closing};
 }
 
-Bytes CdrReader::get_octets() {
+Bytes MessageReader::get_octets() {
   const auto length = get<std::uint32_t>();
   return take(length);
 }
 
-std::uint32_t CdrReader::get_length(std::size_t element_bytes) {
+std::uint32_t MessageReader::get_length(std::size_t element_bytes) {
   const auto length = get<std::uint32_t>();
   if (std::uint64_t{length} * element_bytes > message_.size() - offset_) {
     throw InputError(place_, "a message claims more elements than it has room for",
@@ -81,7 +91,7 @@ std::uint32_t CdrReader::get_length(std::size_t element_bytes) {
   return length;
 }
 
-void CdrReader::skip_doubles(std::size_t count) {
+void MessageReader::skip_doubles(std::size_t count) {
   align(sizeof(double));
   take(count * sizeof(double));
 }
