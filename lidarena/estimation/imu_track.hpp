@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/pose.hpp"
+#include "lidarena/base/scan.hpp"
+
+namespace lidarena {
+
+/// Motion over one IMU step: rate and acceleration constant from `begin` to the next step's begin.
+struct ImuStep {
+  Time begin{0};
+  Pose world_from_imu = Pose::Identity();
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();      ///< m/s, world
+  Eigen::Vector3d acceleration = Eigen::Vector3d::Zero();  ///< m/s^2, world, without gravity
+  Eigen::Vector3d rate = Eigen::Vector3d::Zero();          ///< rad/s, body
+};
+
+/// The steps of one scan, in time order.
+using ImuTrack = std::vector<ImuStep>;
+
+/// Pose at `t` by the last step that begins at or before it, or the first step if `t` lies before
+/// all. `track` is not empty.
+Pose pose_at(const ImuTrack& track, Time t);
+
+/// Positions (m) of all points of `scan`, in order, seen from the LiDAR as it is at `end`
+/// (FAST-LIO2's backward propagation, eq. 10, whose relative poses are those of the forward one).
+/// Untimed scans come back as they are; so do points that are not finite.
+std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
+                                    const Pose& imu_from_lidar, const Pose& world_from_imu_at_end,
+                                    const Parallel& parallel);
+
+}  // namespace lidarena

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/inertial_state.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena {
+namespace {
+
+using State = InertialState;
+
+template <int Size = 3>
+auto part(const State::Vector& v, State::Block block) {
+  return v.segment<Size>(block);
+}
+
+/// The rotation vector, across `b`, that turns the direction of `b` to that of `a`.
+Eigen::Vector3d turn_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d across = b.cross(a);
+  const double sine = across.norm();
+  const double angle = std::atan2(sine, a.dot(b));
+  if (sine > 0.0) return angle / sine * across;
+  if (angle < 1.0) return Eigen::Vector3d::Zero();
+  return angle * tangent_basis(b).col(0);  // opposite: any way round
+}
+
+}  // namespace
+
+Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction) {
+  const Eigen::Vector3d unit = direction.normalized();
+  Eigen::Index smallest = 0;
+  unit.cwiseAbs().minCoeff(&smallest);
+  Eigen::Matrix<double, 3, 2> basis;
+  basis.col(0) = unit.cross(Eigen::Vector3d::Unit(smallest)).normalized();
+  basis.col(1) = unit.cross(basis.col(0));
+  return basis;
+}
+
+State plus(const State& state, const State::Vector& delta) {
+  State moved = state;
+  moved.position += part(delta, State::kPosition);
+  moved.rotation *= so3::exp(part(delta, State::kRotation));
+  moved.lidar_rotation *= so3::exp(part(delta, State::kLidarRotation));
+  moved.lidar_position += part(delta, State::kLidarPosition);
+  moved.velocity += part(delta, State::kVelocity);
+  moved.gyro_bias += part(delta, State::kGyroBias);
+  moved.accel_bias += part(delta, State::kAccelBias);
+  const Eigen::Vector3d turn = tangent_basis(state.gravity) * part<2>(delta, State::kGravity);
+  moved.gravity = so3::exp(turn) * state.gravity;
+  return moved;
+}
+
+State::Vector minus(const State& a, const State& b) {
+  State::Vector delta;
+  delta << a.position - b.position, so3::log(b.rotation.transpose() * a.rotation),
+      so3::log(b.lidar_rotation.transpose() * a.lidar_rotation),
+      a.lidar_position - b.lidar_position, a.velocity - b.velocity, a.gyro_bias - b.gyro_bias,
+      a.accel_bias - b.accel_bias,
+      tangent_basis(b.gravity).transpose() * turn_between(a.gravity, b.gravity);
+  return delta;
+}
+
+State::Matrix transport(const State& from, const State::Vector& delta) {
+  State::Matrix a = State::Matrix::Identity();
+  for (const State::Block block : {State::kRotation, State::kLidarRotation}) {
+    a.block<3, 3>(block, block) = so3::right_jacobian(part(delta, block));
+  }
+  // exp(B (d + e)) g is exp(left_jacobian(B d) B e) applied to the moved gravity, and of that turn
+  // the part along the moved gravity changes nothing.
+  const Eigen::Matrix<double, 3, 2> basis = tangent_basis(from.gravity);
+  const Eigen::Vector3d turn = basis * part<2>(delta, State::kGravity);
+  const Eigen::Vector3d moved = so3::exp(turn) * from.gravity;
+  a.block<2, 2>(State::kGravity, State::kGravity) =
+      tangent_basis(moved).transpose() * so3::left_jacobian(turn) * basis;
+  return a;
+}
+
+State::Matrix propagate(State& state, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel,
+                        double seconds, Integration integration) {
+  const Eigen::Vector3d turn = (gyro - state.gyro_bias) * seconds;
+  const Eigen::Vector3d force = accel - state.accel_bias;
+  const Eigen::Vector3d acceleration = state.rotation * force + state.gravity;
+  const double half = integration == Integration::kSecondOrder ? 0.5 * seconds : 0.0;
+
+  State::Matrix f = State::Matrix::Identity();
+  const Eigen::Matrix3d by_rotation = -state.rotation * so3::hat(force) * seconds;
+  const Eigen::Matrix3d by_bias = -state.rotation * seconds;
+  const Eigen::Matrix<double, 3, 2> by_gravity =
+      -so3::hat(state.gravity) * tangent_basis(state.gravity) * seconds;
+  f.block<3, 3>(State::kPosition, State::kVelocity).diagonal().setConstant(seconds);
+  f.block<3, 3>(State::kPosition, State::kRotation) = half * by_rotation;
+  f.block<3, 3>(State::kPosition, State::kAccelBias) = half * by_bias;
+  f.block<3, 2>(State::kPosition, State::kGravity) = half * by_gravity;
+  f.block<3, 3>(State::kRotation, State::kRotation) = so3::exp(-turn);
+  f.block<3, 3>(State::kRotation, State::kGyroBias) = -so3::right_jacobian(turn) * seconds;
+  f.block<3, 3>(State::kVelocity, State::kRotation) = by_rotation;
+  f.block<3, 3>(State::kVelocity, State::kAccelBias) = by_bias;
+  f.block<3, 2>(State::kVelocity, State::kGravity) = by_gravity;
+
+  state.position += (state.velocity + half * acceleration) * seconds;
+  state.velocity += acceleration * seconds;
+  state.rotation *= so3::exp(turn);
+  return f;
+}
+
+State::Matrix step_noise(const ImuNoise& noise, double seconds) {
+  // Of the same variance on each axis, so turning it changes nothing.
+  State::Vector variances = State::Vector::Zero();
+  const auto set = [&](State::Block block, double density) {
+    variances.segment<3>(block).setConstant(density * density * seconds);
+  };
+  set(State::kRotation, noise.gyro_density);
+  set(State::kVelocity, noise.accel_density);
+  set(State::kGyroBias, noise.gyro_walk);
+  set(State::kAccelBias, noise.accel_walk);
+  return variances.asDiagonal();
+}
+
+}  // namespace lidarena

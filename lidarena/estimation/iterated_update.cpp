@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/iterated_update.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace lidarena {
+namespace {
+
+using State = InertialState;
+
+State::Matrix inverse(const State::Matrix& covariance) {
+  return covariance.ldlt().solve(State::Matrix::Identity());
+}
+
+State::Matrix symmetric(const State::Matrix& m) { return 0.5 * (m + m.transpose()); }
+
+}  // namespace
+
+IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
+                               const IteratedUpdateOptions& options) {
+  IteratedUpdate result{prior};
+  State x = prior.state;
+  int converged_before = 0;
+  bool search = true;
+  for (int i = 0; i <= options.max_iterations; ++i) {
+    const NormalEquations<kPointDof> points = residuals(x, search);
+    ++result.evaluations;
+    if (points.count == 0) continue;
+    result.residuals = points.count;
+
+    // The prior, as it is seen from x: mean and covariance in the tangent space there.
+    const State::Vector moved = minus(x, prior.state);
+    const State::Matrix a = transport(prior.state, moved);
+    const State::Matrix prior_information =
+        inverse(symmetric(a * prior.covariance * a.transpose()));
+
+    State::Matrix information = prior_information;
+    State::Vector gradient = prior_information * (a * moved);
+    information.topLeftCorner<kPointDof, kPointDof>() += points.hessian / options.variance;
+    gradient.head<kPointDof>() += points.gradient / options.variance;
+    const State::Vector step = -information.ldlt().solve(gradient);
+
+    const State::Matrix to_new = transport(x, step);
+    x = plus(x, step);
+    result.belief = {x, symmetric(to_new * inverse(information) * to_new.transpose())};
+
+    const bool converged = step.cwiseAbs().maxCoeff() <= options.tolerance;
+    converged_before += converged ? 1 : 0;
+    result.converged = converged_before > 0;
+    if (converged_before == 2) break;
+    search = converged || (converged_before == 0 && i + 1 == options.max_iterations);
+  }
+  return result;
+}
+
+Belief zero_velocity_update(const Belief& prior, double sigma) {
+  const auto velocity_columns = prior.covariance.middleCols<3>(State::kVelocity);
+  const Eigen::Matrix3d innovation =
+      prior.covariance.block<3, 3>(State::kVelocity, State::kVelocity) +
+      sigma * sigma * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix<double, State::kDof, 3> gain =
+      innovation.ldlt().solve(velocity_columns.transpose()).transpose();
+  const State::Vector step = -gain * prior.state.velocity;
+  const State::Matrix covariance = prior.covariance - gain * velocity_columns.transpose();
+  const State::Matrix to_new = transport(prior.state, step);
+  return {plus(prior.state, step), symmetric(to_new * covariance * to_new.transpose())};
+}
+
+}  // namespace lidarena

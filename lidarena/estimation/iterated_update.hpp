@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+#include "lidarena/estimation/inertial_state.hpp"
+#include "lidarena/estimation/least_squares.hpp"
+
+namespace lidarena {
+
+/// What is believed of the motion: the state, and the covariance of its error.
+struct Belief {
+  InertialState state;
+  InertialState::Matrix covariance = InertialState::Matrix::Identity();
+};
+
+/// Errors that LiDAR points depend on: position, rotation, and the LiDAR's rotation and position.
+inline constexpr int kPointDof = 12;
+
+struct IteratedUpdateOptions {
+  int max_iterations = 3;   ///< one more evaluation than this, at most
+  double tolerance = 1e-3;  ///< an evaluation whose step is nowhere larger has converged
+  double variance = 1e-3;   ///< m^2, of each point's residual
+};
+
+struct IteratedUpdate {
+  Belief belief;
+  int evaluations = 0;
+  bool converged = false;
+  std::size_t residuals = 0;  ///< of the last evaluation that had any; 0: the belief is the prior
+};
+
+/// Residuals r (m) of all points at a state, as the sums of J^T J and J^T r; `search` asks for new
+/// correspondences, else those of before are used again.
+using PointResiduals =
+    std::function<NormalEquations<kPointDof>(const InertialState& state, bool search)>;
+
+/// Update of an iterated error-state Kalman filter on the manifold with the gain that inverts a
+/// matrix of the state's size and not of the measurements' (FAST-LIO2, eq. 14-18, after He, Xu,
+/// Zhang, "Kalman Filters on Differentiable Manifolds", 2021). New correspondences are searched at
+/// the start, whenever an evaluation has converged, and for the last evaluation if none has.
+IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
+                               const IteratedUpdateOptions& options);
+
+/// Kalman update by "the velocity is zero" with `sigma` m/s on each axis.
+Belief zero_velocity_update(const Belief& prior, double sigma);
+
+}  // namespace lidarena

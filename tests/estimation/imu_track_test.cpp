@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/imu_track.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/base/time.hpp"
+
+namespace lidarena {
+namespace {
+
+const Eigen::Vector3d kRate(0.3, -0.5, 1.2);
+const Eigen::Vector3d kVelocity(1.0, -2.0, 0.5);
+const Eigen::Vector3d kAcceleration(3.0, 1.0, -2.0);
+
+/// Constant rate and acceleration, in closed form.
+Pose motion(double t) {
+  return make_pose(so3::exp(kRate * t), kVelocity * t + 0.5 * t * t * kAcceleration);
+}
+
+ImuTrack track(int steps) {
+  ImuTrack all;
+  for (int i = 0; i < steps; ++i) {
+    const double t = 0.1 * i / steps;
+    all.push_back(
+        {from_seconds(t), motion(t), kVelocity + t * kAcceleration, kAcceleration, kRate});
+  }
+  return all;
+}
+
+TEST(ImuTrack, GivesThePoseOfTheStepThatAnInstantFallsInto) {
+  for (const double t : {-0.01, 0.0, 0.013, 0.05, 0.0999, 0.12}) {
+    const Pose error = pose_at(track(20), from_seconds(t)).inverse() * motion(t);
+    EXPECT_LT(error.translation().norm(), 1e-8) << t;  // a nanosecond at 2 m/s
+    EXPECT_LT(so3::angle(error.linear()), 1e-8) << t;
+  }
+}
+
+TEST(ImuTrack, DeskewedPointsAreSeenFromTheEnd) {
+  const Pose imu_from_lidar = make_pose(so3::exp({0.1, 0.2, -0.3}), {0.05, -0.02, 0.1});
+  const Eigen::Vector3d landmark(4.0, 3.0, -1.0);
+  Scan scan;
+  scan.stamp = Time{0};
+  for (int i = 0; i <= 100; ++i) {
+    Point point;
+    point.dt_ns = 1'000'000 * i;
+    const Pose lidar = motion(1e-3 * i) * imu_from_lidar;
+    point.position = (lidar.inverse() * landmark).cast<float>();
+    scan.points.push_back(point);
+  }
+  const Eigen::Vector3f from_end =
+      ((motion(0.1) * imu_from_lidar).inverse() * landmark).cast<float>();
+  for (const Eigen::Vector3f& point :
+       deskew(scan, track(20), imu_from_lidar, motion(0.1), Parallel(2))) {
+    EXPECT_LT((point - from_end).norm(), 5e-6F) << "a few units in the last place of 5 m";
+  }
+}
+
+TEST(ImuTrack, UntimedScansStayAndBadPointsStayBad) {
+  Scan scan;
+  scan.points = {Point{}, Point{}};
+  scan.points[0].position = {1.0F, 2.0F, 3.0F};
+  scan.points[1].position.x() = std::numeric_limits<float>::quiet_NaN();
+  scan.points[1].dt_ns = 5;
+  const Pose none = Pose::Identity();
+  EXPECT_FALSE(deskew(scan, track(5), none, motion(0.1), Parallel(1))[1].allFinite());
+  scan.timed = false;
+  EXPECT_EQ(deskew(scan, track(5), none, motion(0.1), Parallel(1))[0], scan.points[0].position);
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/inertial_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena {
+namespace {
+
+using State = InertialState;
+
+Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
+  const double x = random.normal();
+  const double y = random.normal();
+  return sigma * Eigen::Vector3d(x, y, random.normal());
+}
+
+State random_state(SequentialRandom& random) {
+  State state;
+  state.position = random_vector(random, 5.0);
+  state.rotation = so3::exp(random_vector(random, 1.0));
+  state.lidar_rotation = so3::exp(random_vector(random, 1.0));
+  state.lidar_position = random_vector(random, 0.1);
+  state.velocity = random_vector(random, 2.0);
+  state.gyro_bias = random_vector(random, 0.01);
+  state.accel_bias = random_vector(random, 0.1);
+  state.gravity = so3::exp(random_vector(random, 1.0)) * state.gravity;
+  return state;
+}
+
+State::Vector random_tangent(SequentialRandom& random, double sigma) {
+  State::Vector v;
+  for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = sigma * random.normal();
+  return v;
+}
+
+/// Central differences of minus(f(e), f(0)) at e = 0.
+State::Matrix numeric_jacobian(const std::function<State(const State::Vector&)>& f) {
+  constexpr double kStep = 1e-6;
+  const State at_zero = f(State::Vector::Zero());
+  State::Matrix jacobian;
+  for (Eigen::Index i = 0; i < State::kDof; ++i) {
+    const State::Vector e = kStep * State::Vector::Unit(i);
+    jacobian.col(i) = (minus(f(e), at_zero) - minus(f(-e), at_zero)) / (2.0 * kStep);
+  }
+  return jacobian;
+}
+
+TEST(InertialState, MinusUndoesPlus) {
+  SequentialRandom random(1, 1);
+  for (int i = 0; i < 100; ++i) {
+    const State a = random_state(random);
+    const State::Vector delta = random_tangent(random, 0.5);
+    EXPECT_LT((minus(plus(a, delta), a) - delta).norm(), 1e-9);
+    EXPECT_NEAR(plus(a, delta).gravity.norm(), a.gravity.norm(), 1e-12);
+    const State b = random_state(random);
+    EXPECT_LT(minus(plus(a, minus(b, a)), b).norm(), 1e-9);
+  }
+}
+
+TEST(InertialState, GravityAcrossTheSphere) {
+  State up;
+  up.gravity = -up.gravity;
+  const State down;
+  EXPECT_NEAR(minus(up, down).norm(), M_PI, 1e-12) << "the way to the opposite is half a turn";
+  EXPECT_LT((plus(down, minus(up, down)).gravity - up.gravity).norm(), 1e-9);
+  EXPECT_EQ(minus(up, up).norm(), 0.0);
+}
+
+TEST(InertialState, TheTangentBasisIsOrthonormalAndAcross) {
+  SequentialRandom random(2, 1);
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d direction = random_vector(random, 3.0);
+    const Eigen::Matrix<double, 3, 2> basis = tangent_basis(direction);
+    EXPECT_LT((basis.transpose() * basis - Eigen::Matrix2d::Identity()).norm(), 1e-12);
+    EXPECT_LT((basis.transpose() * direction).norm(), 1e-12 * direction.norm());
+  }
+}
+
+TEST(InertialState, TransportIsTheNumericJacobian) {
+  SequentialRandom random(3, 1);
+  for (int i = 0; i < 20; ++i) {
+    const State from = random_state(random);
+    const State::Vector delta = random_tangent(random, 0.4);
+    const State::Matrix numeric =
+        numeric_jacobian([&](const State::Vector& e) { return plus(from, delta + e); });
+    EXPECT_LT((transport(from, delta) - numeric).cwiseAbs().maxCoeff(), 1e-7);
+  }
+}
+
+TEST(InertialState, PropagationsJacobianIsTheNumericOne) {
+  SequentialRandom random(4, 1);
+  for (const Integration order : {Integration::kFirstOrder, Integration::kSecondOrder}) {
+    for (int i = 0; i < 20; ++i) {
+      const State state = random_state(random);
+      const Eigen::Vector3d gyro = random_vector(random, 2.0);
+      const Eigen::Vector3d accel = random_vector(random, 10.0);
+      constexpr double kSeconds = 0.05;
+      const auto stepped = [&](const State::Vector& e) {
+        State moved = plus(state, e);
+        propagate(moved, gyro, accel, kSeconds, order);
+        return moved;
+      };
+      State moved = state;
+      const State::Matrix f = propagate(moved, gyro, accel, kSeconds, order);
+      EXPECT_LT((f - numeric_jacobian(stepped)).cwiseAbs().maxCoeff(), 1e-7);
+    }
+  }
+}
+
+TEST(InertialState, FreeFallAndATurnInClosedForm) {
+  State state;
+  state.velocity = {1.0, 0.0, 2.0};
+  state.gyro_bias = {0.0, 0.0, 0.1};
+  const double dt = 0.005;
+  for (int i = 0; i < 200; ++i) {  // 1 s in which the IMU feels nothing but its bias and a turn
+    propagate(state, {0.0, 0.0, 0.6}, Eigen::Vector3d::Zero(), dt, Integration::kSecondOrder);
+  }
+  const double g = 9.80665;
+  EXPECT_LT((state.position - Eigen::Vector3d(1.0, 0.0, 2.0 - 0.5 * g)).norm(), 1e-9);
+  EXPECT_LT((state.velocity - Eigen::Vector3d(1.0, 0.0, 2.0 - g)).norm(), 1e-9);
+  EXPECT_LT((state.rotation - so3::exp({0.0, 0.0, 0.5})).norm(), 1e-9);
+
+  State first_order;
+  first_order.velocity = {1.0, 0.0, 2.0};
+  for (int i = 0; i < 200; ++i) {
+    propagate(first_order, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), dt,
+              Integration::kFirstOrder);
+  }
+  // The sum of v dt with v at each step's begin: short of the integral by g T dt / 2.
+  EXPECT_NEAR(first_order.position.z(), 2.0 - 0.5 * g + 0.5 * g * dt, 1e-9);
+}
+
+TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {
+  const ImuNoise noise{1e-3, 1e-2, 1e-5, 1e-4};
+  State::Matrix sum = State::Matrix::Zero();
+  for (int i = 0; i < 200; ++i) sum += step_noise(noise, 0.005);
+  EXPECT_NEAR(sum(State::kRotation, State::kRotation), 1e-6, 1e-15);  // density^2 * 1 s
+  EXPECT_NEAR(sum(State::kVelocity + 2, State::kVelocity + 2), 1e-4, 1e-13);
+  EXPECT_NEAR(sum(State::kGyroBias, State::kGyroBias), 1e-10, 1e-19);
+  EXPECT_NEAR(sum(State::kAccelBias, State::kAccelBias), 1e-8, 1e-17);
+  EXPECT_NEAR(sum.trace(), 3.0 * (1e-6 + 1e-4 + 1e-10 + 1e-8), 1e-12) << "and nowhere else";
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/iterated_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <vector>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena {
+namespace {
+
+using State = InertialState;
+
+/// A point seen by the LiDAR that lies on the plane normal . x = offset of the world.
+struct Seen {
+  Eigen::Vector3d point;
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+};
+
+Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
+  const double x = random.normal();
+  const double y = random.normal();
+  return sigma * Eigen::Vector3d(x, y, random.normal());
+}
+
+/// Points all around that a LiDAR at `truth` sees, each with `sigma` m of noise across its plane.
+std::vector<Seen> look_around(const State& truth, SequentialRandom& random, double sigma) {
+  std::vector<Seen> seen;
+  for (int i = 0; i < 60; ++i) {
+    Seen one;
+    one.point = random_vector(random, 4.0);
+    one.normal = random_vector(random, 1.0).normalized();
+    one.offset = one.normal.dot(truth.world_from_lidar() * one.point) + sigma * random.normal();
+    seen.push_back(one);
+  }
+  return seen;
+}
+
+NormalEquations<kPointDof> equations(const std::vector<Seen>& seen, const State& state) {
+  NormalEquations<kPointDof> sum;
+  for (const Seen& one : seen) {
+    const Eigen::Vector3d in_imu = state.imu_from_lidar() * one.point;
+    const Eigen::Vector3d c = state.rotation.transpose() * one.normal;
+    Eigen::Matrix<double, 1, kPointDof> row;
+    row << one.normal.transpose(), in_imu.cross(c).transpose(),
+        one.point.cross(state.lidar_rotation.transpose() * c).transpose(), c.transpose();
+    const double residual = one.normal.dot(state.world_from_imu() * in_imu) - one.offset;
+    sum.add<1>(row, Eigen::Matrix<double, 1, 1>(residual), 1.0);
+  }
+  return sum;
+}
+
+State some_state(SequentialRandom& random) {
+  State state;
+  state.position = random_vector(random, 2.0);
+  state.rotation = so3::exp(random_vector(random, 1.0));
+  state.lidar_position = {0.01, 0.02, -0.04};
+  return state;
+}
+
+State::Matrix some_covariance(SequentialRandom& random, double sigma) {
+  State::Matrix root;
+  for (Eigen::Index i = 0; i < root.size(); ++i) root.data()[i] = random.normal();
+  return sigma * sigma *
+         (State::Matrix::Identity() + 0.3 * root * root.transpose() / double{State::kDof});
+}
+
+/// -log of the posterior, but for a constant.
+double cost(const Belief& prior, const std::vector<Seen>& seen, double variance, const State& x) {
+  const State::Vector moved = minus(x, prior.state);
+  double sum = 0.5 * moved.dot(prior.covariance.ldlt().solve(moved));
+  for (const Seen& one : seen) {
+    const double r = one.normal.dot(x.world_from_lidar() * one.point) - one.offset;
+    sum += 0.5 * r * r / variance;
+  }
+  return sum;
+}
+
+TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
+  SequentialRandom random(5, 1);
+  for (int round = 0; round < 10; ++round) {
+    constexpr double kVariance = 1e-4;
+    const State truth = some_state(random);
+    Belief prior;
+    prior.covariance = some_covariance(random, 0.1);
+    State::Vector error;
+    for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = 0.1 * random.normal();
+    prior.state = plus(truth, error);
+    const auto seen = look_around(truth, random, 0.01);
+    const auto updated =
+        iterated_update(prior, [&](const State& x, bool) { return equations(seen, x); },
+                        {.max_iterations = 20, .tolerance = 1e-12, .variance = kVariance});
+    EXPECT_EQ(updated.residuals, seen.size());
+    const State& x = updated.belief.state;
+    const double best = cost(prior, seen, kVariance, x);
+    for (Eigen::Index i = 0; i < State::kDof; ++i) {
+      constexpr double kStep = 1e-4;
+      const double up = cost(prior, seen, kVariance, plus(x, kStep * State::Vector::Unit(i)));
+      const double down = cost(prior, seen, kVariance, plus(x, -kStep * State::Vector::Unit(i)));
+      const double slope = (up - down) / (2.0 * kStep);
+      const double curvature = (up + down - 2.0 * best) / (kStep * kStep);
+      EXPECT_GT(curvature, 0.0);
+      EXPECT_LT(std::abs(slope / curvature), 1e-6) << "distance to the maximum along axis " << i;
+    }
+  }
+}
+
+TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
+  // Position alone is seen, along three directions: the textbook's gain, with H of 3 rows.
+  SequentialRandom random(6, 1);
+  Belief prior;
+  prior.covariance = some_covariance(random, 0.1);
+  const Eigen::Vector3d measured(0.3, -0.2, 0.1);
+  constexpr double kVariance = 0.01;
+  const auto updated = iterated_update(
+      prior,
+      [&](const State& x, bool) {
+        NormalEquations<kPointDof> sum;
+        for (Eigen::Index i = 0; i < 3; ++i) {
+          Eigen::Matrix<double, 1, kPointDof> row = Eigen::Matrix<double, 1, kPointDof>::Zero();
+          row[i] = 1.0;
+          sum.add<1>(row, Eigen::Matrix<double, 1, 1>(x.position[i] - measured[i]), 1.0);
+        }
+        return sum;
+      },
+      {.max_iterations = 0, .variance = kVariance});
+  const Eigen::Matrix<double, State::kDof, 3> cross = prior.covariance.leftCols<3>();
+  const Eigen::Matrix3d innovation =
+      prior.covariance.topLeftCorner<3, 3>() + kVariance * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix<double, State::kDof, 3> gain = cross * innovation.inverse();
+  const State::Vector step = gain * measured;
+  EXPECT_LT(minus(updated.belief.state, plus(prior.state, step)).norm(), 1e-12);
+  const State::Matrix covariance = prior.covariance - gain * cross.transpose();
+  const State::Matrix a = transport(prior.state, step);
+  EXPECT_LT((updated.belief.covariance - a * covariance * a.transpose()).norm(), 1e-12);
+}
+
+TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
+  SequentialRandom random(7, 1);
+  const State truth = some_state(random);
+  const auto seen = look_around(truth, random, 0.0);
+  std::vector<bool> searched;
+  const auto residuals = [&](const State& x, bool search) {
+    searched.push_back(search);
+    return equations(seen, x);
+  };
+  Belief prior;
+  prior.state = truth;  // nothing to correct: converged at once, and again after the search
+  EXPECT_TRUE(iterated_update(prior, residuals, {}).converged);
+  EXPECT_EQ(searched, (std::vector<bool>{true, true}));
+
+  searched.clear();
+  const auto restless = [&](const State& x, bool search) {
+    searched.push_back(search);
+    auto sum = equations(seen, x);
+    sum.gradient[0] += 10.0 * static_cast<double>(searched.size() % 2);
+    return sum;
+  };
+  EXPECT_FALSE(iterated_update(prior, restless, {.max_iterations = 3}).converged);
+  EXPECT_EQ(searched, (std::vector<bool>{true, false, false, true}))
+      << "if none has converged, the last evaluation searches";
+}
+
+TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
+  Belief prior;
+  prior.state.position = {1.0, 2.0, 3.0};
+  prior.covariance *= 0.1;
+  const auto updated =
+      iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
+  EXPECT_EQ(updated.residuals, 0U);
+  EXPECT_EQ(updated.belief.state.position, prior.state.position);
+  EXPECT_EQ(updated.belief.covariance, prior.covariance);
+}
+
+TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
+  SequentialRandom random(8, 1);
+  Belief prior;
+  prior.covariance = some_covariance(random, 0.2);
+  prior.state.velocity = {0.1, -0.2, 0.05};
+  constexpr double kSigma = 0.03;
+  State::Matrix information = prior.covariance.inverse();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    information(State::kVelocity + i, State::kVelocity + i) += 1.0 / (kSigma * kSigma);
+  }
+  State::Vector gradient = State::Vector::Zero();
+  gradient.segment<3>(State::kVelocity) = prior.state.velocity / (kSigma * kSigma);
+  const State::Vector step = -information.inverse() * gradient;
+
+  const Belief updated = zero_velocity_update(prior, kSigma);
+  EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
+  const State::Matrix a = transport(prior.state, step);
+  EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
+  EXPECT_LT(updated.state.velocity.norm(), prior.state.velocity.norm());
+}
+
+}  // namespace
+}  // namespace lidarena
