@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/flight/quadrotor_config.hpp"
 
 namespace lidarena {
 
@@ -94,6 +95,7 @@ struct FlightConfig {
   double clearance_m = 0.3;
   double duration_s = 0.0;
   double hover_s = 1.0;
+  std::optional<DynamicsConfig> dynamics;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -121,6 +123,9 @@ struct FlightConfig {
       at_least(0));
     v("hover_s", self.hover_s, "s", "rest at begin and end; estimators initialise in it",
       at_least(0));
+    v("dynamics", self.dynamics, "",
+      "a quadrotor that follows the path as well as it can, {} for the default one; without this "
+      "key the path is followed exactly");
   }
 };
 

@@ -7,6 +7,7 @@
 #include "lidarena/flight/clearance.hpp"
 #include "lidarena/flight/figures.hpp"
 #include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/fly_quadrotor.hpp"
 #include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
@@ -59,6 +60,15 @@ std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightCon
   return std::make_unique<SplineFlight>(config.waypoints, config, place);
 }
 
+std::unique_ptr<Flight> flown(const Flight& reference, const DynamicsConfig& dynamics,
+                              const std::string& place, LogSink& log) {
+  std::unique_ptr<Flight> flight = fly_quadrotor(reference, dynamics, place);
+  const TrackingError error = tracking_error(*flight, reference);
+  log.info(fmt::format("flight {}: flown by a quadrotor, {:.3f} m rms and at most {:.3f} m off",
+                       place, error.rms_m, error.max_m));
+  return flight;
+}
+
 void require_clear(const Flight& flight, const World& world, double clearance,
                    const std::string& place) {
   const auto encounter = first_encounter(flight, world, clearance);
@@ -81,6 +91,7 @@ std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const Wor
                                     const World& world, LogSink& log) {
   const FlightConfig config = config_of(file);
   std::unique_ptr<Flight> flight = build(file, config, model);
+  if (config.dynamics) flight = flown(*flight, *config.dynamics, file.string(), log);
   require_clear(*flight, world, config.clearance_m, file.string());
   log.info(fmt::format("flight {}: {}", file.string(), describe(figures_of(*flight))));
   return flight;

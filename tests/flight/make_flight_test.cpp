@@ -133,6 +133,31 @@ TEST_F(MakeFlight, BadConfigurationsAreNamedByFileLineAndKey) {
   EXPECT_THAT(error_of("a.yaml", "kind: route\ncorner_m: 0\n"), HasSubstr("corner_m"));
 }
 
+TEST_F(MakeFlight, DynamicsAreOffByDefaultAndTakenFromTheFile) {
+  const std::string path = "kind: route\n";
+  const auto ideal = make(write("a.yaml", path));
+  const auto flown = make(write("b.yaml", path + "dynamics: {}\n"));
+  const auto heavy = make(write("c.yaml", path + "dynamics: {mass_kg: 2, motor_lag_s: 0.05}\n"));
+  const auto apart = [&](const Flight& a, const Flight& b) {
+    const Time middle = a.duration() / 2;
+    return (a.pose_at(middle).translation() - b.pose_at(middle).translation()).norm();
+  };
+  EXPECT_GT(apart(*ideal, *flown), 1e-5);
+  EXPECT_LT(apart(*ideal, *flown), 0.05);
+  EXPECT_GT(apart(*flown, *heavy), 1e-5);
+  EXPECT_THAT(error_of("a.yaml", path + "dynamics: {mass: 2}\n"),
+              HasSubstr("unknown key 'mass'; valid keys: mass_kg, inertia"));
+  EXPECT_THAT(error_of("a.yaml", path + "dynamics:\n  gusts: {gust_speed: -1}\n"),
+              HasSubstr("a.yaml:3: dynamics.gusts.gust_speed: -1 is out of range"));
+}
+
+TEST_F(MakeFlight, ClearanceHoldsForThePathAsFlownNotAsPlanned) {
+  const std::string path = "kind: route\n";
+  make(write("a.yaml", path));  // the reference passes the door in its middle
+  EXPECT_THAT(error_of("a.yaml", path + "dynamics: {gusts: {wind: [0, 5, 0]}}\n"),
+              HasSubstr("m of a surface"));
+}
+
 TEST_F(MakeFlight, AWorldWithoutRoutesSaysSo) {
   model_.routes.clear();
   EXPECT_THAT(error_of("a.yaml", "kind: route\n"), HasSubstr("has 0 route(s)"));

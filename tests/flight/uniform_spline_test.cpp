@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lidarena/base/random.hpp"
+#include "lidarena/flight/spline_fit.hpp"
 
 namespace lidarena {
 namespace {
@@ -79,6 +80,34 @@ TEST(UniformSpline, AllDerivativesUpToTheFifthAreContinuousAcrossKnots) {
     EXPECT_NEAR(spline.derivative<4>(left)[0], spline.derivative<4>(right)[0], 1e-11);
     EXPECT_NEAR(spline.derivative<5>(left)[0], spline.derivative<5>(right)[0], 1e-10);
   }
+}
+
+/// Largest distance between a function and the spline through its samples.
+double fit_error(double (*f)(double), double knot) {
+  const auto count = static_cast<std::size_t>(3.0 / knot) + 6;
+  Controls samples;
+  for (std::size_t i = 0; i < count + 2 * kFitReach; ++i) {
+    samples.emplace_back(f(Spline::center(i, knot) - static_cast<double>(kFitReach) * knot));
+  }
+  const Spline spline(controls_through<6>(samples), knot);
+  double most = 0.0;
+  for (double t = 0.0; t < 2.9; t += 0.0037) {
+    most = std::max(most, std::abs(spline.derivative<0>(spline.find(t))[0] - f(t)));
+  }
+  return most;
+}
+
+TEST(SplineFit, ReproducesPolynomialsUpToItsDegree) {
+  EXPECT_LT(fit_error([](double t) { return std::pow(t - 1.5, 6) - std::pow(t, 5) + t; }, 0.25),
+            1e-11);
+  EXPECT_GT(fit_error([](double t) { return std::pow(t - 1.5, 7); }, 0.25), 1e-8);
+}
+
+TEST(SplineFit, ErrsByTheSeventhPowerOfTheKnot) {
+  const auto wave = [](double t) { return std::sin(4.0 * t + 0.3); };
+  const double ratio = fit_error(wave, 0.1) / fit_error(wave, 0.05);
+  EXPECT_GT(ratio, 110.0);
+  EXPECT_LT(ratio, 260.0);  // between 2^7 and 2^8: the leading term vanishes at the centres
 }
 
 TEST(UniformSpline, HoldsItsEnds) {

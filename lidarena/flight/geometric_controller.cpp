@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/geometric_controller.hpp"
+
+#include <algorithm>
+
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Largest acceleration that corrects errors, m/s^2: half of gravity, so that the force never turns
+/// over.
+constexpr double kMostCorrection = 0.5 * kGravity;
+
+Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
+                      const Motion& reference) {
+  const DynamicsConfig& c = quadrotor.config();
+  const double w = c.position_bandwidth;
+  Vector3d correction = w * w * (reference.world_from_body.translation() - state.position) +
+                        2.0 * c.damping * w * (reference.velocity_world - state.velocity);
+  correction *= std::min(1.0, kMostCorrection / std::max(correction.norm(), 1e-12));
+  return c.mass_kg * (reference.acceleration_world + correction + kGravity * Vector3d::UnitZ()) -
+         quadrotor.drag(reference.world_from_body.linear(), reference.velocity_world);
+}
+
+}  // namespace
+
+Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
+                       const Motion& reference) {
+  const DynamicsConfig& c = quadrotor.config();
+  const Vector3d force = wanted_force(quadrotor, state, reference);
+  const Matrix3d& of_reference = reference.world_from_body.linear();
+  const Matrix3d wanted =
+      Eigen::Quaterniond::FromTwoVectors(of_reference.col(2), force) * of_reference;
+  const Matrix3d r = state.attitude.normalized().toRotationMatrix();
+  const Matrix3d body_from_wanted = r.transpose() * wanted;
+
+  const Vector3d turn_error = so3::vee(wanted.transpose() * r);
+  const Vector3d rate = body_from_wanted * reference.angular_rate_body;
+  const Vector3d w{c.tilt_bandwidth, c.tilt_bandwidth, c.yaw_bandwidth};
+  const Vector3d angular_acceleration = -w.cwiseAbs2().cwiseProduct(turn_error) -
+                                        2.0 * c.damping * w.cwiseProduct(state.rate - rate) -
+                                        state.rate.cross(rate) +
+                                        body_from_wanted * reference.angular_acceleration_body;
+  return {std::max(0.0, force.dot(r.col(2))),
+          c.inertia.cwiseProduct(angular_acceleration) +
+              state.rate.cross(c.inertia.cwiseProduct(state.rate))};
+}
+
+}  // namespace lidarena

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "lidarena/flight/quadrotor_config.hpp"
+
+namespace lidarena {
+
+/// Velocity of the air as a pure and infinitely smooth function of time: the mean wind and, on each
+/// axis, a sum of sines whose frequencies sample the longitudinal Dryden spectrum
+///   S(w) = 2 s^2 T / (pi (1 + (T w)^2))   (MIL-F-8785C, with T = L / V),
+/// s the standard deviation and T the correlation time: one frequency is drawn from each of
+/// kWaves parts of equal variance (spectral representation, Shinozuka, Jan 1972), at most
+/// kCutoff, because faster gusts are smaller than the body. All fades in over the first second.
+class Gusts {
+ public:
+  static constexpr std::size_t kWaves = 32;
+  static constexpr double kCutoff = 30.0;  ///< rad/s; above it are 2 % of the variance at T = 1 s
+  static constexpr double kFade = 1.0;     ///< s
+
+  explicit Gusts(const GustConfig& config);
+
+  /// World frame, m/s; zero for t <= 0.
+  Eigen::Vector3d at(double t_s) const;
+  bool still() const { return still_; }
+
+ private:
+  struct Wave {
+    double frequency, phase;  ///< rad/s, rad
+  };
+  std::array<std::array<Wave, kWaves>, 3> waves_{};
+  Eigen::Vector3d wind_;
+  double amplitude_;
+  bool still_;
+};
+
+}  // namespace lidarena

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <functional>
+
+#include "lidarena/flight/flight.hpp"
+#include "lidarena/flight/uniform_spline.hpp"
+
+namespace lidarena {
+
+/// A flight along poses that were computed at equal steps of time: one B-spline of degree 6 in
+/// position and quaternion (the quaternion is divided by its norm, which is close to 1), so pose,
+/// velocity, acceleration, body rate and angular acceleration are exact derivatives of one
+/// function. Five times continuously differentiable. 392 bytes a knot.
+class PoseSplineFlight final : public Flight {
+ public:
+  static constexpr int kDegree = 6;
+  using Spline = UniformSpline<kDegree, 7>;
+  /// Seconds before 0 at which the first pose is asked.
+  static double lead_s(double knot_s);
+
+  /// `pose_at(t)`, t in s, is asked for once per knot from -lead_s() on, in order of time, until
+  /// lead_s() and a knot behind `duration` at the latest.
+  PoseSplineFlight(const std::function<Pose(double)>& pose_at, double knot_s, Time duration);
+
+  Motion at(Time t) const override;
+  Pose pose_at(Time t) const override;
+  Time duration() const override { return duration_; }
+
+ private:
+  Spline::Place find(Time t) const;
+
+  Spline spline_;
+  Time duration_;
+};
+
+}  // namespace lidarena
