@@ -4,42 +4,37 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
+#include <vector>
 
-#include "lidarena/map/voxel_key.hpp"
+#include "lidarena/evaluation/morton_order.hpp"
 
 namespace lidarena {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points in flight; bounds the memory
-constexpr float kCellsPerMetre = 2.0F;
-
-/// Indices of the finite points, those of one half-metre cell together: neighbours in space walk
-/// the same branches of the mesh's tree, and what one loads the next finds in the cache.
-std::vector<std::size_t> in_order_of_cells(std::span<const Eigen::Vector3f> points) {
-  std::vector<std::pair<VoxelKey, std::size_t>> keyed;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points[i].allFinite()) continue;
-    keyed.emplace_back(voxel_key(voxel_of(points[i], kCellsPerMetre)), i);
-  }
-  std::sort(keyed.begin(), keyed.end());
-  std::vector<std::size_t> order(keyed.size());
-  std::transform(keyed.begin(), keyed.end(), order.begin(), [](const auto& k) { return k.second; });
-  return order;
-}
 
 /// Distances of the finite points of `map` (m), NaN for the others.
-void distances_to(const World& world, std::span<const Eigen::Vector3f> map,
-                  const Pose& mesh_from_map, const Parallel& parallel, std::span<double> out) {
-  const std::vector<std::size_t> order = in_order_of_cells(map);
-  std::vector<Eigen::Vector3d> moved;
-  moved.reserve(order.size());
-  for (const std::size_t i : order) moved.push_back(mesh_from_map * map[i].cast<double>());
+std::vector<double> distances_to(const World& world, std::span<const Eigen::Vector3f> map,
+                                 const Pose& mesh_from_map, const Parallel& parallel) {
+  const MortonOrder order = morton_order(map, parallel);
+  std::vector<double> distances(map.size(), kNaN);
+  std::vector<Eigen::Vector3d> moved(std::min(kChunk, order.entries.size()));
   std::vector<ClosestPoint> nearest(moved.size());
-  world.closest_points(moved, std::numeric_limits<double>::infinity(), nearest, parallel);
-  std::fill(out.begin(), out.end(), kNaN);
-  for (std::size_t k = 0; k < order.size(); ++k) out[order[k]] = nearest[k].distance;
+  for (std::size_t begin = 0; begin < order.entries.size(); begin += kChunk) {
+    const auto entries = std::span(order.entries)
+                             .subspan(begin)
+                             .first(std::min(kChunk, order.entries.size() - begin));
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      moved[k] = mesh_from_map * map[entries[k].index].cast<double>();
+    }
+    world.closest_points(std::span(moved).first(entries.size()),
+                         std::numeric_limits<double>::infinity(), nearest, parallel);
+    for (std::size_t k = 0; k < entries.size(); ++k) {
+      distances[entries[k].index] = nearest[k].distance;
+    }
+  }
+  return distances;
 }
 
 }  // namespace
@@ -74,12 +69,7 @@ MapError summarize_distances(std::span<const double> distances) {
 
 MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
                    const World& world, const Parallel& parallel, std::vector<float>* distances) {
-  std::vector<double> found(map.size());
-  for (std::size_t begin = 0; begin < map.size(); begin += kChunk) {
-    const std::size_t count = std::min(kChunk, map.size() - begin);
-    distances_to(world, map.subspan(begin, count), mesh_from_map, parallel,
-                 std::span(found).subspan(begin, count));
-  }
+  const std::vector<double> found = distances_to(world, map, mesh_from_map, parallel);
   if (distances != nullptr) {
     distances->resize(found.size());
     std::transform(found.begin(), found.end(), distances->begin(),

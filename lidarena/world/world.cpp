@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/world/group_search.hpp"
 
 namespace lidarena {
 
@@ -101,13 +102,20 @@ RTCRay make_ray(const Vector3d& origin, const Vector3f& direction, float near, f
 
 }  // namespace
 
-struct World::Impl {
+struct World::Impl : TriangleTree {
   TriangleMesh mesh;
   Vector3d centre;
   std::vector<Vector3f> normals;  ///< unit, one a triangle
   double half_extent;             ///< largest coordinate of the re-centred mesh
+  double typical_edge;            ///< m, of a square of a triangle's mean area
   Device device;
   Scene scene;
+
+  ClosestPoint nearest(const Vector3d& point, double max_distance,
+                       std::uint32_t guess) const override;
+  bool within(const Vector3d& centre, double radius, std::size_t limit,
+              std::vector<NearTriangle>& found) const override;
+  double slack_at(const Vector3d& centred) const;
 };
 
 World::World(TriangleMesh mesh, const std::string& name) : impl_(std::make_unique<Impl>()) {
@@ -115,6 +123,7 @@ World::World(TriangleMesh mesh, const std::string& name) : impl_(std::make_uniqu
   const Eigen::AlignedBox3d box = mesh.bounds();
   impl_->centre = box.center();
   impl_->half_extent = 0.5 * box.sizes().maxCoeff();
+  impl_->typical_edge = std::sqrt(mesh.area() / static_cast<double>(mesh.triangles.size()));
   impl_->normals.reserve(mesh.triangles.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     impl_->normals.push_back(mesh.cross(i).normalized().cast<float>());
@@ -164,65 +173,127 @@ bool World::visible(const Vector3d& a, const Vector3d& b) const {
   return ray.tfar >= 0.0F;  // Embree marks an occluded ray by -infinity
 }
 
-namespace {
+/// How far the tree's float boxes may be from the truth: rounding of the point, of the vertices,
+/// and of Embree's own arithmetic on their differences.
+double World::Impl::slack_at(const Vector3d& centred) const {
+  return 8.0 * kFloatEpsilon * (half_extent + centred.lpNorm<Eigen::Infinity>());
+}
 
-/// The best so far, and what it takes to compare: exact distances to the double-precision mesh.
-struct Nearest {
-  const TriangleMesh& mesh;
-  Vector3d point;
-  double slack;  ///< how far the tree's float boxes may be from the truth
-  double distance2;
-  ClosestPoint best;
-};
+namespace {
 
 /// Radius that surely holds everything as near as `distance`.
 float search_radius(double distance, double slack) {
   return static_cast<float>(distance * (1.0 + 4.0 * kFloatEpsilon) + slack);
 }
 
+RTCPointQuery point_query(const Vector3d& centred, double distance, double slack) {
+  RTCPointQuery query{};
+  query.x = static_cast<float>(centred.x());
+  query.y = static_cast<float>(centred.y());
+  query.z = static_cast<float>(centred.z());
+  query.radius = search_radius(distance, slack);
+  return query;
+}
+
+using Consider = bool(RTCPointQueryFunctionArguments*);
+
+void walk(RTCScene scene, RTCPointQuery query, Consider* consider, void* state) {
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  rtcPointQuery(scene, &query, &context, consider, state);
+}
+
+/// The best so far, and what it takes to compare: exact distances to the double-precision mesh.
+struct Nearest {
+  const TriangleMesh& mesh;
+  Vector3d point;
+  double slack;
+  double distance2;
+  ClosestPoint best;
+
+  /// Equal distances go to the lower index, whatever order the tree is walked in.
+  bool consider(std::uint32_t triangle) {
+    const auto& [a, b, c] = mesh.triangles[triangle];
+    const auto& v = mesh.vertices;
+    const Vector3d candidate = closest_point_on_triangle(point, v[a], v[b], v[c]);
+    const double candidate2 = (candidate - point).squaredNorm();
+    const bool is_nearer =
+        candidate2 < distance2 || (candidate2 == distance2 && triangle < best.triangle);
+    if (!is_nearer) return false;
+    distance2 = candidate2;
+    best.point = candidate;
+    best.triangle = triangle;
+    return true;
+  }
+  double distance() const { return std::sqrt(distance2); }
+};
+
 bool consider_triangle(RTCPointQueryFunctionArguments* args) {
   auto& nearest = *static_cast<Nearest*>(args->userPtr);
-  const auto& [a, b, c] = nearest.mesh.triangles[args->primID];
-  const auto& v = nearest.mesh.vertices;
-  const Vector3d candidate = closest_point_on_triangle(nearest.point, v[a], v[b], v[c]);
-  const double distance2 = (candidate - nearest.point).squaredNorm();
-  // Equal distances go to the lower index, whatever order the tree is walked in.
-  if (distance2 > nearest.distance2 ||
-      (distance2 == nearest.distance2 && args->primID >= nearest.best.triangle)) {
-    return false;
-  }
-  nearest.distance2 = distance2;
-  nearest.best.point = candidate;
-  nearest.best.triangle = args->primID;
-  args->query->radius = search_radius(std::sqrt(distance2), nearest.slack);
+  if (!nearest.consider(args->primID)) return false;
+  args->query->radius = search_radius(nearest.distance(), nearest.slack);
+  return true;
+}
+
+struct Within {
+  const TriangleMesh& mesh;
+  Vector3d centre;
+  double radius;
+  std::size_t limit;
+  std::vector<NearTriangle>& found;
+};
+
+bool collect_triangle(RTCPointQueryFunctionArguments* args) {
+  auto& within = *static_cast<Within*>(args->userPtr);
+  if (within.found.size() > within.limit) return false;
+  const auto& [a, b, c] = within.mesh.triangles[args->primID];
+  const auto& v = within.mesh.vertices;
+  const Vector3d nearest = closest_point_on_triangle(within.centre, v[a], v[b], v[c]);
+  const double distance = (nearest - within.centre).norm();
+  if (distance > within.radius) return false;
+  within.found.push_back({distance, args->primID});
+  if (within.found.size() <= within.limit) return false;
+  args->query->radius = 0.0F;  // too many: the rest of the tree does not matter
   return true;
 }
 
 }  // namespace
 
-ClosestPoint World::closest_point(const Vector3d& point, double max_distance) const {
-  const Vector3d centred = point - impl_->centre;
-  // Rounding of the point, of the vertices, and of Embree's own arithmetic on their differences.
-  const double slack =
-      8.0 * kFloatEpsilon * (impl_->half_extent + centred.lpNorm<Eigen::Infinity>());
-  Nearest nearest{impl_->mesh, point, slack, max_distance * max_distance, {}};
-  RTCPointQuery query{};
-  query.x = static_cast<float>(centred.x());
-  query.y = static_cast<float>(centred.y());
-  query.z = static_cast<float>(centred.z());
-  query.radius = search_radius(max_distance, slack);
-  RTCPointQueryContext context;
-  rtcInitPointQueryContext(&context);
-  rtcPointQuery(impl_->scene.get(), &query, &context, consider_triangle, &nearest);
-  if (nearest.best.valid()) nearest.best.distance = std::sqrt(nearest.distance2);
+ClosestPoint World::Impl::nearest(const Vector3d& point, double max_distance,
+                                  std::uint32_t guess) const {
+  if (!point.allFinite()) return {};
+  const Vector3d centred = point - centre;
+  const double slack = slack_at(centred);
+  Nearest nearest{mesh, point, slack, max_distance * max_distance, {}};
+  if (guess != Hit::kNone) nearest.consider(guess);
+  const double reach = std::min(max_distance, nearest.distance());
+  walk(scene.get(), point_query(centred, reach, slack), consider_triangle, &nearest);
+  if (nearest.best.valid()) nearest.best.distance = nearest.distance();
   return nearest.best;
+}
+
+bool World::Impl::within(const Vector3d& around, double radius, std::size_t limit,
+                         std::vector<NearTriangle>& found) const {
+  const Vector3d centred = around - centre;
+  found.clear();
+  Within within{mesh, around, radius, limit, found};
+  walk(scene.get(), point_query(centred, radius, slack_at(centred)), collect_triangle, &within);
+  return found.size() <= limit;
+}
+
+ClosestPoint World::closest_point(const Vector3d& point, double max_distance) const {
+  return impl_->nearest(point, max_distance, Hit::kNone);
 }
 
 void World::closest_points(std::span<const Vector3d> points, double max_distance,
                            std::span<ClosestPoint> out, const Parallel& parallel) const {
-  constexpr std::size_t kBlock = 256;
-  parallel.for_each(points.size(), kBlock,
-                    [&](std::size_t i) { out[i] = closest_point(points[i], max_distance); });
+  constexpr std::size_t kBlock = 2048;  // points; a block begins without a first guess
+  constexpr double kEdgesAcross = 2.0;  // widest group, see group_search.hpp
+  const double group_size = kEdgesAcross * impl_->typical_edge;
+  parallel.for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
+    GroupSearch(impl_->mesh, *impl_, group_size, max_distance)
+        .run(points.subspan(begin, end - begin), out.subspan(begin, end - begin));
+  });
 }
 
 }  // namespace lidarena

@@ -50,7 +50,8 @@ class World {
   /// seen from both sides.
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
   /// Nearest surface point of each point within `max_distance` metres, computed in double precision
-  /// from the mesh itself; of triangles equally near, the one with the lower index.
+  /// from the mesh itself; of triangles equally near, the one with the lower index. Points that are
+  /// not finite have none. Fast where neighbours in the list are neighbours in space.
   void closest_points(std::span<const Eigen::Vector3d> points, double max_distance,
                       std::span<ClosestPoint> out, const Parallel& parallel) const;
   ClosestPoint closest_point(const Eigen::Vector3d& point,

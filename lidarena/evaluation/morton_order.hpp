@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+
+namespace lidarena {
+
+/// The finite points of a map along a curve that fills space (Morton, 1966): neighbours in the list
+/// are neighbours in space, and the points of one cube of a grid stand together.
+struct MortonOrder {
+  static constexpr double kCell_m = 0.05 / 8.0;  ///< cubes of 2^k cells' edge stand together
+  struct Entry {
+    std::uint64_t code = 0;   ///< of the cell; code >> 3 k is that of a cube of 2^k cells
+    std::uint32_t index = 0;  ///< into the points
+    bool operator<(const Entry& other) const {
+      return code != other.code ? code < other.code : index < other.index;
+    }
+  };
+  std::vector<Entry> entries;
+};
+
+/// The same list on any number of threads. Points beyond 6.5 km share the outermost cells, which
+/// costs time and nothing else. Up to 2^32 points.
+MortonOrder morton_order(std::span<const Eigen::Vector3f> points, const Parallel& parallel);
+
+}  // namespace lidarena

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/world/group_search.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+
+namespace {
+
+constexpr std::size_t kGroup = 48;           // points at most; beyond, groups only get wider
+constexpr std::size_t kWorthwhile = 4;       // points; for fewer, two walks are not saved
+constexpr std::size_t kMostTriangles = 160;  // more are slower to look at than the tree to walk
+
+/// How many of the first points fit into a box of `size`; a point that is not finite is alone.
+std::size_t group_length(std::span<const Vector3d> points, double size) {
+  if (!points.front().allFinite()) return 1;
+  Eigen::AlignedBox3d box(points.front());
+  std::size_t length = 1;
+  for (; length < std::min(points.size(), kGroup); ++length) {
+    if (!points[length].allFinite()) break;
+    box.extend(points[length]);
+    if (box.sizes().maxCoeff() > size) break;
+  }
+  return length;
+}
+
+/// Bounds what double arithmetic loses in distances between a mesh and points around `centre`.
+double rounding_at(const Vector3d& centre, double radius) {
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  return 64.0 * kEpsilon * (centre.lpNorm<Eigen::Infinity>() + radius);
+}
+
+}  // namespace
+
+void GroupSearch::run(Points points, Answers out) {
+  std::size_t begin = 0;
+  while (begin < points.size()) {
+    const std::size_t length = group_length(points.subspan(begin), group_size_);
+    together(points.subspan(begin, length), out.subspan(begin, length));
+    begin += length;
+  }
+}
+
+void GroupSearch::one_by_one(Points points, Answers out) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out[i] = tree_.nearest(points[i], max_distance_, last_);
+    if (out[i].valid()) last_ = out[i].triangle;
+  }
+}
+
+/// Let y be the surface point nearest to the centre, and r the group's radius. A point p finds the
+/// triangle of y at some distance u(p), so its own nearest triangle is not farther from the centre
+/// than u(p) + |p - centre|.
+void GroupSearch::together(Points points, Answers out) {
+  if (points.size() < kWorthwhile) return one_by_one(points, out);
+  Eigen::AlignedBox3d box;
+  for (const Vector3d& p : points) box.extend(p);
+  const Vector3d centre = box.center();
+  double radius = 0.0;
+  for (const Vector3d& p : points) radius = std::max(radius, (p - centre).norm());
+  const ClosestPoint middle = tree_.nearest(centre, max_distance_ + radius, last_);
+  if (!middle.valid()) {
+    std::fill(out.begin(), out.end(), ClosestPoint{});
+    return;
+  }
+  last_ = middle.triangle;
+  double reach = 0.0;
+  for (const Vector3d& p : points) {
+    const double offset = (p - centre).norm();
+    const double bound = std::min((p - middle.point).norm(), max_distance_);
+    reach = std::max(reach, bound + offset);
+  }
+  const double rounding = rounding_at(centre, reach);
+  if (!gather(centre, reach + rounding)) {
+    const std::size_t half = points.size() / 2;
+    together(points.first(half), out.first(half));
+    together(points.subspan(half), out.subspan(half));
+    return;
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    out[i] = choose(points[i], (points[i] - centre).norm(), rounding);
+  }
+}
+
+bool GroupSearch::gather(const Vector3d& centre, double radius) {
+  if (!tree_.within(centre, radius, kMostTriangles, found_)) return false;
+  std::sort(found_.begin(), found_.end(), [](const NearTriangle& a, const NearTriangle& b) {
+    return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
+  });
+  frames_.clear();
+  for (const NearTriangle& near : found_) {
+    const auto& [a, b, c] = mesh_.triangles[near.index];
+    frames_.emplace_back(mesh_.vertices[a], mesh_.vertices[b], mesh_.vertices[c]);
+  }
+  return true;
+}
+
+/// `offset`: of the point from the centre. Distances are compared roughly first; those that may win
+/// are computed again as closest_point_on_triangle has them.
+ClosestPoint GroupSearch::choose(const Vector3d& point, double offset, double rounding) const {
+  ClosestPoint best;
+  double best2 = max_distance_ * max_distance_;
+  double limit = (max_distance_ + rounding) * (max_distance_ + rounding);
+  for (std::size_t i = 0; i < found_.size(); ++i) {
+    const double least = found_[i].distance - offset - rounding;
+    if (least > 0.0 && least * least > limit) break;  // so are all that follow
+    if (frames_[i].squared_distance(point, limit) > limit) continue;
+    const std::uint32_t triangle = found_[i].index;
+    const auto& [a, b, c] = mesh_.triangles[triangle];
+    const auto& v = mesh_.vertices;
+    const Vector3d candidate = closest_point_on_triangle(point, v[a], v[b], v[c]);
+    const double distance2 = (candidate - point).squaredNorm();
+    if (distance2 > best2 || (distance2 == best2 && triangle >= best.triangle)) continue;
+    best2 = distance2;
+    best.point = candidate;
+    best.triangle = triangle;
+    limit = std::sqrt(distance2) + rounding;
+    limit *= limit;
+  }
+  if (best.valid()) best.distance = std::sqrt(best2);
+  return best;
+}
+
+}  // namespace lidarena
