@@ -12,7 +12,7 @@ FlightLimits limits_of(FlightStyle style) {
     case FlightStyle::kAggressive:
       break;
   }
-  return {5.0, 7.0, 100.0, 0.9, 3.0};
+  return {5.0, 7.0, 100.0, 0.9, 5.0};
 }
 
 FlightLimits limits_of(const FlightConfig& config) {

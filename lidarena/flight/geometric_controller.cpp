@@ -2,6 +2,7 @@
 #include "lidarena/flight/geometric_controller.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "lidarena/base/so3.hpp"
 
@@ -26,6 +27,17 @@ Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
          quadrotor.drag(reference.world_from_body.linear(), reference.velocity_world);
 }
 
+/// Turn, as seen from the body, that is left to do: the shortest one that brings the z axis to
+/// where it should be (x, y), and the rest, about z. The heading may lag without disturbing the
+/// tilt.
+Vector3d turn_to(const Matrix3d& body_from_wanted) {
+  const Matrix3d tilt =
+      Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), body_from_wanted.col(2))
+          .toRotationMatrix();
+  const Matrix3d rest = tilt.transpose() * body_from_wanted;
+  return so3::log(tilt) + std::atan2(rest(1, 0), rest(0, 0)) * Vector3d::UnitZ();
+}
+
 }  // namespace
 
 Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
@@ -38,10 +50,9 @@ Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
   const Matrix3d r = state.attitude.normalized().toRotationMatrix();
   const Matrix3d body_from_wanted = r.transpose() * wanted;
 
-  const Vector3d turn_error = so3::vee(wanted.transpose() * r);
   const Vector3d rate = body_from_wanted * reference.angular_rate_body;
   const Vector3d w{c.tilt_bandwidth, c.tilt_bandwidth, c.yaw_bandwidth};
-  const Vector3d angular_acceleration = -w.cwiseAbs2().cwiseProduct(turn_error) -
+  const Vector3d angular_acceleration = w.cwiseAbs2().cwiseProduct(turn_to(body_from_wanted)) -
                                         2.0 * c.damping * w.cwiseProduct(state.rate - rate) -
                                         state.rate.cross(rate) +
                                         body_from_wanted * reference.angular_acceleration_body;
