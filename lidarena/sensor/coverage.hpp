@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lidarena/base/time.hpp"
+#include "lidarena/sensor/field_of_view.hpp"
+#include "lidarena/sensor/scan_pattern.hpp"
+
+namespace lidarena {
+
+/// Which cells of a grid over a field of view have been hit by a ray. Cells are squares in azimuth
+/// and elevation, in rows from the lowest azimuth and elevation on; a cell belongs to the field of
+/// view when its centre does.
+class Coverage {
+ public:
+  /// `cell_deg` > 0; boxes should measure whole cells.
+  Coverage(const FieldOfView& fov, double cell_deg);
+
+  void add(const Eigen::Vector3f& direction);
+
+  /// Solid angle of the lit cells of the field of view over that of all of them, 0..1.
+  double share() const;
+
+  int columns() const { return columns_; }
+  int rows() const { return rows_; }
+  bool lit(int column, int row) const { return lit_[index(column, row)]; }
+
+ private:
+  std::size_t index(int column, int row) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+           static_cast<std::size_t>(column);
+  }
+
+  FieldOfView fov_;
+  double cell_deg_;
+  int columns_;
+  int rows_;
+  std::vector<bool> lit_;
+};
+
+/// The shots of a pattern since the sensor's start, one after the other.
+class Shots {
+ public:
+  /// Keeps a reference to `pattern`.
+  explicit Shots(const ScanPattern& pattern);
+
+  /// The shot that comes next, and its instant since the start.
+  const Beam& beam() const { return beams_[next_]; }
+  Time time() const { return stamp_ + Time{beam().dt_ns}; }
+  void advance();
+
+ private:
+  const ScanPattern& pattern_;
+  std::vector<Beam> beams_;  ///< of the scan at hand
+  std::uint64_t scan_ = 0;
+  std::size_t next_ = 0;
+  Time stamp_{0};
+};
+
+/// Share of the field of view that is lit before each of the `instants` (ascending, since the
+/// start).
+std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov, double cell_deg,
+                             std::span<const Time> instants);
+
+}  // namespace lidarena
