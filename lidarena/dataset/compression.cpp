@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/dataset/compression.hpp"
 
+#ifdef LIDARENA_HAVE_BZIP2
+#include <bzlib.h>
+#endif
 #include <lz4frame.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -80,6 +83,34 @@ void decompress_lz4(Bytes input, std::uint64_t size, std::vector<std::byte>& out
   });
 }
 
+#ifdef LIDARENA_HAVE_BZIP2
+struct EndBzip2 {
+  void operator()(bz_stream* stream) const { BZ2_bzDecompressEnd(stream); }
+};
+
+void decompress_bz2(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
+  bz_stream state{};
+  if (BZ2_bzDecompressInit(&state, 0, 0) != BZ_OK) throw std::bad_alloc();
+  const std::unique_ptr<bz_stream, EndBzip2> stream(&state);
+  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+    // the library takes its input as char*, but reads it only
+    stream->next_in = reinterpret_cast<char*>(const_cast<std::byte*>(rest.data()));
+    stream->avail_in = static_cast<unsigned>(rest.size());
+    stream->next_out = reinterpret_cast<char*>(room.data());
+    stream->avail_out = static_cast<unsigned>(room.size());
+    const int result = BZ2_bzDecompress(stream.get());
+    if (result != BZ_OK && result != BZ_STREAM_END) throw std::runtime_error("is no sound bz2");
+    rest = rest.last(stream->avail_in);
+    room = room.last(stream->avail_out);
+    return result == BZ_STREAM_END;
+  });
+}
+#else
+void decompress_bz2(Bytes, std::uint64_t, std::vector<std::byte>&) {
+  throw std::runtime_error("is compressed by bz2, which this build lacks: use 'rosbag decompress'");
+}
+#endif
+
 }  // namespace
 
 std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc) {
@@ -106,10 +137,23 @@ Bytes ZstdCompressor::compress(Bytes input) {
   return Bytes(impl_->output).first(size);
 }
 
+Bytes compress_lz4(Bytes input, std::vector<std::byte>& output) {
+  LZ4F_preferences_t preferences{};
+  preferences.frameInfo.blockMode = LZ4F_blockIndependent;
+  preferences.frameInfo.blockSizeID = LZ4F_max1MB;
+  preferences.frameInfo.contentChecksumFlag = LZ4F_contentChecksumEnabled;
+  output.resize(LZ4F_compressFrameBound(input.size(), &preferences));
+  const std::size_t size =
+      LZ4F_compressFrame(output.data(), output.size(), input.data(), input.size(), &preferences);
+  if (LZ4F_isError(size)) throw std::runtime_error(LZ4F_getErrorName(size));
+  return Bytes(output).first(size);
+}
+
 void decompress(std::string_view method, Bytes input, std::uint64_t size,
                 std::vector<std::byte>& output) {
   if (method == "zstd") return decompress_zstd(input, size, output);
   if (method == "lz4") return decompress_lz4(input, size, output);
+  if (method == "bz2") return decompress_bz2(input, size, output);
   throw std::runtime_error("is compressed by the unknown method '" + std::string(method) + "'");
 }
 

@@ -28,9 +28,14 @@ class ZstdCompressor {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Undoes `method`, "zstd" or "lz4" (frame format), into `output`, which never grows beyond `size`,
+/// One LZ4 frame of independent blocks with a check sum of its content, in the form that ROS 1 bags
+/// have it, too. `output` holds the result.
+Bytes compress_lz4(Bytes input, std::vector<std::byte>& output);
+
+/// Undoes `method`, "zstd", "lz4" (frame format) or, where the library was there at build time,
+/// "bz2", into `output`, which never grows beyond `size`,
 /// nor much beyond what the input really holds. Throws std::runtime_error when the input is
-/// damaged, does not give exactly `size` bytes, or the method is unknown.
+/// damaged, does not give exactly `size` bytes, or the method is unknown or was left out.
 void decompress(std::string_view method, Bytes input, std::uint64_t size,
                 std::vector<std::byte>& output);
 

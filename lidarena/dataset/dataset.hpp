@@ -33,10 +33,11 @@ struct Dataset {
   std::unique_ptr<EventSource> events;
 };
 
-/// Opens a dataset folder of ours, a single .mcap, a bag folder of rosbag2 with one .mcap, a folder
-/// of PCD/PLY/bin sweeps, or a folder in the room format. In an .mcap of others, topics are found
-/// by type: the first with scans (PointCloud2, Livox CustomMsg) or that of `options.sensor` (topic
-/// or id), and the first Imu. Throws InputError naming file, place and remedy.
+/// Opens a dataset folder of ours, a single .mcap or ROS 1 .bag, a bag folder of rosbag2 with one
+/// .mcap, a folder of PCD/PLY/bin sweeps, or a folder in the room format. In recordings of others,
+/// topics are found by type: the first with scans (PointCloud2, Livox CustomMsg) or that of
+/// `options.sensor` (topic or id), and the first Imu, whose accelerations may be in g. Throws
+/// InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// True motion of the body where the dataset carries one (truth.tum, or gt.tum of the room format).
@@ -57,6 +58,28 @@ inline constexpr const char* kTruthHeader =
     "truth: pose of the body in the world (world_from_body) at the stamped instant\n"
     "time[s] x y z[m] qx qy qz qw";
 
+enum class DatasetFormat { kMcap, kBag };
+template <>
+struct EnumNames<DatasetFormat> {
+  static constexpr std::array names{std::pair{"mcap", DatasetFormat::kMcap},
+                                    std::pair{"bag", DatasetFormat::kBag}};
+};
+
+enum class Dialect {
+  kSi,      ///< SI units, one layout for all sensors
+  kDriver,  ///< the units and layouts of the sensor's own driver, where it is known
+};
+template <>
+struct EnumNames<Dialect> {
+  static constexpr std::array names{std::pair{"si", Dialect::kSi},
+                                    std::pair{"driver", Dialect::kDriver}};
+};
+
+struct WriteOptions {
+  DatasetFormat format = DatasetFormat::kMcap;
+  Dialect dialect = Dialect::kSi;
+};
+
 /// Writes a dataset folder: data.mcap, truth.tum, metadata.yaml (so that `ros2 bag play` takes the
 /// folder), manifest.json; world.ply is the caller's. Files appear under their names only once
 /// complete, manifest.json last: a folder without one is unfinished. An older dataset in the folder
@@ -70,8 +93,11 @@ inline constexpr const char* kTruthHeader =
 /// "lidarena".
 class DatasetWriter : public EventSink, public ScanTruthSink {
  public:
-  /// Throws InputError when the folder cannot be made or two LiDARs (or IMUs) have one id.
-  DatasetWriter(const std::filesystem::path& folder, const Rig& rig);
+  /// `path` is the folder; or, where it ends in .mcap or .bag, a single file of that format,
+  /// without anything beside it. Throws InputError when it cannot be made or two LiDARs (or IMUs)
+  /// have one id.
+  DatasetWriter(const std::filesystem::path& path, const Rig& rig,
+                const WriteOptions& options = {});
   ~DatasetWriter() override;
   /// In the order of EventSource. Throws InputError for a sensor that the rig lacks, a negative
   /// time, or a point before its scan's stamp; Error when the disk is full.

@@ -20,8 +20,8 @@ std::map<std::string, std::string> inverted(const std::map<std::string, std::str
 
 }  // namespace
 
-McapSensors topics_of(const Rig& rig) {
-  McapSensors sensors;
+RecordedSensors topics_of(const Rig& rig) {
+  RecordedSensors sensors;
   for (const LidarInfo& lidar : rig.lidars) add(sensors.lidars, lidar.id, "points");
   for (const ImuInfo& imu : rig.imus) add(sensors.imus, imu.id, "imu");
   return sensors;
@@ -31,14 +31,17 @@ std::string truth_topic_of(const std::string& lidar_id) {
   return kTruthPrefix + lidar_id + "/hits";
 }
 
-Json to_json(const McapSensors& sensors) {
-  return {{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
+Json to_json(const RecordedSensors& sensors) {
+  Json json{{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
+  if (!sensors.imus_in_g.empty()) json["imus_in_g"] = sensors.imus_in_g;
+  return json;
 }
 
-McapSensors sensors_from_json(const Json& json, const std::string& place) {
+RecordedSensors sensors_from_json(const Json& json, const std::string& place) {
   try {
     using Map = std::map<std::string, std::string>;
-    return {inverted(json.at("lidars").get<Map>()), inverted(json.at("imus").get<Map>())};
+    return {inverted(json.at("lidars").get<Map>()), inverted(json.at("imus").get<Map>()),
+            json.value("imus_in_g", std::set<std::string>{})};
   } catch (const Json::exception&) {
     throw InputError(place, "the list of topics is not {\"lidars\": {id: topic}, \"imus\": {...}}");
   }
@@ -50,13 +53,13 @@ Rig rig_from_json(const Json& json, const std::string& place) {
   return rig;
 }
 
-mcap::StringMap describe(const Description& description) {
+StringMap describe(const Description& description) {
   return {{"format_version", std::to_string(kFormatVersion)},
           {"rig", lidarena::to_json(description.rig).dump()},
           {"topics", to_json(description.sensors).dump()}};
 }
 
-std::optional<Description> description_in(const McapInfo& info, const std::string& place) {
+std::optional<Description> description_in(const RecordingInfo& info, const std::string& place) {
   const auto record = info.metadata.find(kDescription);
   if (record == info.metadata.end()) return std::nullopt;
   try {

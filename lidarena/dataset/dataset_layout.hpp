@@ -15,6 +15,7 @@ namespace lidarena::layout {
 
 inline constexpr const char* kManifest = "manifest.json";
 inline constexpr const char* kData = "data.mcap";
+inline constexpr const char* kBag = "data.bag";
 inline constexpr const char* kTruth = "truth.tum";
 inline constexpr const char* kTruthPart = "truth.tum.part";  ///< in the making
 inline constexpr const char* kWorld = "world.ply";
@@ -31,21 +32,21 @@ inline constexpr const char* kDescription = "lidarena";  ///< name of the metada
 
 /// Topics of a rig: /ID/points for LiDARs, /ID/imu for IMUs (an IMU may share its LiDAR's id).
 /// Throws InputError when two LiDARs, or two IMUs, have one id.
-McapSensors topics_of(const Rig& rig);
+RecordedSensors topics_of(const Rig& rig);
 
 /// {"lidars": {id: topic}, "imus": {id: topic}}, and back.
-Json to_json(const McapSensors& sensors);
-McapSensors sensors_from_json(const Json& json, const std::string& place);
+Json to_json(const RecordedSensors& sensors);
+RecordedSensors sensors_from_json(const Json& json, const std::string& place);
 
 Rig rig_from_json(const Json& json, const std::string& place);
 
 /// The description that every data.mcap carries (metadata record "lidarena"): rig and topics.
 struct Description {
   Rig rig;
-  McapSensors sensors;
+  RecordedSensors sensors;
 };
-mcap::StringMap describe(const Description& description);
+StringMap describe(const Description& description);
 /// Empty when the file is not ours.
-std::optional<Description> description_in(const McapInfo& info, const std::string& place);
+std::optional<Description> description_in(const RecordingInfo& info, const std::string& place);
 
 }  // namespace lidarena::layout

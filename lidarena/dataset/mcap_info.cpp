@@ -9,6 +9,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/compression.hpp"
 #include "lidarena/dataset/mcap_reader.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
 
 namespace lidarena {
 namespace {
@@ -73,7 +74,8 @@ void fill_topics(const Channels& channels, const Schemas& schemas,
   for (const auto& [id, channel] : channels) {
     const auto schema = schemas.find(channel.schema_id);
     const auto count = statistics.channel_message_counts.find(id);
-    info.topics.push_back({channel.topic, schema == schemas.end() ? "" : schema->second.name,
+    info.topics.push_back({channel.topic,
+                           schema == schemas.end() ? "" : ros::ros2_name(schema->second.name),
                            channel.message_encoding,
                            count == statistics.channel_message_counts.end() ? 0 : count->second});
   }
@@ -133,12 +135,6 @@ McapInfo info_from_reading(const std::filesystem::path& path) {
 }
 
 }  // namespace
-
-std::uint64_t McapInfo::count_of(const std::string& topic) const {
-  std::uint64_t count = 0;
-  for (const McapTopic& entry : topics) count += entry.topic == topic ? entry.message_count : 0;
-  return count;
-}
 
 McapInfo read_mcap_info(const std::filesystem::path& file) {
   const McapReader reader(file);  // says so if this is no MCAP file

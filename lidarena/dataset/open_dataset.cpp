@@ -5,8 +5,8 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/dataset/mcap_info.hpp"
-#include "lidarena/dataset/mcap_reader.hpp"
+#include "lidarena/dataset/recording.hpp"
+#include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/room.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/sweeps.hpp"
@@ -43,8 +43,8 @@ void apply(const ReadOptions& options, const std::string& place, layout::Descrip
   lidars.front().body_from_lidar = *options.body_from_lidar;
 }
 
-Dataset from_mcap(const fs::path& path, const fs::path& file, const McapInfo& info,
-                  layout::Description description, const ReadOptions& options) {
+Dataset from_recording(const fs::path& path, const fs::path& file, const RecordingInfo& info,
+                       layout::Description description, const ReadOptions& options) {
   apply(options, file.string(), description);
   Dataset dataset;
   dataset.path = path;
@@ -53,9 +53,17 @@ Dataset from_mcap(const fs::path& path, const fs::path& file, const McapInfo& in
     dataset.scan_count = info.count_of(lidars.begin()->first);
   }
   if (!info.damage.empty()) dataset.notes.push_back(info.damage);
-  dataset.events = open_mcap_events(file, description.sensors, info);
+  dataset.events = open_recorded_events(file, description.sensors, info);
   dataset.rig = std::move(description.rig);
   return dataset;
+}
+
+/// data.mcap or data.bag.
+std::optional<fs::path> data_file(const fs::path& folder) {
+  for (const char* name : {layout::kData, layout::kBag}) {
+    if (fs::exists(folder / name)) return folder / name;
+  }
+  return std::nullopt;
 }
 
 Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
@@ -71,9 +79,9 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
     throw InputError(place, "is not of format version " + std::to_string(layout::kFormatVersion),
                      "read it with the version of the program that wrote it");
   }
-  const fs::path file = folder / layout::kData;
-  if (!fs::exists(file)) {
-    throw InputError(folder.string(), "has a manifest but no data.mcap: it is flown when used",
+  const auto file = data_file(folder);
+  if (!file) {
+    throw InputError(folder.string(), "has a manifest but no data: it is flown when used",
                      "simulate it from its manifest");
   }
   if (!manifest.contains("rig") || !manifest.contains("topics")) {
@@ -81,7 +89,8 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
   }
   layout::Description description{layout::rig_from_json(manifest["rig"], place),
                                   layout::sensors_from_json(manifest["topics"], place)};
-  Dataset dataset = from_mcap(folder, file, read_mcap_info(file), std::move(description), options);
+  Dataset dataset =
+      from_recording(folder, *file, read_recording_info(*file), std::move(description), options);
   dataset.manifest = std::move(manifest);
   return dataset;
 }
@@ -95,9 +104,9 @@ std::string id_of_topic(std::string topic) {
   return topic;
 }
 
-std::string list_of(const std::vector<McapTopic>& topics) {
+std::string list_of(const std::vector<RecordedTopic>& topics) {
   std::string text;
-  for (const McapTopic& topic : topics) {
+  for (const RecordedTopic& topic : topics) {
     text += (text.empty() ? "" : ", ") + topic.topic + " (" + topic.type + " in " +
             topic.message_encoding + ")";
   }
@@ -106,10 +115,10 @@ std::string list_of(const std::vector<McapTopic>& topics) {
 
 /// A file of others: the first scans and the first IMU, or the LiDAR named by topic or id. Nothing
 /// is known of the mounting, so body, LiDAR and IMU are taken to be one frame.
-layout::Description guess(const fs::path& file, const McapInfo& info, const ReadOptions& options,
-                          std::vector<std::string>& notes) {
+layout::Description guess(const fs::path& file, const RecordingInfo& info,
+                          const ReadOptions& options, std::vector<std::string>& notes) {
   layout::Description guessed;
-  for (const McapTopic& topic : info.topics) {
+  for (const RecordedTopic& topic : info.topics) {
     const std::string id = id_of_topic(topic.topic);
     if (topic.topic.starts_with(layout::kTruthPrefix)) continue;
     const bool is_wanted = options.sensor.empty()
@@ -123,13 +132,17 @@ layout::Description guess(const fs::path& file, const McapInfo& info, const Read
       guessed.sensors.imus[topic.topic] = id;
       guessed.rig.imus.emplace_back().id = id;
       notes.push_back("the IMU is that of " + topic.topic);
+      if (is_in_g(file, topic.topic)) {
+        guessed.sensors.imus_in_g.insert(id);
+        notes.push_back("its accelerations are taken to be in g, by their size");
+      }
     }
   }
   if (guessed.rig.lidars.empty()) {
     const std::string wanted = options.sensor.empty() ? "" : " named '" + options.sensor + "'";
-    throw InputError(file.string(), "holds no scans" + wanted + " that can be read",
-                     "scans are PointCloud2 or Livox CustomMsg messages in CDR; it holds " +
-                         list_of(info.topics));
+    throw InputError(
+        file.string(), "holds no scans" + wanted + " that can be read",
+        "scans are PointCloud2 or Livox CustomMsg messages; it holds " + list_of(info.topics));
   }
   if (!options.body_from_lidar) {
     notes.push_back(
@@ -139,23 +152,24 @@ layout::Description guess(const fs::path& file, const McapInfo& info, const Read
   return guessed;
 }
 
-Dataset open_mcap(const fs::path& file, const ReadOptions& options) {
-  const McapInfo info = read_mcap_info(file);
+Dataset open_recording_file(const fs::path& file, const ReadOptions& options) {
+  const RecordingInfo info = read_recording_info(file);
   if (auto ours = layout::description_in(info, file.string())) {
-    return from_mcap(file, file, info, *std::move(ours), options);
+    return from_recording(file, file, info, *std::move(ours), options);
   }
   std::vector<std::string> notes;
   layout::Description guessed = guess(file, info, options, notes);
   ReadOptions mounting = options;
   mounting.sensor.clear();  // chosen already, maybe by its topic
-  Dataset dataset = from_mcap(file, file, info, std::move(guessed), mounting);
+  Dataset dataset = from_recording(file, file, info, std::move(guessed), mounting);
   dataset.notes.insert(dataset.notes.end(), notes.begin(), notes.end());
   return dataset;
 }
 
 bool is_unfinished(const fs::path& folder) {
-  return fs::exists(folder / layout::kData) ||
-         fs::exists(folder / (std::string(layout::kData) + ".part"));
+  const auto is_there = [&](const std::string& name) { return fs::exists(folder / name); };
+  return data_file(folder) || is_there(std::string(layout::kData) + ".part") ||
+         is_there(std::string(layout::kBag) + ".part");
 }
 
 /// The data file of a bag folder that rosbag2 wrote; empty for any other folder.
@@ -176,12 +190,13 @@ std::optional<fs::path> rosbag_file(const fs::path& folder) {
   return files.front();
 }
 
-std::optional<Trajectory> truth_in_mcap(const fs::path& file) {
-  McapReader reader(file);
+std::optional<Trajectory> truth_in_recording(const fs::path& file) {
+  const auto reader = open_recording(file);
   std::vector<StampedPose> poses;
-  while (const auto message = reader.next()) {
-    if (message->channel->topic != layout::kTruthTopic) continue;
-    poses.push_back(ros::decode_odometry(message->data, file.string() + ": truth"));
+  while (const auto message = reader->next()) {
+    if (message->topic != layout::kTruthTopic) continue;
+    poses.push_back(
+        ros::decode_odometry(message->data, file.string() + ": truth", message->encoding));
   }
   if (poses.empty()) return std::nullopt;
   return Trajectory(std::move(poses), file.string() + ": " + layout::kTruthTopic);
@@ -189,7 +204,7 @@ std::optional<Trajectory> truth_in_mcap(const fs::path& file) {
 
 /// The topic of the truth of `sensor`'s points in a file; empty when there is none.
 std::optional<std::string> find_truth_topic(const fs::path& file, const std::string& sensor) {
-  const McapInfo info = read_mcap_info(file);
+  const RecordingInfo info = read_recording_info(file);
   const auto ours = layout::description_in(info, file.string());
   if (!ours) return std::nullopt;
   const LidarInfo* lidar = ours->rig.find_lidar(sensor);
@@ -203,18 +218,18 @@ std::optional<std::string> find_truth_topic(const fs::path& file, const std::str
   return info.count_of(topic) > 0 ? std::optional(std::move(topic)) : std::nullopt;
 }
 
-class McapTruthSource final : public ScanTruthSource {
+class RecordedTruth final : public ScanTruthSource {
  public:
-  McapTruthSource(const fs::path& file, std::string sensor, std::string topic)
-      : reader_(file),
+  RecordedTruth(const fs::path& file, std::string sensor, std::string topic)
+      : reader_(open_recording(file)),
         sensor_(std::move(sensor)),
         topic_(std::move(topic)),
         place_(file.string() + ": " + topic_) {}
 
   std::optional<ScanTruth> next() override {
-    while (const auto message = reader_.next()) {
-      if (message->channel->topic != topic_) continue;
-      ScanTruth truth = ros::decode_scan_truth(message->data, place_);
+    while (const auto message = reader_->next()) {
+      if (message->topic != topic_) continue;
+      ScanTruth truth = ros::decode_scan_truth(message->data, place_, message->encoding);
       truth.sensor_id = sensor_;
       return truth;
     }
@@ -222,7 +237,7 @@ class McapTruthSource final : public ScanTruthSource {
   }
 
  private:
-  McapReader reader_;
+  std::unique_ptr<RecordingReader> reader_;
   std::string sensor_;
   std::string topic_;
   std::string place_;
@@ -239,20 +254,20 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
                        "write it again, or give its data file alone");
     }
     if (is_room(path)) return open_room(path, options);
-    if (const auto bag = rosbag_file(path)) return open_mcap(*bag, options);
+    if (const auto bag = rosbag_file(path)) return open_recording_file(*bag, options);
     return open_sweep_folder(path, options);
   }
-  if (path.extension() == ".bag" || path.extension() == ".db3") {
+  if (path.extension() == ".db3") {
     throw InputError(path.string(), "is a bag in a format that is not read",
-                     "convert it to a ROS 2 bag in the storage mcap");
+                     "convert it with 'ros2 bag convert' to the storage mcap");
   }
-  const bool is_mcap = path.extension() == ".mcap" || path.extension() == ".part";
-  return is_mcap ? open_mcap(path, options) : open_sweep_files({path}, options);
+  return recording_format_of(path) ? open_recording_file(path, options)
+                                   : open_sweep_files({path}, options);
 }
 
 std::optional<Trajectory> load_truth(const fs::path& dataset) {
   if (!fs::is_directory(dataset)) {
-    return dataset.extension() == ".mcap" ? truth_in_mcap(dataset) : std::nullopt;
+    return recording_format_of(dataset) ? truth_in_recording(dataset) : std::nullopt;
   }
   if (fs::exists(dataset / layout::kTruth)) return read_tum(dataset / layout::kTruth);
   return is_room(dataset) ? room_truth(dataset) : std::nullopt;
@@ -260,12 +275,12 @@ std::optional<Trajectory> load_truth(const fs::path& dataset) {
 
 std::unique_ptr<ScanTruthSource> open_scan_truth(const fs::path& dataset,
                                                  const std::string& sensor) {
-  const fs::path file = fs::is_directory(dataset) ? dataset / layout::kData : dataset;
-  if (file.extension() != ".mcap" || !fs::exists(file)) return nullptr;
-  const auto topic = find_truth_topic(file, sensor);
+  const auto file = fs::is_directory(dataset) ? data_file(dataset) : std::optional(dataset);
+  if (!file || !recording_format_of(*file) || !fs::exists(*file)) return nullptr;
+  const auto topic = find_truth_topic(*file, sensor);
   if (!topic) return nullptr;
   const std::string id = topic->substr(std::string(layout::kTruthPrefix).size());
-  return std::make_unique<McapTruthSource>(file, id.substr(0, id.find('/')), *topic);
+  return std::make_unique<RecordedTruth>(*file, id.substr(0, id.find('/')), *topic);
 }
 
 std::optional<fs::path> find_world_mesh(const fs::path& dataset) {

@@ -25,6 +25,8 @@ class PartFile {
   /// Appends; throws Error naming the file when the disk is full.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
+  /// Replaces bytes that were written before; throws Error when that fails.
+  void overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
   /// Hands what is buffered to the system, so that a crash of this process does not lose it.
   void flush();
   /// Bytes written so far.

@@ -1,24 +1,23 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/dataset/recording_source.hpp"
 
-#include <array>
 #include <exception>
 #include <utility>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/livox_message.hpp"
-#include "lidarena/dataset/mcap_reader.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/stream_merge.hpp"
 
 namespace lidarena {
 namespace {
 
-class McapSource final : public EventSource {
+class RecordedEvents final : public EventSource {
  public:
-  McapSource(const std::filesystem::path& file, const McapSensors& sensors, const McapInfo& info)
+  RecordedEvents(const std::filesystem::path& file, const RecordedSensors& sensors,
+                 const RecordingInfo& info)
       : file_(file.string()),
-        reader_(file),
+        reader_(open_recording(file)),
         sensors_(sensors),
         merge_(file_, imus_with_samples(sensors, info)) {}
 
@@ -32,8 +31,8 @@ class McapSource final : public EventSource {
   }
 
  private:
-  static std::vector<std::string> imus_with_samples(const McapSensors& sensors,
-                                                    const McapInfo& info) {
+  static std::vector<std::string> imus_with_samples(const RecordedSensors& sensors,
+                                                    const RecordingInfo& info) {
     std::vector<std::string> ids;
     for (const auto& [topic, id] : sensors.imus) {
       if (info.count_of(topic) > 0) ids.push_back(id);
@@ -48,36 +47,36 @@ class McapSource final : public EventSource {
     merge_.finish();
   }
 
-  std::optional<McapMessage> next_message() {
+  std::optional<RecordedMessage> next_message() {
     try {
-      return reader_.next();
+      return reader_->next();
     } catch (const InputError&) {
       failure_ = std::current_exception();
     }
     return std::nullopt;
   }
 
-  void deliver(const McapMessage& message) {
-    const std::string& topic = message.channel->topic;
+  void deliver(const RecordedMessage& message) {
+    const std::string topic(message.topic);
     if (const auto imu = sensors_.imus.find(topic); imu != sensors_.imus.end()) {
-      merge_.push({imu->second, ros::decode_imu(message.data, place_of(topic))});
+      ImuSample sample = ros::decode_imu(message.data, place_of(topic), message.encoding);
+      if (sensors_.imus_in_g.contains(imu->second)) sample.accel *= kStandardGravity;
+      merge_.push({imu->second, sample});
     } else if (const auto lidar = sensors_.lidars.find(topic); lidar != sensors_.lidars.end()) {
-      merge_.push({lidar->second, decode_scan(message)});
+      merge_.push({lidar->second, decode_scan(message, place_of(topic))});
     }
   }
 
-  Scan decode_scan(const McapMessage& message) const {
-    const std::string place = place_of(message.channel->topic);
-    const auto schema = reader_.schemas().find(message.channel->schema_id);
-    const bool is_livox = schema != reader_.schemas().end() && is_livox_type(schema->second.name);
-    return is_livox ? decode_livox(message.data, place) : ros::decode_scan(message.data, place);
+  static Scan decode_scan(const RecordedMessage& message, const std::string& place) {
+    return is_livox_type(message.type) ? decode_livox(message.data, place, message.encoding)
+                                       : ros::decode_scan(message.data, place, message.encoding);
   }
 
   std::string place_of(const std::string& topic) const { return file_ + ": " + topic; }
 
   std::string file_;
-  McapReader reader_;
-  McapSensors sensors_;
+  std::unique_ptr<RecordingReader> reader_;
+  RecordedSensors sensors_;
   StreamMerge merge_;
   bool finished_ = false;
   std::exception_ptr failure_;
@@ -85,18 +84,38 @@ class McapSource final : public EventSource {
 
 }  // namespace
 
-bool is_scan_type(const McapTopic& topic) {
-  return topic.message_encoding == "cdr" &&
-         (topic.type == ros::kPointCloud2 || is_livox_type(topic.type));
+bool is_scan_type(const RecordedTopic& topic) {
+  return encoding_of(topic) && (topic.type == ros::kPointCloud2 || is_livox_type(topic.type));
 }
 
-bool is_imu_type(const McapTopic& topic) {
-  return topic.message_encoding == "cdr" && topic.type == ros::kImu;
+bool is_imu_type(const RecordedTopic& topic) {
+  return encoding_of(topic) && topic.type == ros::kImu;
 }
 
-std::unique_ptr<EventSource> open_mcap_events(const std::filesystem::path& file,
-                                              const McapSensors& sensors, const McapInfo& info) {
-  return std::make_unique<McapSource>(file, sensors, info);
+std::unique_ptr<EventSource> open_recorded_events(const std::filesystem::path& file,
+                                                  const RecordedSensors& sensors,
+                                                  const RecordingInfo& info) {
+  return std::make_unique<RecordedEvents>(file, sensors, info);
+}
+
+bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic) {
+  constexpr int kSamples = 100;  // half a second, also of a vehicle that shakes
+  const auto reader = open_recording(file);
+  double sum = 0.0;
+  int count = 0;
+  try {
+    while (count < kSamples) {
+      const auto message = reader->next();
+      if (!message) break;
+      if (message->topic != imu_topic) continue;
+      sum += ros::decode_imu(message->data, imu_topic, message->encoding).accel.norm();
+      ++count;
+    }
+  } catch (const InputError&) {
+    // What was read before the damage has to do.
+  }
+  const double mean = count > 0 ? sum / count : 0.0;
+  return mean > 0.5 && mean < 2.0;
 }
 
 }  // namespace lidarena

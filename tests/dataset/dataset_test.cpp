@@ -320,8 +320,8 @@ TEST(ForeignMcap, BagsInOtherStoragesSayHowToConvertThem) {
   std::ofstream(folder.path() / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
   const auto open = [](const fs::path& path) { return [path] { open_dataset(path); }; };
   EXPECT_THAT(input_error(open(folder.path())), HasSubstr("ros2 bag convert"));
-  EXPECT_THAT(input_error(open(write_file(folder.path() / "a.bag", "#ROSBAG V2.0\n"))),
-              HasSubstr("convert it"));
+  EXPECT_THAT(input_error(open(write_file(folder.path() / "a.db3", "SQLite format 3"))),
+              HasSubstr("ros2 bag convert"));
 }
 
 TEST(ForeignMcap, WithoutScansTheErrorListsWhatThereIs) {

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "lidarena/base/time.hpp"
+#include "lidarena/dataset/byte_stream.hpp"
+#include "lidarena/dataset/recording.hpp"
+
+namespace lidarena {
+
+enum class BagCompression { kNone, kLz4 };
+
+struct BagWriterOptions {
+  BagCompression compression = BagCompression::kLz4;
+  std::size_t chunk_bytes = 768 * 1024;  ///< a chunk is closed once it holds this much
+};
+
+/// Writes an indexed ROS 1 bag, version 2.0. Memory is one chunk and some 100 bytes for each chunk
+/// written. Bytes go to NAME.part; close() completes and renames it. Without close() the part
+/// stays: everything up to its last chunk can be read, and it has no index.
+class BagWriter : public RecordingWriter {
+ public:
+  /// Throws InputError when the file cannot be created.
+  explicit BagWriter(const std::filesystem::path& file, const BagWriterOptions& options = {});
+  ~BagWriter() override;
+
+  Encoding encoding() const override { return Encoding::kRos1; }
+  /// A type of ros_messages.hpp.
+  std::uint16_t add_topic(const std::string& name, std::string_view type,
+                          bool latched = false) override;
+  /// Bags keep the log time alone. Throws InputError when it is negative or beyond the year 2106.
+  void write(std::uint16_t topic, Time log_time, Time publish_time, Bytes message) override;
+  RecordingInfo info() const override;
+  void close() override;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace lidarena
