@@ -11,4 +11,11 @@ const LidarInfo* Rig::find_lidar(const std::string& id) const {
   return nullptr;
 }
 
+const ImuInfo* Rig::imu_beside(const LidarInfo& lidar) const {
+  for (const ImuInfo& imu : imus) {
+    if (imu.id == lidar.id) return &imu;
+  }
+  return imus.empty() ? nullptr : &imus.front();
+}
+
 }  // namespace lidarena

@@ -75,6 +75,8 @@ struct Rig {
 
   /// The LiDAR named `id`, or the only one if `id` is empty; nullptr if there is none such.
   const LidarInfo* find_lidar(const std::string& id) const;
+  /// The IMU inside `lidar`, which shares its id, or else the first one; nullptr if there is none.
+  const ImuInfo* imu_beside(const LidarInfo& lidar) const;
 };
 
 }  // namespace lidarena

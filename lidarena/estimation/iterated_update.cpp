@@ -18,7 +18,8 @@ State::Matrix symmetric(const State::Matrix& m) { return 0.5 * (m + m.transpose(
 
 IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
                                const IteratedUpdateOptions& options) {
-  IteratedUpdate result{prior};
+  IteratedUpdate result;
+  result.belief = prior;
   State x = prior.state;
   int converged_before = 0;
   bool search = true;
@@ -26,7 +27,7 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
     const NormalEquations<kPointDof> points = residuals(x, search);
     ++result.evaluations;
     if (points.count == 0) continue;
-    result.residuals = points.count;
+    result.points = points;
 
     // The prior, as it is seen from x: mean and covariance in the tangent space there.
     const State::Vector moved = minus(x, prior.state);

@@ -28,7 +28,8 @@ struct IteratedUpdate {
   Belief belief;
   int evaluations = 0;
   bool converged = false;
-  std::size_t residuals = 0;  ///< of the last evaluation that had any; 0: the belief is the prior
+  /// Of the last evaluation that had residuals; its count is 0 when none had: the prior stands.
+  NormalEquations<kPointDof> points;
 };
 
 /// Residuals r (m) of all points at a state, as the sums of J^T J and J^T r; `search` asks for new

@@ -18,4 +18,9 @@ std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> 
 /// points from all over the scan's duration and not from its beginning.
 std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, double voxel_size);
 
+/// Mean of the points of each voxel, in the order in which the voxels are first met. Points that
+/// are not finite are left out. For estimators alone: a mean hides noise.
+std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points,
+                                         double voxel_size);
+
 }  // namespace lidarena

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/factory.hpp"
 
+#include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
 
 namespace lidarena {
@@ -21,6 +22,16 @@ MadeOdometry make_kiss_icp(const OdometryRequest& request, const Rig&, const Lid
   return {std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel), to_json(config)};
 }
 
+MadeOdometry make_fast_lio2(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
+                            const Parallel& parallel) {
+  const auto config = configured(fast_lio2::preset(request.preset, lidar), request);
+  const ImuInfo* imu = rig.imu_beside(lidar);
+  if (imu == nullptr) {
+    throw InputError("rig", "it has no IMU, which fast_lio2 needs", "use kiss_icp without one");
+  }
+  return {std::make_unique<fast_lio2::FastLio2>(config, lidar, *imu, parallel), to_json(config)};
+}
+
 struct Algorithm {
   AlgorithmInfo info;
   MadeOdometry (*make)(const OdometryRequest&, const Rig&, const LidarInfo&, const Parallel&);
@@ -31,6 +42,9 @@ std::vector<Algorithm> algorithms() {
       {{"kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo et al. 2023)",
         kiss_icp::preset_names(), false},
        make_kiss_icp},
+      {{"fast_lio2", "LiDAR and IMU: iterated Kalman filter on points and planes (Xu et al. 2022)",
+        fast_lio2::preset_names(), true},
+       make_fast_lio2},
   };
 }
 

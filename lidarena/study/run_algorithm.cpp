@@ -85,6 +85,9 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
   const MadeOdometry made = make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
   RunOptions options;
   options.lidar_id = lidar_id;
+  if (const ImuInfo* imu = dataset.rig.imu_beside(*dataset.rig.find_lidar(lidar_id))) {
+    options.imu_id = imu->id;
+  }
   options.scan_count = dataset.scan_count;
   options.paced = request.paced;
   RunResult result = run(*made.odometry, *dataset.events, options, log);

@@ -95,7 +95,7 @@ TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
     const auto updated =
         iterated_update(prior, [&](const State& x, bool) { return equations(seen, x); },
                         {.max_iterations = 20, .tolerance = 1e-12, .variance = kVariance});
-    EXPECT_EQ(updated.residuals, seen.size());
+    EXPECT_EQ(updated.points.count, seen.size());
     const State& x = updated.belief.state;
     const double best = cost(prior, seen, kVariance, x);
     for (Eigen::Index i = 0; i < State::kDof; ++i) {
@@ -172,7 +172,7 @@ TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   prior.covariance *= 0.1;
   const auto updated =
       iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
-  EXPECT_EQ(updated.residuals, 0U);
+  EXPECT_EQ(updated.points.count, 0U);
   EXPECT_EQ(updated.belief.state.position, prior.state.position);
   EXPECT_EQ(updated.belief.covariance, prior.covariance);
 }

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/fast_lio2/config.hpp"
+
+#include <algorithm>
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+Config original(const LidarInfo& lidar) {
+  Config config;
+  config.point_stride = lidar.kind == "rosette" ? 3 : 4;
+  return config;
+}
+
+Config improved(const LidarInfo& lidar) {
+  Config config;
+  config.point_stride = 1;
+  config.min_range_m = std::max(0.3, lidar.min_range_m);
+  config.scan_voxel_m = 0.3;
+  config.map_voxel_m = 0.2;
+  config.plane_fit = PlaneFit::kPrincipal;
+  config.noise_model = NoiseModel::kDensity;
+  config.imu_noise_factor = 10.0;
+  config.second_order = true;
+  config.skip_first_scan = false;
+  config.always_scale_accel = false;
+  config.gravity = 9.80665;
+  config.initial_sigma = 0.0;
+  config.map_radius_m = 1.5 * lidar.max_range_m;
+  config.keep_all_scans = false;
+  config.zero_velocity = true;
+  return config;
+}
+
+}  // namespace
+
+std::vector<std::string> preset_names() { return {"improved", "original"}; }
+
+Config preset(const std::string& name, const LidarInfo& lidar) {
+  if (name == "improved") return improved(lidar);
+  if (name == "original") return original(lidar);
+  const std::string nearest = nearest_word(name, preset_names());
+  throw InputError(
+      "preset", "fast_lio2 has no preset '" + name + "'",
+      nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
+}
+
+}  // namespace lidarena::fast_lio2

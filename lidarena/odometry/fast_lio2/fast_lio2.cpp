@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/map/voxel_filter.hpp"
+#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+using State = InertialState;
+
+constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
+constexpr double kNoWay = 100.0;           // m/s: no vehicle of ours flies so fast
+constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
+// While the IMU is silent, the vehicle may do as it likes.
+constexpr ImuNoise kCoasting{0.5, 5.0, 1e-3, 1e-2};
+// For rigs that name no noise: a Mid-360's data sheet.
+constexpr ImuNoise kUsualImu{7.85e-5, 9.81e-4, 1e-5, 1e-4};
+
+ImuNoise densities_of(const ImuInfo& imu, double factor) {
+  const auto density = [factor](double given, double usual) {
+    return factor * (given > 0.0 ? given : usual);
+  };
+  return {density(imu.gyro_noise_density, kUsualImu.gyro_density),
+          density(imu.accel_noise_density, kUsualImu.accel_density),
+          density(imu.gyro_bias_walk, kUsualImu.gyro_walk),
+          density(imu.accel_bias_walk, kUsualImu.accel_walk)};
+}
+
+std::vector<Eigen::Vector3f> transformed(const Pose& pose,
+                                         std::span<const Eigen::Vector3f> points) {
+  std::vector<Eigen::Vector3f> moved;
+  moved.reserve(points.size());
+  for (const Eigen::Vector3f& p : points) moved.push_back((pose * p.cast<double>()).cast<float>());
+  return moved;
+}
+
+Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& rotation) {
+  return Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
+}
+
+}  // namespace
+
+FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
+                   Parallel parallel)
+    : config_(config),
+      body_from_imu_(imu.body_from_imu),
+      imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
+      noise_(densities_of(imu, config.imu_noise_factor)),
+      parallel_(std::move(parallel)),
+      window_(config.max_imu_gap_s),
+      map_window_(config.map_radius_m),
+      sweep_(from_seconds(1.0 / lidar.rate_hz)) {}
+
+ScanResult FastLio2::register_scan(const Scan& scan) {
+  const Time end = end_of_sweep(scan);
+  std::vector<ImuSample> samples;
+  const std::vector<ImuInput> inputs = window_.take_until(end, samples);
+  if (started_) {
+    predict(inputs);
+  } else if (!start(samples) || config_.skip_first_scan) {
+    return finish_scan(
+        end, scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
+  }
+
+  const std::vector<Eigen::Vector3f> points = preprocess(scan);
+  const std::vector<Eigen::Vector3f> reduced = voxel_means(points, config_.scan_voxel_m);
+
+  PlaneResiduals residuals(reduced, map_, config_, parallel_);
+  const IteratedUpdate update =
+      iterated_update(belief_, std::ref(residuals),
+                      {config_.max_iterations, config_.convergence, config_.point_variance_m2});
+  const bool has_map = !map_.empty();
+  belief_ = update.belief;
+  const bool still = config_.zero_velocity &&
+                     still_.observe(statistics(samples), belief_.state, config_, accel_scale_);
+  if (still) belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
+
+  const Pose world_from_lidar = belief_.state.world_from_lidar();
+  if (!still || still_.scans() <= config_.still_scans_mapped) {
+    add_scan(transformed(world_from_lidar, reduced),
+             has_map ? residuals.matches() : std::vector<Match>{},
+             static_cast<float>(config_.map_voxel_m), map_);
+    map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
+  }
+  publish(points);
+  const ScanStatus status = reduced.empty() ? ScanStatus::kTooFewPoints
+                            : has_map       ? status_of(update)
+                                            : ScanStatus::kInitializing;
+  return finish_scan(end, status,
+                     {{"points", points.size()},
+                      {"reduced_points", reduced.size()},
+                      {"planes", update.points.count},
+                      {"evaluations", update.evaluations},
+                      {"map_points", map_.size()},
+                      {"still", still ? 1.0 : 0.0}});
+}
+
+Time FastLio2::end_of_sweep(const Scan& scan) {
+  if (scan.timed && !scan.points.empty()) sweep_ = end_of(scan) - scan.stamp;
+  return scan.timed ? scan.stamp + sweep_ : scan.stamp;
+}
+
+bool FastLio2::start(const std::vector<ImuSample>& samples) {
+  const bool skip = first_scan_ && config_.skip_first_scan;
+  first_scan_ = false;
+  if (!skip) start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
+  if (start_samples_.size() < static_cast<std::size_t>(config_.init_samples)) return false;
+  const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
+  belief_ = begin.belief;
+  accel_scale_ = begin.accel_scale;
+  started_ = true;
+  start_samples_ = {};
+  return true;
+}
+
+void FastLio2::predict(const std::vector<ImuInput>& inputs) {
+  State& state = belief_.state;
+  track_.clear();
+  longest_gap_s_ = 0.0;
+  const Integration integration =
+      config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
+  for (const ImuInput& input : inputs) {
+    Eigen::Vector3d accel = accel_scale_ * input.accel;
+    if (input.gap) {  // on with the velocity it has
+      accel = state.accel_bias - state.rotation.transpose() * state.gravity;
+      longest_gap_s_ = std::max(longest_gap_s_, input.seconds());
+    }
+    const Eigen::Vector3d acceleration =
+        state.rotation * (accel - state.accel_bias) + state.gravity;
+    track_.push_back({input.begin, state.world_from_imu(), state.velocity, acceleration,
+                      input.gyro - state.gyro_bias});
+    const State::Matrix f = propagate(state, input.gyro, accel, input.seconds(), integration);
+    belief_.covariance =
+        f * belief_.covariance * f.transpose() + step_noise(noise_over(input), input.seconds());
+  }
+  state.rotation = orthonormal(state.rotation);
+  state.lidar_rotation = orthonormal(state.lidar_rotation);
+}
+
+ImuNoise FastLio2::noise_over(const ImuInput& input) const {
+  if (input.gap) return kCoasting;
+  if (config_.noise_model == NoiseModel::kDensity) return noise_;
+  // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
+  const auto density = [&](double variance) { return std::sqrt(variance * input.seconds()); };
+  return {density(config_.gyro_variance), density(config_.accel_variance),
+          density(config_.gyro_bias_variance), density(config_.accel_bias_variance)};
+}
+
+std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
+  Scan used;
+  used.stamp = scan.stamp;
+  used.timed = scan.timed;
+  const auto stride = static_cast<std::size_t>(config_.point_stride);
+  const auto nearest = static_cast<float>(config_.min_range_m * config_.min_range_m);
+  used.points.reserve(scan.points.size() / stride + 1);
+  for (std::size_t i = 0; i < scan.points.size(); i += stride) {
+    const float squared = scan.points[i].position.squaredNorm();
+    if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
+  }
+  return deskew(used, track_, belief_.state.imu_from_lidar(), belief_.state.world_from_imu(),
+                parallel_);
+}
+
+ScanStatus FastLio2::status_of(const IteratedUpdate& update) const {
+  const State& state = belief_.state;
+  if (!state.position.allFinite() || !state.rotation.allFinite() ||
+      !(state.velocity.norm() < kNoWay)) {
+    return ScanStatus::kDiverged;
+  }
+  if (update.points.count == 0) return ScanStatus::kTooFewPoints;
+  // The position's block of the sum is that of n n^T.
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
+      update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  const double weakest = directions.eigenvalues()[0] / static_cast<double>(update.points.count);
+  return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
+}
+
+ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
+                                 std::map<std::string, double> counters) {
+  ScanResult result;
+  result.estimate = {end, body_pose(belief_.state.world_from_imu())};
+  result.status = status;
+  if (started_) result.covariance = body_covariance();
+  counters["imu_gap_s"] = longest_gap_s_;
+  counters["imu_refused"] = static_cast<double>(window_.refused());
+  counters["accel_scale"] = accel_scale_;
+  result.counters = std::move(counters);
+  if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);
+  return result;
+}
+
+Pose FastLio2::body_pose(const Pose& world_from_imu) const {
+  return body_from_imu_ * world_from_imu * body_from_imu_.inverse();
+}
+
+Eigen::Matrix<double, 6, 6> FastLio2::body_covariance() const {
+  const State& state = belief_.state;
+  const Pose imu_from_body = body_from_imu_.inverse();
+  Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
+  by_state.topLeftCorner<3, 3>() = body_from_imu_.linear();
+  by_state.topRightCorner<3, 3>() =
+      -body_from_imu_.linear() * state.rotation * so3::hat(imu_from_body.translation());
+  by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
+  return by_state * belief_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
+}
+
+void FastLio2::publish(std::span<const Eigen::Vector3f> points) {
+  registered_scan_ = transformed(body_from_imu_ * belief_.state.world_from_lidar(), points);
+  if (!config_.keep_all_scans) return;
+  for (const Eigen::Vector3f& p : registered_scan_) archive_.push_back({p.x(), p.y(), p.z()});
+}
+
+std::vector<Eigen::Vector3f> FastLio2::map() const {
+  return transformed(body_from_imu_, map_.points());
+}
+
+std::map<std::string, std::uint64_t> FastLio2::memory() const {
+  return {{"map", map_.memory_bytes()},
+          {"scan_buffer", archive_.capacity() * sizeof(ArchivedPoint) +
+                              registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
+          {"backlog", window_.memory_bytes()},
+          {"other", poses_.capacity() * sizeof(StampedPose)}};
+}
+
+}  // namespace lidarena::fast_lio2

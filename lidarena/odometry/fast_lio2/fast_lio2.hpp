@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/estimation/iterated_update.hpp"
+#include "lidarena/map/kd_tree.hpp"
+#include "lidarena/odometry/fast_lio2/config.hpp"
+#include "lidarena/odometry/fast_lio2/imu_window.hpp"
+#include "lidarena/odometry/fast_lio2/initialization.hpp"
+#include "lidarena/odometry/fast_lio2/local_map.hpp"
+#include "lidarena/odometry/odometry.hpp"
+
+namespace lidarena::fast_lio2 {
+
+/// Tightly coupled LiDAR-inertial odometry: an iterated error-state Kalman filter that registers
+/// raw points with planes of the map, after Xu, Cai, He, Lin, Zhang, "FAST-LIO2: Fast Direct
+/// LiDAR-Inertial Odometry" (IEEE T-RO 2022). See README.md beside.
+class FastLio2 : public Odometry {
+ public:
+  FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
+
+  OdometryTraits traits() const override { return {.needs_imu = true}; }
+  void register_imu(const ImuSample& sample) override { window_.add(sample); }
+  ScanResult register_scan(const Scan& scan) override;
+  Trajectory trajectory() const override { return Trajectory(poses_, "fast_lio2"); }
+  std::vector<Eigen::Vector3f> map() const override;
+  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
+  std::map<std::string, std::uint64_t> memory() const override;
+
+ private:
+  /// Instant of the scan's last firing; for a scan without points, where it should have been.
+  Time end_of_sweep(const Scan& scan);
+  /// Takes samples in until they are enough to start from; whether they are now.
+  bool start(const std::vector<ImuSample>& samples);
+  /// Carries the belief over the inputs and lays down the track to de-skew along.
+  void predict(const std::vector<ImuInput>& inputs);
+  ImuNoise noise_over(const ImuInput& input) const;
+  /// The points that are used, seen from the LiDAR at the scan's end.
+  std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
+  ScanStatus status_of(const IteratedUpdate& update) const;
+  ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
+  Pose body_pose(const Pose& world_from_imu) const;
+  Eigen::Matrix<double, 6, 6> body_covariance() const;
+  void publish(std::span<const Eigen::Vector3f> points);
+
+  Config config_;
+  Pose body_from_imu_;
+  Pose imu_from_lidar_;
+  ImuNoise noise_;
+  Parallel parallel_;
+
+  ImuWindow window_;
+  std::vector<ImuSample> start_samples_;
+  bool first_scan_ = true;
+  bool started_ = false;
+  double accel_scale_ = 1.0;
+
+  Belief belief_;  ///< at the end of the last scan; world: the IMU's frame at the start
+  ImuTrack track_;
+  double longest_gap_s_ = 0.0;  ///< of the IMU, in the last scan
+  StillDetector still_;
+  KdTree map_;
+  MapWindow map_window_;
+
+  Time sweep_;  ///< duration of the last scan that had points
+  std::vector<StampedPose> poses_;
+  std::vector<Eigen::Vector3f> registered_scan_;
+  /// What the program's buffer holds of a point.
+  using ArchivedPoint = std::array<float, 12>;
+  std::vector<ArchivedPoint> archive_;
+};
+
+}  // namespace lidarena::fast_lio2

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/fast_lio2/initialization.hpp"
+
+#include <cmath>
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+using State = InertialState;
+
+// A quiet vehicle: ten times the white noise of a cheap IMU at 200 Hz.
+constexpr double kStillGyroSigma = 0.02;  // rad/s
+constexpr double kStillAccelSigma = 0.2;  // m/s^2
+constexpr double kStillRate = 0.05;       // rad/s: 3 deg/s of first bias
+constexpr double kStillForce = 0.3;       // m/s^2 of bias, off gravity's length
+constexpr double kAccelInG = 3.0;         // means below this are in units of g
+constexpr double kStillDrift = 0.03;      // m
+constexpr double kStillSpeed = 0.1;       // m/s
+
+void set_sigma(State::Matrix& covariance, State::Block block, int size, double sigma) {
+  covariance.diagonal().segment(block, size).setConstant(sigma * sigma);
+}
+
+State::Matrix covariance_of(const Config& config, bool still) {
+  State::Matrix p = State::Matrix::Zero();
+  const double extrinsic = std::sqrt(1e-5);
+  set_sigma(p, State::kLidarRotation, 3, extrinsic);
+  set_sigma(p, State::kLidarPosition, 3, extrinsic);
+  if (config.initial_sigma > 0.0) {  // the public program's
+    set_sigma(p, State::kPosition, 3, config.initial_sigma);
+    set_sigma(p, State::kRotation, 3, config.initial_sigma);
+    set_sigma(p, State::kVelocity, 3, config.initial_sigma);
+    set_sigma(p, State::kGyroBias, 3, 1e-2);
+    set_sigma(p, State::kAccelBias, 3, std::sqrt(1e-3));
+    set_sigma(p, State::kGravity, 2, std::sqrt(1e-5));
+    return p;
+  }
+  set_sigma(p, State::kPosition, 3, 1e-4);  // the start is the origin
+  set_sigma(p, State::kRotation, 3, 1e-4);
+  set_sigma(p, State::kVelocity, 3, still ? 0.01 : 3.0);
+  set_sigma(p, State::kGyroBias, 3, still ? 1e-3 : 0.05);
+  set_sigma(p, State::kAccelBias, 3, 0.1);
+  set_sigma(p, State::kGravity, 2, still ? 0.02 : 0.2);
+  return p;
+}
+
+}  // namespace
+
+bool stands(const ImuStatistics& imu, const Config& config, double accel_scale) {
+  return imu.count > 2 && imu.gyro_sigma < kStillGyroSigma &&
+         accel_scale * imu.accel_sigma < kStillAccelSigma && imu.mean_gyro.norm() < kStillRate &&
+         std::abs(accel_scale * imu.mean_accel.norm() - config.gravity) < kStillForce;
+}
+
+Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
+                 const Config& config) {
+  const ImuStatistics imu = statistics(samples);
+  const double force = imu.mean_accel.norm();
+  Start start;
+  if (config.always_scale_accel) {
+    start.accel_scale = config.gravity / force;
+  } else if (force < kAccelInG) {
+    start.accel_scale = config.gravity;
+  }
+  start.still = stands(imu, config, start.accel_scale);
+  State& state = start.belief.state;
+  state.gravity = -config.gravity * imu.mean_accel.normalized();
+  if (start.still || config.initial_sigma > 0.0) state.gyro_bias = imu.mean_gyro;
+  state.lidar_rotation = imu_from_lidar.linear();
+  state.lidar_position = imu_from_lidar.translation();
+  start.belief.covariance = covariance_of(config, start.still);
+  return start;
+}
+
+bool StillDetector::observe(const ImuStatistics& imu, const InertialState& state,
+                            const Config& config, double accel_scale) {
+  const bool is_still = stands(imu, config, accel_scale) && state.velocity.norm() < kStillSpeed &&
+                        (scans_ == 0 || (state.position - anchor_).norm() < kStillDrift);
+  if (is_still && scans_ == 0) anchor_ = state.position;
+  scans_ = is_still ? scans_ + 1 : 0;
+  return is_still;
+}
+
+}  // namespace lidarena::fast_lio2

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/fast_lio2/local_map.hpp"
+
+#include <limits>
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+enum class Insertion { kPlain, kThinned, kNone };
+
+/// What the neighbours say (FAST-LIO2, section V-E; the shortcuts are the public program's): when
+/// the nearest lies outside the cell on every axis, the cell is empty; when one of them is nearer
+/// to the cell's centre, the point would lose.
+Insertion insertion_of(const Eigen::Vector3f& point, const Match& match, float voxel) {
+  if (match.found == 0) return Insertion::kThinned;
+  const Eigen::Vector3f centre = ((point / voxel).array().floor() + 0.5F) * voxel;
+  const Eigen::Vector3f away = (match.neighbours[0].point - centre).cwiseAbs();
+  if ((away.array() > 0.5F * voxel).all()) return Insertion::kPlain;
+  const float own = (point - centre).squaredNorm();
+  for (std::size_t i = 0; i < match.found; ++i) {
+    if ((match.neighbours[i].point - centre).squaredNorm() < own) return Insertion::kNone;
+  }
+  return Insertion::kThinned;
+}
+
+}  // namespace
+
+void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
+              float voxel, KdTree& map) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Insertion insertion =
+        matches.empty() ? Insertion::kThinned : insertion_of(points[i], matches[i], voxel);
+    if (insertion == Insertion::kPlain) map.insert(points[i]);
+    if (insertion == Insertion::kThinned) map.insert_thinned(points[i], voxel);
+  }
+}
+
+void MapWindow::follow(const Eigen::Vector3f& sensor, KdTree& map) {
+  if ((sensor - centre_).cwiseAbs().maxCoeff() < 0.25F * radius_) return;
+  centre_ = sensor;
+  constexpr float kFar = std::numeric_limits<float>::max();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    Eigen::AlignedBox3f below(Eigen::Vector3f::Constant(-kFar), Eigen::Vector3f::Constant(kFar));
+    Eigen::AlignedBox3f above = below;
+    below.max()[axis] = centre_[axis] - radius_;
+    above.min()[axis] = centre_[axis] + radius_;
+    map.remove(below);
+    map.remove(above);
+  }
+}
+
+}  // namespace lidarena::fast_lio2

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "lidarena/map/kd_tree.hpp"
+#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
+
+namespace lidarena::fast_lio2 {
+
+/// Adds a scan's points (m, world) to the map: one point a cell stays, the one nearest to its
+/// centre. `matches` are those of the points' last search, empty if there was none.
+void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
+              float voxel, KdTree& map);
+
+/// Forgets what lies outside the box of half side `radius` about the sensor, whenever that has
+/// moved by a quarter of it since the last time.
+class MapWindow {
+ public:
+  explicit MapWindow(double radius) : radius_(static_cast<float>(radius)) {}
+  void follow(const Eigen::Vector3f& sensor, KdTree& map);
+
+ private:
+  float radius_;
+  Eigen::Vector3f centre_ = Eigen::Vector3f::Zero();
+};
+
+}  // namespace lidarena::fast_lio2

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+using Columns = Eigen::Matrix<double, 3, kNeighbours>;
+
+/// a . x = -1 in the sense of least squares.
+Plane through_origin(const Columns& points) {
+  const Eigen::Matrix<float, kNeighbours, 3> rows = points.transpose().cast<float>();
+  const Eigen::Vector3f a =
+      rows.colPivHouseholderQr().solve(Eigen::Matrix<float, kNeighbours, 1>::Constant(-1.0F));
+  const double length = a.cast<double>().norm();
+  return {a.cast<double>() / length, 1.0 / length};
+}
+
+/// Across the direction in which the points spread least.
+Plane principal(const Columns& points) {
+  const Eigen::Vector3d centre = points.rowwise().mean();
+  const Columns centred = points.colwise() - centre;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
+  spread.computeDirect(centred * centred.transpose());
+  const Eigen::Vector3d normal = spread.eigenvectors().col(0);
+  return {normal, -normal.dot(centre)};
+}
+
+/// Whether the residual is small for the point's range: 0.11 m at 1 m, 0.35 m at 10 m.
+bool is_near(double distance, double range) {
+  return 1.0 - 0.9 * std::abs(distance) / std::sqrt(range) > 0.9;
+}
+
+}  // namespace
+
+std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness) {
+  Columns columns;
+  for (std::size_t i = 0; i < kNeighbours; ++i) {
+    columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
+  }
+  const Plane plane = fit == PlaneFit::kPrincipal ? principal(columns) : through_origin(columns);
+  const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
+  // Not "greater than": a fit that failed is not finite.
+  if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
+  return plane;
+}
+
+PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
+                             const InertialState& state, bool extrinsics) {
+  const Eigen::Vector3d in_imu = state.lidar_rotation * point + state.lidar_position;
+  const Eigen::Vector3d in_world = state.rotation * in_imu + state.position;
+  const Eigen::Vector3d normal_in_imu = state.rotation.transpose() * plane.normal;
+  PointResidual residual{plane.normal.dot(in_world) + plane.offset, {}};
+  residual.row << plane.normal.transpose(), in_imu.cross(normal_in_imu).transpose(),
+      Eigen::Matrix<double, 1, 6>::Zero();
+  if (extrinsics) {
+    residual.row.tail<6>()
+        << point.cross(state.lidar_rotation.transpose() * normal_in_imu).transpose(),
+        normal_in_imu.transpose();
+  }
+  return residual;
+}
+
+PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const KdTree& map,
+                               const Config& config, const Parallel& parallel)
+    : points_(points), map_(map), config_(config), parallel_(parallel), matches_(points.size()) {}
+
+void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
+  match.found =
+      map_.nearest(in_world, match.neighbours, static_cast<float>(config_.max_neighbour_m));
+  match.plane.reset();
+  if (match.found == kNeighbours) {
+    match.plane = fit_plane(match.neighbours, config_.plane_fit, config_.plane_thickness_m);
+  }
+}
+
+NormalEquations<kPointDof> PlaneResiduals::operator()(const InertialState& state, bool search) {
+  const Pose world_from_lidar = state.world_from_lidar();
+  return accumulate_normal_equations<kPointDof>(
+      parallel_, points_.size(), [&](std::size_t i, NormalEquations<kPointDof>& sum) {
+        const Eigen::Vector3d point = points_[i].cast<double>();
+        Match& match = matches_[i];
+        if (search) find((world_from_lidar * point).cast<float>(), match);
+        if (!match.plane) return;
+        const PointResidual residual =
+            point_residual(point, *match.plane, state, config_.estimate_extrinsics);
+        if (!is_near(residual.distance, point.norm())) {
+          match.plane.reset();
+          return;
+        }
+        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), 1.0);
+      });
+}
+
+}  // namespace lidarena::fast_lio2

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/estimation/inertial_state.hpp"
+#include "lidarena/estimation/iterated_update.hpp"
+#include "lidarena/estimation/least_squares.hpp"
+#include "lidarena/map/kd_tree.hpp"
+#include "lidarena/odometry/fast_lio2/config.hpp"
+
+namespace lidarena::fast_lio2 {
+
+inline constexpr std::size_t kNeighbours = 5;
+using Neighbours = std::array<Neighbour, kNeighbours>;
+
+/// normal . x + offset = 0, with a unit normal.
+struct Plane {
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+};
+
+/// The plane through five points (m), if all lie within `thickness` of it.
+std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness);
+
+/// A point of the scan and what it was matched with.
+struct Match {
+  Neighbours neighbours;  ///< of the last search; the first `found` are valid
+  std::size_t found = 0;
+  std::optional<Plane> plane;  ///< none: does not count until the next search
+};
+
+/// The residual of one point: its distance from the plane and the row of the Jacobian
+/// (FAST-LIO2, eq. 12-14).
+struct PointResidual {
+  double distance = 0.0;  ///< m, signed
+  Eigen::Matrix<double, 1, kPointDof> row;
+};
+PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
+                             const InertialState& state, bool extrinsics);
+
+/// Residuals of a scan's points (m, LiDAR frame at the scan's end) against the map. Keeps the
+/// matches from one search to the next.
+class PlaneResiduals {
+ public:
+  PlaneResiduals(std::span<const Eigen::Vector3f> points, const KdTree& map, const Config& config,
+                 const Parallel& parallel);
+
+  NormalEquations<kPointDof> operator()(const InertialState& state, bool search);
+  const std::vector<Match>& matches() const { return matches_; }
+
+ private:
+  void find(const Eigen::Vector3f& in_world, Match& match) const;
+
+  std::span<const Eigen::Vector3f> points_;
+  const KdTree& map_;
+  const Config& config_;
+  const Parallel& parallel_;
+  std::vector<Match> matches_;
+};
+
+}  // namespace lidarena::fast_lio2

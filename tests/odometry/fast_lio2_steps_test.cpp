@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps of FAST-LIO2, each on its own.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/base/time.hpp"
+#include "lidarena/odometry/fast_lio2/imu_window.hpp"
+#include "lidarena/odometry/fast_lio2/initialization.hpp"
+#include "lidarena/odometry/fast_lio2/local_map.hpp"
+#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
+  const double x = random.normal();
+  const double y = random.normal();
+  return sigma * Eigen::Vector3d(x, y, random.normal());
+}
+
+ImuSample sample_at(double t, const Eigen::Vector3d& gyro = Eigen::Vector3d::Zero(),
+                    const Eigen::Vector3d& accel = {0.0, 0.0, 9.80665}) {
+  return {from_seconds(t), gyro, accel};
+}
+
+// --- IMU window ---
+
+TEST(FastLio2ImuWindow, InputsCoverTheTimeWithoutHolesAndAverageTheEnds) {
+  ImuWindow window(0.05);
+  // A rate that grows linearly: means of ends are exact.
+  for (int i = 0; i <= 30; ++i) window.add(sample_at(0.01 * i, {0.0, 0.0, 0.01 * i}));
+  std::vector<ImuSample> samples;
+  Time expected{0};
+  for (const double end : {0.105, 0.1999, 0.25}) {
+    double turned = 0.0;
+    const double from = to_seconds(expected);
+    for (const ImuInput& input : window.take_until(from_seconds(end), samples)) {
+      EXPECT_EQ(input.begin, expected);
+      EXPECT_FALSE(input.gap);
+      expected = input.end;
+      turned += input.gyro.z() * input.seconds();
+    }
+    EXPECT_EQ(expected, from_seconds(end));
+    EXPECT_NEAR(turned, 0.5 * (end * end - from * from), 1e-12);
+  }
+  EXPECT_EQ(samples.size(), 26U);
+}
+
+TEST(FastLio2ImuWindow, ASilenceIsAGapAndBadSamplesAreRefused) {
+  ImuWindow window(0.05);
+  EXPECT_TRUE(window.add(sample_at(0.0)));
+  EXPECT_TRUE(window.add(sample_at(0.01)));
+  EXPECT_FALSE(window.add(sample_at(0.01))) << "not later";
+  EXPECT_FALSE(window.add(sample_at(0.005)));
+  EXPECT_FALSE(window.add(sample_at(0.02, {std::nan(""), 0.0, 0.0})));
+  EXPECT_TRUE(window.add(sample_at(0.2)));
+  EXPECT_EQ(window.refused(), 3U);
+  std::vector<ImuSample> samples;
+  const auto inputs = window.take_until(from_seconds(0.1), samples);
+  ASSERT_EQ(inputs.size(), 2U);
+  EXPECT_FALSE(inputs[0].gap);
+  EXPECT_TRUE(inputs[1].gap);
+  EXPECT_EQ(inputs[1].end, from_seconds(0.1));
+}
+
+TEST(FastLio2ImuWindow, WithoutAnySampleThereIsNoInput) {
+  ImuWindow window(0.05);
+  std::vector<ImuSample> samples;
+  EXPECT_TRUE(window.take_until(from_seconds(1.0), samples).empty());
+  EXPECT_TRUE(samples.empty());
+}
+
+// --- Start ---
+
+std::vector<ImuSample> standing(double accel_unit, double noise) {
+  SequentialRandom random(9, 1);
+  const Eigen::Matrix3d tilt = so3::exp({0.1, -0.2, 0.0});
+  std::vector<ImuSample> samples;
+  for (int i = 0; i < 20; ++i) {
+    const Eigen::Vector3d force = tilt.transpose() * Eigen::Vector3d(0, 0, 9.80665);
+    samples.push_back(sample_at(0.005 * i,
+                                Eigen::Vector3d(0.01, 0, 0) + random_vector(random, noise),
+                                accel_unit * (force + random_vector(random, 10 * noise))));
+  }
+  return samples;
+}
+
+Config improved_config() {
+  LidarInfo lidar;
+  return preset("improved", lidar);
+}
+
+TEST(FastLio2Start, GravityAndBiasComeFromTheMeans) {
+  const Start start = start_from(standing(1.0, 1e-3), Pose::Identity(), improved_config());
+  EXPECT_TRUE(start.still);
+  EXPECT_EQ(start.accel_scale, 1.0);
+  const Eigen::Vector3d down = so3::exp({0.1, -0.2, 0.0}).transpose() * Eigen::Vector3d(0, 0, -1);
+  EXPECT_LT((start.belief.state.gravity.normalized() - down).norm(), 2e-3);
+  EXPECT_NEAR(start.belief.state.gravity.norm(), 9.80665, 1e-9);
+  EXPECT_NEAR(start.belief.state.gyro_bias.x(), 0.01, 1e-3);
+}
+
+TEST(FastLio2Start, AccelerationsInGAreRecognised) {
+  const Start start =
+      start_from(standing(1.0 / 9.80665, 1e-3), Pose::Identity(), improved_config());
+  EXPECT_DOUBLE_EQ(start.accel_scale, 9.80665);
+  EXPECT_TRUE(start.still);
+}
+
+TEST(FastLio2Start, ShakingIsNotStanding) {
+  const Start start = start_from(standing(1.0, 0.1), Pose::Identity(), improved_config());
+  EXPECT_FALSE(start.still);
+  EXPECT_EQ(start.belief.state.gyro_bias, Eigen::Vector3d::Zero().eval());
+  EXPECT_GT(start.belief.covariance(InertialState::kVelocity, InertialState::kVelocity), 1.0);
+}
+
+TEST(FastLio2Start, SlowMotionEndsTheStanding) {
+  StillDetector detector;
+  const Config config = improved_config();
+  const ImuStatistics imu = statistics(standing(1.0, 1e-3));
+  InertialState state;
+  state.gyro_bias = {0.01, 0.0, 0.0};
+  int stood = 0;
+  for (int i = 0; i < 20; ++i) {
+    state.position.x() = 0.005 * i;  // 5 cm/s: no IMU feels it
+    state.velocity.x() = 0.05;
+    stood += detector.observe(imu, state, config, 1.0) ? 1 : 0;
+  }
+  EXPECT_LT(stood, 19) << "every 3 cm it is found out";
+  EXPECT_GT(stood, 10);
+}
+
+// --- Planes ---
+
+Neighbours points_on(const Eigen::Vector3d& normal, double offset, double thickness,
+                     SequentialRandom& random) {
+  const auto basis = tangent_basis(normal);
+  Neighbours points;
+  for (Neighbour& point : points) {
+    const Eigen::Vector2d along(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
+    point.point = (normal * (-offset + thickness * (2.0 * random.uniform() - 1.0)) + basis * along)
+                      .cast<float>();
+  }
+  return points;
+}
+
+TEST(FastLio2Planes, AreFoundByBothFits) {
+  SequentialRandom random(3, 1);
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
+    const Neighbours points = points_on(normal, -3.0, 0.0, random);
+    for (const PlaneFit fit : {PlaneFit::kThroughOrigin, PlaneFit::kPrincipal}) {
+      const auto plane = fit_plane(points, fit, 0.1);
+      ASSERT_TRUE(plane.has_value());
+      EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-4);
+      EXPECT_NEAR(std::abs(plane->offset), 3.0, 1e-2);
+    }
+  }
+}
+
+TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
+  SequentialRandom random(4, 1);
+  int found = 0;
+  for (int i = 0; i < 50; ++i) {
+    const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
+    const Neighbours points = points_on(normal, 0.0, 0.0, random);
+    const auto plane = fit_plane(points, PlaneFit::kPrincipal, 0.1);
+    ASSERT_TRUE(plane.has_value());
+    EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.999);
+    const auto other = fit_plane(points, PlaneFit::kThroughOrigin, 0.1);
+    found += other && std::abs(other->normal.dot(normal)) > 0.9 ? 1 : 0;
+  }
+  EXPECT_LT(found, 25) << "the fault that `principal` cures; noise of 1 cm hides it";
+}
+
+TEST(FastLio2Planes, ThickOnesAreRefused) {
+  SequentialRandom random(5, 1);
+  const Neighbours points = points_on({0.0, 0.0, 1.0}, -2.0, 0.5, random);
+  EXPECT_FALSE(fit_plane(points, PlaneFit::kPrincipal, 0.01).has_value());
+  Neighbours same;
+  for (Neighbour& point : same) point.point.setZero();
+  EXPECT_FALSE(fit_plane(same, PlaneFit::kThroughOrigin, 0.1).has_value()) << "not finite";
+}
+
+TEST(FastLio2Planes, TheJacobianIsTheNumericOne) {
+  SequentialRandom random(6, 1);
+  for (int i = 0; i < 50; ++i) {
+    InertialState state;
+    state.position = random_vector(random, 3.0);
+    state.rotation = so3::exp(random_vector(random, 1.0));
+    state.lidar_rotation = so3::exp(random_vector(random, 1.0));
+    state.lidar_position = random_vector(random, 0.2);
+    const Eigen::Vector3d point = random_vector(random, 5.0);
+    const Plane plane{random_vector(random, 1.0).normalized(), random.normal()};
+    const PointResidual residual = point_residual(point, plane, state, true);
+    EXPECT_NEAR(residual.distance,
+                plane.normal.dot(state.world_from_lidar() * point) + plane.offset, 1e-12);
+    for (Eigen::Index k = 0; k < kPointDof; ++k) {
+      const InertialState::Vector step = 1e-6 * InertialState::Vector::Unit(k);
+      const double slope = (point_residual(point, plane, plus(state, step), true).distance -
+                            point_residual(point, plane, plus(state, -step), true).distance) /
+                           2e-6;
+      EXPECT_NEAR(residual.row[k], slope, 1e-8);
+    }
+    EXPECT_EQ(point_residual(point, plane, state, false).row.tail<6>().norm(), 0.0);
+  }
+}
+
+TEST(FastLio2Planes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
+  KdTree map;
+  for (int x = -20; x <= 20; ++x) {
+    for (int y = -20; y <= 20; ++y) {
+      map.insert({0.2F * static_cast<float>(x), 0.2F * static_cast<float>(y), 0.0F});
+    }
+  }
+  const std::vector<Eigen::Vector3f> points{{0.05F, 0.03F, 1.0F}};  // 1 m below: gate 0.111 m
+  Config config;
+  config.plane_fit = PlaneFit::kPrincipal;
+  const Parallel parallel(1);
+  PlaneResiduals residuals(points, map, config, parallel);
+  InertialState state;
+  state.position.z() = -0.9;
+  const auto near = residuals(state, true);
+  ASSERT_EQ(near.count, 1U);
+  EXPECT_NEAR(near.cost, 0.5 * 0.1 * 0.1, 1e-6);
+  state.position.z() = -0.88;
+  EXPECT_EQ(residuals(state, false).count, 0U) << "0.12 m away";
+  state.position.z() = -0.95;
+  EXPECT_EQ(residuals(state, false).count, 0U) << "out until the next search";
+  EXPECT_EQ(residuals(state, true).count, 1U);
+}
+
+// --- Map ---
+
+TEST(FastLio2Map, ShortcutsOfInsertionDoNotChangeWhatACellKeeps) {
+  SequentialRandom random(8, 1);
+  KdTree with_shortcuts;
+  KdTree without;
+  const auto random_point = [&] {
+    return Eigen::Vector3f(random_vector(random, 0.7).cast<float>());
+  };
+  for (int scan = 0; scan < 30; ++scan) {
+    std::vector<Eigen::Vector3f> points;
+    for (int i = 0; i < 100; ++i) points.push_back(random_point());
+    std::vector<Match> matches(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      matches[i].found = with_shortcuts.nearest(points[i], matches[i].neighbours, 2.0F);
+    }
+    add_scan(points, matches, 0.5F, with_shortcuts);
+    add_scan(points, {}, 0.5F, without);
+  }
+  // Without neighbours each cell keeps its best point. The neighbours are those before the scan and
+  // not only of the own cell, so now and then a better point is refused or one too many inserted.
+  EXPECT_NEAR(static_cast<double>(with_shortcuts.size()), static_cast<double>(without.size()),
+              0.2 * static_cast<double>(without.size()));
+}
+
+TEST(FastLio2Map, FollowsTheSensor) {
+  KdTree map;
+  for (int i = -100; i <= 100; ++i) map.insert({static_cast<float>(i), 0.0F, 0.0F});
+  MapWindow window(40.0);
+  window.follow({5.0F, 0.0F, 0.0F}, map);
+  EXPECT_EQ(map.size(), 201U) << "less than a quarter of 40 m";
+  window.follow({20.0F, 0.0F, 0.0F}, map);
+  EXPECT_EQ(map.size(), 79U) << "-19 .. 59";
+  for (const Eigen::Vector3f& point : map.points()) {
+    EXPECT_GT(point.x(), -20.5F);
+    EXPECT_LT(point.x(), 60.5F);
+  }
+}
+
+}  // namespace
+}  // namespace lidarena::fast_lio2
