@@ -9,8 +9,9 @@ packages=(g++ cmake ninja-build pkg-config ca-certificates
           libeigen3-dev libembree-dev libtbb-dev libassimp-dev libyaml-cpp-dev
           nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
           liblz4-dev libgtest-dev libgmock-dev libbenchmark-dev)
-# Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off.
-optional=(libsdformat-dev)
+# Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off. Without
+# libbz2 old bags with bz2 chunks are not read.
+optional=(libsdformat-dev libbz2-dev)
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
@@ -21,6 +22,8 @@ if [ "${1:-run}" = test ]; then
   command -v node >/dev/null || missing+=(nodejs)
   command -v npm >/dev/null || missing+=(npm)
   command -v python3 >/dev/null || missing+=(python3)
+  # ROS 1's own reader of bags; without it the test that needs it is reported as skipped
+  optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
 fi
 absent_optional=()
 for p in "${optional[@]}"; do installed "$p" || absent_optional+=("$p"); done
@@ -29,7 +32,7 @@ if [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
   as_root=()
   if [ "$(id -u)" != 0 ]; then
     if [ "${#missing[@]}" -eq 0 ]; then
-      echo "set-up: optional, not installed: ${absent_optional[*]} (SDF worlds stay switched off)"
+      echo "set-up: optional, not installed: ${absent_optional[*]} (what needs them stays switched off)"
       exit 0
     fi
     command -v sudo >/dev/null || {
@@ -53,11 +56,11 @@ fi
 if [ "${1:-run}" = test ]; then
   reader=tests/dataset/mcap_official
   if [ -f "$reader/package-lock.json" ] && ! cmp -s "$reader/package-lock.json" "$reader/node_modules/.lock-installed"; then
-    echo "set-up: installing the official MCAP reader from npm"
+    echo "set-up: installing independent readers of recordings from npm"
     if npm ci --prefix "$reader" --no-audit --no-fund --loglevel=error; then
       cp "$reader/package-lock.json" "$reader/node_modules/.lock-installed"
     else
-      echo "set-up: it could not be installed; the test that needs it will be reported as skipped"
+      echo "set-up: they could not be installed; the tests that need them will be reported as skipped"
     fi
   fi
 fi

@@ -1,16 +1,17 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# usage: run.sh WRITE_MCAP_SAMPLE FOLDER   writes the sample and has the official reader check it.
-# Exits 77 (skipped) where the reader is not installed.
+# usage: run.sh WRITE_RECORDING_SAMPLE FOLDER mcap|bag   writes the sample and has the reader of that
+# format check it. Exits 77 (skipped) where the readers are not installed.
 set -eu
 here=$(dirname "$0")
 if ! command -v node >/dev/null; then
   echo "skipped: no node here, so the official MCAP reader cannot run"
   exit 77
 fi
-if [ ! -d "$here/node_modules/@mcap/core" ]; then
-  echo "skipped: the official MCAP reader is not installed; npm ci --prefix tests/dataset/mcap_official"
+if [ ! -d "$here/node_modules/@mcap/core" ] || [ ! -d "$here/node_modules/@foxglove/rosbag" ]; then
+  echo "skipped: the readers are not installed; npm ci --prefix tests/dataset/mcap_official"
   exit 77
 fi
-"$1" "$2"
+"$1" "$2" "$3"
+if [ "$3" = bag ]; then exec node "$here/read_bag.mjs" "$2/data.bag"; fi
 exec node "$here/read_all.mjs" "$2/data.mcap"
