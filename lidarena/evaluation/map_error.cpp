@@ -12,30 +12,6 @@ namespace lidarena {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points in flight; bounds the memory
-
-/// Distances of the finite points of `map` (m), NaN for the others.
-std::vector<double> distances_to(const World& world, std::span<const Eigen::Vector3f> map,
-                                 const Pose& mesh_from_map, const Parallel& parallel) {
-  const MortonOrder order = morton_order(map, parallel);
-  std::vector<double> distances(map.size(), kNaN);
-  std::vector<Eigen::Vector3d> moved(std::min(kChunk, order.entries.size()));
-  std::vector<ClosestPoint> nearest(moved.size());
-  for (std::size_t begin = 0; begin < order.entries.size(); begin += kChunk) {
-    const auto entries = std::span(order.entries)
-                             .subspan(begin)
-                             .first(std::min(kChunk, order.entries.size() - begin));
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      moved[k] = mesh_from_map * map[entries[k].index].cast<double>();
-    }
-    world.closest_points(std::span(moved).first(entries.size()),
-                         std::numeric_limits<double>::infinity(), nearest, parallel);
-    for (std::size_t k = 0; k < entries.size(); ++k) {
-      distances[entries[k].index] = nearest[k].distance;
-    }
-  }
-  return distances;
-}
 
 }  // namespace
 
@@ -69,7 +45,17 @@ MapError summarize_distances(std::span<const double> distances) {
 
 MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
                    const World& world, const Parallel& parallel, std::vector<float>* distances) {
-  const std::vector<double> found = distances_to(world, map, mesh_from_map, parallel);
+  const MortonOrder order = morton_order(map, parallel);
+  const std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, parallel);
+  return map_error(order, scores, map.size(), distances);
+}
+
+MapError map_error(const MortonOrder& order, std::span<const PointScore> scores, std::size_t points,
+                   std::vector<float>* distances) {
+  std::vector<double> found(points, kNaN);  // summed as the map has them, not as the curve goes
+  for (std::size_t k = 0; k < scores.size(); ++k) {
+    found[order.entries[k].index] = scores[k].distance;
+  }
   if (distances != nullptr) {
     distances->resize(found.size());
     std::transform(found.begin(), found.end(), distances->begin(),

@@ -9,6 +9,7 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/evaluation/point_scores.hpp"
 #include "lidarena/evaluation/summary.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -37,6 +38,10 @@ MapError summarize_distances(std::span<const double> distances);
 /// any number of threads.
 MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
                    const World& world, const Parallel& parallel,
+                   std::vector<float>* distances = nullptr);
+
+/// The same from scores that are known, of a map of `points` points (NaN ones included).
+MapError map_error(const MortonOrder& order, std::span<const PointScore> scores, std::size_t points,
                    std::vector<float>* distances = nullptr);
 
 }  // namespace lidarena
