@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lidarena/evaluation/metrics_json.hpp"
+#include "lidarena/evaluation/suspicion.hpp"
 
 namespace lidarena {
 namespace {
@@ -18,12 +19,21 @@ struct Status {
   std::string reason;
 };
 
+/// "`reason`; `suspicion`", where there is one.
+std::string with_suspicion(std::string reason, const std::string& suspicion) {
+  return suspicion.empty() ? reason : reason + "; " + suspicion;
+}
+
 Status status_of(const Trajectory& estimate, const Trajectory& truth) {
   if (estimate.empty()) return {"no_output", "the estimate has no poses"};
+  if (estimate.size() == 1) return {"no_output", "the estimate has a single pose"};
   const std::string divergence = divergence_of(estimate, truth);
-  if (!divergence.empty()) return {"diverged", divergence};
+  if (!divergence.empty()) {
+    return {"diverged", with_suspicion(divergence, suspect_quaternion_order(estimate, truth))};
+  }
   if (matched_poses(estimate, truth).empty()) {
-    return {"no_overlap", "no estimate lies inside the truth's time span"};
+    return {"no_overlap", with_suspicion("no estimate lies inside the truth's time span",
+                                         suspect_times(estimate, truth))};
   }
   return {};
 }
@@ -56,6 +66,13 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   if (offset && std::abs(offset->late_s) > kLateStamps_s + 3.0 * offset->sigma_s) {
     warnings.push_back(fmt::format("the estimate's stamps seem {:.0f} ms late (not corrected)",
                                    1e3 * offset->late_s));
+  }
+  const std::string quaternions = suspect_quaternion_order(estimate, truth);
+  const std::optional<LeverArm> arm = find_lever_arm(estimate, truth);
+  for (const std::string& warning :
+       {suspect_times(estimate, truth), quaternions,
+        arm && quaternions.empty() ? warning_of(*arm) : std::string()}) {
+    if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;
 }
@@ -90,6 +107,7 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
       status.name == "ok" ? time_offset(estimate, truth) : std::nullopt;
   json["association"] = to_json(associate(estimate, truth), offset);
   if (status.name != "ok") return json;
+  json["association"]["lever_arm"] = to_json(find_lever_arm(estimate, truth));
 
   Json over_time;
   for (const double length : kLadder_m) {

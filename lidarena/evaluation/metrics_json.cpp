@@ -5,6 +5,8 @@
 
 #include <cmath>
 
+#include "lidarena/base/so3.hpp"
+
 namespace lidarena {
 namespace {
 
@@ -76,6 +78,24 @@ Json to_json(const Association& association, const std::optional<TimeOffset>& of
           {"truth_rate_hz", association.truth_rate_hz},
           {"time_offset_s", offset ? Json(offset->late_s) : Json(nullptr)},
           {"time_offset_sigma_s", offset ? Json(offset->sigma_s) : Json(nullptr)}};
+}
+
+Json to_json(const std::optional<LeverArm>& arm) {
+  constexpr double kKnown = 0.1;  // m and rad: a component less certain says nothing
+  if (!arm) return nullptr;
+  const auto known = [&](const Eigen::Vector3d& value, Eigen::Index first) {
+    Json components = Json::array();
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      components.push_back(arm->sigma[first + i] < kKnown ? Json(value[i]) : Json(nullptr));
+    }
+    return components;
+  };
+  return {{"position_m", known(arm->body_from_estimate.translation(), 0)},
+          {"position_sigma_m", {arm->sigma[0], arm->sigma[1], arm->sigma[2]}},
+          {"rotation_vector_rad", known(so3::log(arm->body_from_estimate.linear()), 3)},
+          {"rotation_sigma_rad", {arm->sigma[3], arm->sigma[4], arm->sigma[5]}},
+          {"misfit_without_m", arm->misfit_without_m},
+          {"misfit_m", arm->misfit_m}};
 }
 
 Json to_json(const RelativePoseError& rpe) {

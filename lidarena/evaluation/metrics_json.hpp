@@ -6,6 +6,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/evaluation/hover_jitter.hpp"
 #include "lidarena/evaluation/kitti_error.hpp"
+#include "lidarena/evaluation/lever_arm.hpp"
 #include "lidarena/evaluation/map_error.hpp"
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
@@ -26,6 +27,8 @@ std::string definition_id(const MapError& error);
 /// {count, rmse_UNIT, mean_UNIT, median_UNIT, p95_UNIT, p99_UNIT, max_UNIT}; null when empty.
 Json to_json(const Summary& summary, const std::string& unit);
 Json to_json(const Association& association, const std::optional<TimeOffset>& offset);
+/// Components known no better than 10 cm or 0.1 rad are null.
+Json to_json(const std::optional<LeverArm>& arm);
 Json to_json(const RelativePoseError& rpe);
 Json to_json(const AbsoluteTrajectoryError& ate);
 /// Null means for lengths without a piece; "refused" when no length has one.

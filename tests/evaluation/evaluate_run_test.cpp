@@ -116,6 +116,31 @@ TEST_F(EvaluateRun, RungsLongerThanTheFlightAreNullNotZero) {
   EXPECT_TRUE(m["final"]["rpe"]["50m"]["translation"].is_null());
 }
 
+TEST_F(EvaluateRun, AnotherBodyFrameIsWarnedOfAndItsArmShown) {
+  const Pose arm = make_pose(so3::exp({0, 0, 0.3}), Vector3d(0.25, -0.10, 0.15));
+  run_.trajectory = run_.live = mapped(sample(tour, 100ms, 30s), [&](const StampedPose& pose) {
+    return pose.world_from_body * arm;
+  });
+  const Json m = evaluate();
+  ASSERT_EQ(m["warnings"].size(), 1U) << m["warnings"];
+  EXPECT_THAT(m["warnings"][0].get<std::string>(), HasSubstr("another frame of the body"));
+  const Json& seen = m["final"]["association"]["lever_arm"];
+  EXPECT_NEAR(seen["position_m"][0], 0.25, 0.01);
+  EXPECT_NEAR(seen["rotation_vector_rad"][2], 0.3, 0.01);
+}
+
+TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
+  const Trajectory whole = run_.trajectory;
+  run_.trajectory = sample(tour, 100ms, 50ms);
+  Json m = evaluate();
+  EXPECT_EQ(m["status"], "no_output");
+  EXPECT_EQ(m["reason"], "the estimate has a single pose");
+  run_.trajectory = flights::shifted(whole, std::chrono::hours(1));
+  m = evaluate();
+  EXPECT_EQ(m["status"], "no_overlap");
+  EXPECT_THAT(m["reason"].get<std::string>(), HasSubstr("clocks count from different instants"));
+}
+
 TEST_F(EvaluateRun, KittisErrorIsRefusedOnAShortFlightAndItsShortLadderIsThere) {
   const Json m = evaluate();
   EXPECT_THAT(m["final"]["kitti"]["refused"].get<std::string>(), HasSubstr("no piece of 100 m"));
