@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lidarena/evaluation/metrics_json.hpp"
+#include "lidarena/evaluation/resources.hpp"
 #include "lidarena/evaluation/suspicion.hpp"
 
 namespace lidarena {
@@ -159,6 +160,7 @@ Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* wor
             {"truth", describe_truth(truth)},
             {"live", nullptr},
             {"final", nullptr},
+            {"resources", resources_json(run.resources)},
             {"maps", {{"own", nullptr}, {"reprojected", nullptr}}}};
   if (status.name != "ok") {
     log.warn(fmt::format("not scored: {} ({})", status.name, status.reason));

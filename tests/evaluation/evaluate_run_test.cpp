@@ -141,6 +141,17 @@ TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
   EXPECT_THAT(m["reason"].get<std::string>(), HasSubstr("clocks count from different instants"));
 }
 
+TEST_F(EvaluateRun, WhatARunCostIsThereEvenWhenItDiverged) {
+  EXPECT_TRUE(evaluate()["resources"].is_null());  // anyone's files say nothing of it
+  run_.resources = {{0.1, 0.02, 100, 90, 50, 5, 0}, {0.2, 0.03, 120, 100, 60, 5, 0}};
+  run_.manifest = {{"status", "diverged"}, {"reason", "a pose was not finite"}};
+  const Json m = evaluate();
+  EXPECT_EQ(m["status"], "diverged");
+  EXPECT_EQ(m["resources"]["scans"], 2);
+  EXPECT_EQ(m["resources"]["own"]["peak_bytes"], 65.0);
+  EXPECT_NEAR(m["resources"]["real_time_factor"], 4.0, 1e-12);
+}
+
 TEST_F(EvaluateRun, KittisErrorIsRefusedOnAShortFlightAndItsShortLadderIsThere) {
   const Json m = evaluate();
   EXPECT_THAT(m["final"]["kitti"]["refused"].get<std::string>(), HasSubstr("no piece of 100 m"));
