@@ -14,6 +14,7 @@ WorldModel make_cave(const CaveConfig& config, std::uint64_t seed) {
   make_well_composed(samples);
   WorldModel model{"cave", surface_net(samples), {cave_route(graph)}};
   project_onto_surface(model.mesh, rock, config.resolution_m);
+  model.mesh.paint(materials::kRock);
   return model;
 }
 

@@ -125,9 +125,12 @@ TriangleMesh build_window(const Opening& window, const HouseConfig& config) {
   const double x = window.centre;
   mesh.append(shape::box({x - 0.5 * kFrame, -0.5 * kFrame, window.sill},
                          {x + 0.5 * kFrame, 0.5 * kFrame, window.head}));
+  mesh.paint(materials::kWood);
   if (config.panes) {
-    mesh.append(shape::box({hole.min().x(), -0.5 * kPane, hole.min().y()},
-                           {hole.max().x(), 0.5 * kPane, hole.max().y()}));
+    TriangleMesh pane = shape::box({hole.min().x(), -0.5 * kPane, hole.min().y()},
+                                   {hole.max().x(), 0.5 * kPane, hole.max().y()});
+    pane.paint(materials::kGlass);
+    mesh.append(pane);
   }
   return mesh;
 }
@@ -140,6 +143,7 @@ TriangleMesh build_trims(const Opening& door, const HouseConfig& config) {
     mesh.append(shape::moved(frame(hole_of(door), -kTrim, kThick, false),
                              {0, side * (config.wall_m + kThick), 0}));
   }
+  mesh.paint(materials::kWood);
   return mesh;
 }
 
@@ -185,6 +189,7 @@ TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
     if (wall.axis == 0 && wall.to == end) wall.to += half;
     mesh.append(build_wall(wall, plan, config), world_from_wall(wall.axis, wall.line));
   }
+  mesh.paint(materials::kPlaster);
   for (const Opening& window : plan.windows) {
     mesh.append(build_window(window, config), world_from_wall(window.axis, window.line));
   }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/world/ply.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -37,7 +39,8 @@ struct Element {
 struct Header {
   Format format = Format::kAscii;
   std::vector<Element> elements;
-  std::size_t size = 0;  ///< bytes, up to and with the line end_header
+  std::vector<Material> palette;  ///< from our own comments
+  std::size_t size = 0;           ///< bytes, up to and with the line end_header
 };
 
 std::optional<Type> type_named(const std::string& name) {
@@ -80,12 +83,30 @@ std::optional<Property> parse_property(std::istringstream& words) {
   return property;
 }
 
+/// A material in a comment of ours: "material REFLECTIVITY SPECULAR NAME"; other comments are
+/// anyone's.
+std::optional<Material> parse_material(std::istringstream& words) {
+  std::string keyword;
+  Material material;
+  words >> keyword >> material.reflectivity >> material.specular >> std::ws;
+  const auto is_share = [](double x) { return x >= 0.0 && x <= 1.0; };
+  if (keyword != "material" || !std::getline(words, material.name) ||
+      !is_share(material.reflectivity) || !is_share(material.specular)) {
+    return std::nullopt;
+  }
+  return material;
+}
+
 /// One line of the header; false when it is not understood.
 bool parse_header_line(const std::string& line, Header& header) {
   std::istringstream words(line);
   std::string keyword;
   words >> keyword;
-  if (keyword == "comment" || keyword == "obj_info") return true;
+  if (keyword == "comment") {
+    if (const auto material = parse_material(words)) header.palette.push_back(*material);
+    return true;
+  }
+  if (keyword == "obj_info") return true;
   if (keyword == "format") {
     std::string name;
     words >> name;
@@ -225,25 +246,42 @@ void read_vertices(const Element& element, Values& values, TriangleMesh& mesh) {
   }
 }
 
+/// Reads one row of an element: the corners and the material if it is a face's.
+void read_row(const Element& element, Values& values, std::vector<std::uint32_t>& corners,
+              std::uint32_t& material) {
+  for (const Property& property : element.properties) {
+    const bool holds_corners = property.count_type && (property.name == "vertex_indices" ||
+                                                       property.name == "vertex_index");
+    const bool holds_material = !property.count_type && property.name == "material_index";
+    std::uint32_t count = property.count_type ? values.next_index(*property.count_type) : 1;
+    for (; count > 0; --count) {
+      if (holds_corners) {
+        corners.push_back(values.next_index(property.type));
+      } else if (holds_material) {
+        material = values.next_index(property.type);
+      } else {
+        values.next(property.type);
+      }
+    }
+  }
+}
+
 /// Faces, or an element of which nothing is kept.
-void read_faces(const Element& element, Values& values, TriangleMesh& mesh) {
+void read_faces(const Element& element, Values& values, TriangleMesh& mesh,
+                const std::string& name) {
   std::vector<std::uint32_t> corners;
   for (std::size_t i = 0; i < element.count; ++i) {
-    for (const Property& property : element.properties) {
-      const bool is_face = element.name == "face" && property.count_type &&
-                           (property.name == "vertex_indices" || property.name == "vertex_index");
-      std::uint32_t count = property.count_type ? values.next_index(*property.count_type) : 1;
-      corners.clear();
-      for (; count > 0; --count) {
-        if (is_face) {
-          corners.push_back(values.next_index(property.type));
-        } else {
-          values.next(property.type);
-        }
-      }
-      for (std::size_t k = 2; k < corners.size(); ++k) {
-        mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
-      }
+    corners.clear();
+    std::uint32_t material = 0;
+    read_row(element, values, corners, material);
+    if (element.name != "face") continue;
+    if (!mesh.palette.empty() && material >= mesh.palette.size()) {
+      throw InputError(name, "a face names material " + std::to_string(material) + " of " +
+                                 std::to_string(mesh.palette.size()));
+    }
+    for (std::size_t k = 2; k < corners.size(); ++k) {
+      mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+      if (!mesh.palette.empty()) mesh.material_ids.push_back(static_cast<std::uint8_t>(material));
     }
   }
 }
@@ -270,12 +308,14 @@ TriangleMesh read_ply(const std::filesystem::path& file) {
   const Header header = parse_header(bytes, name);
   Values values(bytes, header, name);
   TriangleMesh mesh;
+  mesh.palette = header.palette;
+  if (mesh.palette.size() > 256) throw InputError(name, "has over 256 materials");
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;
     if (element.name == "vertex") {
       read_vertices(element, values, mesh);
     } else {
-      read_faces(element, values, mesh);
+      read_faces(element, values, mesh, name);
     }
   }
   check_indices(mesh, name);
@@ -286,15 +326,23 @@ void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   std::filesystem::path part = file;
   part += ".part";
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
-  out << "ply\nformat binary_little_endian 1.0\ncomment metres, z up\nelement vertex "
-      << mesh.vertices.size() << "\nproperty double x\nproperty double y\nproperty double z\n"
-      << "element face " << mesh.triangles.size()
-      << "\nproperty list uchar uint vertex_indices\nend_header\n";
+  const bool has_materials = !mesh.material_ids.empty();
+  out << "ply\nformat binary_little_endian 1.0\ncomment metres, z up\n";
+  for (const Material& material : mesh.palette) {
+    out << fmt::format("comment material {} {} {}\n", material.reflectivity, material.specular,
+                       material.name);
+  }
+  out << "element vertex " << mesh.vertices.size()
+      << "\nproperty double x\nproperty double y\nproperty double z\n"
+      << "element face " << mesh.triangles.size() << "\nproperty list uchar uint vertex_indices\n"
+      << (has_materials ? "property uchar material_index\n" : "") << "end_header\n";
   for (const Eigen::Vector3d& vertex : mesh.vertices) {
     out.write(reinterpret_cast<const char*>(vertex.data()), 3 * sizeof(double));
   }
-  for (const Triangle& triangle : mesh.triangles) {
-    out.put(3).write(reinterpret_cast<const char*>(triangle.data()), sizeof(Triangle));
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const auto* corners = reinterpret_cast<const char*>(mesh.triangles[i].data());
+    out.put(3).write(corners, sizeof(Triangle));
+    if (has_materials) out.put(static_cast<char>(mesh.material_ids[i]));
   }
   out.close();
   std::error_code error;

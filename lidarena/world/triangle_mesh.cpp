@@ -32,6 +32,43 @@ double TriangleMesh::area() const {
   return 0.5 * twice;
 }
 
+const Material& TriangleMesh::material(std::size_t triangle) const {
+  static const Material kDefault;
+  return material_ids.empty() ? kDefault : palette[material_ids[triangle]];
+}
+
+void TriangleMesh::paint(const Material& material) {
+  palette = {material};
+  material_ids.assign(triangles.size(), 0);
+}
+
+namespace {
+
+/// Place of `material` among those of `mesh`, which gets it if it is not yet there.
+std::uint8_t material_id(TriangleMesh& mesh, const Material& material) {
+  const auto found = std::ranges::find(mesh.palette, material);
+  const auto id = static_cast<std::size_t>(found - mesh.palette.begin());
+  if (id > std::numeric_limits<std::uint8_t>::max()) throw Error("a mesh has over 256 materials");
+  if (found == mesh.palette.end()) mesh.palette.push_back(material);
+  return static_cast<std::uint8_t>(id);
+}
+
+/// Makes the materials of `other` those of the triangles that `mesh` has beyond `first`.
+void append_materials(TriangleMesh& mesh, const TriangleMesh& other, std::size_t first) {
+  if (mesh.material_ids.empty() && other.material_ids.empty()) return;  // all are the default
+  if (mesh.material_ids.empty() && first > 0) {
+    mesh.material_ids.assign(first, material_id(mesh, Material{}));
+  }
+  std::vector<std::uint8_t> ids;
+  for (const Material& material : other.palette) ids.push_back(material_id(mesh, material));
+  if (other.material_ids.empty()) {
+    mesh.material_ids.resize(mesh.triangles.size(), material_id(mesh, Material{}));
+  }
+  for (const std::uint8_t id : other.material_ids) mesh.material_ids.push_back(ids[id]);
+}
+
+}  // namespace
+
 void TriangleMesh::append(const TriangleMesh& other, const Pose& placement, const Vector3d& scale) {
   const auto first = static_cast<std::uint32_t>(vertices.size());
   const bool mirrored = scale.prod() < 0.0;
@@ -42,6 +79,7 @@ void TriangleMesh::append(const TriangleMesh& other, const Pose& placement, cons
     if (mirrored) std::swap(b, c);
     triangles.push_back({first + a, first + b, first + c});
   }
+  append_materials(*this, other, triangles.size() - other.triangles.size());
 }
 
 namespace {
@@ -55,6 +93,19 @@ bool is_degenerate(const TriangleMesh& mesh, std::size_t triangle) {
       {va.lpNorm<Eigen::Infinity>(), vb.lpNorm<Eigen::Infinity>(), vc.lpNorm<Eigen::Infinity>()});
   const double rounding = 4.0 * std::numeric_limits<double>::epsilon() * largest;
   return !(mesh.cross(triangle).norm() > longest * rounding);
+}
+
+void check_materials(const TriangleMesh& mesh, const std::string& name) {
+  if (mesh.material_ids.empty()) return;
+  if (mesh.material_ids.size() != mesh.triangles.size()) {
+    throw InputError(name, "has " + std::to_string(mesh.material_ids.size()) + " materials for " +
+                               std::to_string(mesh.triangles.size()) + " triangles");
+  }
+  const std::size_t largest = *std::ranges::max_element(mesh.material_ids);
+  if (largest >= mesh.palette.size()) {
+    throw InputError(name, "names material " + std::to_string(largest) + " of " +
+                               std::to_string(mesh.palette.size()));
+  }
 }
 
 }  // namespace
@@ -74,10 +125,15 @@ std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
                                  std::to_string(mesh.vertices.size()));
     }
   }
+  check_materials(mesh, name);
   std::vector<Triangle> kept;
+  std::vector<std::uint8_t> kept_materials;
   kept.reserve(mesh.triangles.size());
+  kept_materials.reserve(mesh.material_ids.size());
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
-    if (!is_degenerate(mesh, i)) kept.push_back(mesh.triangles[i]);
+    if (is_degenerate(mesh, i)) continue;
+    kept.push_back(mesh.triangles[i]);
+    if (!mesh.material_ids.empty()) kept_materials.push_back(mesh.material_ids[i]);
   }
   if (kept.empty()) {
     throw InputError(name, "has no faces but degenerate ones (no area)",
@@ -85,6 +141,7 @@ std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
   }
   const std::size_t dropped = mesh.triangles.size() - kept.size();
   mesh.triangles = std::move(kept);
+  mesh.material_ids = std::move(kept_materials);
   return dropped;
 }
 

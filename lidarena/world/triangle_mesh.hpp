@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lidarena/base/pose.hpp"
+#include "lidarena/world/material.hpp"
 
 namespace lidarena {
 
@@ -20,6 +21,9 @@ using Triangle = std::array<std::uint32_t, 3>;
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;
+  std::vector<Material> palette;  ///< materials in use, at most 256
+  std::vector<std::uint8_t>
+      material_ids;  ///< into `palette`, one a triangle; empty: all Material{}
 
   bool empty() const { return triangles.empty(); }
   /// Box around the vertices that triangles use.
@@ -28,15 +32,20 @@ struct TriangleMesh {
   double area() const;
   /// Twice the area times the unit normal, (b - a) x (c - a), of one triangle.
   Eigen::Vector3d cross(std::size_t triangle) const;
+  const Material& material(std::size_t triangle) const;
+  /// Makes the whole surface of one material.
+  void paint(const Material& material);
   /// Adds a transformed copy of `other`: vertices become placement * (scale .* v). A scale that
-  /// mirrors turns the triangles round, so that outward normals stay outward.
+  /// mirrors turns the triangles round, so that outward normals stay outward. Throws Error when
+  /// there come to be more than 256 materials.
   void append(const TriangleMesh& other, const Pose& placement = Pose::Identity(),
               const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 };
 
-/// Throws InputError (place `name`) when the mesh has no faces, an index out of range, or a vertex
-/// that is not finite. Drops degenerate triangles (no area beyond the rounding of their
-/// coordinates) and returns how many; a mesh of nothing else has no faces.
+/// Throws InputError (place `name`) when the mesh has no faces, an index out of range, a vertex
+/// that is not finite, or materials that do not fit its triangles. Drops degenerate triangles (no
+/// area beyond the rounding of their coordinates) and returns how many; a mesh of nothing else has
+/// no faces.
 std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name);
 
 /// Makes vertices with equal coordinates one, in order of first use; drops those no triangle uses.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 #include <set>
 
@@ -93,6 +94,20 @@ TEST(House, IsRichEnough) {
       EXPECT_TRUE(kinds.contains(kind)) << kind << " in seed " << seed;
     }
   }
+}
+
+TEST(House, HasPlasterWoodClothGlassMirrorsAndADarkScreen) {
+  const WorldModel house = make_house(HouseConfig{}, 1);
+  ASSERT_EQ(house.mesh.material_ids.size(), house.mesh.triangles.size());
+  std::map<std::string, double> area;
+  for (std::size_t i = 0; i < house.mesh.triangles.size(); ++i) {
+    area[house.mesh.material(i).name] += 0.5 * house.mesh.cross(i).norm();
+  }
+  for (const char* name : {"plaster", "wood", "fabric", "glass", "mirror", "dark screen"}) {
+    EXPECT_GT(area[name], 0.5) << name;  // m^2, both sides and the rims counted
+  }
+  EXPECT_GT(area["plaster"], 0.5 * house.mesh.area());
+  EXPECT_LT(area["glass"], 0.1 * house.mesh.area());
 }
 
 TEST(House, TheShippedFileIsTheDefaultHouseWithTheCallersSeed) {

@@ -35,6 +35,40 @@ TEST(Ply, WhatIsSavedIsReadBackToTheLastBitEvenInMapCoordinates) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "soup.ply.part"));
 }
 
+TEST(Ply, MaterialsAreKept) {
+  const testing::TemporaryFolder folder;
+  const auto file = folder.path() / "boxes.ply";
+  TriangleMesh boxes = testing::box_mesh({0, 0, 0}, {1, 2, 3});
+  TriangleMesh screen = testing::box_mesh({2, 0, 0}, {3, 1, 1});
+  screen.paint({"dark screen, 1/3", 1.0 / 3.0, 0.1});
+  boxes.append(screen);
+  save_ply(file, boxes);
+  const TriangleMesh back = read_ply(file);
+  EXPECT_EQ(back.triangles, boxes.triangles);
+  EXPECT_EQ(back.palette, boxes.palette);
+  EXPECT_EQ(back.material_ids, boxes.material_ids);
+  EXPECT_EQ(back.material(12).name, "dark screen, 1/3");
+}
+
+TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
+  const testing::TemporaryFolder folder;
+  const auto face = [](const std::string& comment) {
+    return "ply\nformat ascii 1.0\n" + comment +
+           "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+           "element face 1\nproperty uchar material_index\n"
+           "property list uchar uint vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n"
+           "7 3 0 1 2\n";
+  };
+  folder.write("bad.ply", face("comment material 0.5 0 paint\n"));
+  EXPECT_THAT(input_error_of([&] { read_ply(folder.path() / "bad.ply"); }),
+              HasSubstr("material 7 of 1"));
+  for (const char* comment :
+       {"", "comment material 5 0 brighter than white\n", "comment materials: none\n"}) {
+    folder.write("foreign.ply", face(comment));
+    EXPECT_TRUE(read_ply(folder.path() / "foreign.ply").material_ids.empty()) << comment;
+  }
+}
+
 // Read here by the letter of the format, apart from read_ply().
 TEST(Ply, TheSavedBytesAreWhatTheHeaderAnnounces) {
   const testing::TemporaryFolder folder;

@@ -51,6 +51,66 @@ TEST(TriangleMesh, MirroringKeepsNormalsOutward) {
   EXPECT_DOUBLE_EQ(testing::signed_volume(mesh), 2.0);
 }
 
+TEST(Materials, StayWithTheirTrianglesWhenMeshesAreJoined) {
+  TriangleMesh plain = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+  TriangleMesh wood = plain, glass = plain;
+  wood.paint(materials::kWood);
+  glass.paint(materials::kGlass);
+  TriangleMesh room;
+  room.append(plain);
+  EXPECT_TRUE(room.material_ids.empty());  // nothing is stored for what has no material
+  EXPECT_EQ(room.material(3), Material{});
+  room.append(wood);
+  room.append(glass);
+  room.append(plain);
+  room.append(wood);
+  ASSERT_EQ(room.material_ids.size(), 60U);
+  EXPECT_EQ(room.palette.size(), 3U);
+  const Material* expected[] = {nullptr, &materials::kWood, &materials::kGlass, nullptr,
+                                &materials::kWood};
+  for (std::size_t i = 0; i < 60; ++i) {
+    EXPECT_EQ(room.material(i), expected[i / 12] ? *expected[i / 12] : Material{}) << i;
+  }
+  room.triangles[12] = {0, 0, 1};  // degenerate: it goes, and its material with it
+  clean_mesh(room, "room");
+  EXPECT_EQ(room.material_ids.size(), 59U);
+  EXPECT_EQ(room.material(22), materials::kWood);
+  EXPECT_EQ(room.material(23), materials::kGlass);
+}
+
+TEST(Materials, ThatDoNotFitTheTrianglesAreRefused) {
+  TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
+  mesh.paint(materials::kWood);
+  mesh.material_ids.back() = 1;
+  EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }),
+              HasSubstr("material 1 of 1"));
+  mesh.material_ids.pop_back();
+  EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }),
+              HasSubstr("11 materials for 12 triangles"));
+}
+
+TEST(Materials, ADiffuseSurfaceFollowsLambertAndAMirrorIsSeenHeadOnAlone) {
+  for (const double cosine : {0.0, 0.3, 1.0}) {
+    EXPECT_DOUBLE_EQ(backscatter({"grey", 0.4, 0.0}, cosine), 0.4 * cosine);
+  }
+  const double head_on = backscatter(materials::kMirror, 1.0);
+  EXPECT_GT(head_on, 10.0);
+  EXPECT_LT(backscatter(materials::kMirror, std::cos(0.35)), 0.01);  // 20 deg aside
+  // No more light comes back into the half space than arrives: the lobe's integral over the
+  // directions in which a mirror may be turned, by the midpoint rule.
+  constexpr int kSteps = 20000;
+  double sum = 0.0;
+  const Material lobe{"lobe", 1.0, 1.0};
+  for (int i = 0; i < kSteps; ++i) {
+    const double to_mirror = 0.5 * std::numbers::pi * (i + 0.5) / kSteps;  // twice the incidence
+    const double radiance =
+        backscatter(lobe, std::cos(0.5 * to_mirror)) / std::cos(0.5 * to_mirror);
+    sum += radiance * std::sin(to_mirror) * std::cos(to_mirror) * 2.0 * std::numbers::pi *
+           (0.5 * std::numbers::pi / kSteps) / std::numbers::pi;
+  }
+  EXPECT_NEAR(sum, 1.0, 1e-3);
+}
+
 TEST(CleanMesh, RefusesAMeshWithoutFaces) {
   TriangleMesh mesh;
   mesh.vertices.emplace_back(0, 0, 0);

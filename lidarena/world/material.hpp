@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace lidarena {
+
+/// What a surface does with a LiDAR's light (near infrared, about 905 nm).
+struct Material {
+  std::string name = "diffuse";
+  double reflectivity = 0.5;  ///< share of the light that is not swallowed, 0..1
+  double specular = 0.0;      ///< share of that which is mirrored, 0..1; the rest is scattered
+  bool operator==(const Material&) const = default;
+};
+
+/// Light that comes back to where it came from, relative to a white diffuse surface seen head-on.
+/// The scattered part follows Lambert, cos(incidence). The mirrored part leaves in a narrow lobe
+/// (Phong 1975, normalised: (m + 2) / 2 cos^m of the angle to the mirror direction, which is twice
+/// the incidence), so a mirror is seen head-on alone, where it exceeds 1, and is black elsewhere.
+inline double backscatter(const Material& material, double cos_incidence) {
+  constexpr double kGloss = 200.0;  // m: a lobe about 6 deg wide, as of polished surfaces
+  const double cosine = std::clamp(cos_incidence, 0.0, 1.0);
+  double gain = 1.0 - material.specular;
+  const double to_mirror = 2.0 * cosine * cosine - 1.0;  // cos(2 incidence)
+  if (material.specular > 0.0 && to_mirror > 0.0) {
+    gain += material.specular * 0.5 * (kGloss + 2.0) * std::pow(to_mirror, kGloss);
+  }
+  return material.reflectivity * gain * cosine;
+}
+
+/// Typical values; measured ones differ by make, colour and wear.
+namespace materials {
+inline const Material kPlaster{"plaster", 0.8, 0.0};
+inline const Material kWood{"wood", 0.5, 0.02};
+inline const Material kFabric{"fabric", 0.4, 0.0};
+inline const Material kPaper{"paper", 0.7, 0.0};
+inline const Material kLeaf{"leaf", 0.5, 0.02};
+inline const Material kCeramic{"ceramic", 0.75, 0.1};
+inline const Material kMetal{"metal", 0.6, 0.4};
+inline const Material kDarkScreen{"dark screen", 0.06, 0.5};
+inline const Material kGlass{"glass", 0.08, 0.95};  ///< what it lets through is lost
+inline const Material kMirror{"mirror", 0.9, 0.999};
+inline const Material kRock{"rock", 0.25, 0.0};
+}  // namespace materials
+
+}  // namespace lidarena
