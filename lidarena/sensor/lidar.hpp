@@ -11,8 +11,13 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/flight/flight.hpp"
+#include "lidarena/sensor/beam_table.hpp"
+#include "lidarena/sensor/cast_order.hpp"
+#include "lidarena/sensor/echoes.hpp"
+#include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/sensor/signal_model.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {
@@ -21,15 +26,20 @@ namespace lidarena {
 /// can be made in any order and on any number of threads with identical bytes.
 class Lidar {
  public:
-  /// Copies `config`; `id` keys the noise; without `noise` the ranges are exact.
+  /// Copies `config`; `id` keys the noise; without `noise` ranges and directions are exact, beams
+  /// have no width, and no echo is missed. Throws InputError (place: the sensor's name) when the
+  /// parts of the noise do not fit together.
   Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern, const std::string& id,
         std::uint64_t seed, bool noise);
 
   /// Scan `index`, which begins at index * period. Each shot is cast from the pose at its own
   /// instant (see ScanMode); shots without a return are left out. Ranges count from the sensor's
-  /// axis (|beam origin| + the way flown) and are kept when the true range lies within the
-  /// limits. Intensity is lambert_intensity(). `truth`, if given, receives what every point really
-  /// hit, in point order; its range counts as the point's does.
+  /// axis (|beam origin| + the way flown) and are kept when the true range lies within the limits.
+  ///
+  /// A beam's sub-rays make echoes (merge_echoes); each is detected or missed by its signal; the
+  /// detected ones are chosen and numbered as ReturnConfig says. Then the range gets its noise and
+  /// is rounded, and the direction gets its noise. `truth`, if given, receives what every point
+  /// really hit, in point order: of a mixed echo, the sub-ray with the strongest signal.
   Scan measure(const World& world, const Flight& flight, std::uint64_t index,
                const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
@@ -39,14 +49,27 @@ class Lidar {
   Time last_firing(std::uint64_t index) const;
 
  private:
+  struct Block;
+  void aim(const LidarMotion& motion, Block& block) const;
+  void receive(const World& world, std::size_t shot, Block& block) const;
+  void report(std::size_t shot, Block& block) const;
+  Block shoot(const World& world, const LidarMotion& motion, std::span<const Beam> shots,
+              std::uint64_t first_ray, bool with_truth) const;
+  bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
+  double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number) const;
+  Eigen::Vector3f reported_direction(const Beam& beam, std::uint64_t ray) const;
+
   SensorConfig config_;
   std::unique_ptr<ScanPattern> pattern_;
   CounterRandom random_;
+  SignalModel signal_;
+  std::vector<Eigen::Vector2d> sub_rays_;  ///< in sigmas of the beam
+  Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
+  bool needs_signal_ = false;
+  BeamTable table_;
+  CastOrder order_;
+  std::size_t shots_per_block_;
   std::int32_t last_dt_ns_ = 0;
 };
-
-/// Value of a perfectly white, diffuse surface, 0..255: 255 cos(incidence). The sensors report
-/// reflectivity with the loss by range taken out, so range does not enter.
-float lambert_intensity(const Eigen::Vector3f& direction, const Eigen::Vector3f& normal);
 
 }  // namespace lidarena

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "lidarena/base/error.hpp"
@@ -58,6 +59,11 @@ LivoxPattern::LivoxPattern(LivoxModel model, double rate_hz, const std::string& 
     throw InputError(name, "a scan would not hold a whole number of laser groups",
                      "choose rate_hz so that rows per second / rate_hz / emitters is whole");
   }
+}
+
+std::uint64_t LivoxPattern::repeats_after() const {
+  const std::uint64_t groups = rows_per_scan_ / model_.emitters.size();
+  return model_.repeat_groups / std::gcd(model_.repeat_groups, groups);
 }
 
 void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {

@@ -52,6 +52,7 @@ class LivoxPattern : public ScanPattern {
   Time period() const override { return period_; }
   std::size_t beams_per_scan() const override { return rows_per_scan_; }
   void beams(std::uint64_t index, std::vector<Beam>& out) const override;
+  std::uint64_t repeats_after() const override;
 
  private:
   LivoxModel model_;

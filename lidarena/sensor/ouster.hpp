@@ -34,6 +34,7 @@ class OusterOs0Pattern : public ScanPattern {
   std::size_t beams_per_scan() const override { return beams_.size(); }
   /// The same beams in every scan.
   void beams(std::uint64_t index, std::vector<Beam>& out) const override;
+  std::uint64_t repeats_after() const override { return 1; }
 
  private:
   Time period_;

@@ -28,6 +28,8 @@ class ScanPattern {
   virtual std::size_t beams_per_scan() const = 0;
   /// Replaces `out` by the beams of scan `index`, in firing order.
   virtual void beams(std::uint64_t index, std::vector<Beam>& out) const = 0;
+  /// After so many scans the beams are the same again, to the last bit; 0: never.
+  virtual std::uint64_t repeats_after() const { return 0; }
 };
 
 }  // namespace lidarena

@@ -37,6 +37,7 @@ SensorConfig load_sensor(const std::filesystem::path& file) {
   if (sensor.min_range_m >= sensor.max_range_m) {
     throw InputError(file.string(), "min_range_m is not below max_range_m");
   }
+  check_returns(sensor.noise, sensor.returns, file.string());
   make_pattern(sensor, file.string());  // the model must have this mode
   return sensor;
 }

@@ -9,6 +9,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/sensor/return_config.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 
 namespace lidarena {
@@ -143,6 +144,8 @@ struct SensorConfig {
   double min_range_m = 0.1;
   double max_range_m = 70.0;
   double range_noise_m = 0.0;
+  NoiseConfig noise;
+  ReturnConfig returns;
   ScanMode mode = ScanMode::kRolling;
   Pose body_from_lidar = Pose::Identity();
   std::optional<ImuConfig> imu;
@@ -157,6 +160,8 @@ struct SensorConfig {
     v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
     v("range_noise_m", self.range_noise_m, "m", "sigma of the range noise", at_least(0));
+    v("noise", self.noise, "", "further errors, and what decides whether an echo is seen");
+    v("returns", self.returns, "", "which of a shot's echoes are reported, and how bright");
     v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
     v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
     v("imu", self.imu, "", "the IMU inside, if any");

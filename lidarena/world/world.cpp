@@ -74,6 +74,12 @@ Scene build_scene(RTCDevice device, const TriangleMesh& mesh, const Vector3d& ce
 struct Caster {
   RTCScene scene;
   void intersect(RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
+  void intersect(const int* valid, RTCRayHit8& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &rays, &arguments);
+  }
   void occlude(RTCRay& ray) { rtcOccluded1(scene, &ray); }
 };
 #else
@@ -82,6 +88,10 @@ struct Caster {
   RTCIntersectContext context;
   explicit Caster(RTCScene s) : scene(s) { rtcInitIntersectContext(&context); }
   void intersect(RTCRayHit& ray) { rtcIntersect1(scene, &context, &ray); }
+  void intersect(const int* valid, RTCRayHit8& rays) {
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(valid, scene, &context, &rays);
+  }
   void occlude(RTCRay& ray) { rtcOccluded1(scene, &context, &ray); }
 };
 #endif
@@ -141,7 +151,47 @@ World& World::operator=(World&&) noexcept = default;
 
 const TriangleMesh& World::mesh() const { return impl_->mesh; }
 
-void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const {
+namespace {
+
+Hit make_hit(float range, std::uint32_t triangle, const Vector3f& direction,
+             const std::vector<Vector3f>& normals) {
+  const Vector3f& normal = normals[triangle];
+  return {range, triangle, normal.dot(direction) > 0.0F ? Vector3f(-normal) : normal};
+}
+
+/// Up to eight rays in the form Embree follows together; lanes without a ray are left alone.
+struct Packet {
+  static constexpr std::size_t kSize = 8;
+  alignas(32) int valid[kSize];
+  RTCRayHit8 query;
+
+  Packet(std::span<const Ray> rays, const Vector3d& centre, float far) {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      valid[i] = i < rays.size() ? -1 : 0;
+      const Ray& ray = rays[std::min(i, rays.size() - 1)];
+      const Vector3f origin = (ray.origin - centre).cast<float>();
+      query.ray.org_x[i] = origin.x();
+      query.ray.org_y[i] = origin.y();
+      query.ray.org_z[i] = origin.z();
+      query.ray.dir_x[i] = ray.direction.x();
+      query.ray.dir_y[i] = ray.direction.y();
+      query.ray.dir_z[i] = ray.direction.z();
+      query.ray.tnear[i] = 0.0F;
+      query.ray.tfar[i] = far;
+      query.ray.time[i] = 0.0F;
+      query.ray.mask[i] = std::numeric_limits<unsigned>::max();
+      query.ray.flags[i] = 0;
+      query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+};
+
+}  // namespace
+
+void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
+                 RayOrder order) const {
+  if (order == RayOrder::kNeighbours) return cast_packets(rays, max_range, hits);
   Caster caster{impl_->scene.get()};
   const auto far = static_cast<float>(max_range);
   RTCRayHit query{};
@@ -154,10 +204,23 @@ void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hit
       hits[i] = Hit{};
       continue;
     }
-    const Vector3f& normal = impl_->normals[query.hit.primID];
-    hits[i].range = query.ray.tfar;
-    hits[i].triangle = query.hit.primID;
-    hits[i].normal = normal.dot(ray.direction) > 0.0F ? Vector3f(-normal) : normal;
+    hits[i] = make_hit(query.ray.tfar, query.hit.primID, ray.direction, impl_->normals);
+  }
+}
+
+void World::cast_packets(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const {
+  Caster caster{impl_->scene.get()};
+  const auto far = static_cast<float>(max_range);
+  for (std::size_t first = 0; first < rays.size(); first += Packet::kSize) {
+    const auto together = rays.subspan(first, std::min(Packet::kSize, rays.size() - first));
+    Packet packet(together, impl_->centre, far);
+    caster.intersect(packet.valid, packet.query);
+    for (std::size_t i = 0; i < together.size(); ++i) {
+      const bool is_hit = packet.query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+      hits[first + i] = is_hit ? make_hit(packet.query.ray.tfar[i], packet.query.hit.primID[i],
+                                          together[i].direction, impl_->normals)
+                               : Hit{};
+    }
   }
 }
 

@@ -18,6 +18,12 @@ struct Ray {
   Eigen::Vector3f direction;
 };
 
+/// What the caster may expect of neighbouring rays. Each ray's hit is the same up to rounding.
+enum class RayOrder {
+  kAny,
+  kNeighbours  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
+};
+
 /// First surface along a ray.
 struct Hit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
@@ -48,7 +54,8 @@ class World {
 
   /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`. Faces are
   /// seen from both sides.
-  void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
+  void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
+            RayOrder order = RayOrder::kAny) const;
   /// Nearest surface point of each point within `max_distance` metres, computed in double precision
   /// from the mesh itself; of triangles equally near, the one with the lower index. Points that are
   /// not finite have none. Fast where neighbours in the list are neighbours in space.
@@ -64,6 +71,7 @@ class World {
 
  private:
   struct Impl;
+  void cast_packets(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -351,14 +351,16 @@ TEST(Lidar, ScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
   }
 }
 
-TEST(Lidar, IntensityIsTheCosineOfIncidence) {
-  const World world(wall_mesh(10.0));
+TEST(Lidar, IntensityIsTheReflectivityTimesTheCosineOfIncidence) {
+  TriangleMesh wall = wall_mesh(10.0);
+  wall.paint({"grey", 0.4, 0.0});
+  const World world(std::move(wall));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   const Scan scan = make_lidar(config).measure(world, rest(Pose::Identity()), 0, kOneThread);
   ASSERT_GT(scan.points.size(), 1000U);
   for (const Point& point : scan.points) {
-    EXPECT_NEAR(point.intensity, 255.0F * point.position.normalized().x(), 1e-3);
+    EXPECT_NEAR(point.intensity, 0.4F * 255.0F * point.position.normalized().x(), 1e-3);
   }
 }
 

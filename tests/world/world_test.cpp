@@ -87,6 +87,36 @@ TEST(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
   EXPECT_GT(hit_count, kRays / 2);
 }
 
+TEST(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
+  const World world(testing::triangle_soup(4000, 5.0, 11));
+  SequentialRandom random(13);
+  for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last are no neighbours at all
+    std::vector<Ray> rays;
+    while (rays.size() < 1003) {  // the last packet is not full
+      const Vector3d origin = testing::random_point(random, 6.0);
+      const Vector3d direction = testing::random_direction(random);
+      for (int i = 0; i < 8 && rays.size() < 1003; ++i) {
+        const Vector3d aside = direction + spread * testing::random_point(random, 0.5);
+        rays.push_back({origin, aside.normalized().cast<float>()});
+      }
+    }
+    std::vector<Hit> alone(rays.size()), together(rays.size());
+    world.cast(rays, 8.0, alone);
+    world.cast(rays, 8.0, together, RayOrder::kNeighbours);
+    std::size_t others = 0;
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      if (alone[i].triangle != together[i].triangle) {
+        ++others;  // along an edge, or into it; counted below
+      } else if (alone[i].valid()) {
+        const float cosine = std::abs(alone[i].normal.dot(rays[i].direction));
+        EXPECT_NEAR(alone[i].range, together[i].range, 4e-6F / cosine);
+        EXPECT_EQ(alone[i].normal, together[i].normal);
+      }
+    }
+    EXPECT_LE(others, 2U) << spread;
+  }
+}
+
 TEST(WorldCast, MeetsTheWallsOfARoomWhereTheClosedFormSays) {
   const Vector3d half(2.0, 3.0, 1.5);
   const World world(testing::box_mesh(-half, half));

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/echoes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace lidarena {
+
+std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
+  constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
+  std::vector<Eigen::Vector2d> offsets;
+  for (int i = 0; i < count; ++i) {
+    // Of a two-dimensional Gaussian, the share within radius r is 1 - exp(-r^2 / 2).
+    const double radius = std::sqrt(-2.0 * std::log1p(-(i + 0.5) / count));
+    offsets.emplace_back(radius * std::cos(i * kGoldenAngle), radius * std::sin(i * kGoldenAngle));
+  }
+  return offsets;
+}
+
+Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles) {
+  Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(axis);
+  const double length = left.norm();
+  // Straight up and down there is no left; any will do.
+  left = length > 1e-6 ? Eigen::Vector3d(left / length) : Eigen::Vector3d::UnitY();
+  return (axis + angles.x() * left + angles.y() * axis.cross(left)).normalized();
+}
+
+void merge_echoes(std::span<SubEcho> parts, double pulse_length, std::vector<Echo>& echoes) {
+  std::ranges::sort(parts, [](const SubEcho& a, const SubEcho& b) {
+    return a.range < b.range || (a.range == b.range && a.sub_ray < b.sub_ray);
+  });
+  echoes.clear();
+  double strongest = 0.0;
+  double last = 0.0;
+  double weighted_range = 0.0;
+  for (const SubEcho& part : parts) {
+    if (echoes.empty() || part.range - last > pulse_length) {
+      echoes.push_back({0.0, 0.0, 0.0, part.sub_ray});
+      strongest = weighted_range = 0.0;
+    }
+    Echo& echo = echoes.back();
+    last = part.range;
+    echo.energy += part.energy;
+    echo.signal += part.signal;
+    weighted_range += part.signal * part.range;
+    // Black surfaces send nothing: their range is then as good as any.
+    echo.range = echo.signal > 0.0 ? weighted_range / echo.signal : part.range;
+    if (part.signal > strongest) {
+      strongest = part.signal;
+      echo.sub_ray = part.sub_ray;
+    }
+  }
+}
+
+void choose_echoes(const ReturnConfig& config, std::vector<Echo>& echoes) {
+  if (config.choice == EchoChoice::kLast) std::ranges::reverse(echoes);
+  if (config.choice == EchoChoice::kStrongest) {
+    std::ranges::stable_sort(echoes, std::ranges::greater{}, &Echo::signal);
+  }
+  if (echoes.size() > static_cast<std::size_t>(config.count)) {
+    echoes.erase(echoes.begin() + config.count, echoes.end());
+  }
+}
+
+}  // namespace lidarena

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/signal_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+
+void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
+                   const std::string& place) {
+  const SignalConfig& signal = noise.signal;
+  const bool rated = signal.range_at_10_m > 0.0 && signal.range_at_80_m > 0.0;
+  if (rated && signal.range_at_80_m <= signal.range_at_10_m) {
+    throw InputError(place, "noise.signal.range_at_80_m is not above range_at_10_m");
+  }
+  // Beyond, the signal that fits both would rise again before the farther range.
+  if (rated && signal.range_at_80_m > 6.0 * signal.range_at_10_m) {
+    throw InputError(place, "noise.signal.range_at_80_m is over six times range_at_10_m");
+  }
+  if (!rated && (noise.dropouts || noise.weak_signal_noise)) {
+    throw InputError(place, "noise.dropouts and noise.weak_signal_noise need the rated ranges",
+                     "set noise.signal.range_at_10_m and range_at_80_m");
+  }
+  if (signal.false_alarms >= signal.detection) {
+    throw InputError(place, "noise.signal.false_alarms is not below detection");
+  }
+  if (noise.near_range_noise_m > 0.0 && noise.near_until_m <= noise.near_range_m) {
+    throw InputError(place, "noise.near_until_m is not above near_range_m");
+  }
+  const BeamConfig& beam = noise.beam;
+  if (beam.sub_rays > 1 && beam.width_deg == 0.0 && beam.height_deg == 0.0) {
+    throw InputError(place, "noise.beam.sub_rays has no beam to split",
+                     "set noise.beam.width_deg and height_deg");
+  }
+  if (returns.count > 1 && beam.sub_rays == 1) {
+    throw InputError(place, "returns.count needs a beam that can meet several surfaces",
+                     "set noise.beam.sub_rays, width_deg and height_deg");
+  }
+}
+
+double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
+
+double normal_quantile(double p) {
+  double low = -40.0, high = 40.0;  // beyond, p is not a double's
+  for (int i = 0; i < 60; ++i) {
+    const double middle = 0.5 * (low + high);
+    (normal_cdf(middle) < p ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+SignalModel::SignalModel(const SignalConfig& config)
+    : threshold_(-normal_quantile(config.false_alarms)) {
+  rated_ = threshold_ + normal_quantile(config.detection);
+  if (config.range_at_10_m > 0.0 && config.range_at_80_m > 0.0) {
+    reference_m_ = config.range_at_10_m;
+    const double ratio = config.range_at_10_m / config.range_at_80_m;
+    extinction_ =
+        std::log(8.0 * ratio * ratio) / (2.0 * (config.range_at_80_m - config.range_at_10_m));
+  }
+}
+
+double SignalModel::signal(double energy, double range) const {
+  const double ratio = reference_m_ / range;
+  const double signal = energy / 0.1 * ratio * ratio;
+  return extinction_ == 0.0 ? signal
+                            : signal * std::exp(-2.0 * extinction_ * (range - reference_m_));
+}
+
+double SignalModel::detection_probability(double signal) const {
+  return normal_cdf(signal * rated_ - threshold_);
+}
+
+double range_sigma(double range_noise_m, const NoiseConfig& noise, double range, double signal) {
+  double sigma = range_noise_m;
+  if (noise.near_range_noise_m > 0.0) {
+    const double way = (noise.near_until_m - range) / (noise.near_until_m - noise.near_range_m);
+    sigma += (noise.near_range_noise_m - range_noise_m) * std::clamp(way, 0.0, 1.0);
+  }
+  return noise.weak_signal_noise && signal < 1.0 ? sigma / std::sqrt(signal) : sigma;
+}
+
+}  // namespace lidarena

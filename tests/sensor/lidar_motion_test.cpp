@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/lidar_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/spline_flight.hpp"
+#include "tests/sensor/flights.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Vector3d;
+using namespace testing;
+
+constexpr std::int32_t kScan = 99'995'000;  // ns, a Mid-360's last shot
+const Pose kMount = tilted_pose({0.1, 0.05, 0.1}, 0.2, -0.1, 0.4);
+
+struct Worst {
+  double position = 0.0;  ///< m
+  double at_100_m = 0.0;  ///< m, of a point that far away, in the direction where it is worst
+};
+
+/// Largest difference between the motion of scans 0, 1, ... and the flight itself at 777 instants
+/// of each.
+Worst worst_error(const Flight& flight, int scans) {
+  Worst worst;
+  for (int scan = 0; scan < scans; ++scan) {
+    const Time stamp = scan * std::chrono::milliseconds(100);
+    const LidarMotion motion(flight, kMount, stamp, kScan, true);
+    for (int i = 0; i <= 776; ++i) {
+      const std::int32_t dt = kScan / 776 * i;
+      const Pose exact = flight.pose_at(stamp + Time{dt}) * kMount;
+      const Pose cubic = motion.at(dt);
+      const double position = (cubic.translation() - exact.translation()).norm();
+      const double turn = (cubic.linear() - exact.linear()).norm();
+      worst.position = std::max(worst.position, position);
+      worst.at_100_m = std::max(worst.at_100_m, position + 100.0 * turn);
+    }
+  }
+  return worst;
+}
+
+/// Rests, and from `start` on moves and turns at a constant speed: a jump in velocity.
+class JoltedFlight : public Flight {
+ public:
+  explicit JoltedFlight(double start) : start_(start) {}
+  Motion at(Time t) const override {
+    const double s = std::max(0.0, to_seconds(t) - start_);
+    Motion motion;
+    motion.world_from_body = tilted_pose({3.0 * s, 0, -s}, 0.5 * s, 0, 2.0 * s);
+    return motion;
+  }
+  Time duration() const override { return std::chrono::seconds(10); }
+
+ private:
+  double start_;
+};
+
+TEST(LidarMotion, FollowsASmoothFlightWithoutAskingItForEveryShot) {
+  const SwingingFlight flight(10.0);
+  const Worst worst = worst_error(flight, 20);
+  EXPECT_LT(worst.position, 1e-9);
+  EXPECT_LT(worst.at_100_m, 1e-7);
+  EXPECT_EQ(LidarMotion(flight, kMount, Time{0}, kScan, true).exact_share(), 0.0);
+}
+
+TEST(LidarMotion, FollowsAFastQuadrotor) {
+  FlightConfig config;
+  config.style = FlightStyle::kAggressive;
+  const std::vector<Vector3d> tour{{0, 0, 1}, {4, 0, 2}, {4, 3, 1}, {0, 3, 2}, {0, 0, 1}};
+  const SplineFlight flight(tour, config, "test");
+  const int scans = static_cast<int>(to_seconds(flight.duration()) * 10.0) - 1;
+  const Worst worst = worst_error(flight, std::min(scans, 60));
+  RecordProperty("worst_at_100_m", std::to_string(worst.at_100_m));
+  EXPECT_LT(worst.at_100_m, 1e-6);
+}
+
+TEST(LidarMotion, AsksTheFlightItselfWhereItJolts) {
+  for (const double start : {0.0123, 0.05, 0.0507, 0.15, 0.19995}) {
+    const JoltedFlight flight(start);
+    EXPECT_LT(worst_error(flight, 3).at_100_m, 1e-6) << start;
+    const auto scan = static_cast<int>(start * 10.0);
+    const LidarMotion motion(flight, kMount, scan * std::chrono::milliseconds(100), kScan, true);
+    EXPECT_GT(motion.exact_share(), 0.0) << start;
+    EXPECT_LT(motion.exact_share(), 0.1) << start;
+  }
+}
+
+TEST(LidarMotion, AFrozenScanStaysWhereItBegan) {
+  const SwingingFlight flight(10.0);
+  const Time stamp = std::chrono::milliseconds(700);
+  const LidarMotion motion(flight, kMount, stamp, kScan, false);
+  const Pose expected = flight.pose_at(stamp) * kMount;
+  EXPECT_EQ(motion.at(0).matrix(), expected.matrix());
+  EXPECT_EQ(motion.at(kScan).matrix(), expected.matrix());
+}
+
+}  // namespace
+}  // namespace lidarena
