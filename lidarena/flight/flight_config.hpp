@@ -13,12 +13,12 @@
 namespace lidarena {
 
 /// Where the path comes from.
-enum class FlightKind { kWaypoints, kRoute, kReplay };
+enum class FlightKind { kWaypoints, kRoute, kReplay, kAuto };
 template <>
 struct EnumNames<FlightKind> {
-  static constexpr std::array names{std::pair{"waypoints", FlightKind::kWaypoints},
-                                    std::pair{"route", FlightKind::kRoute},
-                                    std::pair{"replay", FlightKind::kReplay}};
+  static constexpr std::array names{
+      std::pair{"waypoints", FlightKind::kWaypoints}, std::pair{"route", FlightKind::kRoute},
+      std::pair{"replay", FlightKind::kReplay}, std::pair{"auto", FlightKind::kAuto}};
 };
 
 /// How hard the body is flown.
@@ -79,6 +79,34 @@ struct HeadingConfig {
   }
 };
 
+/// How a tour is planned (kind auto), see plan_tour().
+struct TourConfig {
+  std::optional<Eigen::Vector3d> start;
+  double coverage = 0.9;
+  double range_m = 20.0;
+  double margin_m = 0.0;
+  double cell_m = 0.1;
+  int max_cells = 300000;
+  int max_views = 800;
+  int samples = 5000;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("start", self.start, "m", "where it begins and ends; found when absent");
+    v("coverage", self.coverage, "", "share of what can be seen that its views see, by area",
+      between(0.01, 1));
+    v("range_m", self.range_m, "m", "from how far a surface counts as seen", above(0));
+    v("margin_m", self.margin_m, "m", "kept beyond clearance_m: for what a quadrotor strays",
+      at_least(0));
+    v("cell_m", self.cell_m, "m", "edge of the grid's cells; larger where max_cells asks for it",
+      Limits{0.02, 10.0, false});
+    v("max_cells", self.max_cells, "", "most cells; bounds time and memory", between(100, 1e8));
+    v("max_views", self.max_views, "", "most places to choose views from", between(2, 1e5));
+    v("samples", self.samples, "", "points of the surface by which coverage is measured",
+      between(10, 1e7));
+  }
+};
+
 /// A file of configs/flights.
 struct FlightConfig {
   FlightKind kind = FlightKind::kWaypoints;
@@ -88,6 +116,7 @@ struct FlightConfig {
   double replay_step_s = 0.0;
   Pose world_from_recording = Pose::Identity();
   Pose recorded_from_body = Pose::Identity();
+  TourConfig tour;
   FlightStyle style = FlightStyle::kBrisk;
   LimitsConfig limits;
   HeadingConfig heading;
@@ -99,7 +128,8 @@ struct FlightConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("kind", self.kind, "", "waypoints, route (one of the world's own) or replay (a TUM file)");
+    v("kind", self.kind, "",
+      "waypoints, route (one of the world's own), replay (a TUM file) or auto (a planned tour)");
     v("waypoints", self.waypoints, "m", "list of [x, y, z]; the path is the line through them");
     v("route", self.route, "", "which of the world's routes", at_least(0));
     v("replay", self.replay, "", "TUM file, relative to this file");
@@ -109,6 +139,7 @@ struct FlightConfig {
     v("world_from_recording", self.world_from_recording, "", "where a replay is flown");
     v("recorded_from_body", self.recorded_from_body, "",
       "our body (x forward, z up) in the frame whose poses were recorded");
+    v("tour", self.tour, "", "how kind auto plans");
     v("style", self.style, "", "gentle, brisk or aggressive: the limits that `limits` starts from");
     v("limits", self.limits, "", "limits that differ from the style's");
     v("heading", self.heading, "", "where the body's x axis looks");

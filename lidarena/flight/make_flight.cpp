@@ -11,6 +11,7 @@
 #include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
+#include "lidarena/flight/tour.hpp"
 
 namespace lidarena {
 namespace {
@@ -41,7 +42,7 @@ const std::vector<Eigen::Vector3d>& route_of(const WorldModel& model, int route,
 }
 
 std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightConfig& config,
-                              const WorldModel& model) {
+                              const WorldModel& model, const World& world, LogSink& log) {
   const std::string place = file.string();
   switch (config.kind) {
     case FlightKind::kReplay: {
@@ -54,6 +55,11 @@ std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightCon
     }
     case FlightKind::kRoute:
       return std::make_unique<SplineFlight>(route_of(model, config.route, place), config, place);
+    case FlightKind::kAuto: {
+      const Tour tour = plan_tour(model, world, config, place, Parallel());
+      log.info(fmt::format("flight {}: {}", place, describe(tour)));
+      return std::make_unique<SplineFlight>(tour.waypoints, config, place);
+    }
     case FlightKind::kWaypoints:
       break;
   }
@@ -90,7 +96,7 @@ void require_clear(const Flight& flight, const World& world, double clearance,
 std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const WorldModel& model,
                                     const World& world, LogSink& log) {
   const FlightConfig config = config_of(file);
-  std::unique_ptr<Flight> flight = build(file, config, model);
+  std::unique_ptr<Flight> flight = build(file, config, model, world, log);
   if (config.dynamics) flight = flown(*flight, *config.dynamics, file.string(), log);
   require_clear(*flight, world, config.clearance_m, file.string());
   log.info(fmt::format("flight {}: {}", file.string(), describe(figures_of(*flight))));

@@ -8,6 +8,8 @@
 #include "lidarena/flight/figures.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
+#include "lidarena/flight/spline_flight.hpp"
+#include "lidarena/flight/tour.hpp"
 #include "lidarena/world/load_world.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
@@ -15,6 +17,7 @@ namespace lidarena {
 namespace {
 
 const std::filesystem::path kConfigs = std::filesystem::path(LIDARENA_SOURCE_DIR) / "configs";
+const std::filesystem::path kMeshes = std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes";
 
 struct Scene {
   WorldModel model;
@@ -92,10 +95,36 @@ TEST_P(OwnWorlds, AreFlownAggressively) {
 }
 
 TEST(ShippedFlights, TheSmallHouseIsFlownThroughItsRooms) {
-  const auto world = std::filesystem::path(LIDARENA_SHARED_DATA) /
-                     "meshes/aws_small_house/worlds/small_house.world";
+  const auto world = kMeshes / "aws_small_house/worlds/small_house.world";
   if (!std::filesystem::exists(world)) GTEST_SKIP() << "the small house was skipped: no mesh";
   expect_flyable(world, "aws_house");
+}
+
+/// The shipped tour with a coarse plan: clear of the mesh, and showing 80 % of what can be seen.
+void expect_tour(const std::filesystem::path& world_file, double cell_m) {
+  if (!std::filesystem::exists(world_file)) GTEST_SKIP() << "skipped: no world " << world_file;
+  auto config = load_config<FlightConfig>(kConfigs / "flights/auto.yaml");
+  config.tour.cell_m = cell_m;
+  config.tour.max_views = 150;
+  config.tour.samples = 1500;
+  const auto& [model, world] = scene_of(world_file);
+  const Tour tour = plan_tour(model, world, config, "auto.yaml", Parallel());
+  EXPECT_GE(tour.seen, 0.8 * tour.seeable) << describe(tour);
+  const SplineFlight flight(tour.waypoints, config, "auto.yaml");
+  EXPECT_EQ(config.clearance_m, 0.4);
+  for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
+    const Eigen::Vector3d p = flight.pose_at(t).translation();
+    ASSERT_GE(world.closest_point(p, 1.0).distance, config.clearance_m);
+  }
+}
+
+TEST(ShippedTour, ShowsTheHouse) { expect_tour(kConfigs / "worlds/house.yaml", 0.2); }
+TEST(ShippedTour, ShowsTheCave) { expect_tour(kConfigs / "worlds/cave.yaml", 0.5); }
+TEST(ShippedTour, ShowsTheLavaTube) {
+  expect_tour(kMeshes / "lava_tube/models/indian_tunnel/indian_tunnel.dae", 0.7);
+}
+TEST(ShippedTour, ShowsTheSmallHouse) {
+  expect_tour(kMeshes / "aws_small_house/worlds/small_house.world", 0.2);
 }
 
 }  // namespace

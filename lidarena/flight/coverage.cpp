@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/coverage.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lidarena/base/random.hpp"
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+
+std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t count) {
+  std::vector<double> area_until;  // cumulated
+  area_until.reserve(mesh.triangles.size());
+  double area = 0.0;
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    area += 0.5 * mesh.cross(i).norm();
+    area_until.push_back(area);
+  }
+  const CounterRandom random(0, stream_of("surface samples"));
+  std::vector<SurfaceSample> samples;
+  for (std::size_t k = 0; k < count; ++k) {
+    const double share = (static_cast<double>(k) + random.uniform(k)) / static_cast<double>(count);
+    const auto found = std::upper_bound(area_until.begin(), area_until.end() - 1, share * area);
+    const auto index = static_cast<std::size_t>(found - area_until.begin());
+    const auto& [a, b, c] = mesh.triangles[index];
+    const double u = std::sqrt(random.uniform(k, 1));  // even over the triangle
+    const double v = random.uniform(k, 2);
+    samples.push_back(
+        {(1.0 - u) * mesh.vertices[a] + u * (1.0 - v) * mesh.vertices[b] + u * v * mesh.vertices[c],
+         static_cast<std::uint32_t>(index)});
+  }
+  return samples;
+}
+
+namespace {
+
+/// Marks what `place` sees of the samples that are not marked yet.
+void look(const World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
+          double range_m, Seen& seen) {
+  constexpr double kBefore = 0.002;  // m; the ray caster's rounding in a world of 1 km
+  std::vector<Ray> rays;
+  std::vector<std::size_t> index;
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Vector3d way = samples[i].point - place;
+    const double length = way.norm();
+    if (seen[i] != 0 || length > range_m || length < kBefore) continue;
+    rays.push_back({place, (way / length).cast<float>()});
+    index.push_back(i);
+  }
+  std::vector<Hit> hits(rays.size());
+  world.cast(rays, range_m + 1.0, hits);
+  for (std::size_t k = 0; k < rays.size(); ++k) {
+    const SurfaceSample& sample = samples[index[k]];
+    const double length = (sample.point - place).norm();
+    if (hits[k].triangle == sample.triangle || hits[k].range > length - kBefore) seen[index[k]] = 1;
+  }
+}
+
+}  // namespace
+
+Seen seen_from(const World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
+               double range_m) {
+  Seen seen(samples.size(), 0);
+  look(world, place, samples, range_m, seen);
+  return seen;
+}
+
+std::vector<Seen> seen_from_each(const World& world, std::span<const Vector3d> places,
+                                 std::span<const SurfaceSample> samples, double range_m,
+                                 const Parallel& parallel) {
+  std::vector<Seen> views(places.size());
+  parallel.for_each(places.size(), 4, [&](std::size_t i) {
+    views[i] = seen_from(world, places[i], samples, range_m);
+  });
+  return views;
+}
+
+Seen seen_along(const World& world, const Flight& flight, std::span<const SurfaceSample> samples,
+                double range_m, double spacing_m) {
+  Seen seen(samples.size(), 0);
+  Vector3d last = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
+    const Vector3d here = flight.pose_at(t).translation();
+    if ((here - last).norm() < spacing_m) continue;
+    look(world, here, samples, range_m, seen);
+    last = here;
+  }
+  return seen;
+}
+
+void add_seen(Seen& seen, const Seen& other) {
+  for (std::size_t i = 0; i < seen.size(); ++i) seen[i] |= other[i];
+}
+
+std::size_t count_seen(const Seen& seen) {
+  return static_cast<std::size_t>(std::count(seen.begin(), seen.end(), 1));
+}
+
+std::vector<std::size_t> choose_views(std::span<const Seen> views, double share) {
+  std::vector<std::size_t> chosen;
+  if (views.empty()) return chosen;
+  Seen all(views.front().size(), 0);
+  for (const Seen& view : views) add_seen(all, view);
+  const double wanted = share * static_cast<double>(count_seen(all));
+  Seen seen(all.size(), 0);
+  for (std::size_t count = 0; static_cast<double>(count) < wanted; count = count_seen(seen)) {
+    std::size_t best = 0, most = 0;
+    for (std::size_t v = 0; v < views.size(); ++v) {
+      std::size_t gain = 0;
+      for (std::size_t i = 0; i < seen.size(); ++i) gain += views[v][i] > seen[i] ? 1U : 0U;
+      if (gain > most) {
+        most = gain;
+        best = v;
+      }
+    }
+    chosen.push_back(best);
+    add_seen(seen, views[best]);
+  }
+  return chosen;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/flight/tour.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <span>
+#include <tuple>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/base/error.hpp"
+#include "lidarena/flight/coverage.hpp"
+#include "lidarena/flight/free_space.hpp"
+#include "lidarena/flight/spline_flight.hpp"
+#include "lidarena/flight/tour_order.hpp"
+#include "lidarena/flight/tour_start.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kSlack = 0.005;          // m; for what lies between two places asked
+constexpr double kCoverageSpacing = 0.2;  // m, between places along the flight to look from
+
+Vector3d start_of(const WorldModel& model, const World& world, const TourConfig& config,
+                  double clearance, const std::string& place, const Parallel& parallel) {
+  if (config.start) return *config.start;
+  if (!model.routes.empty() && !model.routes.front().empty()) return model.routes.front().front();
+  if (const auto found = most_enclosed_place(world, clearance, parallel)) return *found;
+  throw InputError(place,
+                   fmt::format("finds no place in the world '{}' that keeps {:g} m from surfaces",
+                               model.name, clearance),
+                   "give tour.start, or lower clearance_m");
+}
+
+FreeSpace explored(const World& world, const Vector3d& start, const FlightConfig& config,
+                   const std::string& place, const Parallel& parallel) {
+  const double least = config.clearance_m + config.tour.margin_m + kSlack;
+  FreeSpace space(world, start, {least, least + config.corner_m}, config.tour.cell_m,
+                  static_cast<std::size_t>(config.tour.max_cells), parallel);
+  if (space.cells().size() > 1) return space;
+  throw InputError(
+      place,
+      fmt::format("the tour's start ({:.2f}, {:.2f}, {:.2f}) is {:.3f} m from a "
+                  "surface, or outside the mesh's box",
+                  start.x(), start.y(), start.z(), world.closest_point(start).distance),
+      fmt::format("move tour.start, or lower clearance_m ({:g})", config.clearance_m));
+}
+
+/// In each block of the grid the cell with the most room; blocks are as small as `most` allows.
+std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
+  const auto cells = space.cells();
+  for (double edge = 5.0 * space.cell_m();; edge *= 1.25) {
+    std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::int32_t> blocks;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const Vector3d at = (cells[i].point - cells[0].point) / edge;
+      const std::tuple block{std::llround(at.x()), std::llround(at.y()), std::llround(at.z())};
+      const auto [found, is_new] = blocks.try_emplace(block, static_cast<std::int32_t>(i));
+      if (cells[i].clearance > cells[static_cast<std::size_t>(found->second)].clearance) {
+        found->second = static_cast<std::int32_t>(i);
+      }
+    }
+    if (blocks.size() > most) continue;
+    std::vector<std::int32_t> chosen;
+    for (const auto& [block, cell] : blocks) chosen.push_back(cell);
+    return chosen;
+  }
+}
+
+/// Visiting order of `cells`, from the first on.
+std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std::int32_t>& cells,
+                                  const Parallel& parallel) {
+  std::vector<std::vector<std::int32_t>> lengths(cells.size());
+  parallel.for_each(cells.size(), 1, [&](std::size_t i) {
+    const auto all = space.lengths_from(cells[i]);
+    for (const std::int32_t cell : cells) {
+      lengths[i].push_back(all[static_cast<std::size_t>(cell)]);
+    }
+  });
+  std::vector<std::int32_t> visits;
+  for (const std::size_t i : order_of_visits(lengths)) visits.push_back(cells[i]);
+  return visits;
+}
+
+/// Appends the corners of `line` between its first point, which is there already, and its last,
+/// with as few of them as ways of this clearance allow (found by doubling, then halving a leap).
+void append_pulled(const World& world, std::span<const Vector3d> line, double clearance,
+                   std::vector<Vector3d>& way) {
+  for (std::size_t from = 0; from + 1 < line.size();) {
+    const std::size_t left = line.size() - 1 - from;
+    std::size_t good = 1, bad = left + 1;
+    for (std::size_t leap = 2; good < left && bad > left;) {
+      leap = std::min(leap, left);
+      if (!is_clear(world, line[from], line[from + leap], clearance)) {
+        bad = leap;
+      } else {
+        good = leap;
+        leap *= 2;
+      }
+    }
+    while (bad - good > 1) {
+      const std::size_t leap = (good + bad) / 2;
+      (is_clear(world, line[from], line[from + leap], clearance) ? good : bad) = leap;
+    }
+    from += good;
+    way.push_back(line[from]);
+  }
+}
+
+/// The way along `cells`, pulled straight: wide stretches at the preferred distance, narrow ones,
+/// with a cell more on either side, at the least.
+void append_way(const World& world, const FreeSpace& space, std::span<const std::int32_t> cells,
+                std::vector<Vector3d>& way) {
+  const auto wide = [&](std::size_t i) { return space.is_wide(cells[i]); };
+  for (std::size_t from = 0; from + 1 < cells.size();) {
+    const bool is_wide = wide(from) && wide(from + 1);
+    std::size_t to = from + 1;
+    while (to + 1 < cells.size() && (wide(to) && wide(to + 1)) == is_wide) ++to;
+    std::vector<Vector3d> line;
+    for (std::size_t i = from; i <= to; ++i) {
+      line.push_back(space.cells()[static_cast<std::size_t>(cells[i])].point);
+    }
+    append_pulled(world, line, is_wide ? space.distances().preferred : space.distances().least,
+                  way);
+    from = to;
+  }
+}
+
+/// A corner of the tour; with a finite reach, waypoints at that distance before and behind keep its
+/// arc within half of it.
+struct Corner {
+  Vector3d point;
+  double reach = std::numeric_limits<double>::infinity();
+};
+
+std::vector<Vector3d> waypoints_of(const std::vector<Corner>& corners) {
+  std::vector<Vector3d> waypoints{corners.front().point};
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    const Vector3d& from = corners[i - 1].point;
+    const Vector3d& to = corners[i].point;
+    const double length = (to - from).norm();
+    const Vector3d along = (to - from) / length;
+    // beside a corner only where the segment is longer than what both corners take
+    const double behind = corners[i - 1].reach, before = corners[i].reach;
+    constexpr double kApart = 0.01;  // m
+    if (behind < 0.5 * length - kApart) waypoints.emplace_back(from + behind * along);
+    if (before < 0.5 * length - kApart) waypoints.emplace_back(to - before * along);
+    waypoints.push_back(to);
+  }
+  return waypoints;
+}
+
+std::size_t nearest_corner(const std::vector<Corner>& corners, const Vector3d& point) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < corners.size(); ++i) {
+    if ((corners[i].point - point).norm() < (corners[best].point - point).norm()) best = i;
+  }
+  return best;
+}
+
+/// Corners near which the flight comes nearer to a surface than `clearance`.
+std::vector<std::size_t> tight_corners(const Flight& flight, const World& world, double clearance,
+                                       const std::vector<Corner>& corners) {
+  constexpr Time kStep = std::chrono::milliseconds(5);
+  std::vector<std::size_t> tight;
+  double margin = 0.0;  // way that may be flown before asking again
+  Vector3d last = flight.pose_at(Time{0}).translation();
+  for (Time t{0}; t <= flight.duration(); t += kStep) {
+    const Vector3d here = flight.pose_at(t).translation();
+    margin -= (here - last).norm();
+    last = here;
+    if (margin > 0.0) continue;
+    margin = world.closest_point(here, clearance + 1.0).distance - clearance;
+    if (margin >= 0.0) continue;
+    const std::size_t corner = nearest_corner(corners, here);
+    if (tight.empty() || tight.back() != corner) tight.push_back(corner);
+  }
+  std::sort(tight.begin(), tight.end());
+  tight.erase(std::unique(tight.begin(), tight.end()), tight.end());
+  return tight;
+}
+
+/// The way as waypoints whose flight keeps the clearance at its corners, if that can be had.
+std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& world,
+                                const FlightConfig& config, const std::string& place) {
+  constexpr int kRounds = 8;
+  constexpr double kFirstReach = 0.8;  // m; halved each time
+  std::vector<Corner> corners;
+  for (const Vector3d& point : way) corners.push_back({point});
+  for (int round = 0; round < kRounds; ++round) {
+    const SplineFlight flight(waypoints_of(corners), config, place);
+    const auto tight = tight_corners(flight, world, config.clearance_m, corners);
+    if (tight.empty()) break;
+    for (const std::size_t i : tight) {
+      corners[i].reach = std::min(kFirstReach, 0.5 * corners[i].reach);
+    }
+  }
+  return waypoints_of(corners);
+}
+
+/// Without points that repeat the one before.
+std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
+  constexpr double kApart = 0.02;  // m
+  std::vector<Vector3d> kept{way.front()};
+  for (const Vector3d& point : way) {
+    if ((point - kept.back()).norm() > kApart) kept.push_back(point);
+  }
+  if ((kept.back() - way.back()).norm() > 0.0) kept.back() = way.back();
+  return kept;
+}
+
+}  // namespace
+
+Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& config,
+               const std::string& place, const Parallel& parallel) {
+  const TourConfig& wanted = config.tour;
+  const Vector3d start =
+      start_of(model, world, wanted, config.clearance_m + wanted.margin_m, place, parallel);
+  const FreeSpace space = explored(world, start, config, place, parallel);
+
+  const auto samples = sample_surface(world.mesh(), static_cast<std::size_t>(wanted.samples));
+  const auto cells = spread(space, static_cast<std::size_t>(wanted.max_views));
+  std::vector<Vector3d> places;
+  for (const std::int32_t cell : cells) {
+    places.push_back(space.cells()[static_cast<std::size_t>(cell)].point);
+  }
+  const auto views = seen_from_each(world, places, samples, wanted.range_m, parallel);
+
+  std::vector<std::int32_t> visits{0};  // the start's cell
+  for (const std::size_t view : choose_views(views, wanted.coverage)) {
+    if (cells[view] != 0) visits.push_back(cells[view]);
+  }
+  if (visits.size() == 1) visits.push_back(static_cast<std::int32_t>(space.cells().size()) - 1);
+  visits = ordered(space, visits, parallel);
+  visits.push_back(visits.front());
+  std::vector<Vector3d> way{space.cells()[0].point};
+  for (std::size_t i = 1; i < visits.size(); ++i) {
+    append_way(world, space, space.way(visits[i - 1], visits[i]), way);
+  }
+
+  FlightConfig once = config;
+  once.duration_s = 0.0;
+  Tour tour{.waypoints = tightened(thinned(way), world, once, place),
+            .views = visits.size() - 2,
+            .cell_m = space.cell_m(),
+            .cells = space.cells().size()};
+  Seen seen = seen_along(world, SplineFlight(tour.waypoints, once, place), samples, wanted.range_m,
+                         kCoverageSpacing);
+  tour.seen = static_cast<double>(count_seen(seen)) / static_cast<double>(samples.size());
+  for (const Seen& view : views) add_seen(seen, view);
+  tour.seeable = static_cast<double>(count_seen(seen)) / static_cast<double>(samples.size());
+  return tour;
+}
+
+std::string describe(const Tour& tour) {
+  return fmt::format(
+      "a tour of {} waypoints by way of {} views; {:.1f} % of what can be seen from the {} cells "
+      "of "
+      "{:.2f} m that can be reached is seen, which is {:.1f} % of the mesh's area (of at most "
+      "{:.1f} %)",
+      tour.waypoints.size(), tour.views, 100.0 * tour.seen / std::max(tour.seeable, 1e-12),
+      tour.cells, tour.cell_m, 100.0 * tour.seen, 100.0 * tour.seeable);
+}
+
+std::string as_yaml(const Tour& tour, const FlightConfig& config) {
+  FlightConfig saved = config;
+  saved.kind = FlightKind::kWaypoints;
+  saved.waypoints = tour.waypoints;
+  for (Vector3d& point : saved.waypoints) point = (1e3 * point).array().round() / 1e3;
+  return to_json(saved).dump(2) + "\n";  // JSON is YAML
+}
+
+}  // namespace lidarena
