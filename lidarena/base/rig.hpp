@@ -16,7 +16,10 @@ struct LidarInfo {
   std::string kind = "unknown";  ///< "spinning", "rosette" or "unknown"
   int rows = 0;                  ///< rings of a spinning sensor, laser lines of a Livox; 0 unknown
   int columns = 0;               ///< firings per ring and scan; 0 unknown
-  double rate_hz = 10.0;         ///< scans per second
+  /// By how many columns each row of a spinning sensor looks ahead of the head; empty = unknown.
+  std::vector<int> pixel_shifts;
+  double beam_origin_m = 0.0;  ///< distance of the beams' starts from the axis of rotation
+  double rate_hz = 10.0;       ///< scans per second
   double min_range_m = 0.0;
   double max_range_m = 100.0;
   Pose body_from_lidar = Pose::Identity();
@@ -28,6 +31,8 @@ struct LidarInfo {
     v("kind", self.kind, "", "spinning, rosette or unknown");
     v("rows", self.rows, "", "rings or laser lines, 0 if unknown", at_least(0));
     v("columns", self.columns, "", "firings per ring and scan, 0 if unknown", at_least(0));
+    v("pixel_shifts", self.pixel_shifts, "columns", "by row, empty if unknown");
+    v("beam_origin_m", self.beam_origin_m, "m", "beams' starts from the axis", at_least(0));
     v("rate_hz", self.rate_hz, "Hz", "scans per second", above(0));
     v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));

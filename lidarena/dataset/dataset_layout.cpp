@@ -31,6 +31,8 @@ std::string truth_topic_of(const std::string& lidar_id) {
   return kTruthPrefix + lidar_id + "/hits";
 }
 
+std::string livox_topic_of(const std::string& lidar_id) { return "/" + lidar_id + "/livox"; }
+
 Json to_json(const RecordedSensors& sensors) {
   Json json{{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
   if (!sensors.imus_in_g.empty()) json["imus_in_g"] = sensors.imus_in_g;

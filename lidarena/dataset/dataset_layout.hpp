@@ -34,6 +34,9 @@ inline constexpr const char* kDescription = "lidarena";  ///< name of the metada
 /// Throws InputError when two LiDARs, or two IMUs, have one id.
 RecordedSensors topics_of(const Rig& rig);
 
+/// Topic of a Livox's own messages, in the dialect of its driver.
+std::string livox_topic_of(const std::string& lidar_id);
+
 /// {"lidars": {id: topic}, "imus": {id: topic}}, and back.
 Json to_json(const RecordedSensors& sensors);
 RecordedSensors sensors_from_json(const Json& json, const std::string& place);

@@ -39,6 +39,9 @@ Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
     const bool is_return = point.position.allFinite() && !point.position.isZero(0.0F);
     if (is_return) scan.points.push_back(point);
   }
+  scan.timed = scan.points.empty() || std::ranges::any_of(scan.points, [](const Point& point) {
+                 return point.dt_ns != 0;
+               });
   std::ranges::stable_sort(scan.points, {}, &Point::dt_ns);
   return scan;
 }

@@ -111,25 +111,31 @@ std::int64_t since_stamp(double value, const TimeUnit& unit, Time stamp) {
   return unit.absolute ? ns - stamp.count() : ns;
 }
 
+/// Units (ns) in which a sweep may take `duration`: all of them if its returns share one instant.
+std::vector<std::int64_t> units_of(double duration) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  if (duration == 0.0) return {kSecond, 1'000, 1};
+  if (duration < 10.0) return {kSecond};
+  if (duration >= 1e3 && duration < 1e6) return {1'000};
+  if (duration >= 1e6 && duration < 10e9) return {1};
+  return {};
+}
+
 /// Unit and origin of a float time field with values `low` to `high` in one scan. A sweep takes
 /// between 1 ms and 10 s, so its duration tells the unit; times since the stamp are then small, and
 /// absolute ones lie near the stamp.
 std::optional<TimeUnit> guess_unit(const PointField& field, double low, double high, Time stamp) {
   constexpr double kNearNs = 10e9;
-  const double duration = high - low;
-  const auto unit_ns = [&]() -> std::int64_t {
-    if (duration < 10.0) return 1'000'000'000;
-    if (duration >= 1e3 && duration < 1e6) return 1'000;
-    return duration >= 1e6 && duration < 10e9 ? 1 : 0;
-  }();
-  if (unit_ns == 0) return std::nullopt;
-  const auto ns = static_cast<double>(unit_ns);
-  const bool may_be_relative = std::max(std::abs(low), std::abs(high)) * ns < kNearNs;
-  const bool may_be_absolute = std::abs(low * ns - static_cast<double>(stamp.count())) < kNearNs;
-  if (!may_be_relative && !may_be_absolute) return std::nullopt;
-  // Both are possible near time 0 alone; there the name decides.
-  const bool absolute = may_be_absolute && (!may_be_relative || field.name == "timestamp");
-  return TimeUnit{unit_ns, absolute};
+  for (const std::int64_t unit_ns : units_of(high - low)) {
+    const auto ns = static_cast<double>(unit_ns);
+    const bool may_be_relative = std::max(std::abs(low), std::abs(high)) * ns < kNearNs;
+    const bool may_be_absolute = std::abs(low * ns - static_cast<double>(stamp.count())) < kNearNs;
+    if (!may_be_relative && !may_be_absolute) continue;
+    // Both are possible near time 0 alone; there the name decides.
+    const bool absolute = may_be_absolute && (!may_be_relative || field.name == "timestamp");
+    return TimeUnit{unit_ns, absolute};
+  }
+  return std::nullopt;
 }
 
 /// ns since header.stamp of each point; empty if the scan is untimed.
@@ -210,8 +216,8 @@ const std::vector<PointField>& truth_fields() {
   return kFields;
 }
 
-/// Appends a cloud of `height` x `width` points of `step` bytes up to its data, which the caller
-/// fills in: the span returned. What follows it, is_dense, is the caller's too.
+}  // namespace
+
 std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size_t step,
                                 const std::vector<PointField>& fields, MessageWriter& out) {
   out.put(static_cast<std::uint32_t>(height));
@@ -228,8 +234,6 @@ std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size
   out.put(static_cast<std::uint32_t>(step * width));
   return out.put_octets(step * width * height);
 }
-
-}  // namespace
 
 void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out) {
   if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {

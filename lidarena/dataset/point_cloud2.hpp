@@ -41,6 +41,11 @@ struct PointCloud2 {
   Bytes data;
 };
 
+/// Appends a cloud of `height` x `width` points of `step` bytes up to its data, which the caller
+/// fills in: the span returned, zero until then. is_dense, which follows, is the caller's too.
+std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size_t step,
+                                const std::vector<PointField>& fields, MessageWriter& out);
+
 /// Appends everything behind the header. Throws InputError (place `place`) when a point lies before
 /// the stamp.
 void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out);

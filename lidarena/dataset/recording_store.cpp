@@ -7,6 +7,7 @@
 
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/dataset_store.hpp"
+#include "lidarena/dataset/driver_layouts.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
 
@@ -25,33 +26,73 @@ RecordingOptions recording_options(const Rig& rig, const RecordedSensors& sensor
           layout::describe({rig, sensors})};
 }
 
+/// The driver whose layouts a LiDAR's messages, and those of the IMU inside it, are to have.
+Driver driver_of(const std::string& id, const Rig& rig, const WriteOptions& options) {
+  if (options.dialect == Dialect::kSi) return Driver::kUnknown;
+  const auto lidar = std::ranges::find(rig.lidars, id, &LidarInfo::id);
+  return lidar == rig.lidars.end() ? Driver::kUnknown : lidarena::driver_of(*lidar);
+}
+
+/// Where the measurements are to be found again: of a Livox, in its own message.
+RecordedSensors sensors_of(const Rig& rig, const WriteOptions& options) {
+  RecordedSensors sensors = layout::topics_of(rig);
+  for (const LidarInfo& lidar : rig.lidars) {
+    if (driver_of(lidar.id, rig, options) != Driver::kLivox) continue;
+    std::erase_if(sensors.lidars, [&](const auto& entry) { return entry.second == lidar.id; });
+    sensors.lidars[layout::livox_topic_of(lidar.id)] = lidar.id;
+  }
+  for (const ImuInfo& imu : rig.imus) {
+    if (driver_of(imu.id, rig, options) == Driver::kLivox) sensors.imus_in_g.insert(imu.id);
+  }
+  return sensors;
+}
+
 class RecordingStore final : public DatasetStore {
  public:
   RecordingStore(const std::filesystem::path& file, const Rig& rig, const WriteOptions& options,
                  bool is_folder)
       : rig_(rig),
-        sensors_(layout::topics_of(rig)),
+        sensors_(sensors_of(rig, options)),
         recording_(create_recording(file, recording_options(rig, sensors_, options, is_folder))),
         message_(recording_->encoding()) {
     tf_static_ = recording_->add_topic("/tf_static", ros::kTfMessage, true);
-    for (const auto& [topic, id] : sensors_.lidars) {
-      lidars_[id] = recording_->add_topic(topic, ros::kPointCloud2);
+    const RecordedSensors topics = layout::topics_of(rig);
+    for (const auto& [topic, id] : topics.lidars) {
+      LidarTopics& lidar = lidars_[id];
+      lidar.info = *std::ranges::find(rig_.lidars, id, &LidarInfo::id);
+      lidar.driver = driver_of(id, rig_, options);
+      lidar.points = recording_->add_topic(topic, ros::kPointCloud2);
+      if (lidar.driver != Driver::kLivox) continue;
+      lidar.custom = recording_->add_topic(layout::livox_topic_of(id),
+                                           livox_type(lidar.info, message_.encoding()));
     }
-    for (const auto& [topic, id] : sensors_.imus) {
-      imus_[id] = recording_->add_topic(topic, ros::kImu);
+    for (const auto& [topic, id] : topics.imus) {
+      imus_[id] = {driver_of(id, rig_, options), recording_->add_topic(topic, ros::kImu)};
     }
   }
 
   void write(const std::string& id, const ImuSample& sample) override {
     write_mounting(sample.stamp);
-    ros::encode_imu(sample, imu_frame(id), message_);
-    write_measurement(imus_.at(id), sample.stamp);
+    const ImuTopic& imu = imus_.at(id);
+    encode_driver_imu(sample, imu.driver, imu_frame(id), message_);
+    write_measurement(imu.topic, sample.stamp);
   }
 
   void write(const std::string& id, const Scan& scan) override {
     write_mounting(scan.stamp);
-    ros::encode_scan(scan, lidar_frame(id), message_);
-    write_measurement(lidars_.at(id), end_of(scan));
+    const LidarTopics& lidar = lidars_.at(id);
+    const std::string frame = lidar_frame(id);
+    const Time end = end_of(scan);
+    if (lidar.driver == Driver::kLivox) {
+      encode_livox_custom(scan, lidar.info, frame, message_);
+      write_measurement(lidar.custom, end);
+      encode_livox_cloud(scan, lidar.info, frame, message_);
+    } else if (lidar.driver == Driver::kOuster) {
+      encode_ouster_cloud(scan, lidar.info, frame, message_);
+    } else {
+      ros::encode_scan(scan, frame, message_);
+    }
+    write_measurement(lidar.points, end);
   }
 
   void write(const ScanTruth& truth) override {
@@ -113,11 +154,22 @@ class RecordingStore final : public DatasetStore {
     recording_->write(topic, latest_, published, message_.bytes());
   }
 
+  struct LidarTopics {
+    LidarInfo info;
+    Driver driver = Driver::kUnknown;
+    std::uint16_t points = 0;
+    std::uint16_t custom = 0;  ///< of a Livox
+  };
+  struct ImuTopic {
+    Driver driver = Driver::kUnknown;
+    std::uint16_t topic = 0;
+  };
+
   Rig rig_;
   RecordedSensors sensors_;
   std::unique_ptr<RecordingWriter> recording_;
-  std::map<std::string, std::uint16_t> lidars_;  ///< sensor id -> topic
-  std::map<std::string, std::uint16_t> imus_;
+  std::map<std::string, LidarTopics> lidars_;  ///< by sensor id
+  std::map<std::string, ImuTopic> imus_;
   std::map<std::string, std::uint16_t> hits_;  ///< truth of the points
   std::uint16_t tf_static_ = 0;
   std::uint16_t tf_ = 0;

@@ -35,6 +35,7 @@ constexpr std::array kDefinitions{
                "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n"},
     Definition{"geometry_msgs/Pose",
                "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n"},
+    Definition{"geometry_msgs/PoseStamped", "std_msgs/Header header\ngeometry_msgs/Pose pose\n"},
     Definition{"geometry_msgs/PoseWithCovariance",
                "geometry_msgs/Pose pose\nfloat64[36] covariance\n"},
     Definition{"geometry_msgs/Twist",

@@ -16,6 +16,11 @@ void put_vector(const Eigen::Vector3d& v, MessageWriter& out) {
   for (const double value : {v.x(), v.y(), v.z()}) out.put(value);
 }
 
+/// A 3 x 3 matrix with `value` on its diagonal.
+void put_diagonal(double value, MessageWriter& out) {
+  for (int i = 0; i < 9; ++i) out.put(i % 4 == 0 ? value : 0.0);
+}
+
 Eigen::Vector3d get_vector(MessageReader& in) {
   Eigen::Vector3d v;
   for (int i = 0; i < 3; ++i) v[i] = in.get<double>();
@@ -82,16 +87,18 @@ ScanTruth decode_scan_truth(Bytes message, std::string_view place, Encoding enco
   return {{}, header.stamp, truth_from_cloud(get_cloud(in, place), place)};
 }
 
-void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWriter& out) {
+void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWriter& out,
+                const ImuVariances& variances) {
   out.clear();
   put_header(sample.stamp, frame_id, out);
   for (const double value : {0.0, 0.0, 0.0, 1.0}) out.put(value);
-  out.put(-1.0);
+  // without an orientation the first element says so, and the others say nothing
+  out.put(variances.orientation);
   out.put_repeated(0.0, kCovariance3 - 1);
   put_vector(sample.gyro, out);
-  out.put_repeated(0.0, kCovariance3);
+  put_diagonal(variances.angular_velocity, out);
   put_vector(sample.accel, out);
-  out.put_repeated(0.0, kCovariance3);
+  put_diagonal(variances.acceleration, out);
 }
 
 ImuSample decode_imu(Bytes message, std::string_view place, Encoding encoding) {

@@ -53,8 +53,15 @@ void encode_scan_truth(const ScanTruth& truth, std::string_view frame_id, Messag
 ScanTruth decode_scan_truth(Bytes message, std::string_view place,
                             Encoding encoding = Encoding::kCdr);
 
-/// No orientation (first covariance -1), other covariances 0 (unknown).
-void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWriter& out);
+/// First elements of the diagonals of the covariances: -1 says that there is no orientation, 0 that
+/// the covariance is unknown.
+struct ImuVariances {
+  double orientation = -1.0;
+  double angular_velocity = 0.0;
+  double acceleration = 0.0;
+};
+void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWriter& out,
+                const ImuVariances& variances = {});
 ImuSample decode_imu(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
 
 /// Pose alone: twist and covariances are 0.

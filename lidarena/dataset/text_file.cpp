@@ -195,6 +195,14 @@ std::string format_seconds(Time time) {
 
 Time seconds_at(std::string_view word, const std::string& place) {
   const auto time = parse_seconds(word);
+  const double value = time ? 0.0 : std::abs(parse_double(word).value_or(0.0));
+  if (value > 1e10 && value < 1e20) {  // today in milliseconds is 1.7e12, in nanoseconds 1.7e18
+    const char* unit = value < 1e14   ? "milliseconds"
+                       : value < 1e17 ? "microseconds"
+                                      : "nanoseconds";
+    throw InputError(place, fmt::format("'{}' is no time in seconds: it looks like {}", word, unit),
+                     "write decimal seconds");
+  }
   if (!time) {
     throw InputError(place, fmt::format("'{}' is not a time in seconds", word),
                      "write decimal seconds, within 292 years of zero");

@@ -1,11 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/dataset/trajectory_io.hpp"
 
+#include <regex>
+#include <sstream>
+
 #include "lidarena/dataset/kitti.hpp"
+#include "lidarena/dataset/recorded_trajectory.hpp"
+#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/tum.hpp"
 
 namespace lidarena {
+namespace {
+
+/// "world" and "body" of the first word WORLD_from_BODY in the comments before the first row.
+void read_frames(const std::filesystem::path& file, FramedTrajectory& into) {
+  static const std::regex kFrames("(\\w+)_from_(\\w+)");
+  std::istringstream lines(read_bytes(file).substr(0, 4096));
+  for (std::string line; std::getline(lines, line) && line.starts_with('#');) {
+    std::smatch found;
+    if (!std::regex_search(line, found, kFrames)) continue;
+    into.world = found[1];
+    into.body = found[2];
+    return;
+  }
+}
+
+}  // namespace
+
+FramedTrajectory read_framed_trajectory(const std::filesystem::path& file, const std::string& topic,
+                                        double rate_hz) {
+  if (recording_format_of(file)) return read_recorded_trajectory(file, topic);
+  FramedTrajectory read;
+  read.trajectory = read_trajectory(file, rate_hz);
+  read_frames(file, read);
+  return read;
+}
 
 Trajectory read_trajectory(const std::filesystem::path& file, double rate_hz) {
   TextRows rows(file);

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <set>
 
+#include "lidarena/sensor/ouster.hpp"
 #include "lidarena/sensor/simulate.hpp"
 
 namespace lidarena {
@@ -20,6 +23,16 @@ std::string model_name(LidarModel model) {
   return "unknown";
 }
 
+/// Columns by which each row looks ahead of the head.
+std::vector<int> ouster_pixel_shifts(int columns) {
+  std::vector<int> shifts;
+  for (int row = 0; row < OusterOs0Pattern::kRows; ++row) {
+    const double turn = os0_128_row(row).azimuth_offset / (2.0 * std::numbers::pi);
+    shifts.push_back(static_cast<int>(std::lround(turn * columns)));
+  }
+  return shifts;
+}
+
 LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   std::vector<Beam> beams;
   make_pattern(sensor)->beams(0, beams);
@@ -32,6 +45,10 @@ LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   info.kind = sensor.model == LidarModel::kOusterOs0128 ? "spinning" : "rosette";
   info.rows = rows;
   info.columns = static_cast<int>(beams.size()) / rows;
+  if (sensor.model == LidarModel::kOusterOs0128) {
+    info.pixel_shifts = ouster_pixel_shifts(info.columns);
+    info.beam_origin_m = OusterOs0Pattern::kBeamOriginRadius;
+  }
   info.rate_hz = sensor.rate_hz;
   info.min_range_m = sensor.min_range_m;
   info.max_range_m = sensor.max_range_m;
