@@ -117,7 +117,7 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
     auto out = create();
     const auto topic = out->add_topic("/imu", ros::kImu);
     MessageWriter message(out->encoding());
-    ros::encode_imu({1s, {0, 0, 0}, {0, 0, 9.8}}, "imu", message);
+    ros::put_header(1s, "imu", message);
     out->write(topic, 1s, 1s, message.bytes());
     out->close();
   }
@@ -125,7 +125,7 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, RecordedTrajectory, ::testing::Values(".mcap", ".bag"),
-                         [](const auto& info) { return std::string(info.param).substr(1); });
+                         [](const auto& format) { return std::string(format.param).substr(1); });
 
 class FramesOfText : public ::testing::Test {
  protected:
