@@ -12,6 +12,7 @@
 #include "lidarena/flight/replay_flight.hpp"
 #include "tests/flight/flight_conformance.hpp"
 #include "tests/flight/flight_scenes.hpp"
+#include "tests/flight/tour_scenes.hpp"
 
 namespace lidarena {
 namespace {
@@ -156,6 +157,30 @@ TEST_F(MakeFlight, ClearanceHoldsForThePathAsFlownNotAsPlanned) {
   make(write("a.yaml", path));  // the reference passes the door in its middle
   EXPECT_THAT(error_of("a.yaml", path + "dynamics: {gusts: {wind: [0, 5, 0]}}\n"),
               HasSubstr("m of a surface"));
+}
+
+TEST_F(MakeFlight, AnAutomaticTourIsPlannedInTheWorldAndTold) {
+  struct Told : LogSink {
+    void message(LogLevel, std::string_view text) override { all += std::string(text) + "\n"; }
+    std::string all;
+  } told;
+  model_.mesh = scenes::two_rooms();
+  const auto flight = make_flight(write("a.yaml", R"(
+kind: auto
+clearance_m: 0.4
+corner_m: 0.1
+duration_s: 40
+tour: {cell_m: 0.2, samples: 500, max_views: 50, start: [1, 2, 1.2]}
+)"),
+                                  model_, World(TriangleMesh(model_.mesh)), told);
+  EXPECT_EQ(flight->duration(), std::chrono::seconds(40));
+  EXPECT_NEAR((flight->pose_at(Time{0}).translation() - Eigen::Vector3d(1, 2, 1.2)).norm(), 0.0,
+              1e-12);
+  conformance::expect_lawful(*flight, 2);
+  EXPECT_THAT(told.all, HasSubstr("a.yaml: a tour of "));
+  EXPECT_THAT(told.all, HasSubstr(" % of what can be seen from the "));
+  EXPECT_THAT(error_of("b.yaml", "kind: auto\ntour: {coverage: 1.5}\n"),
+              HasSubstr("b.yaml:2: tour.coverage: 1.5 is out of range"));
 }
 
 TEST_F(MakeFlight, AWorldWithoutRoutesSaysSo) {

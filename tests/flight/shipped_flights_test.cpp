@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <numbers>
 
 #include "lidarena/flight/figures.hpp"
 #include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/free_space.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/flight/tour.hpp"
@@ -115,6 +118,20 @@ void expect_tour(const std::filesystem::path& world_file, double cell_m) {
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
     const Eigen::Vector3d p = flight.pose_at(t).translation();
     ASSERT_GE(world.closest_point(p, 1.0).distance, config.clearance_m);
+  }
+}
+
+TEST(ShippedTour, ReachesEveryRoomOfTheHouseThroughDoorsThatLeaveFiveCentimetres) {
+  const auto& [model, world] = scene_of(kConfigs / "worlds/house.yaml");
+  const auto& route = model.routes.front();
+  const FreeSpace space(world, route.front(), {0.4, 0.5}, 0.2, 100'000, Parallel());
+  for (const Eigen::Vector3d& point : route) {
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const FreeSpace::Cell& cell : space.cells()) {
+      nearest = std::min(nearest, (cell.point - point).norm());
+    }
+    // a cell's centre lies at most half a diagonal away, 0.17 m, its settled point as far again
+    EXPECT_LT(nearest, 0.35) << point.transpose();
   }
 }
 
