@@ -258,6 +258,55 @@ TEST(AbsoluteTrajectoryError, ARotationErrorFoldsBackBeyondHalfATurn) {
   EXPECT_GT(ate.rotation_rad.max, 3.13);
 }
 
+TEST(RelativePoseError, OfATurnInPlaceIsSeenByTheSecondAlone) {
+  // no metres are flown; the estimate turns 2 % too fast
+  const auto spin = [](double rate) {
+    return [rate](double t) { return make_pose(so3::exp({0, 0, rate * t}), Vector3d(1, 2, 3)); };
+  };
+  const Trajectory truth = sample(spin(1.0), 10ms, 20s);
+  const Trajectory estimate = sample(spin(1.02), 100ms, 20s);
+  EXPECT_EQ(relative_pose_error(estimate, truth).total, 0U);
+  const RelativePoseError rpe = relative_pose_error_over_time(estimate, truth);
+  EXPECT_EQ(rpe.used, 20U);
+  EXPECT_NEAR(rpe.rotation_rad.rmse, 0.02, kRounding);
+  EXPECT_NEAR(rpe.rotation_rad.max, 0.02, kRounding);
+  EXPECT_LT(rpe.translation_m.max, kRounding);
+  EXPECT_FALSE(absolute_trajectory_error(estimate, truth, Gauge::kSe3).alignment.determined());
+  const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  EXPECT_NEAR(ate.rotation_rad.max, 0.4, kRounding);
+  EXPECT_LT(ate.translation_m.max, kRounding);
+}
+
+TEST(RelativePoseError, MotionsOfMoreThanHalfATurnAreComparedTheShortWay) {
+  // 3.0 and 3.4 rad a second, either side of pi: they differ by 0.4 rad, not by 2 pi - 6.4
+  const auto spin = [](double rate) {
+    return [rate](double t) { return make_pose(so3::exp({0, rate * t, 0}), Vector3d::Zero()); };
+  };
+  const RelativePoseError rpe =
+      relative_pose_error_over_time(sample(spin(3.4), 100ms, 10s), sample(spin(3.0), 10ms, 10s));
+  EXPECT_EQ(rpe.used, 10U);
+  EXPECT_NEAR(rpe.rotation_rad.max, 0.4, kRounding);
+  EXPECT_NEAR(rpe.rotation_rad.rmse, 0.4, kRounding);
+}
+
+TEST(RelativePoseError, ADriftThatGrowsWithTheSquareOfTimeGrowsAlongTheLadder) {
+  // x too long by a t^2 / 2 at 1 m/s: over [s, s + L] by a (s L + L^2 / 2)
+  const double a = 1e-3;
+  const Trajectory truth = sample(line, 10ms, 100s);
+  const Trajectory estimate = sample(
+      [&](double t) {
+        return level({t + 0.5 * a * t * t, 0, 0});
+      },
+      100ms, 100s);
+  for (const double length : kLadder_m) {
+    const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
+    EXPECT_EQ(rpe.used, static_cast<std::size_t>(100.0 / length));
+    const double last = 100.0 - length;
+    EXPECT_NEAR(rpe.translation_m.max, a * (last * length + 0.5 * length * length), 1e-8);
+    EXPECT_NEAR(rpe.translation_m.mean, a * 50.0 * length, 1e-8);
+  }
+}
+
 TEST(AbsoluteTrajectoryError, OfARefusedAlignmentIsNoNumber) {
   const Trajectory flight = sample(line, 100ms, 10s);
   const auto ate = absolute_trajectory_error(flight, flight, Gauge::kSe3);
