@@ -71,6 +71,25 @@ std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
   }
 }
 
+std::vector<Vector3d> points_of(const FreeSpace& space, std::span<const std::int32_t> cells) {
+  std::vector<Vector3d> points;
+  for (const std::int32_t cell : cells) {
+    points.push_back(space.cells()[static_cast<std::size_t>(cell)].point);
+  }
+  return points;
+}
+
+/// The start's cell, the first, and the cells of the chosen views; two at least.
+std::vector<std::int32_t> stops(const FreeSpace& space, const std::vector<std::int32_t>& cells,
+                                const std::vector<std::size_t>& chosen) {
+  std::vector<std::int32_t> all{0};
+  for (const std::size_t view : chosen) {
+    if (cells[view] != 0) all.push_back(cells[view]);
+  }
+  if (all.size() == 1) all.push_back(static_cast<std::int32_t>(space.cells().size()) - 1);
+  return all;
+}
+
 /// Visiting order of `cells`, from the first on.
 std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std::int32_t>& cells,
                                   const Parallel& parallel) {
@@ -120,14 +139,32 @@ void append_way(const World& world, const FreeSpace& space, std::span<const std:
     const bool is_wide = wide(from) && wide(from + 1);
     std::size_t to = from + 1;
     while (to + 1 < cells.size() && (wide(to) && wide(to + 1)) == is_wide) ++to;
-    std::vector<Vector3d> line;
-    for (std::size_t i = from; i <= to; ++i) {
-      line.push_back(space.cells()[static_cast<std::size_t>(cells[i])].point);
-    }
+    const auto line = points_of(space, cells.subspan(from, to - from + 1));
     append_pulled(world, line, is_wide ? space.distances().preferred : space.distances().least,
                   way);
     from = to;
   }
+}
+
+/// Without points that repeat the one before.
+std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
+  constexpr double kApart = 0.02;  // m
+  std::vector<Vector3d> kept{way.front()};
+  for (const Vector3d& point : way) {
+    if ((point - kept.back()).norm() > kApart) kept.push_back(point);
+  }
+  kept.back() = way.back();
+  return kept;
+}
+
+/// From each cell to the next, and from the last to the first.
+std::vector<Vector3d> way_through(const World& world, const FreeSpace& space,
+                                  const std::vector<std::int32_t>& visits) {
+  std::vector<Vector3d> way{space.cells()[static_cast<std::size_t>(visits.front())].point};
+  for (std::size_t i = 0; i < visits.size(); ++i) {
+    append_way(world, space, space.way(visits[i], visits[(i + 1) % visits.size()]), way);
+  }
+  return thinned(way);
 }
 
 /// A corner of the tour; with a finite reach, waypoints at that distance before and behind keep its
@@ -160,6 +197,10 @@ std::size_t nearest_corner(const std::vector<Corner>& corners, const Vector3d& p
     if ((corners[i].point - point).norm() < (corners[best].point - point).norm()) best = i;
   }
   return best;
+}
+
+double share_of(const Seen& seen) {
+  return static_cast<double>(count_seen(seen)) / static_cast<double>(seen.size());
 }
 
 /// Corners near which the flight comes nearer to a surface than `clearance`.
@@ -202,17 +243,6 @@ std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& w
   return waypoints_of(corners);
 }
 
-/// Without points that repeat the one before.
-std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
-  constexpr double kApart = 0.02;  // m
-  std::vector<Vector3d> kept{way.front()};
-  for (const Vector3d& point : way) {
-    if ((point - kept.back()).norm() > kApart) kept.push_back(point);
-  }
-  if ((kept.back() - way.back()).norm() > 0.0) kept.back() = way.back();
-  return kept;
-}
-
 }  // namespace
 
 Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& config,
@@ -224,44 +254,29 @@ Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& 
 
   const auto samples = sample_surface(world.mesh(), static_cast<std::size_t>(wanted.samples));
   const auto cells = spread(space, static_cast<std::size_t>(wanted.max_views));
-  std::vector<Vector3d> places;
-  for (const std::int32_t cell : cells) {
-    places.push_back(space.cells()[static_cast<std::size_t>(cell)].point);
-  }
-  const auto views = seen_from_each(world, places, samples, wanted.range_m, parallel);
-
-  std::vector<std::int32_t> visits{0};  // the start's cell
-  for (const std::size_t view : choose_views(views, wanted.coverage)) {
-    if (cells[view] != 0) visits.push_back(cells[view]);
-  }
-  if (visits.size() == 1) visits.push_back(static_cast<std::int32_t>(space.cells().size()) - 1);
-  visits = ordered(space, visits, parallel);
-  visits.push_back(visits.front());
-  std::vector<Vector3d> way{space.cells()[0].point};
-  for (std::size_t i = 1; i < visits.size(); ++i) {
-    append_way(world, space, space.way(visits[i - 1], visits[i]), way);
-  }
+  const auto views =
+      seen_from_each(world, points_of(space, cells), samples, wanted.range_m, parallel);
+  const auto visits =
+      ordered(space, stops(space, cells, choose_views(views, wanted.coverage)), parallel);
 
   FlightConfig once = config;
   once.duration_s = 0.0;
-  Tour tour{.waypoints = tightened(thinned(way), world, once, place),
-            .views = visits.size() - 2,
+  Tour tour{.waypoints = tightened(way_through(world, space, visits), world, once, place),
+            .views = visits.size() - 1,
             .cell_m = space.cell_m(),
             .cells = space.cells().size()};
-  Seen seen = seen_along(world, SplineFlight(tour.waypoints, once, place), samples, wanted.range_m,
-                         kCoverageSpacing);
-  tour.seen = static_cast<double>(count_seen(seen)) / static_cast<double>(samples.size());
+  const SplineFlight flight(tour.waypoints, once, place);
+  Seen seen = seen_along(world, flight, samples, wanted.range_m, kCoverageSpacing);
+  tour.seen = share_of(seen);
   for (const Seen& view : views) add_seen(seen, view);
-  tour.seeable = static_cast<double>(count_seen(seen)) / static_cast<double>(samples.size());
+  tour.seeable = share_of(seen);
   return tour;
 }
 
 std::string describe(const Tour& tour) {
   return fmt::format(
       "a tour of {} waypoints by way of {} views; {:.1f} % of what can be seen from the {} cells "
-      "of "
-      "{:.2f} m that can be reached is seen, which is {:.1f} % of the mesh's area (of at most "
-      "{:.1f} %)",
+      "of {:.2f} m that can be reached is seen: {:.1f} % of the mesh's area, of at most {:.1f} %",
       tour.waypoints.size(), tour.views, 100.0 * tour.seen / std::max(tour.seeable, 1e-12),
       tour.cells, tour.cell_m, 100.0 * tour.seen, 100.0 * tour.seeable);
 }

@@ -165,6 +165,8 @@ TEST(Tour, IsSavedAsAFlightThroughWaypoints) {
   for (std::size_t i = 0; i < tour.waypoints.size(); ++i) {
     EXPECT_NEAR((again.waypoints[i] - tour.waypoints[i]).norm(), 0.0, 1e-3);
   }
+  EXPECT_FALSE(first_encounter(SplineFlight(again.waypoints, again, "saved"), rooms().world, 0.4)
+                   .has_value());
   EXPECT_EQ(again.clearance_m, 0.4);
   EXPECT_EQ(again.style, config.style);
 }
