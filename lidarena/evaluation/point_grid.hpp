@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tsl/robin_map.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/map/voxel_key.hpp"
+
+namespace lidarena {
+
+/// A cloud sorted into cubes, for exact nearest neighbours within a reach. 16 bytes a point.
+class PointGrid {
+ public:
+  /// Points that are not finite are left out. Cubes of `cell` m; `reach` m is the farthest that
+  /// nearest() looks; both above 0.
+  PointGrid(std::span<const Eigen::Vector3f> points, double cell, double reach,
+            const Parallel& parallel);
+
+  /// Distance (m) to the nearest point within the reach, else infinity.
+  float nearest(const Eigen::Vector3f& query) const;
+
+ private:
+  float cell_, inverse_cell_, reach_;
+  std::vector<Voxel> steps_;  ///< to all cubes in reach, near ones first
+  std::vector<Eigen::Vector3f> points_;
+  tsl::robin_map<VoxelKey, std::pair<std::uint32_t, std::uint32_t>, VoxelKeyHash> cells_;
+};
+
+}  // namespace lidarena
