@@ -54,6 +54,7 @@ void merge_echoes(std::span<SubEcho> parts, double pulse_length, std::vector<Ech
 }
 
 void choose_echoes(const ReturnConfig& config, std::vector<Echo>& echoes) {
+  if (echoes.size() < 2) return;
   if (config.choice == EchoChoice::kLast) std::ranges::reverse(echoes);
   if (config.choice == EchoChoice::kStrongest) {
     std::ranges::stable_sort(echoes, std::ranges::greater{}, &Echo::signal);

@@ -2,8 +2,11 @@
 #include "lidarena/sensor/lidar.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <span>
 #include <utility>
 
@@ -14,7 +17,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t kRaysPerBlock = 1024;
+constexpr std::size_t kShotsPerBlock = 1024;
+constexpr std::size_t kShares = 32;  // into which a scan is cut for the workers, if it has as many
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
 constexpr double kRadians = std::numbers::pi / 180.0;
 
@@ -33,11 +37,6 @@ double start_shift(const SensorConfig& config) {
 
 bool has_times(ScanMode mode) { return mode == ScanMode::kRolling || mode == ScanMode::kFrozen; }
 
-/// From the sensor's axis, as the sensor counts.
-double sensor_range(const Beam& beam, const Hit& hit) {
-  return static_cast<double>(beam.origin.norm()) + static_cast<double>(hit.range);
-}
-
 /// The configuration of a sensor that measures the geometry.
 SensorConfig without_noise(SensorConfig config) {
   config.range_noise_m = 0.0;
@@ -52,32 +51,40 @@ std::vector<Beam> first_beams(const ScanPattern& pattern) {
   return beams;
 }
 
-/// One part of all blocks, in order.
-template <class Block, class T>
-std::vector<T> join(const std::vector<Block>& blocks, std::vector<T> Block::*part) {
-  std::size_t count = 0;
-  for (const Block& block : blocks) count += (block.*part).size();
-  std::vector<T> all;
-  all.reserve(count);
-  for (const Block& block : blocks) {
-    all.insert(all.end(), (block.*part).begin(), (block.*part).end());
+/// Moves the first counts[0] of every `stride` values together, then the first counts[1] ...
+template <class T>
+void close_gaps(std::vector<T>& values, std::size_t stride,
+                const std::vector<std::size_t>& counts) {
+  std::size_t end = 0;
+  for (std::size_t block = 0; block < counts.size(); ++block) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(block * stride);
+    if (end != block * stride) {
+      std::copy_n(begin, counts[block], values.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+    end += counts[block];
   }
-  return all;
+  values.resize(end);
 }
 
 }  // namespace
 
-/// Some shots of a scan on their way; `truth` runs parallel to `points`.
+/// Some shots of a scan on their way.
 struct Lidar::Block {
   std::span<const Beam> shots;
   std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
-  bool with_truth = false;
-  std::vector<Ray> rays;  ///< in casting order
+  Point* points = nullptr;      ///< room for all that may come back
+  PointTruth* truth = nullptr;  ///< as much room, or none
+  std::size_t count = 0;        ///< of points so far
+  // Kept from block to block, to save memory from being fetched and given back.
+  std::vector<std::uint32_t> places;  ///< of the shots (of their first sub-rays) among the rays
+  std::vector<Ray> rays;              ///< in casting order
   std::vector<Hit> hits;
-  std::vector<SubEcho> parts;  ///< of the shot at hand
-  std::vector<Echo> echoes;    ///< of the shot at hand
-  std::vector<Point> points;
-  std::vector<PointTruth> truth;
+  std::array<double, 2> normals{};  ///< of the pair of shots at hand
+  std::uint64_t normals_of = std::numeric_limits<std::uint64_t>::max();  ///< the pair's number
+  // Of the shot at hand.
+  double axis_to_origin = 0.0;  ///< m; ranges count from the sensor's axis
+  std::vector<SubEcho> parts;
+  std::vector<Echo> echoes;
 };
 
 Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
@@ -94,7 +101,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);
   const std::vector<Beam> beams = first_beams(*pattern_);
   if (!beams.empty()) last_dt_ns_ = beams.back().dt_ns;
-  shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kRaysPerBlock / order_.tile());
+  shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
   needs_signal_ = sub_rays_.size() > 1 || config_.noise.dropouts ||
                   config_.noise.weak_signal_noise ||
                   config_.returns.intensity == IntensityKind::kSignal;
@@ -106,7 +113,19 @@ Time Lidar::stamp(std::uint64_t index) const {
 
 Time Lidar::last_firing(std::uint64_t index) const { return stamp(index) + Time{last_dt_ns_}; }
 
-/// Sub-rays of a shot lie together; single rays lie in casting order.
+/// Sub-rays of a shot are neighbours and lie together; single rays lie in casting order.
+void Lidar::place_rays(Block& block) const {
+  const std::size_t split = sub_rays_.size();
+  const std::size_t count = block.shots.size();
+  if (block.places.size() == count) return;  // as in the block before
+  block.places.resize(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    block.places[i] = static_cast<std::uint32_t>(split == 1 ? order_.place(i, count) : i * split);
+  }
+  block.rays.resize(count * split);
+  block.hits.resize(count * split);
+}
+
 void Lidar::aim(const LidarMotion& motion, Block& block) const {
   const double shift = start_shift(config_);
   const std::size_t split = sub_rays_.size();
@@ -121,39 +140,49 @@ void Lidar::aim(const LidarMotion& motion, Block& block) const {
     const Vector3d axis = beam.direction.cast<double>();
     const Vector3d origin = world_from_lidar * (beam.origin.cast<double>() + shift * axis);
     if (split == 1) {
-      block.rays[order_.place(i, block.shots.size())] = {
-          origin, (world_from_lidar.linear() * axis).cast<float>()};
+      block.rays[block.places[i]] = {origin, (world_from_lidar.linear() * axis).cast<float>()};
       continue;
     }
     const double spin = 2.0 * std::numbers::pi * random_.uniform(block.first_ray + i, kSpin);
     const Eigen::Rotation2Dd turn(spin);
     for (std::size_t k = 0; k < split; ++k) {
       const Vector3d direction = turned_aside(axis, beam_sigma_.cwiseProduct(turn * sub_rays_[k]));
-      block.rays[i * split + k] = {origin, (world_from_lidar.linear() * direction).cast<float>()};
+      block.rays[block.places[i] + k] = {origin,
+                                         (world_from_lidar.linear() * direction).cast<float>()};
     }
   }
 }
 
+/// What sub-ray `k` of a shot brings back, if anything within the limits.
+std::optional<SubEcho> Lidar::receive_ray(const World& world, std::size_t shot, std::size_t k,
+                                          const Block& block) const {
+  const Hit& hit = block.hits[block.places[shot] + k];
+  if (!hit.valid()) return std::nullopt;
+  const double range = block.axis_to_origin + static_cast<double>(hit.range);
+  if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
+  const Ray& ray = block.rays[block.places[shot] + k];
+  const double cosine = -static_cast<double>(hit.normal.dot(ray.direction));
+  const double energy = backscatter(world.mesh().material(hit.triangle), cosine) /
+                        static_cast<double>(sub_rays_.size());
+  const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
+  return SubEcho{range, energy, signal, static_cast<std::uint32_t>(k)};
+}
+
 /// Fills the shot's echoes from its hits: those detected, in the order in which they are reported.
 void Lidar::receive(const World& world, std::size_t shot, Block& block) const {
-  const std::size_t split = sub_rays_.size();
-  const std::size_t first = split == 1 ? order_.place(shot, block.shots.size()) : shot * split;
+  block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
+  block.echoes.clear();
   block.parts.clear();
-  for (std::size_t k = 0; k < split; ++k) {
-    const Hit& hit = block.hits[first + k];
-    if (!hit.valid()) continue;
-    const double range = sensor_range(block.shots[shot], hit);
-    if (range < config_.min_range_m || range > config_.max_range_m) continue;
-    const double cosine = -static_cast<double>(hit.normal.dot(block.rays[first + k].direction));
-    const double energy =
-        backscatter(world.mesh().material(hit.triangle), cosine) / static_cast<double>(split);
-    const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
-    block.parts.push_back({range, energy, signal, static_cast<std::uint32_t>(k)});
+  for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
+    const auto part = receive_ray(world, shot, k, block);
+    if (!part) continue;
+    if (sub_rays_.size() == 1) {
+      block.echoes.push_back({part->range, part->energy, part->signal, 0});
+    } else {
+      block.parts.push_back(*part);
+    }
   }
-  if (split == 1) {
-    block.echoes.clear();
-    for (const SubEcho& e : block.parts) block.echoes.push_back({e.range, e.energy, e.signal, 0});
-  } else {
+  if (!block.parts.empty()) {
     merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
   }
   if (config_.noise.dropouts) {
@@ -170,10 +199,21 @@ bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number)
          signal_.detection_probability(echo.signal);
 }
 
-double Lidar::measured_range(const Echo& echo, std::uint64_t ray, std::size_t number) const {
+/// The range noise of an echo, in sigmas. Random normals come in pairs, and two shots share one.
+double Lidar::range_noise(std::uint64_t ray, std::size_t number, Block& block) const {
+  if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
+  if (block.normals_of != ray / 2) {
+    block.normals_of = ray / 2;
+    block.normals = random_.normals(ray / 2, kRange);
+  }
+  return block.normals[ray % 2];
+}
+
+double Lidar::measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,
+                             Block& block) const {
   const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
   double range = echo.range;
-  if (sigma > 0.0) range += sigma * random_.normals(ray, draw_of(kRange, number))[0];
+  if (sigma > 0.0) range += sigma * range_noise(ray, number, block);
   const double step = config_.noise.range_step_m;
   return step > 0.0 ? step * std::round(range / step) : range;
 }
@@ -189,53 +229,41 @@ Vector3f Lidar::reported_direction(const Beam& beam, std::uint64_t ray) const {
 void Lidar::report(std::size_t shot, Block& block) const {
   const Beam& beam = block.shots[shot];
   const std::uint64_t ray = block.first_ray + shot;
-  const std::size_t split = sub_rays_.size();
   const Vector3f direction = reported_direction(beam, ray);
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
   for (std::size_t k = 0; k < block.echoes.size(); ++k) {
     const Echo& echo = block.echoes[k];
-    const double way = measured_range(echo, ray, k) - static_cast<double>(beam.origin.norm());
+    const double way = measured_range(echo, ray, k, block) - block.axis_to_origin;
     Point point;
     point.position = beam.origin + static_cast<float>(way) * direction;
     point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
     point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
     point.ring = beam.ring;
     point.echo = static_cast<std::uint8_t>(k);
-    block.points.push_back(point);
-    if (!block.with_truth) continue;
-    const std::size_t place =
-        split == 1 ? order_.place(shot, block.shots.size()) : shot * split + echo.sub_ray;
+    block.points[block.count++] = point;
+    if (block.truth == nullptr) continue;
+    const std::size_t place = block.places[shot] + echo.sub_ray;
     const Hit& hit = block.hits[place];
-    const Vector3d to_surface = hit.range * block.rays[place].direction.cast<double>();
-    block.truth.push_back(
-        {.position = (block.rays[place].origin + to_surface).cast<float>(),
-         .range = static_cast<float>(sensor_range(beam, hit) + start_shift(config_)),
-         .normal = hit.normal,
-         .triangle = hit.triangle});
+    const double way_to_surface = static_cast<double>(hit.range);
+    const Vector3d to_surface = way_to_surface * block.rays[place].direction.cast<double>();
+    block.truth[block.count - 1] = {
+        .position = (block.rays[place].origin + to_surface).cast<float>(),
+        .range = static_cast<float>(block.axis_to_origin + way_to_surface + start_shift(config_)),
+        .normal = hit.normal,
+        .triangle = hit.triangle};
   }
 }
 
-Lidar::Block Lidar::shoot(const World& world, const LidarMotion& motion,
-                          std::span<const Beam> shots, std::uint64_t first_ray,
-                          bool with_truth) const {
-  Block block;
-  block.shots = shots;
-  block.first_ray = first_ray;
-  block.with_truth = with_truth;
-  block.rays.resize(shots.size() * sub_rays_.size());
-  block.hits.resize(block.rays.size());
+void Lidar::shoot(const World& world, const LidarMotion& motion, Block& block) const {
+  place_rays(block);
   aim(motion, block);
   world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
              RayOrder::kNeighbours);
-  block.points.reserve(shots.size());
-  if (with_truth) block.truth.reserve(shots.size());
-  for (std::size_t shot = 0; shot < shots.size(); ++shot) {
+  block.count = 0;
+  for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
     receive(world, shot, block);
     report(shot, block);
   }
-  block.rays = {};
-  block.hits = {};
-  return block;
 }
 
 Scan Lidar::measure(const World& world, const Flight& flight, std::uint64_t index,
@@ -244,18 +272,29 @@ Scan Lidar::measure(const World& world, const Flight& flight, std::uint64_t inde
   const std::span<const Beam> beams = table_.beams(index, storage);
   const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
                            config_.mode == ScanMode::kRolling);
-  std::vector<Block> blocks((beams.size() + shots_per_block_ - 1) / shots_per_block_);
-  parallel.for_blocks(beams.size(), shots_per_block_, [&](std::size_t begin, std::size_t end) {
-    const auto shots = beams.subspan(begin, end - begin);
-    blocks[begin / shots_per_block_] =
-        shoot(world, motion, shots, index * beams.size() + begin, truth != nullptr);
-  });
-
+  const auto most = static_cast<std::size_t>(config_.returns.count);  // points of a shot
   Scan scan;
   scan.stamp = stamp(index);
   scan.timed = has_times(config_.mode);
-  scan.points = join(blocks, &Block::points);
-  if (truth != nullptr) *truth = join(blocks, &Block::truth);
+  scan.points.resize(beams.size() * most);
+  if (truth != nullptr) truth->resize(scan.points.size());
+
+  std::vector<std::size_t> counts((beams.size() + shots_per_block_ - 1) / shots_per_block_);
+  const std::size_t blocks_together = std::max<std::size_t>(1, counts.size() / kShares);
+  parallel.for_blocks(counts.size(), blocks_together, [&](std::size_t first, std::size_t last) {
+    Block block;
+    for (std::size_t i = first; i < last; ++i) {
+      const std::size_t begin = i * shots_per_block_;
+      block.shots = beams.subspan(begin, std::min(shots_per_block_, beams.size() - begin));
+      block.first_ray = index * beams.size() + begin;
+      block.points = scan.points.data() + begin * most;
+      if (truth != nullptr) block.truth = truth->data() + begin * most;
+      shoot(world, motion, block);
+      counts[i] = block.count;
+    }
+  });
+  close_gaps(scan.points, shots_per_block_ * most, counts);
+  if (truth != nullptr) close_gaps(*truth, shots_per_block_ * most, counts);
   return scan;
 }
 

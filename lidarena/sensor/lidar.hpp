@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -50,13 +51,17 @@ class Lidar {
 
  private:
   struct Block;
+  void place_rays(Block& block) const;
   void aim(const LidarMotion& motion, Block& block) const;
+  std::optional<SubEcho> receive_ray(const World& world, std::size_t shot, std::size_t k,
+                                     const Block& block) const;
   void receive(const World& world, std::size_t shot, Block& block) const;
   void report(std::size_t shot, Block& block) const;
-  Block shoot(const World& world, const LidarMotion& motion, std::span<const Beam> shots,
-              std::uint64_t first_ray, bool with_truth) const;
+  void shoot(const World& world, const LidarMotion& motion, Block& block) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
-  double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number) const;
+  double range_noise(std::uint64_t ray, std::size_t number, Block& block) const;
+  double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,
+                        Block& block) const;
   Eigen::Vector3f reported_direction(const Beam& beam, std::uint64_t ray) const;
 
   SensorConfig config_;

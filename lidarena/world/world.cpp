@@ -153,36 +153,39 @@ const TriangleMesh& World::mesh() const { return impl_->mesh; }
 
 namespace {
 
-Hit make_hit(float range, std::uint32_t triangle, const Vector3f& direction,
-             const std::vector<Vector3f>& normals) {
-  const Vector3f& normal = normals[triangle];
-  return {range, triangle, normal.dot(direction) > 0.0F ? Vector3f(-normal) : normal};
+/// The side of a face that a ray meets.
+Vector3f towards(const Ray& ray, const Vector3f& normal) {
+  return normal.dot(ray.direction) > 0.0F ? Vector3f(-normal) : normal;
 }
 
-/// Up to eight rays in the form Embree follows together; lanes without a ray are left alone.
+/// Eight rays in the form that Embree follows together; lanes without a ray are left alone.
 struct Packet {
   static constexpr std::size_t kSize = 8;
   alignas(32) int valid[kSize];
   RTCRayHit8 query;
 
-  Packet(std::span<const Ray> rays, const Vector3d& centre, float far) {
+  Packet() {
+    for (std::size_t i = 0; i < kSize; ++i) {
+      query.ray.tnear[i] = query.ray.time[i] = 0.0F;
+      query.ray.mask[i] = std::numeric_limits<unsigned>::max();
+      query.ray.flags[i] = 0;
+      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+    }
+  }
+
+  /// Takes one to eight rays.
+  void load(std::span<const Ray> rays, const Vector3d& centre, float far) {
     for (std::size_t i = 0; i < kSize; ++i) {
       valid[i] = i < rays.size() ? -1 : 0;
       const Ray& ray = rays[std::min(i, rays.size() - 1)];
-      const Vector3f origin = (ray.origin - centre).cast<float>();
-      query.ray.org_x[i] = origin.x();
-      query.ray.org_y[i] = origin.y();
-      query.ray.org_z[i] = origin.z();
+      query.ray.org_x[i] = static_cast<float>(ray.origin.x() - centre.x());
+      query.ray.org_y[i] = static_cast<float>(ray.origin.y() - centre.y());
+      query.ray.org_z[i] = static_cast<float>(ray.origin.z() - centre.z());
       query.ray.dir_x[i] = ray.direction.x();
       query.ray.dir_y[i] = ray.direction.y();
       query.ray.dir_z[i] = ray.direction.z();
-      query.ray.tnear[i] = 0.0F;
       query.ray.tfar[i] = far;
-      query.ray.time[i] = 0.0F;
-      query.ray.mask[i] = std::numeric_limits<unsigned>::max();
-      query.ray.flags[i] = 0;
       query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-      query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     }
   }
 };
@@ -204,23 +207,29 @@ void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hit
       hits[i] = Hit{};
       continue;
     }
-    hits[i] = make_hit(query.ray.tfar, query.hit.primID, ray.direction, impl_->normals);
+    hits[i] = {query.ray.tfar, query.hit.primID, towards(ray, impl_->normals[query.hit.primID])};
   }
 }
 
 void World::cast_packets(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const {
   Caster caster{impl_->scene.get()};
   const auto far = static_cast<float>(max_range);
+  Packet packet;
   for (std::size_t first = 0; first < rays.size(); first += Packet::kSize) {
     const auto together = rays.subspan(first, std::min(Packet::kSize, rays.size() - first));
-    Packet packet(together, impl_->centre, far);
+    packet.load(together, impl_->centre, far);
     caster.intersect(packet.valid, packet.query);
     for (std::size_t i = 0; i < together.size(); ++i) {
       const bool is_hit = packet.query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
-      hits[first + i] = is_hit ? make_hit(packet.query.ray.tfar[i], packet.query.hit.primID[i],
-                                          together[i].direction, impl_->normals)
-                               : Hit{};
+      hits[first + i] =
+          is_hit ? Hit{packet.query.ray.tfar[i], packet.query.hit.primID[i], Vector3f::Zero()}
+                 : Hit{};
+      if (is_hit) __builtin_prefetch(&impl_->normals[packet.query.hit.primID[i]]);
     }
+  }
+  // The normals lie far apart in memory: by now they have been fetched.
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    if (hits[i].valid()) hits[i].normal = towards(rays[i], impl_->normals[hits[i].triangle]);
   }
 }
 

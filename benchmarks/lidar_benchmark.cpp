@@ -1,0 +1,342 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a scan costs beside the bare ray-casting calls on the same rays, in a closed world of a
+// million triangles. Each row runs the two in turn, so that what else the machine does meets both:
+//   bare, measured  shots a second of one core's time (bare: the packets lie ready, and nothing is
+//                   done with the hits)
+//   of_bare         their ratio
+//   real_time       scan period / time of a measured scan, by the wall clock: on an idle machine
+#include <benchmark/benchmark.h>
+#if LIDARENA_EMBREE_MAJOR >= 4
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <ctime>
+#include <memory>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/spline_flight.hpp"
+#include "lidarena/sensor/lidar.hpp"
+#include "lidarena/world/world.hpp"
+
+namespace lidarena {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t kTogether = CastOrder::kTogether;
+
+/// A closed room of 1,001,112 triangles, 40 m by 26 m by 8 m, with bumps of all sizes.
+TriangleMesh bumpy_room() {
+  constexpr int kAround = 708, kUp = 708;
+  TriangleMesh mesh;
+  for (int j = 0; j <= kUp; ++j) {
+    for (int i = 0; i < kAround; ++i) {
+      const double a = 2.0 * std::numbers::pi * i / kAround;
+      const double b = std::numbers::pi * (static_cast<double>(j) / kUp - 0.5);
+      const double r = 10.0 + 1.5 * std::sin(7 * a) * std::cos(5 * b) +
+                       0.5 * std::sin(31 * a + 3) * std::sin(23 * b) +
+                       0.05 * std::sin(211 * a) * std::cos(197 * b);
+      mesh.vertices.emplace_back(2.0 * r * std::cos(b) * std::cos(a),
+                                 1.3 * r * std::cos(b) * std::sin(a), 0.4 * r * std::sin(b));
+    }
+  }
+  const auto at = [](int j, int i) {
+    return static_cast<std::uint32_t>(j * kAround + i % kAround);
+  };
+  for (int j = 0; j < kUp; ++j) {
+    for (int i = 0; i < kAround; ++i) {
+      mesh.triangles.push_back({at(j, i), at(j + 1, i + 1), at(j, i + 1)});
+      mesh.triangles.push_back({at(j, i), at(j + 1, i), at(j + 1, i + 1)});
+    }
+  }
+  return mesh;
+}
+
+/// The mesh in the bare library, with World's flags; counts the bytes it takes.
+struct BareScene {
+  RTCDevice device = rtcNewDevice(nullptr);
+  RTCScene scene = nullptr;
+  std::int64_t bytes = 0;
+
+  explicit BareScene(const TriangleMesh& mesh) {
+    rtcSetDeviceMemoryMonitorFunction(
+        device,
+        [](void* self, ssize_t change, bool) {
+          static_cast<BareScene*>(self)->bytes += change;
+          return true;
+        },
+        this);
+    RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    auto* vertices = static_cast<float*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                3 * sizeof(float), mesh.vertices.size()));
+    for (const Vector3d& v : mesh.vertices) {
+      for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(v[axis]);
+    }
+    auto* indices = static_cast<std::uint32_t*>(
+        rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                                sizeof(Triangle), mesh.triangles.size()));
+    for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+    rtcCommitGeometry(geometry);
+    scene = rtcNewScene(device);
+    rtcAttachGeometry(scene, geometry);
+    rtcReleaseGeometry(geometry);
+    rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
+    tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene); });
+  }
+
+  void intersect(RTCRayHit8& packet) const {
+    alignas(32) static constexpr int kAll[8]{-1, -1, -1, -1, -1, -1, -1, -1};
+#if LIDARENA_EMBREE_MAJOR >= 4
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect8(kAll, scene, &packet, &arguments);
+#else
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect8(kAll, scene, &context, &packet);
+#endif
+  }
+};
+
+/// Everything is made once, for all rows.
+struct Stage {
+  TriangleMesh mesh = bumpy_room();
+  BareScene bare{mesh};
+  World world{mesh};
+  SplineFlight flight = make_flight();
+
+  static SplineFlight make_flight() {
+    FlightConfig config;
+    config.style = FlightStyle::kAggressive;
+    const std::vector<Vector3d> tour{{-9, -4, 0}, {9, -4, 1}, {9, 4, 0}, {-9, 4, 1}, {-9, -4, 0}};
+    return SplineFlight(tour, config, "benchmark");
+  }
+  static const Stage& get() {
+    static const Stage stage;
+    return stage;
+  }
+};
+
+enum Sensor { kMid360, kOs0 };
+enum Effects { kGeometry, kFrozen, kRangeNoise, kSheet, kSplitBeam };
+
+SensorConfig config_of(Sensor sensor, Effects effects) {
+  SensorConfig config;
+  config.name = sensor == kOs0 ? "os0" : "mid360";
+  config.model = sensor == kOs0 ? LidarModel::kOusterOs0128 : LidarModel::kLivoxMid360;
+  config.columns = sensor == kOs0 ? 2048 : 0;
+  config.max_range_m = 100.0;
+  if (effects == kFrozen) config.mode = ScanMode::kFrozen;
+  if (effects >= kRangeNoise) config.range_noise_m = 0.02;
+  if (effects >= kSheet) {
+    config.noise.near_range_noise_m = 0.03;
+    config.noise.angle_noise_deg = 0.1;
+    config.noise.range_step_m = 0.001;
+    config.noise.weak_signal_noise = true;
+    config.noise.dropouts = true;
+    config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
+  }
+  if (effects == kSplitBeam) {
+    config.noise.beam = {.sub_rays = 7, .width_deg = 0.35, .height_deg = 0.35};
+    config.returns.count = 2;
+  }
+  return config;
+}
+
+/// The rays of a scan as the lidar casts them, in packets that lie ready.
+std::vector<RTCRayHit8> packets_of(const Lidar& lidar, const SensorConfig& config,
+                                   std::uint64_t index) {
+  const Stage& stage = Stage::get();
+  std::vector<Beam> beams;
+  lidar.pattern().beams(index, beams);
+  const CastOrder order(beams);
+  std::vector<RTCRayHit8> packets(beams.size() / kTogether);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    const Time dt{config.mode == ScanMode::kRolling ? beams[i].dt_ns : 0};
+    const Pose pose = stage.flight.pose_at(lidar.stamp(index) + dt) * config.body_from_lidar;
+    const Eigen::Vector3f origin = (pose * beams[i].origin.cast<double>()).cast<float>();
+    const Eigen::Vector3f direction =
+        (pose.linear() * beams[i].direction.cast<double>()).cast<float>();
+    const std::size_t place = order.place(i, beams.size());
+    RTCRayHit8& packet = packets[place / kTogether];
+    const std::size_t lane = place % kTogether;
+    packet.ray.org_x[lane] = origin.x();
+    packet.ray.org_y[lane] = origin.y();
+    packet.ray.org_z[lane] = origin.z();
+    packet.ray.dir_x[lane] = direction.x();
+    packet.ray.dir_y[lane] = direction.y();
+    packet.ray.dir_z[lane] = direction.z();
+    packet.ray.tnear[lane] = 0.0F;
+    packet.ray.tfar[lane] = static_cast<float>(config.max_range_m);
+    packet.ray.mask[lane] = std::numeric_limits<unsigned>::max();
+    packet.ray.flags[lane] = 0;
+    packet.ray.time[lane] = 0.0F;
+    packet.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    packet.hit.instID[0][lane] = RTC_INVALID_GEOMETRY_ID;
+  }
+  return packets;
+}
+
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+/// Least time of several runs, so that what disturbs single ones does not count.
+struct Stopwatch {
+  double processor_s = 1e9, wall_s = 1e9;
+
+  template <class Run>
+  void time(Run&& run) {
+    const auto wall = std::chrono::steady_clock::now();
+    const double processor = processor_seconds();
+    run();
+    processor_s = std::min(processor_s, processor_seconds() - processor);
+    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - wall;
+    wall_s = std::min(wall_s, took.count());
+  }
+};
+
+void cast_bare(const std::vector<RTCRayHit8>& packets, const Parallel& parallel) {
+  parallel.for_each(packets.size(), 128, [&](std::size_t i) {
+    RTCRayHit8 packet = packets[i];
+    Stage::get().bare.intersect(packet);
+    benchmark::DoNotOptimize(packet);
+  });
+}
+
+void measure(benchmark::State& state, Sensor sensor, Effects effects) {
+  const Stage& stage = Stage::get();
+  const Parallel parallel(static_cast<int>(state.range(0)));
+  const SensorConfig config = config_of(sensor, effects);
+  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  // Always the same scan in mid-flight; what is kept between scans is warm after the first.
+  const std::uint64_t index = static_cast<std::uint64_t>(to_seconds(stage.flight.duration()) * 4.0);
+  const auto packets = packets_of(lidar, config, index);
+  Stopwatch bare, measured;
+  for (auto _ : state) {
+    bare.time([&] { cast_bare(packets, parallel); });
+    measured.time([&] {
+      benchmark::DoNotOptimize(lidar.measure(stage.world, stage.flight, index, parallel));
+    });
+  }
+  const auto shots = static_cast<double>(packets.size() * kTogether);
+  state.counters["bare"] = shots / bare.processor_s;
+  state.counters["measured"] = shots / measured.processor_s;
+  state.counters["of_bare"] = bare.processor_s / measured.processor_s;
+  state.counters["real_time"] = to_seconds(lidar.pattern().period()) / measured.wall_s;
+}
+
+constexpr int kTurns = 25;  // the least time of these many is reported
+
+void register_rows() {
+  const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
+  const std::pair<const char*, Effects> effects[] = {{"geometry", kGeometry},
+                                                     {"frozen", kFrozen},
+                                                     {"range_noise", kRangeNoise},
+                                                     {"sheet", kSheet},
+                                                     {"split_beam", kSplitBeam}};
+  for (const auto& sensor : sensors) {
+    for (const auto& effect : effects) {
+      const std::string name = std::string("measure/") + sensor.first + "/" + effect.first;
+      benchmark::RegisterBenchmark(name.c_str(), measure, sensor.second, effect.second)
+          ->ArgName("threads")
+          ->Arg(1)
+          ->Arg(2)
+          ->Iterations(kTurns)
+          ->UseRealTime()
+          ->Unit(benchmark::kMillisecond);
+    }
+  }
+}
+[[maybe_unused]] const bool kRegistered = (register_rows(), true);
+
+/// The parts of a scan that are not ray casting, one thread.
+void pattern(benchmark::State& state, Sensor sensor) {
+  const auto made = make_pattern(config_of(sensor, kGeometry));
+  std::vector<Beam> beams;
+  std::uint64_t index = 0;
+  for (auto _ : state) made->beams(index++, beams);
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beams.size()));
+}
+BENCHMARK_CAPTURE(pattern, mid360, kMid360)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(pattern, os0, kOs0)->Unit(benchmark::kMillisecond);
+
+void motion(benchmark::State& state) {
+  const Stage& stage = Stage::get();
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        LidarMotion(stage.flight, Pose::Identity(), std::chrono::seconds(2), 99'995'000, true));
+  }
+}
+BENCHMARK(motion)->Unit(benchmark::kMillisecond);
+
+/// Which form of the bare call is fastest: rays one by one, and in packets of eight neighbours, in
+/// firing order and in casting order.
+void bare_one_by_one(benchmark::State& state, Sensor sensor) {
+  const SensorConfig config = config_of(sensor, kGeometry);
+  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const auto packets = packets_of(lidar, config, 20);
+  RTCRayHit query{};
+  for (auto _ : state) {
+    for (const RTCRayHit8& packet : packets) {
+      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+        query.ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(const_cast<RTCRay8*>(&packet.ray)),
+                                      8, static_cast<unsigned>(lane));
+        query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+#if LIDARENA_EMBREE_MAJOR >= 4
+        rtcIntersect1(Stage::get().bare.scene, &query);
+#else
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(Stage::get().bare.scene, &context, &query);
+#endif
+        benchmark::DoNotOptimize(query);
+      }
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(packets.size() * 8));
+}
+BENCHMARK_CAPTURE(bare_one_by_one, mid360, kMid360)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bare_one_by_one, os0, kOs0)->Unit(benchmark::kMillisecond);
+
+void bare_packets(benchmark::State& state, Sensor sensor) {
+  const SensorConfig config = config_of(sensor, kGeometry);
+  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const auto packets = packets_of(lidar, config, 20);
+  for (auto _ : state) cast_bare(packets, Parallel(1));
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(packets.size() * 8));
+}
+BENCHMARK_CAPTURE(bare_packets, mid360, kMid360)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(bare_packets, os0, kOs0)->Unit(benchmark::kMillisecond);
+
+/// Bytes a triangle: of the library's copy and tree, and of the mesh beside it.
+void memory(benchmark::State& state) {
+  const Stage& stage = Stage::get();
+  for (auto _ : state) benchmark::DoNotOptimize(stage.bare.bytes);
+  const auto triangles = static_cast<double>(stage.mesh.triangles.size());
+  const auto vertices = static_cast<double>(stage.mesh.vertices.size());
+  state.counters["triangles"] = triangles;
+  state.counters["library"] = static_cast<double>(stage.bare.bytes) / triangles;
+  state.counters["mesh"] =
+      (vertices * sizeof(Vector3d) + triangles * (sizeof(Triangle) + sizeof(Eigen::Vector3f))) /
+      triangles;
+}
+BENCHMARK(memory);
+
+}  // namespace
+}  // namespace lidarena
