@@ -2,100 +2,226 @@
 #include <fmt/format.h>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/evaluate_evo.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/trajectory_io.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
+#include "lidarena/evaluation/lever_arm.hpp"
+#include "lidarena/evaluation/metrics_table.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct EvaluateOptions {
-  std::string run;
-  std::string trajectory, truth, map, mesh;
+  std::vector<std::string> runs;
+  std::vector<std::string> trajectories;
+  std::string truth, map, mesh;
+  std::string topic, truth_topic, lever;
+  double rate_hz = 10.0;
+  bool csv = false, markdown = false, latex = false;
+  EvoArguments evo;
 };
 
-/// Anyone's trajectory and map, with no RUN folder around them.
-Json evaluate_files(const EvaluateOptions& o, const Parallel& parallel, LogSink& log) {
-  if (o.truth.empty()) throw InputError("--trajectory", "needs --truth FILE beside it");
-  if (o.map.empty() != o.mesh.empty()) throw InputError("--map, --mesh", "need each other");
-  RunFiles run;
-  run.trajectory = read_trajectory(o.trajectory);
-  run.live = run.trajectory;
-  std::unique_ptr<World> world;
-  if (!o.map.empty()) {
-    run.map = read_cloud(o.map);
-    world = std::make_unique<World>(load_mesh(o.mesh), o.mesh);
-  }
-  return evaluate_run(run, read_trajectory(o.truth), world.get(), parallel, log);
+/// A file of poses, or a dataset's folder: its truth.
+FramedTrajectory read_poses(const std::string& path, const std::string& topic, double rate_hz) {
+  if (!fs::is_directory(path)) return read_framed_trajectory(path, topic, rate_hz);
+  const auto truth = load_truth(path);
+  if (!truth) throw InputError(path, "carries no truth", "give a file of poses");
+  return {*truth, "world", "body"};
 }
 
-std::string row_of(const Json& metrics, const std::string& name, const std::string& path,
-                   double factor, const char* unit) {
-  const Json::json_pointer pointer(path);
-  if (!metrics.contains(pointer) || !metrics.at(pointer).is_number()) return "";
-  return fmt::format("  {:<34}{:>10.3f} {}\n", name, metrics.at(pointer).get<double>() * factor,
-                     unit);
+Pose parse_lever(const std::string& text) {
+  const std::string place = "--lever " + text;
+  const std::string numbers =
+      text.substr(text.find('=') == std::string::npos ? 0 : text.find('=') + 1);
+  Pose pose;
+  read_value(ConfigNode::parse("[" + numbers + "]", place), pose, {});
+  return pose;
 }
 
-/// The association first, then the main figures.
-std::string summary_text(const Json& m) {
-  std::string text = fmt::format("status: {}{}\n", m.value("status", ""),
-                                 m.value("reason", "").empty() ? "" : ": " + m.value("reason", ""));
-  for (const Json& warning : m.at("warnings")) {
-    text += fmt::format("warning: {}\n", warning.get<std::string>());
+/// The estimate as one of the truth's body. Throws InputError when both files name their body frame
+/// and the names differ.
+Trajectory in_truths_body(const FramedTrajectory& estimate, const FramedTrajectory& truth,
+                          const std::string& name, const std::string& lever) {
+  if (!lever.empty()) return moved_to_body(estimate.trajectory, parse_lever(lever));
+  if (!estimate.body.empty() && !truth.body.empty() && estimate.body != truth.body) {
+    throw InputError(
+        name,
+        fmt::format("holds poses of '{}', the truth those of '{}'", estimate.body, truth.body),
+        fmt::format("give --lever {}_from_{}=x,y,z,qx,qy,qz,qw", truth.body, estimate.body));
   }
-  if (m.at("final").is_null()) return text;
-  const Json& found = m.at("final").at("association");
-  text += fmt::format(
-      "  {} of {} poses matched, longest gap {:.2f} s\n", found.at("matched").get<std::size_t>(),
-      found.at("estimates").get<std::size_t>(), found.at("longest_gap_s").get<double>());
-  constexpr double kDegrees = 57.29577951308232;
-  text += row_of(m, "coverage", "/final/association/coverage", 100, "%");
-  text += row_of(m, "RPE per metre", "/final/rpe/1m/translation/rmse_m", 100, "cm");
-  text += row_of(m, "RPE per metre, rotation", "/final/rpe/1m/rotation/rmse_rad", kDegrees, "deg");
-  text += row_of(m, "RPE per second", "/final/rpe/1s/translation/rmse_m", 100, "cm");
-  text += row_of(m, "ATE, SE(3) gauge", "/final/ate/se3/translation/rmse_m", 100, "cm");
-  text += row_of(m, "ATE, first-pose gauge", "/final/ate/first_pose/translation/rmse_m", 100, "cm");
-  for (const char* map : {"own", "reprojected"}) {
-    const std::string base = fmt::format("/maps/{}/se3", map);
-    text += row_of(m, fmt::format("{} map, RMSE", map), base + "/distance/rmse_m", 100, "cm");
-    text +=
-        row_of(m, fmt::format("{} map, RMSE of inliers", map), base + "/rmse_inliers_m", 100, "cm");
-    text += row_of(m, fmt::format("{} map, beyond 20 cm", map), base + "/outliers_percent", 1, "%");
+  return estimate.trajectory;
+}
+
+/// Anyone's trajectories and map, with no RUN folder around them.
+class Files {
+ public:
+  explicit Files(const EvaluateOptions& o) : o_(o) {
+    if (o.truth.empty()) throw InputError("--trajectory", "needs --truth FILE beside it");
+    if (o.map.empty() != o.mesh.empty()) throw InputError("--map, --mesh", "need each other");
+    if (!o.map.empty() && o.trajectories.size() > 1) {
+      throw InputError("--map", "goes with one --trajectory, in whose frame it lies");
+    }
+    truth_ = read_poses(o.truth, o.truth_topic, o.rate_hz);
+    if (truth_.trajectory.size() < 2) {
+      throw InputError(o.truth, "holds a single pose, a truth needs two or more");
+    }
+    if (o.map.empty()) return;
+    map_ = read_cloud(o.map);
+    world_ = std::make_unique<World>(load_mesh(o.mesh), o.mesh);
   }
-  return text;
+  const Trajectory& truth() const { return truth_.trajectory; }
+  Trajectory estimate(const std::string& file) const {
+    return in_truths_body(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
+  }
+  ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
+    RunFiles run;
+    run.trajectory = estimate(file);
+    run.live = run.trajectory;
+    run.map = map_;
+    ScoredRun scored;
+    scored.name = file;
+    scored.metrics = evaluate_run(run, truth_.trajectory, world_.get(), parallel, log);
+    scored.metrics["frames"] = {{"truth", truth_.body}, {"lever", o_.lever}};
+    return scored;
+  }
+
+ private:
+  const EvaluateOptions& o_;
+  FramedTrajectory truth_;
+  Cloud map_;
+  std::unique_ptr<World> world_;
+};
+
+/// What tells a run apart, from its manifest and its dataset's.
+void describe(const fs::path& folder, ScoredRun& run) {
+  if (!fs::exists(folder / "manifest.json")) return;
+  const Json manifest = read_json(folder / "manifest.json");
+  run.algorithm = fmt::format("{}:{} on {}", manifest.value("algorithm", "?"),
+                              manifest.value("preset", "?"), manifest.value("sensor", "?"));
+  const fs::path dataset = folder / manifest.value("dataset", "");
+  run.flight = dataset.filename().string();
+  if (!fs::exists(dataset / "manifest.json")) return;
+  const Json simulation = read_json(dataset / "manifest.json").value("simulation", Json::object());
+  if (!simulation.contains("seed")) return;
+  run.seed = simulation.at("seed").dump();
+  run.flight = fmt::format("{} {}", fs::path(simulation.value("world", "")).stem().string(),
+                           fs::path(simulation.value("flight_source", "")).stem().string());
+}
+
+/// Of several, one that cannot be scored is a row with its reason.
+ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel, LogSink& log) {
+  ScoredRun run;
+  const bool bare = folder.filename().empty();  // "run/"
+  run.name = (bare ? folder.parent_path() : folder).filename().string();
+  try {
+    run.metrics = score_run(folder, parallel, log);
+    describe(folder, run);
+  } catch (const InputError& error) {
+    if (alone) throw;
+    run.metrics = {{"status", "failed"}, {"reason", error.what()}};
+  }
+  return run;
+}
+
+std::vector<ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel, LogSink& log) {
+  std::vector<ScoredRun> runs;
+  for (const std::string& folder : o.runs) {
+    runs.push_back(score_folder(folder, o.runs.size() == 1, parallel, log));
+  }
+  if (o.trajectories.empty()) return runs;
+  const Files files(o);
+  for (const std::string& file : o.trajectories) runs.push_back(files.score(file, parallel, log));
+  return runs;
+}
+
+void print_runs_json(const std::vector<ScoredRun>& runs) {
+  if (runs.size() == 1) return print_json(runs[0].metrics);
+  Json list = Json::array();
+  for (const ScoredRun& run : runs) {
+    list.push_back({{"run", run.name},
+                    {"algorithm", run.algorithm},
+                    {"flight", run.flight},
+                    {"seed", run.seed},
+                    {"metrics", run.metrics}});
+  }
+  print_json({{"runs", list}, {"statistics", statistics_json(runs)}});
+}
+
+void print_runs(const Common& common, const EvaluateOptions& o,
+                const std::vector<ScoredRun>& runs) {
+  if (common.json) return print_runs_json(runs);
+  if (o.csv) return fmt::print("{}", metrics_csv(runs));
+  if (o.markdown) return fmt::print("{}", metrics_markdown(runs));
+  if (o.latex) return fmt::print("{}", metrics_latex(runs));
+  for (const ScoredRun& run : runs) fmt::print("{}\n", metrics_text(run));
+  if (runs.size() > 1) fmt::print("{}", statistics_text(statistics_json(runs)));
+}
+
+int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
+  if (o.trajectories.size() != 1 || !o.map.empty()) {
+    throw InputError("--compat evo", "needs one --trajectory and its --truth, and no map");
+  }
+  const Files files(o);
+  const Json result = evo_json(files.truth(), files.estimate(o.trajectories[0]), o.evo);
+  if (common.json) {
+    print_json(result);
+  } else {
+    fmt::print("{}", evo_text(result));
+  }
+  return kDone;
 }
 
 int evaluate_verb(const Common& common, const EvaluateOptions& o) {
-  if (o.run.empty() == o.trajectory.empty()) {
-    throw InputError("evaluate", "needs either a RUN folder or --trajectory and --truth");
+  if (o.runs.empty() == o.trajectories.empty()) {
+    throw InputError("evaluate", "needs either RUN folders or --trajectory and --truth");
   }
+  if (o.trajectories.empty() && !(o.truth + o.map + o.mesh + o.lever).empty()) {
+    throw InputError("evaluate", "--truth, --map, --mesh and --lever go with --trajectory");
+  }
+  if (int{common.json} + int{o.csv} + int{o.markdown} + int{o.latex} > 1) {
+    throw InputError("evaluate", "gives one of --json, --csv, --markdown, --latex");
+  }
+  if (!o.evo.tool.empty()) return evaluate_as_evo(common, o);
   Console console(common.quiet);
-  const Parallel parallel(common.threads);
-  const Json metrics =
-      o.run.empty() ? evaluate_files(o, parallel, console) : score_run(o.run, parallel, console);
-  if (common.json) {
-    print_json(metrics);
-  } else {
-    fmt::print("{}", summary_text(metrics));
+  const std::vector<ScoredRun> runs = score_all(o, Parallel(common.threads), console);
+  print_runs(common, o, runs);
+  for (const ScoredRun& run : runs) {
+    if (run.metrics.value("status", "") != "ok") return kWorkFailed;
   }
-  return metrics.value("status", "") == "ok" ? kDone : kWorkFailed;
+  return kDone;
 }
 
 }  // namespace
 
 void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "evaluate", "Score a run, or anyone's trajectory and map, against truth and mesh");
+      "evaluate", "Score runs, or anyone's trajectories and map, against truth and mesh");
   auto o = std::make_shared<EvaluateOptions>();
-  verb->add_option("run", o->run, "A RUN folder; metrics.json is written into it");
-  verb->add_option("--trajectory", o->trajectory, "Estimate: TUM, KITTI or EuRoC csv");
-  verb->add_option("--truth", o->truth, "Truth, in any of these formats");
+  verb->add_option("runs", o->runs, "RUN folders; metrics.json is written into each");
+  verb->add_option("--trajectory", o->trajectories,
+                   "Estimate: TUM, KITTI or EuRoC csv, .mcap or .bag; several may be given");
+  verb->add_option("--truth", o->truth, "Truth, in any of these formats, or a dataset's folder");
+  verb->add_option("--topic", o->topic, "Of the estimate's poses in a bag");
+  verb->add_option("--truth-topic", o->truth_topic, "Of the truth's poses in a bag");
+  verb->add_option("--rate", o->rate_hz, "Poses per second of KITTI files without times.txt")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  verb->add_option("--lever", o->lever,
+                   "Pose of the estimate's frame in the truth's body: x,y,z,qx,qy,qz,qw");
   verb->add_option("--map", o->map, "Point cloud in the estimate's frame: PLY or PCD");
   verb->add_option("--mesh", o->mesh, "Mesh to score the map against");
+  verb->add_flag("--csv", o->csv, "A row a figure");
+  verb->add_flag("--markdown", o->markdown, "A table, a row a run");
+  verb->add_flag("--latex", o->latex, "The same for LaTeX's booktabs");
+  add_evo_options(*verb, o->evo);
   set_verb(
       *verb, common, [&common, o] { return evaluate_verb(common, *o); }, exit_code);
 }

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "apps/lidarena/evaluate_evo.hpp"
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "lidarena/evaluation/compat_evo.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr const char* kGroup = "With --compat evo";
+
+template <class E>
+std::vector<std::string> names_of() {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : EnumNames<E>::names) names.emplace_back(name);
+  return names;
+}
+
+/// `name` is one of names_of(): the parser has seen to it.
+template <class E>
+E value_of(const std::string& name) {
+  for (const auto& [known, value] : EnumNames<E>::names) {
+    if (name == known) return value;
+  }
+  throw InputError(name, "is not known");
+}
+
+EvoOptions options_of(const EvoArguments& a) {
+  EvoOptions o;
+  o.metric = value_of<EvoMetric>(a.metric);
+  o.relation = value_of<EvoRelation>(a.relation);
+  o.unit = value_of<EvoUnit>(a.unit);
+  o.delta = a.delta;
+  o.delta_tolerance = a.delta_tolerance;
+  o.all_pairs = a.all_pairs;
+  o.pairs_from_reference = a.pairs_from_reference;
+  o.align = a.align;
+  o.scale = a.scale;
+  o.align_origin = a.origin;
+  o.n_to_align = a.n_to_align;
+  o.max_difference_s = a.t_max_diff;
+  o.offset_s = a.t_offset;
+  return o;
+}
+
+Json options_json(const EvoArguments& a) {
+  Json json{{"relation", a.relation},     {"t_max_diff_s", a.t_max_diff},
+            {"t_offset_s", a.t_offset},   {"align", a.align},
+            {"scale", a.scale},           {"align_origin", a.origin},
+            {"n_to_align", a.n_to_align}, {"metric", a.metric}};
+  if (a.metric != "rpe") return json;
+  json["delta"] = a.delta;
+  json["delta_unit"] = a.unit;
+  json["delta_tolerance"] = a.delta_tolerance;
+  json["all_pairs"] = a.all_pairs;
+  json["pairs_from_reference"] = a.pairs_from_reference;
+  return json;
+}
+
+}  // namespace
+
+void add_evo_options(CLI::App& verb, EvoArguments& a) {
+  auto* compat = verb.add_option("--compat", a.tool, "The figures of another tool: evo")
+                     ->check(CLI::IsMember({"evo"}))
+                     ->group(kGroup);
+  const auto flag = [&](const char* name, bool& value, const char* help) {
+    verb.add_flag(name, value, help)->needs(compat)->group(kGroup);
+  };
+  const auto choice = [&](const char* name, std::string& value, const char* help,
+                          const std::vector<std::string>& names) {
+    auto* option = verb.add_option(name, value, help)->check(CLI::IsMember(names));
+    option->needs(compat)->group(kGroup)->capture_default_str();
+  };
+  const auto option = [&](const char* name, auto& value, const char* help) {
+    verb.add_option(name, value, help)->needs(compat)->group(kGroup)->capture_default_str();
+  };
+  choice("--metric", a.metric, "Absolute or relative pose error", names_of<EvoMetric>());
+  choice("--relation", a.relation, "What of the error is measured", names_of<EvoRelation>());
+  option("--t-max-diff", a.t_max_diff, "Largest difference of stamps taken for one, s");
+  option("--t-offset", a.t_offset, "Added to the estimate's stamps, s");
+  flag("--align", a.align, "Fit rotation and translation");
+  flag("--scale", a.scale, "Fit the scale; with --align a similarity");
+  flag("--origin", a.origin, "Lay the first poses on each other");
+  option("--n-to-align", a.n_to_align, "Fit the first N pairs alone, 0 = all");
+  option("--delta", a.delta, "Length of a piece (rpe)");
+  choice("--unit", a.unit, "Of delta: frames, metres, degrees, radians", names_of<EvoUnit>());
+  option("--delta-tolerance", a.delta_tolerance, "Share of delta, for all pairs");
+  flag("--all-pairs", a.all_pairs, "A piece from every pose");
+  flag("--pairs-from-reference", a.pairs_from_reference, "Path and angle of the truth");
+}
+
+Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments) {
+  const EvoOptions options = options_of(arguments);
+  const EvoResult result = compat_evo(truth, estimate, options);
+  const EvoStatistics& s = result.statistics;
+  const Similarity& gauge = result.reference_from_estimate;
+  const Pose pose = make_pose(gauge.rotation, gauge.translation);
+  return {{"compat", "evo"},
+          {"options", options_json(arguments)},
+          {"reference_poses", truth.size()},
+          {"estimate_poses", estimate.size()},
+          {"matched", result.matched},
+          {"errors", result.errors.size()},
+          {"reference_from_estimate_m_quaternion", value_to_json(pose)},
+          {"scale", gauge.scale},
+          {"unit", unit_of(options.relation)},
+          {"statistics",
+           {{"rmse", s.rmse},
+            {"mean", s.mean},
+            {"median", s.median},
+            {"std", s.std},
+            {"min", s.min},
+            {"max", s.max},
+            {"sse", s.sse}}}};
+}
+
+std::string evo_text(const Json& result) {
+  std::string text = fmt::format(
+      "evo's {} of {}: {} of {} estimated and {} true poses matched, {} errors\n",
+      result.at("options").at("metric").get<std::string>(),
+      result.at("options").at("relation").get<std::string>(),
+      result.at("matched").get<std::size_t>(), result.at("estimate_poses").get<std::size_t>(),
+      result.at("reference_poses").get<std::size_t>(), result.at("errors").get<std::size_t>());
+  const std::string unit = result.at("unit").get<std::string>();
+  for (const char* name : {"rmse", "mean", "median", "std", "min", "max", "sse"}) {
+    const std::string of = unit.empty() || std::string(name) != "sse" ? unit : unit + "^2";
+    text += fmt::format("  {:<8}{:>18.12g} {}", name,
+                        result.at("statistics").at(name).get<double>(), of);
+    text.erase(text.find_last_not_of(' ') + 1);
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace lidarena
