@@ -9,9 +9,22 @@ namespace lidarena {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+/// Directions in single precision stray by 4e-6 deg: a ring that lies on a border between cells is
+/// moved to one side of it as a whole.
+constexpr double kNudgeDeg = 1e-5;
 
 int cells(double from_deg, double to_deg, double cell_deg) {
-  return static_cast<int>(std::ceil((to_deg - from_deg) / cell_deg - 1e-9));
+  return std::max(1, static_cast<int>(std::ceil((to_deg - from_deg) / cell_deg - 1e-9)));
+}
+
+struct Angles {
+  double azimuth_deg, elevation_deg;
+};
+
+Angles angles_of(const Eigen::Vector3f& direction) {
+  const Eigen::Vector3d d = direction.cast<double>();
+  return {std::atan2(d.y(), d.x()) / kDegree,
+          std::atan2(d.z(), std::hypot(d.x(), d.y())) / kDegree};
 }
 
 }  // namespace
@@ -24,13 +37,14 @@ Coverage::Coverage(const FieldOfView& fov, double cell_deg)
       lit_(index(0, rows_)) {}
 
 void Coverage::add(const Eigen::Vector3f& direction) {
-  const Eigen::Vector3d d = direction.cast<double>();
-  const double azimuth = std::atan2(d.y(), d.x()) / kDegree;
-  const double elevation = std::atan2(d.z(), std::hypot(d.x(), d.y())) / kDegree;
-  if (azimuth < fov_.azimuth_min_deg || azimuth > fov_.azimuth_max_deg) return;
-  if (elevation < fov_.elevation_min_deg || elevation > fov_.elevation_max_deg) return;
-  const auto column = static_cast<int>((azimuth - fov_.azimuth_min_deg) / cell_deg_);
-  const auto row = static_cast<int>((elevation - fov_.elevation_min_deg) / cell_deg_);
+  const Angles angles = angles_of(direction);
+  const double azimuth = angles.azimuth_deg - fov_.azimuth_min_deg + kNudgeDeg;
+  const double elevation = angles.elevation_deg - fov_.elevation_min_deg + kNudgeDeg;
+  const double width = fov_.azimuth_max_deg - fov_.azimuth_min_deg + 2 * kNudgeDeg;
+  const double height = fov_.elevation_max_deg - fov_.elevation_min_deg + 2 * kNudgeDeg;
+  if (azimuth < 0.0 || azimuth > width || elevation < 0.0 || elevation > height) return;
+  const auto column = static_cast<int>(azimuth / cell_deg_);
+  const auto row = static_cast<int>(elevation / cell_deg_);
   lit_[index(std::min(column, columns_ - 1), std::min(row, rows_ - 1))] = true;
 }
 
@@ -49,7 +63,7 @@ double Coverage::share() const {
       if (lit_[index(column, row)]) lit += weight;
     }
   }
-  return lit / all;
+  return all > 0.0 ? lit / all : 0.0;
 }
 
 Shots::Shots(const ScanPattern& pattern) : pattern_(pattern) { pattern_.beams(0, beams_); }
@@ -59,6 +73,18 @@ void Shots::advance() {
   next_ = 0;
   stamp_ += pattern_.period();
   pattern_.beams(++scan_, beams_);
+}
+
+FieldOfView observed_field_of_view(const ScanPattern& pattern, Time end) {
+  FieldOfView fov{180.0, -180.0, 90.0, -90.0};
+  for (Shots shots(pattern); shots.time() < end; shots.advance()) {
+    const Angles angles = angles_of(shots.beam().direction);
+    fov.azimuth_min_deg = std::min(fov.azimuth_min_deg, std::floor(angles.azimuth_deg));
+    fov.azimuth_max_deg = std::max(fov.azimuth_max_deg, std::ceil(angles.azimuth_deg));
+    fov.elevation_min_deg = std::min(fov.elevation_min_deg, std::floor(angles.elevation_deg));
+    fov.elevation_max_deg = std::max(fov.elevation_max_deg, std::ceil(angles.elevation_deg));
+  }
+  return fov;
 }
 
 std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov, double cell_deg,

@@ -61,6 +61,9 @@ class Shots {
   Time stamp_{0};
 };
 
+/// The smallest box of whole degrees around the shots before `end`.
+FieldOfView observed_field_of_view(const ScanPattern& pattern, Time end);
+
 /// Share of the field of view that is lit before each of the `instants` (ascending, since the
 /// start).
 std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov, double cell_deg,

@@ -49,17 +49,26 @@ Eigen::Vector3d livox_direction(const LivoxModel& model, std::uint64_t row) {
                    static_cast<std::size_t>(row % emitters));
 }
 
-LivoxPattern::LivoxPattern(LivoxModel model, double rate_hz, const std::string& name)
-    : model_(std::move(model)),
-      period_(from_seconds(1.0 / rate_hz)),
-      rows_per_scan_(static_cast<std::size_t>(std::llround(model_.row_rate_hz / rate_hz))) {
-  const double rows = model_.row_rate_hz / rate_hz;
+std::size_t rows_per_scan(double row_rate_hz, double rate_hz, std::size_t emitters,
+                          const std::string& name) {
+  const double rows = row_rate_hz / rate_hz;
   const bool whole = std::abs(rows - std::round(rows)) < 1e-9 * rows;
-  if (!whole || rows < 1.0 || rows_per_scan_ % model_.emitters.size() != 0) {
+  const auto count = static_cast<std::size_t>(std::llround(rows));
+  if (!whole || count < 1 || count % emitters != 0) {
     throw InputError(name, "a scan would not hold a whole number of laser groups",
                      "choose rate_hz so that rows per second / rate_hz / emitters is whole");
   }
+  return count;
 }
+
+std::int32_t row_dt_ns(std::size_t row, double row_rate_hz) {
+  return static_cast<std::int32_t>(std::llround(1e9 * static_cast<double>(row) / row_rate_hz));
+}
+
+LivoxPattern::LivoxPattern(LivoxModel model, double rate_hz, const std::string& name)
+    : model_(std::move(model)),
+      period_(from_seconds(1.0 / rate_hz)),
+      rows_per_scan_(rows_per_scan(model_.row_rate_hz, rate_hz, model_.emitters.size(), name)) {}
 
 std::uint64_t LivoxPattern::repeats_after() const {
   const std::uint64_t groups = rows_per_scan_ / model_.emitters.size();
@@ -69,7 +78,6 @@ std::uint64_t LivoxPattern::repeats_after() const {
 void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
   const std::size_t emitters = model_.emitters.size();
   const std::uint64_t groups = rows_per_scan_ / emitters;
-  const auto row_period = static_cast<std::int32_t>(std::llround(1e9 / model_.row_rate_hz));
   out.resize(rows_per_scan_);
   for (std::uint64_t group = 0; group < groups; ++group) {
     // Whole turns are taken off first, so that long flights lose no precision.
@@ -77,7 +85,7 @@ void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
     for (std::size_t emitter = 0; emitter < emitters; ++emitter) {
       const std::size_t row = group * emitters + emitter;
       out[row].direction = direction(model_, phases, emitter).cast<float>();
-      out[row].dt_ns = static_cast<std::int32_t>(row) * row_period;
+      out[row].dt_ns = row_dt_ns(row, model_.row_rate_hz);
       out[row].ring = static_cast<std::uint16_t>(emitter);
       out[row].origin.setZero();
     }

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "lidarena/sensor/optics.hpp"
@@ -38,6 +39,16 @@ LivoxModel livox_mid360();
 /// Mid-40 and Mid-70: two wedges; 100,000 rows/s, repeat after 30 s.
 LivoxModel livox_mid40();
 LivoxModel livox_mid70();
+/// Avia, non-repetitive: six emitters, three wedges; 240,000 rows/s. Approximate: angles and rates
+/// are those of HELIOS++, which reach the data sheet's field of view, 70.4 x 77.2 deg, to 0.2 deg;
+/// not compared with the maker's table.
+LivoxModel livox_avia();
+
+/// Rows in a scan. Throws InputError (place `name`) when they are no whole number of `emitters`.
+std::size_t rows_per_scan(double row_rate_hz, double rate_hz, std::size_t emitters,
+                          const std::string& name);
+/// Instant of row `row` of a scan, to the nearest ns.
+std::int32_t row_dt_ns(std::size_t row, double row_rate_hz);
 
 /// Unit direction of row `row` since the sensor's start, lidar frame (x forward, y left, z up).
 Eigen::Vector3d livox_direction(const LivoxModel& model, std::uint64_t row);

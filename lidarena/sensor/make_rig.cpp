@@ -33,6 +33,14 @@ std::vector<int> ouster_pixel_shifts(int columns) {
   return shifts;
 }
 
+bool is_a_table(LidarModel model) {
+  return model == LidarModel::kLivoxCsv || model == LidarModel::kBeamTable;
+}
+
+bool spins(LidarModel model) {
+  return model == LidarModel::kOusterOs0128 || model == LidarModel::kBeamTable;
+}
+
 LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   std::vector<Beam> beams;
   make_pattern(sensor)->beams(0, beams);
@@ -41,8 +49,8 @@ LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
 
   LidarInfo info;
   info.id = id;
-  info.model = model_name(sensor.model);
-  info.kind = sensor.model == LidarModel::kOusterOs0128 ? "spinning" : "rosette";
+  info.model = is_a_table(sensor.model) ? id : model_name(sensor.model);
+  info.kind = spins(sensor.model) ? "spinning" : "rosette";
   info.rows = rows;
   info.columns = static_cast<int>(beams.size()) / rows;
   if (sensor.model == LidarModel::kOusterOs0128) {

@@ -3,15 +3,43 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/sensor/livox.hpp"
+#include "lidarena/sensor/livox_csv.hpp"
 #include "lidarena/sensor/ouster.hpp"
 
 namespace lidarena {
 namespace {
 
-std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std::string& place) {
-  if (sensor.model != LidarModel::kOusterOs0128 && sensor.columns != 0) {
-    throw InputError(place, "columns is set, but this model does not spin", "remove columns");
+/// Keys of one model that are set for another.
+void reject_foreign_keys(const SensorConfig& sensor, const std::string& place) {
+  const bool csv = sensor.model == LidarModel::kLivoxCsv;
+  const bool table = sensor.model == LidarModel::kBeamTable;
+  const bool spins = table || sensor.model == LidarModel::kOusterOs0128;
+  const auto reject = [&](const std::string& key, bool is_set, bool allowed) {
+    if (is_set && !allowed) {
+      throw InputError(place, key + " is set, but this model has no use for it", "remove " + key);
+    }
+  };
+  reject("columns", sensor.columns != 0, spins);
+  reject("pattern_file", !sensor.pattern_file.empty(), csv || table);
+  reject("row_rate_hz", sensor.row_rate_hz != 0.0, csv);
+  reject("lines", sensor.lines != 1, csv);
+  reject("beam_table", sensor.beam_table.has_value(), table);
+}
+
+std::unique_ptr<ScanPattern> make_csv_pattern(const SensorConfig& sensor,
+                                              const std::string& place) {
+  if (sensor.pattern_file.empty()) {
+    throw InputError(place, "names no table", "set pattern_file to a CSV in Livox's format");
   }
+  if (sensor.row_rate_hz <= 0.0) {
+    throw InputError(place, "does not tell how fast the table's rows are fired", "set row_rate_hz");
+  }
+  return std::make_unique<RayTablePattern>(read_livox_csv(sensor.pattern_file), sensor.row_rate_hz,
+                                           sensor.lines, sensor.rate_hz, place);
+}
+
+std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std::string& place) {
+  reject_foreign_keys(sensor, place);
   switch (sensor.model) {
     case LidarModel::kLivoxMid360:
       return std::make_unique<LivoxPattern>(livox_mid360(), sensor.rate_hz, place);
@@ -19,10 +47,40 @@ std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std:
       return std::make_unique<LivoxPattern>(livox_mid40(), sensor.rate_hz, place);
     case LidarModel::kLivoxMid70:
       return std::make_unique<LivoxPattern>(livox_mid70(), sensor.rate_hz, place);
+    case LidarModel::kLivoxAvia:
+      return std::make_unique<LivoxPattern>(livox_avia(), sensor.rate_hz, place);
     case LidarModel::kOusterOs0128:
       return std::make_unique<OusterOs0Pattern>(sensor.columns, sensor.rate_hz, place);
+    case LidarModel::kLivoxCsv:
+      return make_csv_pattern(sensor, place);
+    case LidarModel::kBeamTable:
+      if (!sensor.beam_table) {
+        throw InputError(place, "names no table", "set pattern_file to a YAML of beams");
+      }
+      return std::make_unique<SpinningHeadPattern>(*sensor.beam_table, sensor.columns,
+                                                   sensor.rate_hz, place);
   }
   throw InputError(place, "the model is not known");
+}
+
+void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) {
+  if (!fov) return;
+  if (fov->azimuth_min_deg < fov->azimuth_max_deg &&
+      fov->elevation_min_deg < fov->elevation_max_deg)
+    return;
+  throw InputError(place, "facts.fov is empty", "keep each minimum below its maximum");
+}
+
+/// Makes the sensor independent of where its file lies.
+void take_pattern_file(const std::filesystem::path& file, SensorConfig& sensor) {
+  if (sensor.pattern_file.empty()) return;
+  const std::filesystem::path table = file.parent_path() / sensor.pattern_file;
+  if (sensor.model == LidarModel::kLivoxCsv) {
+    sensor.pattern_file = std::filesystem::absolute(table).lexically_normal().string();
+  } else if (sensor.model == LidarModel::kBeamTable && !sensor.beam_table) {
+    sensor.beam_table = load_spinning_head(table);
+    sensor.pattern_file.clear();
+  }
 }
 
 }  // namespace
@@ -33,11 +91,13 @@ std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor) {
 
 SensorConfig load_sensor(const std::filesystem::path& file) {
   auto sensor = load_config<SensorConfig>(file);
+  take_pattern_file(file, sensor);
   if (sensor.name.empty()) sensor.name = file.stem().string();
   if (sensor.min_range_m >= sensor.max_range_m) {
     throw InputError(file.string(), "min_range_m is not below max_range_m");
   }
   check_returns(sensor.noise, sensor.returns, file.string());
+  check_fov(sensor.facts.fov, file.string());
   make_pattern(sensor, file.string());  // the model must have this mode
   return sensor;
 }

@@ -9,18 +9,31 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/sensor/field_of_view.hpp"
 #include "lidarena/sensor/return_config.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
+#include "lidarena/sensor/spinning_head.hpp"
 
 namespace lidarena {
 
-enum class LidarModel { kLivoxMid360, kLivoxMid40, kLivoxMid70, kOusterOs0128 };
+enum class LidarModel {
+  kLivoxMid360,
+  kLivoxMid40,
+  kLivoxMid70,
+  kLivoxAvia,
+  kOusterOs0128,
+  kLivoxCsv,   ///< rays of a table in Livox's format
+  kBeamTable,  ///< a spinning head with the beams of a table
+};
 template <>
 struct EnumNames<LidarModel> {
   static constexpr std::array names{std::pair{"livox_mid360", LidarModel::kLivoxMid360},
                                     std::pair{"livox_mid40", LidarModel::kLivoxMid40},
                                     std::pair{"livox_mid70", LidarModel::kLivoxMid70},
-                                    std::pair{"ouster_os0_128", LidarModel::kOusterOs0128}};
+                                    std::pair{"livox_avia", LidarModel::kLivoxAvia},
+                                    std::pair{"ouster_os0_128", LidarModel::kOusterOs0128},
+                                    std::pair{"livox_csv", LidarModel::kLivoxCsv},
+                                    std::pair{"beam_table", LidarModel::kBeamTable}};
 };
 
 /// How a scan relates to the motion during it. All but the first are faults of earlier simulators,
@@ -124,6 +137,8 @@ struct SensorFacts {
   double power_min_w = 0.0;
   double power_max_w = 0.0;
   std::string price;
+  std::string approximate;
+  std::optional<FieldOfView> fov;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -132,6 +147,8 @@ struct SensorFacts {
     v("power_min_w", self.power_min_w, "W", "least power drawn, 0 if unknown", at_least(0));
     v("power_max_w", self.power_max_w, "W", "most power drawn, 0 if unknown", at_least(0));
     v("price", self.price, "", "in words, empty if unknown");
+    v("approximate", self.approximate, "", "what of the pattern is approximate, empty if nothing");
+    v("fov", self.fov, "", "the field of view that the data sheet gives");
   }
 };
 
@@ -140,6 +157,10 @@ struct SensorConfig {
   std::string name;
   LidarModel model = LidarModel::kLivoxMid360;
   int columns = 0;
+  std::string pattern_file;
+  double row_rate_hz = 0.0;
+  int lines = 1;
+  std::optional<SpinningHead> beam_table;
   double rate_hz = 10.0;
   double min_range_m = 0.1;
   double max_range_m = 70.0;
@@ -156,7 +177,13 @@ struct SensorConfig {
     v("name", self.name, "", "id in the dataset; the file's stem if empty");
     v("model", self.model, "", "scan pattern");
     v("columns", self.columns, "", "firings per turn; spinning sensors only", at_least(0));
-    v("rate_hz", self.rate_hz, "Hz", "scans per second", above(0));
+    v("pattern_file", self.pattern_file, "",
+      "table of livox_csv (CSV) or beam_table (YAML), relative to this file");
+    v("row_rate_hz", self.row_rate_hz, "Hz", "rows per second of livox_csv", between(0, 1e7));
+    v("lines", self.lines, "", "laser lines that take turns in the rows of livox_csv",
+      between(1, 65535));
+    v("beam_table", self.beam_table, "", "the table itself, instead of pattern_file");
+    v("rate_hz", self.rate_hz, "Hz", "scans per second", at_least(0.5));  // dt_ns holds 2.1 s
     v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
     v("range_noise_m", self.range_noise_m, "m", "sigma of the range noise", at_least(0));
@@ -169,8 +196,10 @@ struct SensorConfig {
   }
 };
 
-/// Reads a file of configs/sensors. Throws InputError naming file, line and key when a key is
-/// unknown, a value is out of range, or the values do not fit together.
+/// Reads a file of configs/sensors: a beam table is read into `beam_table`, and the `pattern_file`
+/// of a livox_csv made a full path, so that the configuration no longer depends on where its file
+/// lies. Throws InputError naming file, line and key when a key is unknown, a value is out of
+/// range, or the values do not fit together.
 SensorConfig load_sensor(const std::filesystem::path& file);
 
 /// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) when the

@@ -113,6 +113,23 @@ TEST(Coverage, OfTheMid40AndMid70IsThatOfTheMakersTables) {
   }
 }
 
+TEST(Coverage, OfARingOnABorderBetweenCellsIsThatOfOneRow) {
+  std::vector<Eigen::Vector3f> ring;
+  for (double azimuth = -179.75; azimuth < 180.0; azimuth += 0.5) ring.push_back(ray(azimuth, 3.0));
+  const auto share = coverage(FewRays(ring), {-180, 180, -15, 15}, 0.5, seconds({100.0}))[0];
+  const double strip = std::sin(testing::radians(3.5)) - std::sin(testing::radians(3.0));
+  EXPECT_NEAR(share, strip / (2 * std::sin(testing::radians(15))), 1e-12);
+}
+
+TEST(Coverage, WithoutADataSheetTheFieldOfViewIsTheBoxAroundTheShots) {
+  const FewRays pattern({ray(-20.5, 3.2), ray(10.1, -4.9), ray(90, 90)});
+  const FieldOfView fov = observed_field_of_view(pattern, from_seconds(0.015));
+  EXPECT_EQ(fov.azimuth_min_deg, -21);
+  EXPECT_EQ(fov.azimuth_max_deg, 11);
+  EXPECT_EQ(fov.elevation_min_deg, -5);
+  EXPECT_EQ(fov.elevation_max_deg, 4);
+}
+
 TEST(Shots, FollowEachOtherThroughTheScans) {
   const LivoxPattern pattern(livox_mid40(), 100.0, "test");  // 1000 rows a scan
   Shots shots(pattern);

@@ -127,6 +127,34 @@ TEST(Livox, TheMid40AndMid70SeeTheirCirclesAndRepeatAfterThirtySeconds) {
   }
 }
 
+TEST(Livox, TheAviaSpansTheFieldOfViewOfItsDataSheet) {
+  const LivoxModel model = livox_avia();
+  double low = 0.0, high = 0.0, left = 0.0, right = 0.0;
+  for (std::uint64_t row = 0; row < 240'000; ++row) {  // a second
+    const Eigen::Vector3d ray = livox_direction(model, row);
+    ASSERT_NEAR(ray.norm(), 1.0, 1e-12);  // no total reflection
+    const double elevation = degrees(std::asin(ray.z()));
+    const double aside = degrees(std::asin(ray.y()));  // from the vertical plane ahead
+    low = std::min(low, elevation);
+    high = std::max(high, elevation);
+    right = std::min(right, aside);
+    left = std::max(left, aside);
+  }
+  EXPECT_NEAR(high - low, 77.06, 0.01);    // sheet: 77.2
+  EXPECT_NEAR(left - right, 70.49, 0.01);  // sheet: 70.4
+}
+
+TEST(Livox, AScanOfTheAviaIs24000RowsEvenlySpreadOver100Milliseconds) {
+  const LivoxPattern pattern(livox_avia(), 10.0, "test");
+  std::vector<Beam> beams;
+  pattern.beams(4, beams);
+  ASSERT_EQ(beams.size(), 24'000U);
+  for (std::size_t i = 0; i < beams.size(); ++i) {
+    ASSERT_NEAR(beams[i].dt_ns, 1e9 * static_cast<double>(i) / 240'000.0, 0.5);
+    ASSERT_EQ(beams[i].ring, i % 6);
+  }
+}
+
 TEST(Livox, RejectsARateThatCutsALaserGroup) {
   EXPECT_NO_THROW(LivoxPattern(livox_mid360(), 20.0, "test"));
   EXPECT_THROW(LivoxPattern(livox_mid360(), 30.0, "test"), InputError);       // 6666.7 rows

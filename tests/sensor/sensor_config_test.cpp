@@ -30,18 +30,33 @@ std::string failure(const std::string& yaml) {
   return "no failure";
 }
 
-TEST(SensorConfig, EveryFileThatShipsLoadsAndHasAnImuAndASource) {
+TEST(SensorConfig, EveryFileThatShipsLoadsAndNamesItsSourceAndFieldOfView) {
   int files = 0;
   for (const auto& entry : fs::directory_iterator(kConfigs)) {
     if (entry.path().extension() != ".yaml") continue;
     const SensorConfig sensor = load_sensor(entry.path());
     EXPECT_EQ(sensor.name, entry.path().stem());
-    EXPECT_TRUE(sensor.imu.has_value());
     EXPECT_FALSE(sensor.facts.source.empty());
-    EXPECT_GT(sensor.facts.weight_kg, 0.0);
+    EXPECT_TRUE(sensor.facts.fov.has_value());
     ++files;
   }
-  EXPECT_GE(files, 5);
+  EXPECT_GE(files, 13);
+}
+
+TEST(SensorConfig, TheOusterFilesAreTheFiveModesOfTheMaker) {
+  struct Mode {
+    const char* file;
+    std::size_t columns;
+    double rate_hz;
+  };
+  for (const auto& [file, columns, rate_hz] :
+       {Mode{"ouster_os0_128_512.yaml", 512, 10}, Mode{"ouster_os0_128_1024.yaml", 1024, 10},
+        Mode{"ouster_os0_128.yaml", 2048, 10}, Mode{"ouster_os0_128_512x20.yaml", 512, 20},
+        Mode{"ouster_os0_128_1024x20.yaml", 1024, 20}}) {
+    const auto pattern = make_pattern(load_sensor(kConfigs / file));
+    EXPECT_EQ(pattern->beams_per_scan(), 128 * columns);
+    EXPECT_EQ(pattern->period(), from_seconds(1.0 / rate_hz));
+  }
 }
 
 TEST(SensorConfig, ThePapersSensorsHaveItsRangesAndNoNoise) {
@@ -56,11 +71,14 @@ TEST(SensorConfig, ThePapersSensorsHaveItsRangesAndNoNoise) {
 }
 
 TEST(SensorConfig, WhatIsSavedAsJsonLoadsAsTheSame) {
-  const SensorConfig sensor = load_sensor(kConfigs / "ouster_os0_128.yaml");
-  const Json json = to_json(sensor);
-  SensorConfig again;
-  read_config(ConfigNode::parse(json.dump(), "saved"), again);
-  EXPECT_EQ(to_json(again), json);
+  for (const char* file : {"ouster_os0_128.yaml", "velodyne_vlp16.yaml", "livox_mid70.yaml"}) {
+    const SensorConfig sensor = load_sensor(kConfigs / file);
+    const Json json = to_json(sensor);
+    SensorConfig again;
+    read_config(ConfigNode::parse(json.dump(), "saved"), again);
+    EXPECT_EQ(to_json(again), json);
+    EXPECT_EQ(make_pattern(again)->beams_per_scan(), make_pattern(sensor)->beams_per_scan());
+  }
 }
 
 TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
@@ -75,6 +93,8 @@ TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
   EXPECT_THAT(failure("model: ouster_os0_128\n"), HasSubstr("2048"));
   EXPECT_THAT(failure("model: livox_mid40\ncolumns: 512\n"), HasSubstr("columns"));
   EXPECT_THAT(failure("rate_hz: 30\n"), HasSubstr("whole"));
+  EXPECT_THAT(failure("facts: {fov: {azimuth_min_deg: 180}}\n"), HasSubstr("facts.fov"));
+  EXPECT_THAT(failure("rate_hz: 0.1\n"), HasSubstr("at least 0.5"));
   EXPECT_THROW(load_sensor("no_such_file.yaml"), InputError);
 }
 

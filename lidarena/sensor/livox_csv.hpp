@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lidarena/sensor/scan_pattern.hpp"
+
+namespace lidarena {
+
+/// Unit directions of a table in the maker's format: rows of index or time, azimuth in deg (from x
+/// towards y), zenith angle in deg (from z), with or without a line of column names first. Rows are
+/// taken as evenly spaced in time; the first column is read as a number and not used. Throws
+/// InputError naming file and line when a row has not three numbers, one is not finite or out of
+/// range, or the file is missing or has no rows.
+std::vector<Eigen::Vector3f> read_livox_csv(const std::filesystem::path& file);
+
+/// Rays of a table at `row_rate_hz` rows per second, over again when it ends; ring is the row's
+/// number in the table modulo `lines`.
+class RayTablePattern : public ScanPattern {
+ public:
+  /// Throws InputError (place `name`) when a scan would not hold a whole number of rows, or there
+  /// is no row.
+  RayTablePattern(std::vector<Eigen::Vector3f> rays, double row_rate_hz, int lines, double rate_hz,
+                  const std::string& name);
+
+  Time period() const override { return period_; }
+  std::size_t beams_per_scan() const override { return rows_per_scan_; }
+  std::uint64_t repeats_after() const override;
+  void beams(std::uint64_t index, std::vector<Beam>& out) const override;
+
+ private:
+  std::vector<Eigen::Vector3f> rays_;
+  double row_rate_hz_;
+  std::uint64_t lines_;
+  Time period_;
+  std::size_t rows_per_scan_;
+};
+
+}  // namespace lidarena

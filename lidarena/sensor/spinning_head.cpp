@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/spinning_head.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr int kMostColumns = 100'000;  // fifty times any sensor's; keeps a slip from eating memory
+
+void check(const SpinningHead& table, int columns, double column_us, double turn_us,
+           const std::string& name) {
+  if (table.beams.empty()) throw InputError(name, "the beam table has no beams");
+  if (columns < 1) throw InputError(name, "a turn has no columns", "set columns");
+  if (columns > kMostColumns) throw InputError(name, "a turn has too many columns");
+  for (std::size_t ring = 0; ring < table.beams.size(); ++ring) {
+    const std::string beam = "beam " + std::to_string(ring) + " of the table ";
+    if (std::isnan(table.beams[ring].elevation_deg)) {
+      throw InputError(name, beam + "has no elevation_deg");
+    }
+    if (!(table.beams[ring].dt_us < column_us)) {
+      throw InputError(name, beam + "fires after its column ends",
+                       "keep dt_us below the column's period");
+    }
+  }
+  if (column_us * columns > turn_us * (1.0 + 1e-9)) {
+    throw InputError(name, "the columns take longer than a turn",
+                     "lower columns, column_period_us or rate_hz");
+  }
+}
+
+/// Rings in the order in which they fire.
+std::vector<std::size_t> firing_order(const SpinningHead& table) {
+  std::vector<std::size_t> rings(table.beams.size());
+  std::iota(rings.begin(), rings.end(), std::size_t{0});
+  std::stable_sort(rings.begin(), rings.end(), [&](std::size_t a, std::size_t b) {
+    return table.beams[a].dt_us < table.beams[b].dt_us;
+  });
+  return rings;
+}
+
+/// The beam while the head looks at `head` rad.
+Beam turned(const HeadBeam& row, double head) {
+  const double azimuth = head + row.azimuth_offset_deg * kDegree;
+  const double elevation = row.elevation_deg * kDegree;
+  Beam beam;
+  beam.direction = Eigen::Vector3d(std::cos(azimuth) * std::cos(elevation),
+                                   std::sin(azimuth) * std::cos(elevation), std::sin(elevation))
+                       .cast<float>();
+  beam.origin = (Eigen::AngleAxisd(head, Eigen::Vector3d::UnitZ()) * row.origin_m).cast<float>();
+  return beam;
+}
+
+}  // namespace
+
+SpinningHead load_spinning_head(const std::filesystem::path& file) {
+  const ConfigNode node = ConfigNode::load(file);
+  SpinningHead table;
+  read_config(node, table);
+  if (table.beams.empty()) {
+    throw InputError(file.string(), "has no beams", "list them under beams:, one a ring");
+  }
+  for (const ConfigNode& beam : node.find("beams")->items()) {
+    if (!beam.find("elevation_deg")) throw InputError(beam.where(), "has no elevation_deg");
+  }
+  return table;
+}
+
+SpinningHeadPattern::SpinningHeadPattern(const SpinningHead& table, int columns, double rate_hz,
+                                         const std::string& name)
+    : period_(from_seconds(1.0 / rate_hz)) {
+  const double turn_us = 1e6 / rate_hz;
+  const double column_us =
+      table.column_period_us > 0.0 ? table.column_period_us : turn_us / std::max(columns, 1);
+  check(table, columns, column_us, turn_us, name);
+  const double sense = table.clockwise ? -1.0 : 1.0;
+  const std::vector<std::size_t> rings = firing_order(table);
+  beams_.reserve(static_cast<std::size_t>(columns) * rings.size());
+  for (int column = 0; column < columns; ++column) {
+    for (const std::size_t ring : rings) {
+      const double us = column * column_us + table.beams[ring].dt_us;
+      const double turn = 2.0 * std::numbers::pi * us / turn_us;
+      Beam beam = turned(table.beams[ring], table.start_azimuth_deg * kDegree + sense * turn);
+      beam.dt_ns = static_cast<std::int32_t>(std::llround(1e3 * us));
+      beam.ring = static_cast<std::uint16_t>(ring);
+      beams_.push_back(beam);
+    }
+  }
+}
+
+void SpinningHeadPattern::beams(std::uint64_t, std::vector<Beam>& out) const { out = beams_; }
+
+}  // namespace lidarena

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/sensor/livox_csv.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/sensor/livox.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+#include "tests/sensor/flights.hpp"
+
+namespace lidarena {
+namespace {
+
+using testing::degrees;
+using ::testing::HasSubstr;
+using testing::radians;
+
+namespace fs = std::filesystem;
+
+fs::path written(const std::string& text) {
+  const fs::path file = fs::path(::testing::TempDir()) / "pattern_under_test.csv";
+  std::ofstream(file) << text;
+  return file;
+}
+
+/// The first rows of our own Mid-360 as the maker prints its table, angles with four decimals.
+std::string mid360_table(std::uint64_t rows) {
+  std::string csv = "Time/s,Azimuth/deg,Zenith/deg\r\n";
+  for (std::uint64_t row = 0; row < rows; ++row) {
+    const Eigen::Vector3d ray = livox_direction(livox_mid360(), row);
+    char line[80];
+    std::snprintf(line, sizeof(line), "%d,%.4f,%.4f\r\n", static_cast<int>(row),
+                  degrees(std::atan2(ray.y(), ray.x())), degrees(std::acos(ray.z())));
+    csv += line;
+  }
+  return csv;
+}
+
+TEST(LivoxCsv, TheMid360WrittenOutAndReadBackLooksTheSameWay) {
+  const auto rays = read_livox_csv(written(mid360_table(40'000)));
+  ASSERT_EQ(rays.size(), 40'000U);
+  // Both angles are rounded to 1e-4 deg, and directions to single precision.
+  const double rounding = std::hypot(radians(0.5e-4), radians(0.5e-4)) + 1e-7;
+  const LivoxPattern model(livox_mid360(), 10.0, "test");
+  const RayTablePattern table(rays, 200'000.0, 4, 10.0, "test");
+  EXPECT_EQ(table.period(), model.period());
+  ASSERT_EQ(table.beams_per_scan(), model.beams_per_scan());
+  std::vector<Beam> expected;
+  std::vector<Beam> found;
+  for (const std::uint64_t scan : {1U, 0U}) {
+    model.beams(scan, expected);
+    table.beams(scan, found);
+    for (std::size_t i = 0; i < found.size(); ++i) {
+      ASSERT_LT((found[i].direction - expected[i].direction).norm(), rounding);
+      ASSERT_EQ(found[i].dt_ns, expected[i].dt_ns);
+      ASSERT_EQ(found[i].ring, expected[i].ring);
+    }
+  }
+}
+
+TEST(LivoxCsv, BeginsAnewWhenItEnds) {
+  const auto rays = read_livox_csv(written("0,0,90\n1,90,90\n2,0,0"));
+  const RayTablePattern table(rays, 40.0, 2, 10.0, "test");  // 4 rows a scan of a table of 3
+  std::vector<Beam> beams;
+  table.beams(2, beams);  // rows 8 to 11, which are 2, 0, 1, 2
+  ASSERT_EQ(beams.size(), 4U);
+  EXPECT_LT((beams[0].direction - Eigen::Vector3f::UnitZ()).norm(), 1e-7F);
+  EXPECT_LT((beams[1].direction - Eigen::Vector3f::UnitX()).norm(), 1e-7F);
+  EXPECT_LT((beams[2].direction - Eigen::Vector3f::UnitY()).norm(), 1e-7F);
+  EXPECT_EQ(beams[0].ring, 0);
+  EXPECT_EQ(beams[2].ring, 1);
+  EXPECT_EQ(beams[3].dt_ns, 75'000'000);
+  EXPECT_EQ(table.repeats_after(), 3U);
+}
+
+std::string failure(const std::string& csv) {
+  try {
+    read_livox_csv(written(csv));
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no failure";
+}
+
+TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
+  EXPECT_EQ(failure("0, 1.5,\t88\n\n"), "no failure");
+  const std::string good = "time,azimuth,zenith\n0,1,2\n";
+  EXPECT_THAT(failure(good + "1,nan,2\n"), HasSubstr("pattern_under_test.csv:3: an angle"));
+  EXPECT_THAT(failure(good + "1,inf,2\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(failure(good + "1,361,2\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(failure(good + "1,1,-0.1\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(failure(good + "1,1,180.1\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(failure(good + "1,1\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(failure(good + "1,1,2,3\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(failure(good + "1,1,2x\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(failure(good + "1,,2\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(failure(good + "a,b,c\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(failure("0;1;2\n"), HasSubstr("has no rows"));  // one line that may be a header
+  EXPECT_THAT(failure("1,2\n"), HasSubstr("csv:1: is not a row of three"));
+  EXPECT_THAT(failure("time,azimuth,zenith\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(failure(""), HasSubstr("has no rows"));
+  EXPECT_THROW(read_livox_csv("no_such.csv"), InputError);
+}
+
+/// The message with which a sensor of these keys fails to load.
+std::string sensor_failure(const std::string& yaml) {
+  const fs::path file = fs::path(::testing::TempDir()) / "csv_sensor.yaml";
+  std::ofstream(file) << "model: livox_csv\n" << yaml;
+  try {
+    load_sensor(file);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "no failure";
+}
+
+TEST(LivoxCsv, IsASensorsPatternOnceItsRowRateIsTold) {
+  written("0,0,90\n1,90,90\n");
+  const std::string file = "pattern_file: pattern_under_test.csv\n";
+  EXPECT_EQ(sensor_failure(file + "row_rate_hz: 1000\nlines: 2\n"), "no failure");
+  EXPECT_THAT(sensor_failure(file), HasSubstr("set row_rate_hz"));
+  EXPECT_THAT(sensor_failure("row_rate_hz: 1000\n"), HasSubstr("set pattern_file"));
+  EXPECT_THAT(sensor_failure(file + "row_rate_hz: 1005\n"), HasSubstr("whole"));
+  EXPECT_THAT(sensor_failure(file + "row_rate_hz: 1000\ncolumns: 5\n"),
+              HasSubstr("remove columns"));
+  EXPECT_THAT(sensor_failure("pattern_file: gone.csv\nrow_rate_hz: 1000\n"), HasSubstr("gone.csv"));
+}
+
+}  // namespace
+}  // namespace lidarena
