@@ -66,6 +66,7 @@ std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
     }
     if (blocks.size() > most) continue;
     std::vector<std::int32_t> chosen;
+    chosen.reserve(blocks.size());
     for (const auto& [block, cell] : blocks) chosen.push_back(cell);
     return chosen;
   }
@@ -73,6 +74,7 @@ std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
 
 std::vector<Vector3d> points_of(const FreeSpace& space, std::span<const std::int32_t> cells) {
   std::vector<Vector3d> points;
+  points.reserve(cells.size());
   for (const std::int32_t cell : cells) {
     points.push_back(space.cells()[static_cast<std::size_t>(cell)].point);
   }
@@ -231,6 +233,7 @@ std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& w
   constexpr int kRounds = 8;
   constexpr double kFirstReach = 0.8;  // m; halved each time
   std::vector<Corner> corners;
+  corners.reserve(way.size());
   for (const Vector3d& point : way) corners.push_back({point});
   for (int round = 0; round < kRounds; ++round) {
     const SplineFlight flight(waypoints_of(corners), config, place);
