@@ -58,11 +58,15 @@ inline constexpr const char* kTruthHeader =
     "truth: pose of the body in the world (world_from_body) at the stamped instant\n"
     "time[s] x y z[m] qx qy qz qw";
 
-enum class DatasetFormat { kMcap, kBag };
+/// How measurements are stored: one recording, or a folder /ID for each sensor with a file a sweep
+/// (000000.pcd, .ply, or velodyne/000000.bin: x y z intensity alone), times.txt and imu.txt.
+enum class DatasetFormat { kMcap, kBag, kPcd, kPly, kKitti };
 template <>
 struct EnumNames<DatasetFormat> {
-  static constexpr std::array names{std::pair{"mcap", DatasetFormat::kMcap},
-                                    std::pair{"bag", DatasetFormat::kBag}};
+  static constexpr std::array names{
+      std::pair{"mcap", DatasetFormat::kMcap}, std::pair{"bag", DatasetFormat::kBag},
+      std::pair{"pcd", DatasetFormat::kPcd}, std::pair{"ply", DatasetFormat::kPly},
+      std::pair{"kitti", DatasetFormat::kKitti}};
 };
 
 enum class Dialect {
@@ -77,8 +81,11 @@ struct EnumNames<Dialect> {
 
 struct WriteOptions {
   DatasetFormat format = DatasetFormat::kMcap;
-  Dialect dialect = Dialect::kSi;
+  Dialect dialect = Dialect::kSi;  ///< of recordings; sweeps are always in SI
 };
+
+/// Whether a dataset folder holds its measurements; else it is a manifest alone, to be flown.
+bool has_measurements(const std::filesystem::path& folder);
 
 /// Writes a dataset folder: data.mcap, truth.tum, metadata.yaml (so that `ros2 bag play` takes the
 /// folder), manifest.json; world.ply is the caller's. Files appear under their names only once
@@ -117,5 +124,21 @@ class DatasetWriter : public EventSink, public ScanTruthSink {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+/// What copy_dataset() carried over.
+struct CopySummary {
+  std::size_t scans = 0;
+  std::size_t points = 0;
+  std::size_t imu_samples = 0;
+  std::size_t poses = 0;        ///< of the truth
+  std::size_t truth_scans = 0;  ///< whose points' truth came along
+};
+
+/// Writes an opened dataset anew to `out`, a folder or a file as DatasetWriter takes it: events,
+/// the rig, the truth of path and points where `in.path` has one, and from folder to folder the
+/// world and the manifest's other keys. Throws InputError where the input is broken (what was
+/// written stays unfinished) or `out` is the input itself; Error when the disk is full.
+CopySummary copy_dataset(Dataset& in, const std::filesystem::path& out,
+                         const WriteOptions& options = {});
 
 }  // namespace lidarena

@@ -14,6 +14,7 @@
 namespace lidarena::layout {
 
 inline constexpr const char* kManifest = "manifest.json";
+inline constexpr const char* kManifestPart = "manifest.json.part";  ///< in the making
 inline constexpr const char* kData = "data.mcap";
 inline constexpr const char* kBag = "data.bag";
 inline constexpr const char* kTruth = "truth.tum";

@@ -31,4 +31,8 @@ std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& 
                                                    const Rig& rig, const WriteOptions& options,
                                                    bool is_folder);
 
+/// A folder of sweeps, IMU rows and times for each sensor. The folder exists.
+std::unique_ptr<DatasetStore> make_sweep_store(const std::filesystem::path& folder, const Rig& rig,
+                                               DatasetFormat format);
+
 }  // namespace lidarena

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "lidarena/base/error.hpp"
@@ -25,6 +26,8 @@ void prepare(const fs::path& folder) {
                             layout::kBag, layout::kRosbagMetadata}) {
     fs::remove(folder / stale, error);
   }
+  // Until the manifest is whole, the folder is unfinished.
+  std::ofstream(folder / layout::kManifestPart);
 }
 
 /// Options whose format is that of a file's name, if it has one.
@@ -54,6 +57,11 @@ struct DatasetWriter::Impl {
       return;
     }
     prepare(path);
+    if (options.format != DatasetFormat::kMcap && options.format != DatasetFormat::kBag) {
+      options.dialect = Dialect::kSi;
+      store = make_sweep_store(path, rig, options.format);
+      return;
+    }
     const bool is_bag = options.format == DatasetFormat::kBag;
     store =
         make_recording_store(path / (is_bag ? layout::kBag : layout::kData), rig, options, true);

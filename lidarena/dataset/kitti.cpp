@@ -5,9 +5,11 @@
 
 #include <charconv>
 #include <functional>
+#include <iterator>
 #include <optional>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/trajectory_rows.hpp"
 
@@ -102,6 +104,24 @@ Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz) {
   return read_kitti_rows(file, [&](std::int64_t frame, const std::string&) {
     return from_seconds(static_cast<double>(frame) / rate_hz);
   });
+}
+
+void write_kitti_poses(const std::filesystem::path& file, const Trajectory& trajectory) {
+  std::string text;
+  for (const StampedPose& pose : trajectory.poses()) {
+    for (int i = 0; i < 12; ++i) {
+      const double value = pose.world_from_body.matrix()(i / 4, i % 4) + 0.0;  // no "-0"
+      fmt::format_to(std::back_inserter(text), "{}{:.9g}", i == 0 ? "" : " ", value);
+    }
+    text += '\n';
+  }
+  write_text_file(file, text);
+}
+
+void write_times(const std::filesystem::path& file, const std::vector<Time>& times) {
+  std::string text;
+  for (const Time time : times) text += format_seconds(time) + "\n";
+  write_text_file(file, text);
 }
 
 Trajectory read_euroc_csv(const std::filesystem::path& file) {

@@ -19,6 +19,12 @@ Trajectory read_kitti_poses(const std::filesystem::path& file, const std::vector
 /// The same with frame i at i / rate_hz seconds.
 Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz = 10.0);
 
+/// Writes such rows of 12 numbers with 9 significant digits; the times are not in the file, see
+/// write_times(). Throws Error when the disk is full.
+void write_kitti_poses(const std::filesystem::path& file, const Trajectory& trajectory);
+/// Seconds with 9 decimals, one a row.
+void write_times(const std::filesystem::path& file, const std::vector<Time>& times);
+
 /// EuRoC ground truth: a header row naming the columns, then comma-separated rows: ns, position
 /// (m), quaternion w x y z, and more columns, which are left alone. Throws InputError naming file
 /// and line.

@@ -9,6 +9,8 @@
 #include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/room.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
+#include "lidarena/dataset/sweep_dataset.hpp"
 #include "lidarena/dataset/sweeps.hpp"
 #include "lidarena/dataset/tum.hpp"
 
@@ -25,22 +27,9 @@ std::string ids_of(const Rig& rig) {
 
 /// Leaves the wanted LiDAR alone in rig and topics, and mounts it as asked.
 void apply(const ReadOptions& options, const std::string& place, layout::Description& dataset) {
-  std::vector<LidarInfo>& lidars = dataset.rig.lidars;
-  if (!options.sensor.empty()) {
-    const std::string known = ids_of(dataset.rig);
-    std::erase_if(lidars, [&](const LidarInfo& lidar) { return lidar.id != options.sensor; });
-    if (lidars.empty()) {
-      throw InputError(place, "has no LiDAR '" + options.sensor + "'", "it has: " + known);
-    }
-    std::erase_if(dataset.sensors.lidars,
-                  [&](const auto& entry) { return entry.second != options.sensor; });
-  }
-  if (!options.body_from_lidar) return;
-  if (lidars.size() != 1) {
-    throw InputError(place, "has several LiDARs, and body_from_lidar is for one",
-                     "name the sensor");
-  }
-  lidars.front().body_from_lidar = *options.body_from_lidar;
+  choose_lidar(options, place, dataset.rig);
+  std::erase_if(dataset.sensors.lidars,
+                [&](const auto& entry) { return dataset.rig.find_lidar(entry.second) == nullptr; });
 }
 
 Dataset from_recording(const fs::path& path, const fs::path& file, const RecordingInfo& info,
@@ -79,13 +68,20 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
     throw InputError(place, "is not of format version " + std::to_string(layout::kFormatVersion),
                      "read it with the version of the program that wrote it");
   }
+  if (!manifest.contains("rig")) {
+    throw InputError(place, "lacks \"rig\"", "write the dataset anew");
+  }
+  if (is_sweep_dataset(manifest)) {
+    Rig rig = layout::rig_from_json(manifest["rig"], place);
+    return open_sweep_dataset(folder, std::move(rig), std::move(manifest), options);
+  }
   const auto file = data_file(folder);
   if (!file) {
     throw InputError(folder.string(), "has a manifest but no data: it is flown when used",
                      "simulate it from its manifest");
   }
-  if (!manifest.contains("rig") || !manifest.contains("topics")) {
-    throw InputError(place, "lacks \"rig\" or \"topics\"", "write the dataset anew");
+  if (!manifest.contains("topics")) {
+    throw InputError(place, "lacks \"topics\"", "write the dataset anew");
   }
   layout::Description description{layout::rig_from_json(manifest["rig"], place),
                                   layout::sensors_from_json(manifest["topics"], place)};
@@ -168,7 +164,8 @@ Dataset open_recording_file(const fs::path& file, const ReadOptions& options) {
 
 bool is_unfinished(const fs::path& folder) {
   const auto is_there = [&](const std::string& name) { return fs::exists(folder / name); };
-  return data_file(folder) || is_there(std::string(layout::kData) + ".part") ||
+  return is_there(layout::kManifestPart) || data_file(folder) ||
+         is_there(std::string(layout::kData) + ".part") ||
          is_there(std::string(layout::kBag) + ".part");
 }
 
@@ -273,8 +270,18 @@ std::optional<Trajectory> load_truth(const fs::path& dataset) {
   return is_room(dataset) ? room_truth(dataset) : std::nullopt;
 }
 
+bool has_measurements(const fs::path& folder) {
+  if (data_file(folder)) return true;
+  const fs::path manifest = folder / layout::kManifest;
+  return fs::exists(manifest) && is_sweep_dataset(read_json(manifest));
+}
+
 std::unique_ptr<ScanTruthSource> open_scan_truth(const fs::path& dataset,
                                                  const std::string& sensor) {
+  if (fs::exists(dataset / layout::kManifest)) {
+    const Json manifest = read_json(dataset / layout::kManifest);
+    if (is_sweep_dataset(manifest)) return open_sweep_truth(dataset, manifest, sensor);
+  }
   const auto file = fs::is_directory(dataset) ? data_file(dataset) : std::optional(dataset);
   if (!file || !recording_format_of(*file) || !fs::exists(*file)) return nullptr;
   const auto topic = find_truth_topic(*file, sensor);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/imu_text.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/sweep_file.hpp"
@@ -81,28 +82,6 @@ std::vector<ScanRow> read_scan_rows(const fs::path& file) {
   return scans;
 }
 
-std::vector<ImuSample> read_imu(const fs::path& file) {
-  TextRows rows(file);
-  std::vector<ImuSample> samples;
-  while (const auto row = rows.next()) {
-    const auto words = split_words(*row);
-    const std::string place = rows.place();
-    if (words.size() != 7) {
-      throw InputError(place, fmt::format("holds {} columns, not 7", words.size()),
-                       "rows are t wx wy wz ax ay az");
-    }
-    const auto number = [&](std::size_t i) { return finite_number(words[i], place); };
-    samples.push_back({seconds_at(words[0], place),
-                       {number(1), number(2), number(3)},
-                       {number(4), number(5), number(6)}});
-    if (samples.size() > 1 && samples.back().stamp <= samples[samples.size() - 2].stamp) {
-      throw InputError(place, "the time is not later than that of the row before",
-                       "sort the rows by time and remove duplicates");
-    }
-  }
-  return samples;
-}
-
 Scan read_scan(const fs::path& file, const std::vector<std::string>& columns, Time begin) {
   PointTable table{file.string(), read_bytes(file), 0, {}};
   const std::size_t stride = columns.size() * sizeof(double);
@@ -172,7 +151,7 @@ Dataset open_room(const fs::path& path, const ReadOptions& options) {
   const Meta meta = read_meta(path);
   auto scans = read_scan_rows(path / "scans.txt");
   std::vector<ImuSample> imu;
-  if (fs::exists(path / "imu.txt")) imu = read_imu(path / "imu.txt");
+  if (fs::exists(path / "imu.txt")) imu = read_imu_text(path / "imu.txt");
   Dataset dataset;
   dataset.path = path;
   dataset.rig = single_lidar_rig(path, options, meta.body_from_lidar);

@@ -21,4 +21,22 @@ Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& optio
   return rig;
 }
 
+void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig) {
+  std::vector<LidarInfo>& lidars = rig.lidars;
+  if (!options.sensor.empty()) {
+    std::string known;
+    for (const LidarInfo& lidar : lidars) known += (known.empty() ? "" : ", ") + lidar.id;
+    std::erase_if(lidars, [&](const LidarInfo& lidar) { return lidar.id != options.sensor; });
+    if (lidars.empty()) {
+      throw InputError(place, "has no LiDAR '" + options.sensor + "'", "it has: " + known);
+    }
+  }
+  if (!options.body_from_lidar) return;
+  if (lidars.size() != 1) {
+    throw InputError(place, "has several LiDARs, and body_from_lidar is for one",
+                     "name the sensor");
+  }
+  lidars.front().body_from_lidar = *options.body_from_lidar;
+}
+
 }  // namespace lidarena

@@ -12,4 +12,9 @@ namespace lidarena {
 Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options,
                      const Pose& body_from_lidar);
 
+/// Leaves the LiDAR `options.sensor` alone in the rig (empty = all) and mounts it as
+/// `options.body_from_lidar` says. Throws InputError (place `place`) when there is none such, or
+/// when several are left to be mounted.
+void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig);
+
 }  // namespace lidarena

@@ -201,6 +201,15 @@ void write_sweep_pcd(const std::filesystem::path& file, const Scan& scan) {
                 packed_rows(scan));
 }
 
+void write_sweep_bin(const std::filesystem::path& file, const Scan& scan) {
+  std::string rows;
+  for (const Point& point : scan.points) {
+    for (int axis = 0; axis < 3; ++axis) append_value(rows, point.position[axis]);
+    append_value(rows, point.intensity);
+  }
+  write_text_file(file, rows);
+}
+
 std::string sweep_file_name(Time stamp, std::string_view ending) {
   return fmt::format("{:019}{}", stamp.count(), ending);
 }

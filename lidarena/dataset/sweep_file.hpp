@@ -35,6 +35,8 @@ Scan starting_at(Scan scan, Time begin, const std::string& file);
 void write_sweep_ply(const std::filesystem::path& file, const Scan& scan);
 /// The same fields as binary PCD.
 void write_sweep_pcd(const std::filesystem::path& file, const Scan& scan);
+/// Raw float32 rows x y z intensity, as KITTI's velodyne sweeps: no times, no rings.
+void write_sweep_bin(const std::filesystem::path& file, const Scan& scan);
 /// The stamp as 19 digits of nanoseconds, with the ending (".ply").
 std::string sweep_file_name(Time stamp, std::string_view ending);
 

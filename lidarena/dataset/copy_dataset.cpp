@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <map>
+#include <optional>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/dataset_layout.hpp"
+#include "lidarena/dataset/recording.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The truth beside a dataset, handed out in step with its events.
+class TruthBeside {
+ public:
+  explicit TruthBeside(const Dataset& in) : path_(load_truth(in.path)) {
+    for (const LidarInfo& lidar : in.rig.lidars) {
+      if (!may_have_hits(in)) break;
+      if (auto hits = open_scan_truth(in.path, lidar.id)) hits_[lidar.id] = std::move(hits);
+    }
+  }
+
+  /// Poses up to `time`.
+  void write_path(Time time, DatasetWriter& out, CopySummary& summary) {
+    if (!path_) return;
+    for (; next_ < path_->size() && path_->poses()[next_].stamp <= time; ++next_) {
+      out.write_truth(path_->poses()[next_]);
+      ++summary.poses;
+    }
+  }
+
+  /// What the points of a scan hit.
+  void write_hits(const std::string& id, DatasetWriter& out, CopySummary& summary) {
+    const auto source = hits_.find(id);
+    if (source == hits_.end()) return;
+    if (const auto truth = source->second->next()) {
+      out.write(*truth);
+      ++summary.truth_scans;
+    }
+  }
+
+ private:
+  /// Foreign data have their LiDARs named by us, and no truth.
+  static bool may_have_hits(const Dataset& in) {
+    if (fs::is_directory(in.path)) return fs::exists(in.path / layout::kManifest);
+    return recording_format_of(in.path) &&
+           layout::description_in(read_recording_info(in.path), in.path.string());
+  }
+
+  std::optional<Trajectory> path_;
+  std::size_t next_ = 0;
+  std::map<std::string, std::unique_ptr<ScanTruthSource>> hits_;
+};
+
+/// The manifest's keys that are not about how the measurements are stored.
+Json manifest_of(const Json& manifest) {
+  Json kept = Json::object();
+  if (!manifest.is_object()) return kept;
+  for (const auto& [key, value] : manifest.items()) {
+    const bool is_storage = key == "topics" || key == "message_counts" || key == "storage" ||
+                            key == "dialect" || key == "start_ns" || key == "end_ns" ||
+                            key.ends_with("_counts");
+    if (!is_storage) kept[key] = value;
+  }
+  return kept;
+}
+
+void check_apart(const fs::path& in, const fs::path& out) {
+  std::error_code error;
+  const bool into_itself =
+      fs::exists(out) && (fs::equivalent(in, out, error) ||
+                          fs::equivalent(fs::absolute(in).parent_path(), out, error));
+  if (into_itself) {
+    throw InputError(out.string(), "is what is to be converted", "name another place for it");
+  }
+}
+
+}  // namespace
+
+CopySummary copy_dataset(Dataset& in, const fs::path& out, const WriteOptions& options) {
+  check_apart(in.path, out);
+  TruthBeside truth(in);
+  DatasetWriter writer(out, in.rig, options);
+  CopySummary summary;
+  while (const auto event = in.events->next()) {
+    if (const auto* scan = std::get_if<Scan>(&event->data)) {
+      ++summary.scans;
+      summary.points += scan->points.size();
+      truth.write_path(scan->stamp, writer, summary);
+      truth.write_hits(event->sensor_id, writer, summary);
+    } else {
+      ++summary.imu_samples;
+      truth.write_path(std::get<ImuSample>(event->data).stamp, writer, summary);
+    }
+    writer.write(*event);
+  }
+  truth.write_path(Time::max(), writer, summary);
+  const auto world = fs::is_directory(in.path) ? find_world_mesh(in.path) : std::nullopt;
+  if (world && fs::is_directory(out)) {
+    fs::copy_file(*world, out / layout::kWorld, fs::copy_options::overwrite_existing);
+  }
+  writer.finish(manifest_of(in.manifest));
+  return summary;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "lidarena/base/imu_sample.hpp"
+#include "lidarena/dataset/part_file.hpp"
+
+namespace lidarena {
+
+/// Rows t wx wy wz ax ay az (s, rad/s, m/s^2), times strictly increasing. Throws InputError naming
+/// file and line.
+std::vector<ImuSample> read_imu_text(const std::filesystem::path& file);
+
+/// Writes such rows; every number comes back to the last bit.
+class ImuTextWriter {
+ public:
+  explicit ImuTextWriter(const std::filesystem::path& file);
+  void write(const ImuSample& sample);
+  void close() { out_.commit(); }
+
+ private:
+  PartFile out_;
+};
+
+}  // namespace lidarena

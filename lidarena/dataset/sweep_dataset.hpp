@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/dataset/dataset.hpp"
+
+/// Dataset folders whose measurements are a file a sweep: what writer and reader agree on.
+namespace lidarena {
+
+namespace layout {
+
+inline constexpr const char* kTimes = "times.txt";
+inline constexpr const char* kImu = "imu.txt";
+inline constexpr const char* kHits = "hits";  ///< truth of the points, a PCD a sweep
+
+/// FOLDER/ID/000012.pcd, or FOLDER/ID/velodyne/000012.bin of KITTI.
+std::filesystem::path sweep_path(const std::filesystem::path& folder, const std::string& lidar_id,
+                                 DatasetFormat format, std::size_t index);
+/// FOLDER/ID/hits/000012.pcd.
+std::filesystem::path hits_path(const std::filesystem::path& folder, const std::string& lidar_id,
+                                std::size_t index);
+
+}  // namespace layout
+
+/// Truth of points as binary PCD: x y z range normal_x normal_y normal_z float32, triangle uint32.
+void write_hits(const std::filesystem::path& file, const std::vector<PointTruth>& points);
+std::vector<PointTruth> read_hits(const std::filesystem::path& file);
+
+/// Whether a manifest speaks of sweeps.
+bool is_sweep_dataset(const Json& manifest);
+/// Throws InputError naming the file that is missing or broken; a missing sweep is found by next().
+Dataset open_sweep_dataset(const std::filesystem::path& folder, Rig rig, Json manifest,
+                           const ReadOptions& options);
+/// As open_scan_truth().
+std::unique_ptr<ScanTruthSource> open_sweep_truth(const std::filesystem::path& folder,
+                                                  const Json& manifest, const std::string& sensor);
+
+}  // namespace lidarena
