@@ -195,6 +195,8 @@ std::string figure_text(const Json& metrics, const Figure& figure) {
     const std::string basis = basis_of(metrics, figure);
     line += fmt::format("  coverage {:.0f} %{}{}", *coverage, basis.empty() ? "" : ", ", basis);
   }
+  const std::string warning = text_at(metrics, std::string(figure.group) + "/warning");
+  if (!warning.empty()) line += " (" + warning + ")";
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
 }

@@ -8,6 +8,10 @@
 
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/evaluation/lever_arm.hpp"
+#include "lidarena/evaluation/suspicion.hpp"
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
 #include "tum_text.hpp"
@@ -175,6 +179,58 @@ TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
                                              tum_text::parse(truth_file), Gauge::kSe3);
   EXPECT_NEAR(ate.translation_m.rmse, 0.01347, 5e-5);
   RecordProperty("ate_rmse_m", std::to_string(ate.translation_m.rmse));
+}
+
+/// Trajectories of others as they come, whatever their rates, frames and clocks.
+class RealTrajectories : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(shared("trajectories"))) {
+      GTEST_SKIP() << "the real trajectories are not here: they are not scored";
+    }
+  }
+  static Trajectory read(const std::string& name) {
+    return read_trajectory(shared("trajectories/" + name));
+  }
+};
+
+TEST_F(RealTrajectories, EurocsTwoEstimatesAreOfTheTruthsBodyAndLateByTheSameTime) {
+  const Trajectory truth = read("euroc_V1_02/stamped_groundtruth.txt");
+  std::vector<TimeOffset> late;
+  for (const char* name : {"stamped_traj_estimate0.txt", "stamped_traj_estimate1.txt"}) {
+    const Trajectory estimate = read(std::string("euroc_V1_02/") + name);
+    const Association found = associate(estimate, truth);
+    EXPECT_EQ(found.matched, estimate.size());
+    EXPECT_NEAR(found.estimate_rate_hz, 20.0, 0.01);
+    EXPECT_EQ(suspect_times(estimate, truth), "");
+    EXPECT_EQ(suspect_quaternion_order(estimate, truth), "");
+    const auto arm = find_lever_arm(estimate, truth);
+    ASSERT_TRUE(arm);
+    // both are of the IMU: what is left is the estimators' error and that of the clocks
+    EXPECT_LT(arm->body_from_estimate.translation().norm(), 0.05);
+    EXPECT_EQ(warning_of(*arm), "");
+    late.push_back(*time_offset(estimate, truth));
+  }
+  // two runs of one program on one recording share its clocks
+  EXPECT_NEAR(late[0].late_s, late[1].late_s, 3.0 * std::hypot(late[0].sigma_s, late[1].sigma_s));
+}
+
+TEST_F(RealTrajectories, AKeyframeTrajectorySaysHowLittleItCovers) {
+  const Trajectory truth = read("tum_rgbd/freiburg1_xyz-groundtruth.txt");
+  const Trajectory keyframes = read("tum_rgbd/freiburg1_xyz-ORB_kf_mono.txt");
+  EXPECT_LT(associate(keyframes, truth).coverage, 0.1);
+  // the camera's z axis looks ahead: a heading-only fit is warned of
+  EXPECT_NE(align(keyframes, truth, Gauge::kPosYaw).warning, "");
+}
+
+TEST_F(RealTrajectories, ClocksOfDifferentEpochsAreNamed) {
+  const std::string said =
+      suspect_times(read("tiers/indoor04_fastlio_os128.tum"), read("tiers/indoor01_optitrack.tum"));
+  EXPECT_NE(said.find("clocks count from different instants"), std::string::npos) << said;
+}
+
+TEST_F(RealTrajectories, ATableOfAnotherLayoutIsRefusedInWords) {
+  EXPECT_THROW(read("boreas/boreas-2021-08-05-13-34_lidar_poses.csv"), InputError);
 }
 
 }  // namespace

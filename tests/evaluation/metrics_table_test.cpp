@@ -72,6 +72,14 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
   EXPECT_THAT(text, HasSubstr("12.300 ms"));
 }
 
+TEST(MetricsText, AFigureThatMeansLittleSaysSo) {
+  ScoredRun run = run_of("run_a", "", "house", 1.25);
+  run.metrics["final"]["ate"]["posyaw"] = {{"warning", "the estimate's z axis leans 11.5 deg"},
+                                           {"translation", {{"rmse_m", 0.2}, {"count", 300}}}};
+  EXPECT_THAT(metrics_text(run),
+              HasSubstr("coverage 87 %, 300 poses (the estimate's z axis leans"));
+}
+
 TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
   ScoredRun run = run_of("run_a", "x:y", "house", 1.25);
   run.metrics["live"]["rpe"]["1m"]["translation"]["rmse_m"] = 0.03;
