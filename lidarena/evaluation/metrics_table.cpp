@@ -355,7 +355,7 @@ Json to_json(const PairedComparison& c, const char* unit) {
 }
 
 std::string interval_text(const Json& interval) {
-  if (interval.is_null()) return "none (under 3 flights)";
+  if (interval.is_null()) return "-";
   return fmt::format("{:.3g} .. {:.3g}", interval[0].get<double>(), interval[1].get<double>());
 }
 
@@ -468,12 +468,13 @@ Json statistics_json(std::span<const ScoredRun> runs, std::uint64_t seed) {
 }
 
 std::string statistics_text(const Json& statistics) {
-  std::string text;
+  std::string text =
+      "medians, ranges, and 95 % intervals by bootstrap over flights (- under three flights)\n";
   for (const auto& [algorithm, figures] : statistics.at("algorithms").items()) {
     text += fmt::format("{}\n", algorithm.empty() ? "all" : algorithm);
     for (const Figure& figure : kFigures) {
       const Json& s = figures.at(figure.key);
-      if (s.at("values") == 0) continue;
+      if (s.at("values") == 0 || s.at("runs") == 1) continue;
       text += fmt::format("  {:<34}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.words,
                           shown(s.at("median")), figure.unit, shown(s.at("min")),
                           shown(s.at("max")), interval_text(s.at("median_95")),
