@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "tests/dataset/fuzz/fuzz_targets.hpp"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/dataset/bag_writer.hpp"
+#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/driver_layouts.hpp"
+#include "lidarena/dataset/imu_text.hpp"
+#include "lidarena/dataset/kitti.hpp"
+#include "lidarena/dataset/livox_message.hpp"
+#include "lidarena/dataset/mcap_writer.hpp"
+#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/sweep_file.hpp"
+#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/dataset/tum.hpp"
+#include "tests/dataset/sample_events.hpp"
+#include "tests/dataset/temporary_folder.hpp"
+
+namespace lidarena::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string text_of(const fs::path& file) {
+  std::ostringstream text;
+  text << std::ifstream(file, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+std::string text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Runs `read`, which may refuse its input.
+template <class Read>
+void tolerant(Read&& read) {
+  try {
+    read();
+  } catch (const InputError&) {
+    // refused, as it should be
+  }
+}
+
+void drain(EventSource& source) {
+  while (source.next()) {
+  }
+}
+
+/// Everything that reads a dataset.
+void read_dataset(const fs::path& path) {
+  tolerant([&] { drain(*open_dataset(path).events); });
+  tolerant([&] { load_truth(path); });
+  tolerant([&] {
+    if (const auto truth = open_scan_truth(path)) {
+      while (truth->next()) {
+      }
+    }
+  });
+}
+
+/// A folder for the process, with a file written anew for each input.
+const fs::path& scratch() {
+  static const TemporaryFolder folder;
+  return folder.path();
+}
+
+fs::path written(const fs::path& file, std::string_view bytes) {
+  fs::create_directories(file.parent_path());
+  fs::remove(file);  // overwriting makes some file systems wait for the disk
+  std::ofstream(file, std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  return file;
+}
+
+void write_dataset(const fs::path& path, const WriteOptions& options) {
+  DatasetWriter out(path, sample::rig(), options);
+  int next_truth = 0;
+  for (const Event& event : sample::events(2, 8)) {
+    if (const auto* scan = std::get_if<Scan>(&event.data)) {
+      out.write(ScanTruth{"mid360", scan->stamp, {PointTruth{}}});
+    } else if (next_truth < 5) {
+      out.write_truth(sample::truth(next_truth++));
+    }
+    out.write(event);
+  }
+  out.close();
+}
+
+std::string dataset_file(const char* name, const WriteOptions& options) {
+  const fs::path file = scratch() / name;
+  write_dataset(file, options);
+  return text_of(file);
+}
+
+/// Stored bags have no check sums: what is broken gets past the container.
+std::string stored_bag() {
+  const fs::path file = scratch() / "stored.bag";
+  BagWriter out(file, {.compression = BagCompression::kNone});
+  const std::uint16_t points = out.add_topic("/points", ros::kPointCloud2);
+  const std::uint16_t imu = out.add_topic("/imu", ros::kImu);
+  const std::uint16_t livox = out.add_topic("/livox", "livox_ros_driver/msg/CustomMsg");
+  MessageWriter message(Encoding::kRos1);
+  LidarInfo lidar;
+  for (int i = 0; i < 3; ++i) {
+    ros::encode_scan(sample::scan(i, 6), "lidar", message);
+    out.write(points, sample::kStart, sample::kStart, message.bytes());
+    encode_livox_custom(sample::scan(i, 6), lidar, "lidar", message);
+    out.write(livox, sample::kStart, sample::kStart, message.bytes());
+    ros::encode_imu(sample::imu(i), "imu", message);
+    out.write(imu, sample::kStart, sample::kStart, message.bytes());
+  }
+  out.close();
+  return text_of(file);
+}
+
+Target recordings(const char* ending, std::vector<std::string> corpus) {
+  return {ending, std::move(corpus),
+          [file = scratch() / (std::string("in.") + ending)](std::string_view bytes) {
+            read_dataset(written(file, bytes));
+          }};
+}
+
+Target clouds(const char* ending) {
+  const fs::path file = scratch() / (std::string("cloud.") + ending);
+  const bool is_pcd = std::string_view(ending) == "pcd";
+  const Cloud cloud{{{1, 2, 3}, {4, 5, 6}}, {7, 8}, {}};
+  is_pcd ? write_pcd(file, cloud) : write_ply(file, cloud);
+  std::vector<std::string> corpus{text_of(file)};
+  is_pcd ? write_sweep_pcd(file, sample::scan(0, 5)) : write_sweep_ply(file, sample::scan(0, 5));
+  corpus.push_back(text_of(file));
+  corpus.push_back(is_pcd ? "VERSION 0.7\nFIELDS x y z t\nSIZE 4 4 4 8\nTYPE F F F U\nCOUNT 1 1 1 "
+                            "1\nWIDTH 2\nHEIGHT 1\nPOINTS 2\nDATA ascii\n1 2 3 4\n5 6 7 8\n"
+                          : "ply\nformat ascii 1.0\nelement face 1\nproperty list uchar int v\n"
+                            "element vertex 2\nproperty float x\nproperty double y\nproperty float "
+                            "z\nend_header\n3 1 2 3\n1 2 3\n4 5 6\n");
+  return {ending, corpus, [file](std::string_view bytes) {
+            written(file, bytes);
+            tolerant([&] { read_cloud(file); });
+            tolerant([&] { read_sweep(file, Time{5}); });
+          }};
+}
+
+Target raw_sweeps() {
+  const fs::path file = scratch() / "sweep.bin";
+  write_sweep_bin(file, sample::scan(0, 5));
+  return {"bin", {text_of(file)}, [file](std::string_view bytes) {
+            written(file, bytes);
+            for (const std::string& layout : raw_layouts()) {
+              tolerant([&] { read_sweep(file, Time{5}, layout); });
+            }
+          }};
+}
+
+Target trajectories() {
+  const fs::path file = scratch() / "path" / "poses.txt";
+  fs::create_directories(file.parent_path());
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 5; ++i) poses.push_back(sample::truth(i));
+  write_tum(file, Trajectory(poses), kTruthHeader);
+  std::vector<std::string> corpus{text_of(file)};
+  write_kitti_poses(file, Trajectory(poses));
+  corpus.push_back(text_of(file));
+  corpus.push_back(
+      "#timestamp, p x, p y, p z, q w, q x, q y, q z\n1403636580838555648,1,2,3,1,0,"
+      "0,0\n1403636580843555648,1,2,3.5,0.9999,0.01,0,0\n");
+  return {"trajectory", corpus, [file](std::string_view bytes) {
+            written(file, bytes);
+            tolerant([&] { read_trajectory(file); });
+            tolerant([&] { read_times(file); });
+            tolerant([&] { read_imu_text(file); });
+          }};
+}
+
+/// A room whose meta.json is broken.
+Target room_meta() {
+  const fs::path room = scratch() / "room";
+  written(room / "scans.txt", "0 100.0 100.1\n");
+  written(room / "imu.txt", "100.0 0 0 0 0 0 9.8\n100.05 0 0 0 0 0 9.8\n");
+  written(room / "gt.tum", "100.0 0 0 0 0 0 0 1\n100.1 0 0 0 0 0 0 1\n");
+  const double point[5] = {1, 2, 3, 100.01, 4};
+  written(room / "scans" / "000000.bin", {reinterpret_cast<const char*>(point), sizeof point});
+  return {"room",
+          {R"({"columns": ["x", "y", "z", "t", "ring"], "time": "absolute seconds",)"
+           R"( "truth": "lidar frame", "body_from_lidar": [0, 0, 0.1, 0, 0, 0, 1]})"},
+          [room](std::string_view bytes) {
+            written(room / "meta.json", bytes);
+            read_dataset(room);
+          }};
+}
+
+/// Dataset folders whose manifest.json is broken.
+Target manifests() {
+  const fs::path recorded = scratch() / "recorded";
+  const fs::path sweeps = scratch() / "sweeps";
+  write_dataset(recorded, {});
+  write_dataset(sweeps, {.format = DatasetFormat::kPcd});
+  return {"manifest",
+          {text_of(recorded / "manifest.json"), text_of(sweeps / "manifest.json")},
+          [recorded, sweeps](std::string_view bytes) {
+            for (const fs::path& folder : {recorded, sweeps}) {
+              written(folder / "manifest.json", bytes);
+              read_dataset(folder);
+            }
+          }};
+}
+
+Target configurations() {
+  return {"yaml",
+          {"body_frame: base\nlidars:\n  - id: a\n    rate_hz: 10\n    pixel_shifts: [1, 2]\n    "
+           "body_from_lidar: [0, 0, 0.1, 0, 0, 0, 1]\nimus: []\n"},
+          [](std::string_view bytes) {
+            tolerant([&] {
+              Rig rig;
+              read_config(ConfigNode::parse(std::string(bytes), "fuzz"), rig);
+            });
+          }};
+}
+
+/// Messages as they lie in the recordings, in both encodings.
+Target messages() {
+  std::vector<std::string> corpus;
+  LidarInfo lidar;
+  lidar.model = "ouster_os0_128";
+  for (const Encoding encoding : {Encoding::kCdr, Encoding::kRos1}) {
+    MessageWriter out(encoding);
+    const auto keep = [&] { corpus.push_back(text_of(out.bytes())); };
+    ros::encode_scan(sample::scan(0, 4), "lidar", out);
+    keep();
+    encode_livox_cloud(sample::scan(0, 4), lidar, "lidar", out);
+    keep();
+    encode_livox_custom(sample::scan(0, 4), lidar, "lidar", out);
+    keep();
+    encode_ouster_cloud(sample::scan(0, 4), lidar, "lidar", out);
+    keep();
+    ros::encode_imu(sample::imu(0), "imu", out);
+    keep();
+    ros::encode_odometry(sample::truth(1), "a", "b", out);
+    keep();
+    const ros::StampedTransform transform{sample::kStart, "a", "b", Pose::Identity()};
+    ros::encode_transforms(std::span(&transform, 1), out);
+    keep();
+    ros::encode_scan_truth({"a", sample::kStart, {PointTruth{}}}, "world", out);
+    keep();
+  }
+  return {"messages", corpus, [](std::string_view text) {
+            const Bytes bytes = std::as_bytes(std::span(text));
+            for (const Encoding encoding : {Encoding::kCdr, Encoding::kRos1}) {
+              tolerant([&] { ros::decode_scan(bytes, "fuzz", encoding); });
+              tolerant([&] { ros::decode_imu(bytes, "fuzz", encoding); });
+              tolerant([&] { ros::decode_odometry(bytes, "fuzz", encoding); });
+              tolerant([&] { ros::decode_transforms(bytes, "fuzz", encoding); });
+              tolerant([&] { ros::decode_scan_truth(bytes, "fuzz", encoding); });
+              tolerant([&] { ros::decode_string(bytes, "fuzz", encoding); });
+              tolerant([&] { decode_livox(bytes, "fuzz", encoding); });
+            }
+          }};
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+  static const std::vector<Target> kTargets{
+      recordings("mcap", {dataset_file("a.mcap", {}),
+                          dataset_file("b.mcap", {.dialect = Dialect::kDriver})}),
+      recordings("bag", {stored_bag(), dataset_file("a.bag", {})}),
+      clouds("pcd"),
+      clouds("ply"),
+      raw_sweeps(),
+      trajectories(),
+      room_meta(),
+      manifests(),
+      configurations(),
+      messages()};
+  return kTargets;
+}
+
+const Target& target(std::string_view name) {
+  for (const Target& candidate : targets()) {
+    if (candidate.name == name) return candidate;
+  }
+  throw std::out_of_range("no such target");
+}
+
+}  // namespace lidarena::fuzz
