@@ -149,7 +149,7 @@ Json info_of(const ConfigFolder& configs, const std::string& thing, LogSink& log
   if (fs::exists(path)) {
     if (path.extension() == ".ply") return ply_info(path, log);
     if (is_mesh_or_world(path)) return world_info(path, log);
-    if (path.extension() == ".mcap") return dataset_info(path);
+    if (path.extension() == ".mcap" || path.extension() == ".bag") return dataset_info(path);
     if (path.extension() == ".pcd") return cloud_info(path);
   }
   for (const char* kind : {"sensors", "worlds"}) {

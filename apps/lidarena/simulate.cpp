@@ -15,6 +15,8 @@ struct SimulateOptions {
   SimulateRequest request;
   std::string noise = "on";
   std::string mode;
+  std::string format = "mcap";
+  std::string dialect = "si";
   bool no_data = false;
 };
 
@@ -32,6 +34,8 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
     request.mode.emplace();
     read_value(ConfigNode::parse(options.mode, "--mode"), *request.mode, {});
   }
+  read_value(ConfigNode::parse(options.format, "--format"), request.write.format, {});
+  read_value(ConfigNode::parse(options.dialect, "--dialect"), request.write.dialect, {});
   Console console(common.quiet);
   const SimulateSummary s =
       simulate_dataset(request, options.out, Parallel(common.threads), console);
@@ -75,6 +79,16 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--mode", o->mode,
                    "rolling (every ray at its own instant), or a fault of earlier simulators for "
                    "comparison: frozen, frozen_unstamped, official; default: as the sensor's file");
+  verb->add_option("--format", o->format,
+                   "mcap or bag (one recording), pcd, ply or kitti (a file a sweep)")
+      ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}))
+      ->capture_default_str();
+  verb->add_option("--dialect", o->dialect,
+                   "si, or driver: recordings in the layouts and units of the sensors' own drivers")
+      ->check(CLI::IsMember({"si", "driver"}))
+      ->capture_default_str();
+  verb->add_flag("--truth", o->request.truth,
+                 "Also what each point hit: surface point, range, normal, triangle");
   verb->add_flag("--no-data", o->no_data,
                  "A manifest alone: flown anew, with the same points, whenever it is used");
   set_verb(

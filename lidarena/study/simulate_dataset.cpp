@@ -78,16 +78,18 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"routes", routes}}}};
 }
 
-void write_events(const Scene& scene, const fs::path& out, const Json& manifest,
+void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
                   const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
-  DatasetWriter writer(out, make_rig(scene.sensors));
+  DatasetWriter writer(out, make_rig(scene.sensors), request.write);
   Time truth_time{0};
   const auto write_truth_until = [&](Time end) {
     for (; truth_time <= end; truth_time += kTruthStep) {
       writer.write_truth({truth_time, scene.flight->pose_at(truth_time)});
     }
   };
-  const auto events = simulate(*scene.world, *scene.flight, scene.sensors, scene.options, parallel);
+  SimulationOptions options = scene.options;
+  options.truth = request.truth ? &writer : nullptr;
+  const auto events = simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -101,7 +103,7 @@ void write_events(const Scene& scene, const fs::path& out, const Json& manifest,
   }
   write_truth_until(scene.duration());
   log.progress("flying", summary.seconds, summary.seconds);
-  writer.finish(manifest);
+  writer.finish(manifest_of(request, scene));
 }
 
 Trajectory truth_of(const Scene& scene) {
@@ -208,12 +210,11 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
   save_ply(out / "world.ply", scene->world->mesh());
   copy_flight(request.flight, out);
-  const Json manifest = manifest_of(request, *scene);
   if (request.data) {
-    write_events(*scene, out, manifest, parallel, log, summary);
+    write_events(request, *scene, out, parallel, log, summary);
   } else {
     write_tum(out / "truth.tum", truth_of(*scene), kTruthHeader);
-    write_json(out / "manifest.json", manifest);
+    write_json(out / "manifest.json", manifest_of(request, *scene));
   }
   return summary;
 }
@@ -221,8 +222,7 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
 Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
                          const Parallel& parallel) {
   const fs::path manifest_file = path / "manifest.json";
-  if (fs::exists(manifest_file) && !fs::exists(path / "data.mcap") &&
-      !fs::exists(path / "data.bag")) {
+  if (fs::exists(manifest_file) && !has_measurements(path)) {
     const Json manifest = read_json(manifest_file);
     if (manifest.contains("simulation"))
       return fly_manifest(path, manifest, options.sensor, parallel);

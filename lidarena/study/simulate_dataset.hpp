@@ -24,7 +24,9 @@ struct SimulateRequest {
   double seconds = 0.0;    ///< 0 = the whole flight
   bool noise = true;
   std::optional<ScanMode> mode;  ///< of all sensors; empty = as their files say
-  bool data = true;              ///< false: a manifest alone, flown anew whenever it is used
+  bool data = true;    ///< false: a manifest alone, flown anew whenever it is used
+  bool truth = false;  ///< also what each point hit, as /truth/SENSOR/hits
+  WriteOptions write;  ///< format and dialect of the measurements
 };
 
 /// Counts and sizes of what was simulated.
@@ -38,7 +40,7 @@ struct SimulateSummary {
 };
 
 /// Flies the request and writes the dataset folder `out`: world.ply, truth.tum (1 kHz), data.mcap
-/// unless it is a manifest alone, and manifest.json last.
+/// (or as `write` says) unless it is a manifest alone, and manifest.json last.
 SimulateSummary simulate_dataset(const SimulateRequest& request, const std::filesystem::path& out,
                                  const Parallel& parallel, LogSink& log);
 

@@ -3,118 +3,27 @@
 // to a page.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <array>
-#include <cstdio>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "tests/system/command_line.hpp"
+
+namespace lidarena::testing {
 namespace {
 
-namespace fs = std::filesystem;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
-
-bool same(const fs::path& a, const fs::path& b) { return content(a) == content(b); }
-
-class Cli : public ::testing::Test {
- protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("lidarena_cli_" + std::to_string(getpid()) + "_" + info->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome call(const std::string& arguments) const {
-    const std::string command = std::string(LIDARENA_BINARY) + " " + arguments + " >" +
-                                (folder_ / "out").string() + " 2>" + (folder_ / "err").string() +
-                                " </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder_ / "out"),
-            content(folder_ / "err")};
-  }
-  /// Bad input: exit code 2 and one line of error.
-  std::string refusal(const std::string& arguments) const {
-    const Outcome outcome = call(arguments);
-    EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
-    std::string last;
-    int errors = 0;
-    std::istringstream lines(outcome.err);
-    for (std::string line; std::getline(lines, line);) {
-      if (line.rfind("lidarena: ", 0) != 0) continue;
-      ++errors;
-      last = line;
-    }
-    EXPECT_EQ(errors, 1) << outcome.err;
-    return last;
-  }
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
-  fs::path folder_;
-};
-
-/// A closed room of 12 x 8 x 4 m around the origin's first octant, with two pillars, as OBJ.
-std::string room_obj() {
-  std::string obj;
-  int base = 1;
-  const auto box = [&](double x0, double y0, double z0, double x1, double y1, double z1) {
-    std::ostringstream o;
-    for (const double z : {z0, z1}) {
-      for (const auto& [x, y] : {std::pair{x0, y0}, {x1, y0}, {x1, y1}, {x0, y1}}) {
-        o << "v " << x << " " << y << " " << z << "\n";
-      }
-    }
-    constexpr std::array<std::array<int, 4>, 6> kFaces{
-        {{1, 4, 3, 2}, {5, 6, 7, 8}, {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 4, 8, 7}, {4, 1, 5, 8}}};
-    for (const auto& f : kFaces) {
-      o << "f";
-      for (const int i : f) o << " " << base + i - 1;
-      o << "\n";
-    }
-    base += 8;
-    obj += o.str();
-  };
-  box(0, 0, 0, 12, 8, 4);
-  box(4, 3, 0, 4.6, 3.6, 4);
-  box(8, 5, 0, 8.6, 5.6, 4);
-  return obj;
-}
-
-constexpr const char* kRoomFlight =
-    "# A round between the pillars of the test room.\n"
-    "kind: waypoints\n"
-    "waypoints: [[2, 2, 1.5], [10, 2, 1.2], [10, 7, 1.8], [2, 6.5, 1.5], [2, 2, 1.5]]\n";
 
 TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
   const Outcome help = call("--help");
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("lidarena simulate --world house"), HasSubstr("evaluate"),
                               HasSubstr("study")));
-  for (const char* verb : {"list", "info", "simulate", "run", "evaluate", "study", "report"}) {
+  for (const char* verb :
+       {"list", "info", "simulate", "run", "evaluate", "study", "report", "convert"}) {
     const Outcome verb_help = call(std::string(verb) + " --help");
     EXPECT_EQ(verb_help.exit_code, 0) << verb;
     EXPECT_THAT(verb_help.out, HasSubstr("--json")) << verb;
@@ -322,3 +231,4 @@ TEST_F(Cli, AStudyIsResumedAndAFailedRunIsARow) {
 }
 
 }  // namespace
+}  // namespace lidarena::testing

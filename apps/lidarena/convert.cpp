@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/kitti.hpp"
+#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/dataset/tum.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/export_world.hpp"
+#include "lidarena/world/load_world.hpp"
+#include "lidarena/world/ply.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ConvertOptions {
+  std::string in, out;
+  std::string format;  ///< of datasets; empty: by the ending of `out`
+  std::string dialect = "si";
+  ReadOptions read;
+};
+
+/// What a file is turned into, told by what it is turned from.
+enum class Kind { kWorld, kCloud, kTrajectory, kDataset };
+
+template <std::size_t N>
+bool ends_in(const fs::path& file, const std::array<const char*, N>& endings) {
+  return std::find(endings.begin(), endings.end(), file.extension().string()) != endings.end();
+}
+
+/// A .ply without faces is a cloud of points.
+bool has_faces(const fs::path& file) {
+  if (file.extension() != ".ply") return true;
+  try {
+    return !read_ply(file).empty();
+  } catch (const InputError&) {
+    return false;  // a cloud in a layout that is no mesh's; the cloud's reader names what is wrong
+  }
+}
+
+Kind kind_of(const fs::path& in, const fs::path& out) {
+  constexpr std::array kWorlds{".sdf",  ".world", ".obj",  ".stl", ".dae",
+                               ".gltf", ".glb",   ".yaml", ".yml"};
+  constexpr std::array kTrajectories{".tum", ".txt", ".csv"};
+  constexpr std::array kPoses{".tum", ".txt"};
+  if (fs::is_directory(in)) return Kind::kDataset;
+  if (ends_in(in, kWorlds)) return Kind::kWorld;
+  if (ends_in(in, kTrajectories) || ends_in(out, kPoses)) return Kind::kTrajectory;
+  if (in.extension() == ".pcd") return Kind::kCloud;
+  if (in.extension() == ".ply") return has_faces(in) ? Kind::kWorld : Kind::kCloud;
+  return Kind::kDataset;
+}
+
+[[noreturn]] void refuse_ending(const fs::path& out, const std::string& what,
+                                const std::string& endings) {
+  throw InputError(out.string(), "has an ending that " + what + " are not written in",
+                   "use " + endings);
+}
+
+Json convert_world(const fs::path& in, const fs::path& out, LogSink& log) {
+  WorldModel model = load_world(in, {}, log);
+  const std::size_t dropped = clean_mesh(model.mesh, in.string());
+  if (dropped > 0) log.info(fmt::format("{} degenerate triangles were left out", dropped));
+  save_world(out, model.mesh);
+  return {{"kind", "world"}, {"triangles", model.mesh.triangles.size()}};
+}
+
+Json convert_cloud(const fs::path& in, const fs::path& out) {
+  const Cloud cloud = read_cloud(in);
+  if (out.extension() == ".ply") {
+    write_ply(out, cloud);
+  } else if (out.extension() == ".pcd") {
+    write_pcd(out, cloud);
+  } else {
+    refuse_ending(out, "clouds", ".ply or .pcd");
+  }
+  return {{"kind", "cloud"}, {"points", cloud.points.size()}};
+}
+
+/// .tum is TUM; .txt is KITTI's rows of twelve numbers, with the times beside as FILE.times.txt.
+Json convert_trajectory(const fs::path& in, const fs::path& out, double rate_hz) {
+  const FramedTrajectory read = read_framed_trajectory(in, {}, rate_hz);
+  const Trajectory& trajectory = read.trajectory;
+  if (out.extension() == ".tum") {
+    const std::string frames = (read.world.empty() ? "world" : read.world) + "_from_" +
+                               (read.body.empty() ? "body" : read.body);
+    write_tum(out, trajectory, frames + "\ntime[s] x y z[m] qx qy qz qw");
+  } else if (out.extension() == ".txt") {
+    write_kitti_poses(out, trajectory);
+    std::vector<Time> times;
+    for (const StampedPose& pose : trajectory.poses()) times.push_back(pose.stamp);
+    write_times(fs::path(out).replace_extension(".times.txt"), times);
+  } else {
+    refuse_ending(out, "trajectories", ".tum (TUM) or .txt (KITTI)");
+  }
+  return {{"kind", "trajectory"}, {"poses", trajectory.size()}};
+}
+
+WriteOptions write_options(const ConvertOptions& o) {
+  WriteOptions options;
+  const std::string ending = fs::path(o.out).extension().string();
+  const std::string format = !o.format.empty() ? o.format : ending == ".bag" ? "bag" : "mcap";
+  read_value(ConfigNode::parse(format, "--format"), options.format, {});
+  read_value(ConfigNode::parse(o.dialect, "--dialect"), options.dialect, {});
+  return options;
+}
+
+Json convert_dataset(const ConvertOptions& o, const Parallel& parallel, LogSink& log) {
+  Dataset in = open_any_dataset(o.in, o.read, parallel);
+  for (const std::string& note : in.notes) log.info("note: " + note);
+  const CopySummary copied = copy_dataset(in, o.out, write_options(o));
+  return {{"kind", "dataset"},           {"scans", copied.scans},
+          {"points", copied.points},     {"imu_samples", copied.imu_samples},
+          {"truth_poses", copied.poses}, {"truth_scans", copied.truth_scans}};
+}
+
+int convert_verb(const Common& common, const ConvertOptions& o) {
+  Console console(common.quiet);
+  fs::path in = o.in;
+  if (!fs::exists(in)) in = common.config_folder().resolve("worlds", o.in);
+  Json done;
+  switch (kind_of(in, o.out)) {
+    case Kind::kWorld:
+      done = convert_world(in, o.out, console);
+      break;
+    case Kind::kCloud:
+      done = convert_cloud(in, o.out);
+      break;
+    case Kind::kTrajectory:
+      done = convert_trajectory(in, o.out, o.read.rate_hz);
+      break;
+    case Kind::kDataset:
+      done = convert_dataset(o, Parallel(common.threads), console);
+      break;
+  }
+  done["out"] = o.out;
+  if (common.json) {
+    print_json(done);
+    return kDone;
+  }
+  std::string text;
+  for (const auto& [key, value] : done.items()) {
+    if (key == "kind" || key == "out" || value == 0) continue;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", value.dump(), key);
+  }
+  fmt::print("{}: {}\n{}\n", done["kind"].get<std::string>(), text, o.out);
+  return kDone;
+}
+
+}  // namespace
+
+void add_convert(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand(
+      "convert", "From any dataset, world, cloud or trajectory that we read to any that we write");
+  auto o = std::make_shared<ConvertOptions>();
+  verb->add_option("in", o->in, "Dataset, bag, .mcap, folder of sweeps, world, cloud, trajectory")
+      ->required();
+  verb->add_option(
+          "out", o->out,
+          "Folder, .mcap or .bag; of worlds .ply .obj .sdf .world; of clouds .ply .pcd; of "
+          "trajectories .tum, .txt (KITTI)")
+      ->required();
+  verb->add_option("--format", o->format, "Of a dataset's folder: mcap, bag, pcd, ply, kitti")
+      ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}));
+  verb->add_option("--dialect", o->dialect, "si, or driver: the drivers' own layouts and units")
+      ->check(CLI::IsMember({"si", "driver"}))
+      ->capture_default_str();
+  verb->add_option("--sensor", o->read.sensor, "Which LiDAR, where one is wanted alone");
+  verb->add_option("--layout", o->read.layout, "Of raw binary sweeps")
+      ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
+  verb->add_option("--rate", o->read.rate_hz, "Per second, where a file gives no times")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  set_verb(
+      *verb, common, [&common, o] { return convert_verb(common, *o); }, exit_code);
+}
+
+}  // namespace lidarena
