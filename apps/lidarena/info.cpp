@@ -5,6 +5,7 @@
 #include <set>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/pattern_info.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
@@ -20,23 +21,9 @@ namespace fs = std::filesystem;
 struct InfoOptions {
   std::string thing;
   std::size_t rays = 0;
+  bool pattern = false;
+  std::string out;
 };
-
-int print_rays(const SensorConfig& sensor, std::size_t count) {
-  const auto pattern = make_pattern(sensor);
-  std::vector<Beam> beams;
-  fmt::print("index,dt_ns,x,y,z,ring\n");
-  for (std::size_t done = 0, scan = 0; done < count; ++scan) {
-    pattern->beams(scan, beams);
-    for (const Beam& b : beams) {
-      if (done == count) break;
-      const auto dt = static_cast<std::int64_t>(scan) * pattern->period().count() + b.dt_ns;
-      fmt::print("{},{},{:.9g},{:.9g},{:.9g},{}\n", done++, dt, b.direction.x(), b.direction.y(),
-                 b.direction.z(), b.ring);
-    }
-  }
-  return kDone;
-}
 
 Json sensor_info(const SensorConfig& sensor) {
   Json json = to_json(sensor);
@@ -183,8 +170,16 @@ void print_tree(const Json& json, int depth) {
 int info_verb(const Common& common, const InfoOptions& o) {
   Console console(common.quiet);
   const ConfigFolder configs = common.config_folder();
-  if (o.rays > 0) return print_rays(load_sensor(configs.resolve("sensors", o.thing)), o.rays);
-  const Json json = info_of(configs, o.thing, console);
+  if (o.rays > 0) {
+    print_rays(load_sensor(configs.resolve("sensors", o.thing)), o.rays);
+    return kDone;
+  }
+  if (!o.out.empty() && !o.pattern) {
+    throw InputError("--out", "draws a pattern alone", "add --pattern");
+  }
+  const Json json = o.pattern
+                        ? pattern_info(load_sensor(configs.resolve("sensors", o.thing)), o.out)
+                        : info_of(configs, o.thing, console);
   if (common.json) {
     print_json(json);
   } else {
@@ -201,6 +196,9 @@ void add_info(CLI::App& app, Common& common, int& exit_code) {
   auto o = std::make_shared<InfoOptions>();
   verb->add_option("thing", o->thing, "A name or a path")->required();
   verb->add_option("--rays", o->rays, "Of a sensor: its first N rays as CSV");
+  verb->add_flag("--pattern", o->pattern,
+                 "Of a sensor: how much of its field of view it lights in 0.1, 0.5, 1 and 4 s");
+  verb->add_option("--out", o->out, "With --pattern: an SVG to draw it in");
   set_verb(
       *verb, common, [&common, o] { return info_verb(common, *o); }, exit_code);
 }
