@@ -116,17 +116,27 @@ void describe(const fs::path& folder, ScoredRun& run) {
                            fs::path(simulation.value("flight_source", "")).stem().string());
 }
 
+/// Why a study's run left no results; empty when it did.
+std::string failure_of(const fs::path& folder) {
+  if (!fs::exists(folder / "manifest.json")) return {};
+  const Json manifest = read_json(folder / "manifest.json");
+  return manifest.contains("failed") ? manifest.at("failed").get<std::string>() : std::string();
+}
+
+Json failed(const std::string& reason) { return {{"status", "failed"}, {"reason", reason}}; }
+
 /// Of several, one that cannot be scored is a row with its reason.
 ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel, LogSink& log) {
   ScoredRun run;
   const bool bare = folder.filename().empty();  // "run/"
   run.name = (bare ? folder.parent_path() : folder).filename().string();
   try {
-    run.metrics = score_run(folder, parallel, log);
     describe(folder, run);
+    const std::string failure = failure_of(folder);
+    run.metrics = failure.empty() ? score_run(folder, parallel, log) : failed(failure);
   } catch (const InputError& error) {
     if (alone) throw;
-    run.metrics = {{"status", "failed"}, {"reason", error.what()}};
+    run.metrics = failed(error.what());
   }
   return run;
 }

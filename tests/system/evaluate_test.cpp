@@ -133,6 +133,21 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
   EXPECT_THAT(call(files).out, HasSubstr("without: "));
 }
 
+TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
+  fs::create_directories(folder_ / "crashed");
+  write("crashed/manifest.json",
+        R"({"kind": "run", "algorithm": "x", "preset": "y", "sensor": "z",
+            "dataset": "nowhere", "failed": "killed by SIGSEGV"})");
+  const Outcome alone = call("crashed");
+  EXPECT_EQ(alone.exit_code, 1);
+  EXPECT_THAT(alone.out, HasSubstr("status: failed: killed by SIGSEGV"));
+  const Outcome both = call("--csv crashed nothing_here");
+  EXPECT_EQ(both.exit_code, 1);
+  EXPECT_THAT(both.out, AllOf(HasSubstr("crashed,x:y on z,nowhere,,failed,killed by SIGSEGV,"),
+                              HasSubstr("nothing_here,,,,failed,")));
+  EXPECT_THAT(refusal("nothing_here"), HasSubstr("not a finished run"));
+}
+
 TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
   write_tum("truth.tum", tour, 100, "# world_from_body\n");
   // 0.5 m along x of a body that yaws 0.3 t
