@@ -11,6 +11,7 @@
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/lever_arm.hpp"
 #include "lidarena/evaluation/metrics_table.hpp"
+#include "lidarena/evaluation/run_statistics.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/world/mesh_io.hpp"
 

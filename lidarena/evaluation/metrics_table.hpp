@@ -34,10 +34,4 @@ std::string metrics_markdown(std::span<const ScoredRun> runs);
 /// The same for the booktabs package: best bold, second best underlined, failures in words.
 std::string metrics_latex(std::span<const ScoredRun> runs);
 
-/// {algorithm: {figure: {runs, values, flights, failures, median, min, max, mean, ...}}}, and under
-/// "paired" the comparison where there are exactly two algorithms (see statistics.hpp).
-Json statistics_json(std::span<const ScoredRun> runs, std::uint64_t seed = 1);
-/// The same in words and columns.
-std::string statistics_text(const Json& statistics);
-
 }  // namespace lidarena

@@ -6,6 +6,8 @@
 
 #include <sstream>
 
+#include "lidarena/evaluation/run_statistics.hpp"
+
 namespace lidarena {
 namespace {
 
