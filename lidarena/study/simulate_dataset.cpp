@@ -60,11 +60,17 @@ class FlownSource : public EventSource {
   std::unique_ptr<EventSource> events_;
 };
 
+/// What the table of rays of a dataset's n-th sensor is called there.
+std::string pattern_name(std::size_t sensor) { return fmt::format("pattern_{}.csv", sensor); }
+
 Json manifest_of(const SimulateRequest& request, const Scene& scene) {
   Json routes = Json::array();
   for (const auto& route : scene.model.routes) routes.push_back(value_to_json(route));
   Json sensors = Json::array();
-  for (const SensorConfig& sensor : scene.sensors) sensors.push_back(to_json(sensor));
+  for (SensorConfig sensor : scene.sensors) {
+    if (!sensor.pattern_file.empty()) sensor.pattern_file = pattern_name(sensors.size());
+    sensors.push_back(to_json(sensor));
+  }
   return {{"kind", "dataset"},
           {"rig", to_json(make_rig(scene.sensors))},
           {"simulation",
@@ -136,6 +142,15 @@ void copy_flight(const fs::path& flight, const fs::path& out) {
   copy_over(flight, out / ("flight" + flight.extension().string()));
 }
 
+/// Copies the tables of rays that sensors fire, likewise.
+void copy_patterns(const std::vector<SensorConfig>& sensors, const fs::path& out) {
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    if (!sensors[i].pattern_file.empty()) {
+      copy_over(sensors[i].pattern_file, out / pattern_name(i));
+    }
+  }
+}
+
 double path_length(const Scene& scene) {
   double length = 0.0;
   Eigen::Vector3d last = scene.flight->pose_at(Time{0}).translation();
@@ -159,6 +174,9 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::st
   read_value(ConfigNode::parse(simulation.at("routes").dump(), place), model.routes, {});
   std::vector<SensorConfig> sensors;
   read_value(ConfigNode::parse(simulation.at("sensors").dump(), place), sensors, {});
+  for (SensorConfig& s : sensors) {
+    if (!s.pattern_file.empty()) s.pattern_file = (folder / s.pattern_file).string();
+  }
   SimulationOptions options;
   options.seed = simulation.at("seed").get<std::uint64_t>();
   options.duration = from_seconds(simulation.at("seconds").get<double>());
@@ -210,6 +228,7 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
   save_ply(out / "world.ply", scene->world->mesh());
   copy_flight(request.flight, out);
+  copy_patterns(scene->sensors, out);
   if (request.data) {
     write_events(request, *scene, out, parallel, log, summary);
   } else {
