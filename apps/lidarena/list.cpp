@@ -5,6 +5,7 @@
 
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/odometry/factory.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
 
 namespace lidarena {
 namespace {
@@ -34,6 +35,58 @@ int list_algorithms_verb(const Common& common) {
   return kDone;
 }
 
+/// "a" or "a to b" with a unit; "-" where nothing is known.
+std::string figure(double low, double high, const char* unit) {
+  if (high <= 0.0) return "-";
+  return low > 0.0 && low < high ? fmt::format("{:g} to {:g} {}", low, high, unit)
+                                 : fmt::format("{:g} {}", high, unit);
+}
+
+std::string fov_of(const SensorFacts& facts) {
+  if (!facts.fov) return "-";
+  const FieldOfView& fov = *facts.fov;
+  if (fov.half_angle_deg < 180.0) return fmt::format("circle {:g}", 2.0 * fov.half_angle_deg);
+  return fmt::format("{:g} x {:g}", fov.azimuth_max_deg - fov.azimuth_min_deg,
+                     fov.elevation_max_deg - fov.elevation_min_deg);
+}
+
+/// What a buyer compares, a line a sensor; a file that cannot be read says why.
+int list_sensors(const Common& common) {
+  const ConfigFolder configs = common.config_folder();
+  constexpr const char* kRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
+  if (!common.json) {
+    fmt::print(kRow, "sensor", "FOV, deg", "points/s", "range", "weight", "power", "price");
+  }
+  Json list = Json::array();
+  for (const std::string& name : configs.names("sensors")) {
+    const auto file = configs.resolve("sensors", name);
+    Json json{{"name", name}, {"summary", first_comment(file)}};
+    try {
+      const SensorConfig sensor = load_sensor(file);
+      const auto pattern = make_pattern(sensor);
+      const double rate =
+          static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
+      const SensorFacts& facts = sensor.facts;
+      json.update({{"fov_deg", fov_of(facts)},
+                   {"points_per_second", rate},
+                   {"max_range_m", sensor.max_range_m},
+                   {"facts", to_json(facts)}});
+      if (!common.json) {
+        fmt::print(kRow, name, fov_of(facts), fmt::format("{:.0f}", rate),
+                   figure(0.0, sensor.max_range_m, "m"), figure(0.0, 1000.0 * facts.weight_kg, "g"),
+                   figure(facts.power_min_w, facts.power_max_w, "W"),
+                   facts.price.empty() ? "-" : facts.price);
+      }
+    } catch (const InputError& error) {
+      json["error"] = error.what();
+      if (!common.json) fmt::print("{:<26} {}\n", name, error.what());
+    }
+    list.push_back(json);
+  }
+  if (common.json) print_json(list);
+  return kDone;
+}
+
 int list_configs(const Common& common, const std::string& kind) {
   const ConfigFolder configs = common.config_folder();
   Json list = Json::array();
@@ -57,7 +110,9 @@ void add_list(CLI::App& app, Common& common, int& exit_code) {
   set_verb(
       *verb, common,
       [&common, kind] {
-        return *kind == "algorithms" ? list_algorithms_verb(common) : list_configs(common, *kind);
+        if (*kind == "algorithms") return list_algorithms_verb(common);
+        if (*kind == "sensors") return list_sensors(common);
+        return list_configs(common, *kind);
       },
       exit_code);
 }
