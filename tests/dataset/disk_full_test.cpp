@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a full disk leaves behind, for every format: an error that names the file, nothing that
+// looks whole, and in recordings everything up to the last chunk.
+#include <gmock/gmock.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "tests/dataset/event_matching.hpp"
+#include "tests/dataset/file_helpers.hpp"
+#include "tests/dataset/sample_events.hpp"
+#include "tests/dataset/temporary_folder.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+/// What `action` complains of in a process of its own whose files may not grow beyond `bytes`.
+template <class Action>
+std::string complaint_with_files_up_to(std::size_t bytes, const fs::path& report, Action&& action) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    ::signal(SIGXFSZ, SIG_IGN);  // so that write() fails, as on a full disk
+    const rlimit limit{bytes, bytes};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+    std::string text = "nothing";
+    try {
+      action();
+    } catch (const Error& error) {
+      text = error.what();
+    }
+    std::ofstream(report) << text;
+    ::_exit(0);
+  }
+  int status = 0;
+  ::waitpid(child, &status, 0);
+  return WIFEXITED(status) ? file_text(report) : "a crash";
+}
+
+class FullDisk : public testing::TestWithParam<DatasetFormat> {
+ protected:
+  TemporaryFolder folder_;
+  fs::path path_ = folder_.path() / "flight";
+};
+
+TEST_P(FullDisk, LeavesNothingThatLooksWhole) {
+  const bool is_recording = GetParam() == DatasetFormat::kMcap || GetParam() == DatasetFormat::kBag;
+  // Some of the chunks of a bag, a few of the ten zstd chunks of an MCAP file; no whole sweep.
+  const std::size_t room = GetParam() == DatasetFormat::kBag    ? 2'500'000
+                           : GetParam() == DatasetFormat::kMcap ? 350'000
+                                                                : 100'000;
+  const std::string complaint = complaint_with_files_up_to(room, folder_.path() / "report", [&] {
+    DatasetWriter out(path_, sample::rig(), {.format = GetParam()});
+    for (const Event& event : sample::events(24, 16'000)) out.write(event);
+    out.close();
+  });
+  EXPECT_THAT(complaint, HasSubstr("cannot be written"));
+  EXPECT_THAT(complaint, HasSubstr(path_.string()));
+  EXPECT_FALSE(fs::exists(path_ / "manifest.json"));
+  EXPECT_THAT(input_error([&] { open_dataset(path_); }), HasSubstr("unfinished"));
+  if (!is_recording) return;
+  const bool is_bag = GetParam() == DatasetFormat::kBag;
+  Dataset part = open_dataset(path_ / (is_bag ? "data.bag.part" : "data.mcap.part"));
+  std::vector<Event> found;
+  const std::string cut = input_error([&] {
+    while (auto event = part.events->next()) found.push_back(*std::move(event));
+  });
+  EXPECT_THAT(cut, testing::AnyOf(HasSubstr("cut off"), HasSubstr("never closed")));
+  EXPECT_GT(found.size(), 50U);
+  std::vector<Event> expected = sample::events(24, 16'000);
+  expected.resize(found.size());
+  // the last scan may come before IMU samples that are lost
+  found.resize(found.size() - 30);
+  expected.resize(found.size());
+  expect_same(found, expected);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Formats, FullDisk,
+    testing::Values(DatasetFormat::kMcap, DatasetFormat::kBag, DatasetFormat::kPcd,
+                    DatasetFormat::kPly, DatasetFormat::kKitti),
+    [](const auto& param) {
+      return std::string(
+          EnumNames<DatasetFormat>::names[static_cast<std::size_t>(param.param)].first);
+    });
+
+}  // namespace
+}  // namespace lidarena
