@@ -136,13 +136,18 @@ TEST(Config, AMissingFileIsNamed) {
 
 TEST(Config, ARigSurvivesItsJson) {
   Rig rig;
-  rig.lidars.push_back({.id = "mid360", .model = "livox_mid360", .kind = "rosette", .rows = 4});
+  rig.lidars.push_back({.id = "mid360",
+                        .model = "livox_mid360",
+                        .kind = "rosette",
+                        .rows = 4,
+                        .pixel_shifts = {12, 4, -4, -12}});
   rig.lidars[0].body_from_lidar.translation() = Eigen::Vector3d(0, 0, 0.1);
   rig.imus.push_back({.id = "mid360_imu", .model = "", .rate_hz = 200});
   Rig back;
   read_config(ConfigNode::parse(to_json(rig).dump(), "manifest"), back);
   ASSERT_NE(back.find_lidar("mid360"), nullptr);
   EXPECT_EQ(back.find_lidar("")->rows, 4);
+  EXPECT_EQ(back.find_lidar("")->pixel_shifts, rig.lidars[0].pixel_shifts);
   EXPECT_EQ(back.find_lidar("")->body_from_lidar.translation().z(), 0.1);
   EXPECT_EQ(back.imus.at(0).rate_hz, 200);
   EXPECT_EQ(back.find_lidar("os0"), nullptr);
