@@ -221,7 +221,7 @@ std::vector<Eigen::Vector3f> FastLio2::map() const {
 
 std::map<std::string, std::uint64_t> FastLio2::memory() const {
   return {{"map", map_.memory_bytes()},
-          {"scan_buffer", archive_.capacity() * sizeof(ArchivedPoint) +
+          {"scan_buffer", archive_.size() * sizeof(ArchivedPoint) +
                               registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
           {"backlog", window_.memory_bytes()},
           {"other", poses_.capacity() * sizeof(StampedPose)}};

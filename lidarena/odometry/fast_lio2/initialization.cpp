@@ -15,7 +15,10 @@ constexpr double kStillRate = 0.05;       // rad/s: 3 deg/s of first bias
 constexpr double kStillForce = 0.3;       // m/s^2 of bias, off gravity's length
 constexpr double kAccelInG = 3.0;         // means below this are in units of g
 constexpr double kStillDrift = 0.03;      // m
-constexpr double kStillSpeed = 0.1;       // m/s
+constexpr double kStillSpeed = 0.05;      // m/s
+// Of a scan's means, off what the state expects to feel at rest: a start is told by its first push.
+constexpr double kRestRate = 0.005;  // rad/s
+constexpr double kRestForce = 0.05;  // m/s^2
 
 void set_sigma(State::Matrix& covariance, State::Block block, int size, double sigma) {
   covariance.diagonal().segment(block, size).setConstant(sigma * sigma);
@@ -74,7 +77,11 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
 
 bool StillDetector::observe(const ImuStatistics& imu, const InertialState& state,
                             const Config& config, double accel_scale) {
-  const bool is_still = stands(imu, config, accel_scale) && state.velocity.norm() < kStillSpeed &&
+  const Eigen::Vector3d at_rest = state.accel_bias - state.rotation.transpose() * state.gravity;
+  const bool is_still = stands(imu, config, accel_scale) &&
+                        (imu.mean_gyro - state.gyro_bias).norm() < kRestRate &&
+                        (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
+                        state.velocity.norm() < kStillSpeed &&
                         (scans_ == 0 || (state.position - anchor_).norm() < kStillDrift);
   if (is_still && scans_ == 0) anchor_ = state.position;
   scans_ = is_still ? scans_ + 1 : 0;
