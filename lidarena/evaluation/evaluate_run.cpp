@@ -80,9 +80,9 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
 
 /// Null for a map that was not made.
 Json evaluate_map_of(const Cloud& cloud, const RunFiles& run, const Trajectory& truth,
-                     const World& world, const Parallel& parallel) {
+                     const World& world, const Parallel& parallel, const SeenSurface* seen) {
   if (cloud.points.empty()) return nullptr;
-  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel);
+  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel, seen);
 }
 
 }  // namespace
@@ -133,24 +133,8 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
   return json;
 }
 
-Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                  const Trajectory& truth, const World& world, const Parallel& parallel) {
-  Json json = Json::object();
-  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
-    const Alignment alignment = align(estimate, truth, gauge);
-    Json& entry = json[to_string(gauge)];
-    if (!alignment.determined()) {
-      entry = {{"refused", alignment.refusal}};
-      continue;
-    }
-    entry = to_json(map_error(map, alignment.truth_from_estimate, world, parallel));
-    entry["mesh_from_map_m_quaternion"] = value_to_json(alignment.truth_from_estimate);
-  }
-  return json;
-}
-
 Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* world,
-                  const Parallel& parallel, LogSink& log) {
+                  const Parallel& parallel, LogSink& log, const Observe& observe) {
   const Status status = status_of(run, truth);
   Json json{{"schema", "lidarena.metrics"},
             {"schema_version", kMetricsSchemaVersion},
@@ -167,12 +151,28 @@ Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* wor
     return json;
   }
   json["warnings"] = warnings_of(run.trajectory, truth);
+  if (world != nullptr) {
+    for (const auto& [name, cloud] :
+         {std::pair("own", &run.map), {"reprojected", &run.reprojected}}) {
+      for (const std::string& warning : map_warnings(cloud->points, *world)) {
+        json["warnings"].push_back(fmt::format("{} map: {}", name, warning));
+      }
+    }
+  }
   for (const Json& warning : json["warnings"]) log.warn(warning.get<std::string>());
   json["live"] = evaluate_trajectory(run.live, truth);
   json["final"] = evaluate_trajectory(run.trajectory, truth);
   if (world == nullptr) return json;
-  json["maps"]["own"] = evaluate_map_of(run.map, run, truth, *world, parallel);
-  json["maps"]["reprojected"] = evaluate_map_of(run.reprojected, run, truth, *world, parallel);
+  std::optional<SeenSurface> seen;
+  if (observe) {
+    if (std::optional<ObservedSurface> observed = observe()) {
+      seen = make_seen_surface(*std::move(observed), *world, parallel);
+    }
+  }
+  const SeenSurface* surface = seen ? &*seen : nullptr;
+  json["maps"]["own"] = evaluate_map_of(run.map, run, truth, *world, parallel, surface);
+  json["maps"]["reprojected"] =
+      evaluate_map_of(run.reprojected, run, truth, *world, parallel, surface);
   return json;
 }
 

@@ -98,7 +98,8 @@ Sheets split_sheets(std::span<const float> sorted_heights) {
     best.ashman_d = spread > 0.0 ? apart / spread : std::numeric_limits<double>::infinity();
   }
   const double smaller = best.smaller_share * all.count;
-  best.are_two = best.separation_m > 0.0 && best.ashman_d > Ghosting::kLeastSeparation &&
+  best.are_two = best.separation_m > Ghosting::kLeastApart_m &&
+                 best.ashman_d > Ghosting::kLeastSeparation &&
                  best.smaller_share >= Ghosting::kLeastShare && smaller >= Ghosting::kLeastInPart &&
                  points_near_middle(sorted_heights, best) < Ghosting::kValley * smaller;
   return best;

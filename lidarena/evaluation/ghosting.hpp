@@ -25,7 +25,8 @@ struct Ghosting {
   static constexpr double kLeastInPart = 5.0;
   static constexpr double kLeastSeparation = 4.0;
   static constexpr double kValley = 0.25;
-  std::size_t patches = 0;           ///< judged
+  static constexpr double kLeastApart_m = 0.02;  ///< of the means; less is any sensor's noise
+  std::size_t patches = 0;                       ///< judged
   Summary thickness_m;               ///< P95 - P5 of the heights over the surface, by patch
   std::size_t double_patches = 0;    ///< of two sheets
   double double_percent = 0.0;       ///< share of the patches

@@ -154,6 +154,13 @@ Json to_json(const MapError& error) {
   json["rmse_inliers_m"] = error.inliers > 0 ? Json(error.rmse_inliers_m) : Json(nullptr);
   json["outliers_percent"] = error.outliers_percent;
   json["outlier_beyond_m"] = MapError::kOutlier_m;
+  Json cdf = Json::array();
+  std::uint64_t within = 0;
+  for (const std::uint64_t count : error.histogram) {
+    within += count;
+    cdf.push_back(100.0 * static_cast<double>(within) / static_cast<double>(error.points));
+  }
+  json["cdf_percent"] = cdf;  // at the upper edges of the histogram's bins
   json["histogram"] = {{"bin_m", MapError::kBin_m},
                        {"counts", error.histogram},
                        {"beyond", error.points - error.inliers}};

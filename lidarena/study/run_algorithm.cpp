@@ -3,6 +3,7 @@
 
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
+#include "lidarena/evaluation/map_error.hpp"
 #include "lidarena/evaluation/reproject.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
@@ -75,6 +76,28 @@ Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& 
   return cloud;
 }
 
+/// What the rays of the run's LiDAR saw; nothing, with a warning, when the dataset cannot be read
+/// again.
+std::optional<ObservedSurface> observed_surface(const fs::path& dataset,
+                                                const std::string& lidar_id,
+                                                const Trajectory& truth, const World& world,
+                                                const Parallel& parallel, LogSink& log) {
+  try {
+    if (const auto hits = open_scan_truth(dataset, lidar_id)) {
+      return observe(*hits, world, parallel);
+    }
+    ReadOptions read;
+    read.sensor = lidar_id;
+    Dataset again = open_any_dataset(dataset, read, parallel);
+    const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
+    if (lidar == nullptr) throw InputError(dataset.string(), "has no LiDAR named " + lidar_id);
+    return observe(*again.events, lidar_id, lidar->body_from_lidar, truth, world, parallel);
+  } catch (const InputError& error) {
+    log.warn(std::string("no completeness and no signed distance: ") + error.what());
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
@@ -122,7 +145,10 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
   if (const auto mesh = find_world_mesh(dataset)) {
     world = std::make_unique<World>(load_mesh(*mesh), mesh->string());
   }
-  const Json metrics = evaluate_run(run, *truth, world.get(), parallel, log);
+  const Json metrics = evaluate_run(run, *truth, world.get(), parallel, log, [&] {
+    return observed_surface(dataset, run.manifest.value("sensor", ""), *truth, *world, parallel,
+                            log);
+  });
   if (world && metrics.value("status", "") == "ok" && !run.reprojected.points.empty()) {
     const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);
     write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/evaluate_map.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/evaluation/alignment.hpp"
+#include "lidarena/evaluation/map_json.hpp"
+#include "lidarena/evaluation/metrics_json.hpp"
+
+namespace lidarena {
+namespace {
+
+/// A map and what is made of it once for all gauges.
+struct Subject {
+  std::span<const Eigen::Vector3f> map;
+  const World& world;
+  const Parallel& parallel;
+  const SeenSurface* seen;
+  MortonOrder order;
+  std::optional<PointGrid> grid;  ///< where completeness is asked for
+
+  Subject(std::span<const Eigen::Vector3f> points, const World& mesh, const Parallel& workers,
+          const SeenSurface* surface)
+      : map(points),
+        world(mesh),
+        parallel(workers),
+        seen(surface),
+        order(morton_order(points, workers)) {
+    if (seen != nullptr) grid.emplace(completeness_grid(points, workers));
+  }
+};
+
+Json measure(const Subject& subject, const Pose& mesh_from_map) {
+  const std::vector<PointScore> scores =
+      score_points(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel);
+  Json json = to_json(map_error(subject.order, scores, subject.map.size()));
+  json["mesh_from_map_m_quaternion"] = value_to_json(mesh_from_map);
+  json["per_voxel"] = to_json(voxel_error(subject.order, scores));
+  json["ghosting"] = to_json(ghosting(scores, subject.world, subject.parallel));
+  json["signed"] = nullptr;
+  json["completeness"] = nullptr;
+  if (subject.seen == nullptr) return json;
+  json["signed"] = to_json(signed_distance(scores, subject.seen->observed.free_side));
+  json["completeness"] = to_json(completeness(subject.seen->samples, *subject.grid, scores,
+                                              mesh_from_map, subject.world, subject.parallel));
+  return json;
+}
+
+/// The move from the first-pose gauge is the rigid part of the drift.
+Json measure_robust(const Subject& subject, const Pose& start, const Pose& first_pose) {
+  const MeshAlignment alignment =
+      align_to_mesh(subject.map, start, subject.world, subject.parallel);
+  Json json = alignment.determined() ? measure(subject, alignment.mesh_from_map)
+                                     : Json{{"refused", alignment.refusal}};
+  json["alignment"] = to_json(alignment);
+  const Pose drift = alignment.mesh_from_map * first_pose.inverse();
+  json["alignment"]["turned_from_first_pose_rad"] = so3::angle(drift.linear());
+  return json;
+}
+
+/// Diagonal (m) of the box that holds the middle 98 % of each coordinate.
+double diagonal_of_most(std::span<const Eigen::Vector3f> map) {
+  constexpr std::size_t kLook = 100'000;
+  const std::size_t stride = std::max<std::size_t>(1, map.size() / kLook);
+  Eigen::Vector3d sizes = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (std::size_t i = 0; i < map.size(); i += stride) {
+      if (map[i].allFinite()) values.push_back(double{map[i][axis]});
+    }
+    if (values.empty()) return 0.0;
+    sizes[axis] = quantile(values, 0.99) - quantile(values, 0.01);
+  }
+  return sizes.norm();
+}
+
+double farthest_coordinate(std::span<const Eigen::Vector3f> map) {
+  std::vector<double> values;
+  for (const Eigen::Vector3f& p : map) {
+    if (p.allFinite()) values.push_back(double{p.lpNorm<Eigen::Infinity>()});
+  }
+  return values.empty() ? 0.0 : quantile(values, 0.5);
+}
+
+}  // namespace
+
+SeenSurface make_seen_surface(ObservedSurface observed, const World& world,
+                              const Parallel& parallel) {
+  SeenSurface seen{std::move(observed), {}};
+  seen.samples = seen_samples(world, seen.observed, parallel);
+  return seen;
+}
+
+Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
+                  const Trajectory& truth, const World& world, const Parallel& parallel,
+                  const SeenSurface* seen) {
+  const Subject subject(map, world, parallel, seen);
+  Json json = Json::object();
+  std::optional<Pose> first_pose, start;
+  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
+    const Alignment alignment = align(estimate, truth, gauge);
+    if (!alignment.determined()) {
+      json[to_string(gauge)] = {{"refused", alignment.refusal}};
+      continue;
+    }
+    start = alignment.truth_from_estimate;
+    if (gauge == Gauge::kFirstPose) first_pose = start;
+    json[to_string(gauge)] = measure(subject, *start);
+  }
+  json["robust"] = start && first_pose ? measure_robust(subject, *start, *first_pose)
+                                       : Json{{"refused", "there is no pose to start from"}};
+  return json;
+}
+
+std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, const World& world) {
+  constexpr double kSuspicious = 100.0;  // a flight may see a hundredth of a world, hardly less
+  constexpr double kCoarse_m = 0.0005;
+  std::vector<std::string> warnings;
+  const auto invalid = std::count_if(map.begin(), map.end(),
+                                     [](const Eigen::Vector3f& p) { return !p.allFinite(); });
+  if (invalid > 0) {
+    warnings.push_back(fmt::format("{} of {} points are not finite", invalid, map.size()));
+  }
+  const double map_m = diagonal_of_most(map);
+  const double mesh_m = world.mesh().bounds().diagonal().norm();
+  if (map_m > 0.0 && mesh_m > kSuspicious * map_m) {
+    warnings.push_back(fmt::format(
+        "the mesh is {:.0f} times as large as the map: is it in millimetres?", mesh_m / map_m));
+  }
+  if (map_m > kSuspicious * mesh_m) {
+    warnings.push_back(fmt::format(
+        "the map is {:.0f} times as large as the mesh: is it in millimetres?", map_m / mesh_m));
+  }
+  const double far = farthest_coordinate(map);
+  const double step = far * std::numeric_limits<float>::epsilon();
+  if (step > kCoarse_m && map_m <= kSuspicious * mesh_m) {
+    warnings.push_back(
+        fmt::format("the map lies {:.0f} km from its origin, where its single-precision "
+                    "coordinates are {:.3g} mm apart",
+                    far / 1000.0, 1000.0 * step));
+  }
+  return warnings;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/completeness.hpp"
+#include "lidarena/evaluation/ghosting.hpp"
+#include "lidarena/evaluation/mesh_gauge.hpp"
+#include "lidarena/evaluation/signed_distance.hpp"
+#include "lidarena/evaluation/voxel_error.hpp"
+
+/// Measures of a map as JSON, in the manner of metrics_json.hpp. Null where nothing was measured.
+namespace lidarena {
+
+Json to_json(const VoxelError& error);
+Json to_json(const SignedDistance& distance);
+Json to_json(const Ghosting& ghosting);
+Json to_json(const Completeness& completeness);
+/// What the gauge "robust" rests on.
+Json to_json(const MeshAlignment& alignment);
+
+}  // namespace lidarena

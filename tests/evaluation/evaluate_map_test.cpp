@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/evaluate_map.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <deque>
+#include <limits>
+
+#include "flights.hpp"
+#include "meshes.hpp"
+
+namespace lidarena {
+namespace {
+
+using namespace std::chrono_literals;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+const Parallel kTwo(2);
+const Vector3d kHalf(1.6, 1.2, 0.8);
+
+class Truths : public ScanTruthSource {
+ public:
+  std::optional<ScanTruth> next() override {
+    if (scans.empty()) return std::nullopt;
+    ScanTruth scan = std::move(scans.front());
+    scans.pop_front();
+    return scan;
+  }
+  std::deque<ScanTruth> scans;
+};
+
+/// Hits all over the room's walls but for 5 cm along the corners, seen from inside.
+ScanTruth hits_of_room(std::size_t count) {
+  SequentialRandom random(91);
+  ScanTruth scan{"front", Time(0), {}};
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto axis = static_cast<Eigen::Index>(i % 3);
+    const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
+    Vector3d at;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      at[k] = random.uniform(0.05 - kHalf[k], kHalf[k] - 0.05);
+    }
+    at[axis] = side * kHalf[axis];
+    Vector3f inward = Vector3f::Zero();
+    inward[axis] = static_cast<float>(-side);
+    scan.points.push_back({at.cast<float>(), 1.0F, inward, 0});
+  }
+  return scan;
+}
+
+struct Room {
+  World world{meshes::box(kHalf)};
+  Trajectory truth = flights::sample(flights::tour, 10ms, 20s);
+  ScanTruth hits = hits_of_room(60000);
+  SeenSurface seen = [this] {
+    Truths truths;
+    truths.scans.push_back(hits);
+    return make_seen_surface(observe(truths, world, kTwo), world, kTwo);
+  }();
+
+  /// The hits, each `before` metres before the wall, in a frame that is off by `offset`.
+  std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
+    std::vector<Vector3f> points;
+    for (const PointTruth& hit : hits.points) {
+      const Vector3d at = (hit.position + static_cast<float>(before) * hit.normal).cast<double>();
+      points.push_back((offset * at).cast<float>());
+    }
+    return points;
+  }
+};
+
+TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
+  const Room room;
+  const Json m = evaluate_map(room.map(0.03), room.truth, room.truth, room.world, kTwo, &room.seen);
+  for (const char* gauge : {"first_pose", "se3", "robust"}) {
+    const Json& g = m[gauge];
+    EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << gauge;
+    EXPECT_NEAR(g["per_voxel"]["distance"]["rmse_m"], 0.03, 1e-3);
+    EXPECT_NEAR(g["signed"]["median_m"], 0.03, 1e-3);  // in free space: before the wall
+    EXPECT_LT(g["signed"]["behind_percent"], 0.1);
+    EXPECT_EQ(g["cdf_percent"].size(), 20U);
+    EXPECT_LT(g["cdf_percent"][1], 5.0);
+    EXPECT_EQ(g["cdf_percent"][19], 100.0);
+    EXPECT_EQ(g["ghosting"]["double_patches"], 0);
+    const Json& rows = g["completeness"]["rows"];
+    ASSERT_EQ(rows.size(), 4U);
+    // 3 cm lie between the limits of 2 and 5 cm; the robust gauge may lay a room that is 3 cm too
+    // small on all sides a little to one side
+    EXPECT_LT(rows[0]["precision_percent"], 5.0);
+    EXPECT_GT(rows[1]["precision_percent"], 99.5);
+    EXPECT_LT(rows[0]["recall_percent"], 5.0);
+    EXPECT_GT(rows[1]["recall_percent"], 99.5);
+    EXPECT_GT(rows[1]["f_score_percent"], 99.5);
+  }
+  EXPECT_THAT(m["robust"]["alignment"]["frozen"], IsEmpty());
+  EXPECT_EQ(m["robust"]["alignment"]["starts_agreeing"], 5);
+}
+
+TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
+  const Room room;
+  // the trajectory is right, the map is 20 cm and 1 degree off
+  const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));
+  const Json m = evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwo);
+  EXPECT_GT(m["se3"]["distance"]["rmse_m"], 0.05);
+  EXPECT_LT(m["robust"]["distance"]["rmse_m"], 0.001);
+  EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);
+  EXPECT_TRUE(m["se3"]["signed"].is_null());  // nothing is known of the rays
+  EXPECT_TRUE(m["se3"]["completeness"].is_null());
+}
+
+TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {
+  const Room room;
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  for (const std::vector<Vector3f>& map :
+       {std::vector<Vector3f>{}, std::vector<Vector3f>(5, Vector3f(nan, 0, 0))}) {
+    const Json m = evaluate_map(map, room.truth, room.truth, room.world, kTwo, &room.seen);
+    EXPECT_EQ(m["se3"]["points"], 0);
+    EXPECT_EQ(m["se3"]["invalid_points"], map.size());
+    EXPECT_FALSE(m["se3"].contains("distance"));
+    EXPECT_TRUE(m["se3"]["per_voxel"].is_null());
+    EXPECT_TRUE(m["se3"]["signed"].is_null());
+    EXPECT_TRUE(m["se3"]["ghosting"].is_null());
+    EXPECT_THAT(m["robust"]["refused"].get<std::string>(), HasSubstr("only 0 voxels"));
+  }
+}
+
+TEST(EvaluateMap, IsTheSameTextOnAnyNumberOfThreads) {
+  const Room room;
+  const std::vector<Vector3f> map = room.map(0.01, flights::level({0.1, 0, 0}));
+  const Json one = evaluate_map(map, room.truth, room.truth, room.world, Parallel(1), &room.seen);
+  const Json four = evaluate_map(map, room.truth, room.truth, room.world, Parallel(4), &room.seen);
+  EXPECT_EQ(one.dump(), four.dump());
+}
+
+TEST(MapWarnings, AMeshOrAMapInMillimetresIsSuspected) {
+  TriangleMesh millimetres = meshes::box(1000.0 * kHalf);
+  const Room room;
+  EXPECT_THAT(map_warnings(room.map(0.0), World(millimetres)),
+              ElementsAre(HasSubstr("times as large as the map: is it in millimetres?")));
+  std::vector<Vector3f> map = room.map(0.0);
+  EXPECT_THAT(map_warnings(map, room.world), IsEmpty());
+  for (Vector3f& p : map) p *= 1000.0F;
+  EXPECT_THAT(map_warnings(map, room.world),
+              ElementsAre(HasSubstr("times as large as the mesh: is it in millimetres?")));
+}
+
+TEST(MapWarnings, CoordinatesTooLargeForSinglePrecisionAndPointsThatAreNotFiniteAreSaid) {
+  const Room room;
+  std::vector<Vector3f> map = room.map(0.0);
+  for (Vector3f& p : map) p += Vector3f(4.0e5F, 0, 0);
+  map[0].z() = std::numeric_limits<float>::infinity();
+  EXPECT_THAT(map_warnings(map, room.world),
+              ElementsAre(HasSubstr("1 of 60000 points are not finite"),
+                          HasSubstr("400 km from its origin")));
+  EXPECT_THAT(map_warnings({}, room.world), IsEmpty());
+}
+
+}  // namespace
+}  // namespace lidarena
