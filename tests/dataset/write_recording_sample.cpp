@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// usage: write_recording_sample FOLDER [mcap|bag]   writes the dataset that the official readers'
-//                                                   scripts know
-//        write_recording_sample check FILE          reads a recording and compares it with that
+// usage: write_recording_sample FOLDER [mcap|bag [driver]]
+//            writes the dataset that the official readers' scripts know
+//        write_recording_sample check FILE
+//            reads a recording and compares it with that
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -59,13 +60,14 @@ int main(int argc, char** argv) try {
     lidarena::check_sample(argv[2]);
     return 0;
   }
-  if (argc != 2 && argc != 3) {
-    std::fputs("usage: write_recording_sample FOLDER [mcap|bag] or check FILE\n", stderr);
+  if (argc < 2 || argc > 4) {
+    std::fputs("usage: write_recording_sample FOLDER [mcap|bag [driver]] or check FILE\n", stderr);
     return 2;
   }
   lidarena::WriteOptions options;
-  if (argc == 3 && std::string_view(argv[2]) == "bag")
+  if (argc > 2 && std::string_view(argv[2]) == "bag")
     options.format = lidarena::DatasetFormat::kBag;
+  if (argc == 4) options.dialect = lidarena::Dialect::kDriver;
   lidarena::write_sample(argv[1], options);
   return 0;
 } catch (const std::exception& error) {

@@ -12,6 +12,8 @@ if ! "$python" -c 'import rosbag, roslz4, sensor_msgs.msg, nav_msgs.msg, tf2_msg
 fi
 "$1" "$2" bag
 "$python" "$here/read_all.py" "$2/data.bag"
+"$1" "$2/driver" bag driver
+"$python" "$here/read_driver.py" "$2/driver/data.bag"
 # and what its writer makes of them is read by us: bz2 is compressed by nobody else here
 for compression in none lz4 bz2; do
   "$python" "$here/rewrite.py" "$2/data.bag" "$2/$compression.bag" "$compression"

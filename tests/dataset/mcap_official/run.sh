@@ -14,4 +14,6 @@ if [ ! -d "$here/node_modules/@mcap/core" ] || [ ! -d "$here/node_modules/@foxgl
 fi
 "$1" "$2" "$3"
 if [ "$3" = bag ]; then exec node "$here/read_bag.mjs" "$2/data.bag"; fi
+"$1" "$2/driver" mcap driver
+node "$here/read_driver.mjs" "$2/driver/data.mcap"
 exec node "$here/read_all.mjs" "$2/data.mcap"
