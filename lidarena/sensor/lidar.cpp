@@ -99,8 +99,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       table_(*pattern_),
       order_(first_beams(*pattern_)) {
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);
-  const std::vector<Beam> beams = first_beams(*pattern_);
-  if (!beams.empty()) last_dt_ns_ = beams.back().dt_ns;
+  for (const Beam& beam : first_beams(*pattern_)) last_dt_ns_ = std::max(last_dt_ns_, beam.dt_ns);
   shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
   needs_signal_ = sub_rays_.size() > 1 || config_.noise.dropouts ||
                   config_.noise.weak_signal_noise ||
@@ -195,8 +194,8 @@ void Lidar::receive(const World& world, std::size_t shot, Block& block) const {
 }
 
 bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {
-  return random_.uniform(ray, draw_of(kDetection, number)) <
-         signal_.detection_probability(echo.signal);
+  const double probability = signal_.detection_probability(echo.signal);
+  return probability >= 1.0 || random_.uniform(ray, draw_of(kDetection, number)) < probability;
 }
 
 /// The range noise of an echo, in sigmas. Random normals come in pairs, and two shots share one.

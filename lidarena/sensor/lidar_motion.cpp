@@ -54,7 +54,7 @@ Pose LidarMotion::at(std::int32_t dt_ns) const {
     pose.matrix().topRows<3>() = samples_.front();
   } else {
     const auto segment = static_cast<std::size_t>(dt_ns / kSegment);
-    if (!smooth_[segment]) return exact(Time{dt_ns});
+    if (segment >= smooth_.size() || !smooth_[segment]) return exact(Time{dt_ns});
     const auto within = static_cast<double>(dt_ns - static_cast<std::int64_t>(segment) * kSegment);
     pose.matrix().topRows<3>() = cubic(segment, within / static_cast<double>(kStep));
   }

@@ -22,7 +22,7 @@ class LidarMotion {
   LidarMotion(const Flight& flight, const Pose& body_from_lidar, Time stamp,
               std::int32_t last_dt_ns, bool rolling);
 
-  /// world_from_lidar at `dt_ns`, 0 ... last_dt_ns, after the stamp.
+  /// world_from_lidar at `dt_ns` >= 0 after the stamp; after last_dt_ns the flight is asked.
   Pose at(std::int32_t dt_ns) const;
 
   /// Share of the scan that is asked of the flight itself.

@@ -71,7 +71,9 @@ double SignalModel::signal(double energy, double range) const {
 }
 
 double SignalModel::detection_probability(double signal) const {
-  return normal_cdf(signal * rated_ - threshold_);
+  constexpr double kCertain = 8.3;  // sigmas; from here on the distribution rounds to 1
+  const double margin = signal * rated_ - threshold_;
+  return margin > kCertain ? 1.0 : normal_cdf(margin);
 }
 
 double range_sigma(double range_noise_m, const NoiseConfig& noise, double range, double signal) {

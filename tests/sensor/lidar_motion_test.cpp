@@ -89,6 +89,13 @@ TEST(LidarMotion, AsksTheFlightItselfWhereItJolts) {
   }
 }
 
+TEST(LidarMotion, AShotAfterTheLastOneAnnouncedHasItsPose) {
+  const SwingingFlight flight(10.0);
+  const LidarMotion motion(flight, kMount, Time{0}, 1000, true);
+  const std::int32_t late = 50'000'000;
+  EXPECT_EQ(motion.at(late).matrix(), (flight.pose_at(Time{late}) * kMount).matrix());
+}
+
 TEST(LidarMotion, AFrozenScanStaysWhereItBegan) {
   const SwingingFlight flight(10.0);
   const Time stamp = std::chrono::milliseconds(700);

@@ -36,6 +36,18 @@ TEST(SignalModel, ATargetAtItsRatedRangeIsSeenAsOftenAsTheSheetSays) {
   }
 }
 
+TEST(SignalModel, StrongSignalsAreSeenForCertain) {
+  EXPECT_EQ(normal_cdf(8.3), 1.0);  // what the shortcut for them takes for granted
+  const SignalModel model(mid360_sheet());
+  EXPECT_EQ(model.detection_probability(1e3), 1.0);
+  double last = 0.0;
+  for (double signal = 0.0; signal < 4.0; signal += 0.01) {
+    EXPECT_GE(model.detection_probability(signal), last);
+    last = model.detection_probability(signal);
+  }
+  EXPECT_EQ(last, 1.0);
+}
+
 TEST(SignalModel, WithoutASheetTheSignalFallsWithTheSquareOfTheRange) {
   const SignalModel model{SignalConfig{}};
   EXPECT_EQ(model.extinction(), 0.0);
