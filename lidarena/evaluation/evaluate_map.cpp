@@ -22,15 +22,17 @@ struct Subject {
   const World& world;
   const Parallel& parallel;
   const SeenSurface* seen;
+  const IdentifiedMap* identified;
   MortonOrder order;
   std::optional<PointGrid> grid;  ///< where completeness is asked for
 
   Subject(std::span<const Eigen::Vector3f> points, const World& mesh, const Parallel& workers,
-          const SeenSurface* surface)
+          const SeenSurface* surface, const IdentifiedMap* with_hits)
       : map(points),
         world(mesh),
         parallel(workers),
         seen(surface),
+        identified(with_hits),
         order(morton_order(points, workers)) {
     if (seen != nullptr) grid.emplace(completeness_grid(points, workers));
   }
@@ -43,6 +45,10 @@ Json measure(const Subject& subject, const Pose& mesh_from_map) {
   json["mesh_from_map_m_quaternion"] = value_to_json(mesh_from_map);
   json["per_voxel"] = to_json(voxel_error(subject.order, scores));
   json["ghosting"] = to_json(ghosting(scores, subject.world, subject.parallel));
+  json["identity"] = nullptr;
+  if (subject.identified != nullptr) {
+    json["identity"] = to_json(identity_error(*subject.identified, mesh_from_map));
+  }
   json["signed"] = nullptr;
   json["completeness"] = nullptr;
   if (subject.seen == nullptr) return json;
@@ -90,17 +96,16 @@ double farthest_coordinate(std::span<const Eigen::Vector3f> map) {
 
 }  // namespace
 
-SeenSurface make_seen_surface(ObservedSurface observed, const World& world,
-                              const Parallel& parallel) {
-  SeenSurface seen{std::move(observed), {}};
+SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel& parallel) {
+  SeenSurface seen{std::move(truth.observed), {}, std::move(truth.identified)};
   seen.samples = seen_samples(world, seen.observed, parallel);
   return seen;
 }
 
 Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                   const Trajectory& truth, const World& world, const Parallel& parallel,
-                  const SeenSurface* seen) {
-  const Subject subject(map, world, parallel, seen);
+                  const SeenSurface* seen, const IdentifiedMap* identified) {
+  const Subject subject(map, world, parallel, seen, identified);
   Json json = Json::object();
   std::optional<Pose> first_pose, start;
   for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {

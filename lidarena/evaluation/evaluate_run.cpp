@@ -80,9 +80,10 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
 
 /// Null for a map that was not made.
 Json evaluate_map_of(const Cloud& cloud, const RunFiles& run, const Trajectory& truth,
-                     const World& world, const Parallel& parallel, const SeenSurface* seen) {
+                     const World& world, const Parallel& parallel, const SeenSurface* seen,
+                     const IdentifiedMap* identified = nullptr) {
   if (cloud.points.empty()) return nullptr;
-  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel, seen);
+  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel, seen, identified);
 }
 
 }  // namespace
@@ -165,14 +166,14 @@ Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* wor
   if (world == nullptr) return json;
   std::optional<SeenSurface> seen;
   if (observe) {
-    if (std::optional<ObservedSurface> observed = observe()) {
-      seen = make_seen_surface(*std::move(observed), *world, parallel);
+    if (std::optional<RayTruth> rays = observe()) {
+      seen = make_seen_surface(*std::move(rays), *world, parallel);
     }
   }
   const SeenSurface* surface = seen ? &*seen : nullptr;
   json["maps"]["own"] = evaluate_map_of(run.map, run, truth, *world, parallel, surface);
-  json["maps"]["reprojected"] =
-      evaluate_map_of(run.reprojected, run, truth, *world, parallel, surface);
+  json["maps"]["reprojected"] = evaluate_map_of(run.reprojected, run, truth, *world, parallel,
+                                                surface, seen ? &seen->identified : nullptr);
   return json;
 }
 

@@ -19,14 +19,14 @@ namespace lidarena {
 inline constexpr int kMetricsSchemaVersion = 2;
 
 /// Finds out what the flight's rays saw; nothing where that cannot be known.
-using Observe = std::function<std::optional<ObservedSurface>()>;
+using Observe = std::function<std::optional<RayTruth>()>;
 
 /// All metrics of one run as metrics.json: association first, then trajectory errors of the live
 /// and the final trajectory, then map errors of both maps (null where there is no mesh or no map).
 /// `world` may be null. A run that diverged (its manifest says "status": "diverged", or its poses
 /// do, see divergence_of()) has a status and a reason, and no errors. `observe`, if given, is asked
 /// once when maps are scored; without it (or when it has none) there is no completeness and no
-/// signed distance.
+/// signed distance, nor an identity error.
 Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* world,
                   const Parallel& parallel, LogSink& log, const Observe& observe = {});
 

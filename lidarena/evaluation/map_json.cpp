@@ -44,6 +44,14 @@ Json to_json(const Ghosting& ghosting) {
            ghosting.double_patches > 0 ? Json(ghosting.median_separation_m) : Json(nullptr)}};
 }
 
+Json to_json(const IdentityError& error) {
+  if (error.distance_m.count == 0) return nullptr;
+  return {{"definition", "identity_error[own-true-hit]"},
+          {"distance", to_json(error.distance_m, "m")},
+          {"normal", to_json(error.normal_m, "m")},
+          {"tangential", to_json(error.tangential_m, "m")}};
+}
+
 Json to_json(const Completeness& completeness) {
   if (completeness.samples == 0) return nullptr;
   Json rows = Json::array();

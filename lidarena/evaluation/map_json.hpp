@@ -4,6 +4,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/evaluation/completeness.hpp"
 #include "lidarena/evaluation/ghosting.hpp"
+#include "lidarena/evaluation/identity_error.hpp"
 #include "lidarena/evaluation/mesh_gauge.hpp"
 #include "lidarena/evaluation/signed_distance.hpp"
 #include "lidarena/evaluation/voxel_error.hpp"
@@ -14,6 +15,7 @@ namespace lidarena {
 Json to_json(const VoxelError& error);
 Json to_json(const SignedDistance& distance);
 Json to_json(const Ghosting& ghosting);
+Json to_json(const IdentityError& error);
 Json to_json(const Completeness& completeness);
 /// What the gauge "robust" rests on.
 Json to_json(const MeshAlignment& alignment);

@@ -76,22 +76,35 @@ Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& 
   return cloud;
 }
 
-/// What the rays of the run's LiDAR saw; nothing, with a warning, when the dataset cannot be read
+/// The re-projected map made again, each point with what its ray hit.
+IdentifiedMap identified_map(Dataset dataset, const LidarInfo& lidar, const Trajectory& trajectory,
+                             ScanTruthSource& hits) {
+  std::vector<ReturnOrigin> origins;
+  const Cloud map = reproject(*dataset.events, lidar.id, lidar.body_from_lidar, trajectory, 0.02,
+                              nullptr, &origins);
+  return identify(map.points, origins, hits);
+}
+
+/// What the rays of the run's LiDAR hit; nothing, with a warning, when the dataset cannot be read
 /// again.
-std::optional<ObservedSurface> observed_surface(const fs::path& dataset,
-                                                const std::string& lidar_id,
-                                                const Trajectory& truth, const World& world,
-                                                const Parallel& parallel, LogSink& log) {
+std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar_id,
+                                  const Trajectory& estimate, const Trajectory& truth,
+                                  const World& world, const Parallel& parallel, LogSink& log) {
   try {
-    if (const auto hits = open_scan_truth(dataset, lidar_id)) {
-      return observe(*hits, world, parallel);
-    }
     ReadOptions read;
     read.sensor = lidar_id;
-    Dataset again = open_any_dataset(dataset, read, parallel);
-    const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
-    if (lidar == nullptr) throw InputError(dataset.string(), "has no LiDAR named " + lidar_id);
-    return observe(*again.events, lidar_id, lidar->body_from_lidar, truth, world, parallel);
+    Dataset again = open_any_dataset(path, read, parallel);
+    const LidarInfo* found = again.rig.find_lidar(lidar_id);
+    if (found == nullptr) throw InputError(path.string(), "has no LiDAR named " + lidar_id);
+    const LidarInfo lidar = *found;
+    const auto hits = open_scan_truth(path, lidar.id);
+    if (!hits) {
+      return RayTruth{
+          observe(*again.events, lidar.id, lidar.body_from_lidar, truth, world, parallel), {}};
+    }
+    const auto hits_again = open_scan_truth(path, lidar.id);
+    return RayTruth{observe(*hits, world, parallel),
+                    identified_map(std::move(again), lidar, estimate, *hits_again)};
   } catch (const InputError& error) {
     log.warn(std::string("no completeness and no signed distance: ") + error.what());
     return std::nullopt;
@@ -146,8 +159,8 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
     world = std::make_unique<World>(load_mesh(*mesh), mesh->string());
   }
   const Json metrics = evaluate_run(run, *truth, world.get(), parallel, log, [&] {
-    return observed_surface(dataset, run.manifest.value("sensor", ""), *truth, *world, parallel,
-                            log);
+    return ray_truth(dataset, run.manifest.value("sensor", ""), run.trajectory, *truth, *world,
+                     parallel, log);
   });
   if (world && metrics.value("status", "") == "ok" && !run.reprojected.points.empty()) {
     const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);

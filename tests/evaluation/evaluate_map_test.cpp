@@ -61,7 +61,7 @@ struct Room {
   SeenSurface seen = [this] {
     Truths truths;
     truths.scans.push_back(hits);
-    return make_seen_surface(observe(truths, world, kTwo), world, kTwo);
+    return make_seen_surface({observe(truths, world, kTwo), {}}, world, kTwo);
   }();
 
   /// The hits, each `before` metres before the wall, in a frame that is off by `offset`.
