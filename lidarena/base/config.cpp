@@ -49,6 +49,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// YAML lets lists and maps be keys; here a key is a word.
+std::string key_text(const YAML::Node& key, const std::string& file) {
+  if (!key.IsScalar()) {
+    throw InputError(place(file, key.Mark()), "a key is no single word", "write 'key: value'");
+  }
+  return key.Scalar();
+}
+
 }  // namespace
 
 ConfigNode ConfigNode::load(const std::filesystem::path& file) {
@@ -74,7 +82,7 @@ bool ConfigNode::is_null() const { return impl_->node.IsNull(); }
 
 std::vector<std::string> ConfigNode::keys() const {
   std::vector<std::string> keys;
-  for (const auto& entry : impl_->node) keys.push_back(entry.first.as<std::string>());
+  for (const auto& entry : impl_->node) keys.push_back(key_text(entry.first, impl_->file));
   return keys;
 }
 
@@ -82,7 +90,7 @@ std::optional<ConfigNode> ConfigNode::find(std::string_view key) const {
   const std::string name(key);
   std::optional<ConfigNode> found;
   for (const auto& entry : impl_->node) {
-    if (entry.first.as<std::string>() != name) continue;
+    if (key_text(entry.first, impl_->file) != name) continue;
     if (found)
       throw InputError(place(impl_->file, entry.first.Mark()),
                        "the key '" + name + "' stands here a second time");
@@ -114,7 +122,7 @@ std::string ConfigNode::where() const {
 
 std::string ConfigNode::where(std::string_view key) const {
   for (const auto& entry : impl_->node) {
-    if (entry.first.as<std::string>() == key) return place(impl_->file, entry.first.Mark());
+    if (key_text(entry.first, impl_->file) == key) return place(impl_->file, entry.first.Mark());
   }
   return where();
 }

@@ -214,7 +214,8 @@ Target manifests() {
 Target configurations() {
   return {"yaml",
           {"body_frame: base\nlidars:\n  - id: a\n    rate_hz: 10\n    pixel_shifts: [1, 2]\n    "
-           "body_from_lidar: [0, 0, 0.1, 0, 0, 0, 1]\nimus: []\n"},
+           "body_from_lidar: [0, 0, 0.1, 0, 0, 0, 1]\nimus: []\n",
+           "? [body_frame, lidars]\n: a list as a key\n"},
           [](std::string_view bytes) {
             tolerant([&] {
               Rig rig;
