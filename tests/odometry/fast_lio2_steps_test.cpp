@@ -124,6 +124,7 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   const ImuStatistics imu = statistics(standing(1.0, 1e-3));
   InertialState state;
   state.gyro_bias = {0.01, 0.0, 0.0};
+  state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   int stood = 0;
   for (int i = 0; i < 20; ++i) {
     state.position.x() = 0.005 * i;  // 5 cm/s: no IMU feels it
@@ -132,6 +133,18 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   }
   EXPECT_LT(stood, 19) << "every 3 cm it is found out";
   EXPECT_GT(stood, 10);
+}
+
+TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
+  const Config config = improved_config();
+  InertialState state;
+  state.gyro_bias = {0.01, 0.0, 0.0};
+  state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
+  std::vector<ImuSample> samples = standing(1.0, 1e-3);
+  StillDetector detector;
+  EXPECT_TRUE(detector.observe(statistics(samples), state, config, 1.0));
+  for (ImuSample& sample : samples) sample.accel.x() += 0.1;
+  EXPECT_FALSE(detector.observe(statistics(samples), state, config, 1.0)) << "0.1 m/s^2";
 }
 
 // --- Planes ---
