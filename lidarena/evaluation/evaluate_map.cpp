@@ -58,6 +58,11 @@ Json measure(const Subject& subject, const Pose& mesh_from_map) {
   return json;
 }
 
+Json measure_vertices(const Subject& subject, const Pose& mesh_from_map) {
+  return to_json(
+      vertex_distance(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel));
+}
+
 /// The move from the first-pose gauge is the rigid part of the drift.
 Json measure_robust(const Subject& subject, const Pose& start, const Pose& first_pose) {
   const MeshAlignment alignment =
@@ -117,6 +122,7 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
     start = alignment.truth_from_estimate;
     if (gauge == Gauge::kFirstPose) first_pose = start;
     json[to_string(gauge)] = measure(subject, *start);
+    if (gauge == Gauge::kSe3) json["se3"]["point_vertex"] = measure_vertices(subject, *start);
   }
   json["robust"] = start && first_pose ? measure_robust(subject, *start, *first_pose)
                                        : Json{{"refused", "there is no pose to start from"}};

@@ -69,6 +69,23 @@ Json to_json(const Completeness& completeness) {
           {"rows", rows}};
 }
 
+Json to_json(const VertexDistance& distance) {
+  const MapError& error = distance.error;
+  if (distance.refusal.empty() && error.points == 0) return nullptr;
+  Json json{{"definition", "map_error_vertices[point-vertex,regular-subdivision,20cm]"},
+            {"edge_m", distance.edge_m},
+            {"vertices", distance.vertices}};
+  if (!distance.refusal.empty()) {
+    json["refused"] = distance.refusal;
+    return json;
+  }
+  json["rmse_m"] = error.distance_m.rmse;
+  json["rmse_inliers_m"] = error.inliers > 0 ? Json(error.rmse_inliers_m) : Json(nullptr);
+  json["median_m"] = error.distance_m.median;
+  json["outliers_percent"] = error.outliers_percent;
+  return json;
+}
+
 Json to_json(const MeshAlignment& alignment) {
   Json eigenvalues = Json::array();
   for (const double value : alignment.eigenvalues) eigenvalues.push_back(value);

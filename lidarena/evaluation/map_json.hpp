@@ -7,6 +7,7 @@
 #include "lidarena/evaluation/identity_error.hpp"
 #include "lidarena/evaluation/mesh_gauge.hpp"
 #include "lidarena/evaluation/signed_distance.hpp"
+#include "lidarena/evaluation/vertex_distance.hpp"
 #include "lidarena/evaluation/voxel_error.hpp"
 
 /// Measures of a map as JSON, in the manner of metrics_json.hpp. Null where nothing was measured.
@@ -17,6 +18,8 @@ Json to_json(const SignedDistance& distance);
 Json to_json(const Ghosting& ghosting);
 Json to_json(const IdentityError& error);
 Json to_json(const Completeness& completeness);
+/// Says why under "refused" where it is not known.
+Json to_json(const VertexDistance& distance);
 /// What the gauge "robust" rests on.
 Json to_json(const MeshAlignment& alignment);
 

@@ -98,6 +98,12 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
     EXPECT_GT(rows[1]["recall_percent"], 99.5);
     EXPECT_GT(rows[1]["f_score_percent"], 99.5);
   }
+  // rectangles with lattices of diagonals between 4.93 and 5 cm: diagonal^2 / 12 in the mean square
+  const Json& vertices = m["se3"]["point_vertex"];
+  EXPECT_EQ(vertices["edge_m"], 0.05);
+  EXPECT_GT(vertices["rmse_m"], std::hypot(0.03, 0.049 / std::sqrt(12.0)));
+  EXPECT_LT(vertices["rmse_m"], std::hypot(0.03, 0.05 / std::sqrt(12.0)));
+  EXPECT_FALSE(m["robust"].contains("point_vertex"));
   EXPECT_THAT(m["robust"]["alignment"]["frozen"], IsEmpty());
   EXPECT_EQ(m["robust"]["alignment"]["starts_agreeing"], 5);
 }
