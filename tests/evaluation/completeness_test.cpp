@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What rays saw of a mesh, and how much of that a map has.
 #include "lidarena/evaluation/completeness.hpp"
+#include "tests/evaluation/listed_sources.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,19 +17,9 @@ namespace {
 using namespace std::chrono_literals;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using listed::Truths;
 
 const Parallel kTwo(2);
-
-class Truths : public ScanTruthSource {
- public:
-  std::optional<ScanTruth> next() override {
-    if (scans.empty()) return std::nullopt;
-    ScanTruth scan = std::move(scans.front());
-    scans.pop_front();
-    return scan;
-  }
-  std::deque<ScanTruth> scans;
-};
 
 /// Hits on the floor z = 0 for x in [0, length], |y| < 1, every centimetre, met from above.
 Truths hits_on_floor(double length) {

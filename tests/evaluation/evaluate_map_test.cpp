@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/evaluation/evaluate_map.hpp"
+#include "tests/evaluation/listed_sources.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,23 +18,13 @@ namespace {
 using namespace std::chrono_literals;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using listed::Truths;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 const Parallel kTwo(2);
 const Vector3d kHalf(1.6, 1.2, 0.8);
-
-class Truths : public ScanTruthSource {
- public:
-  std::optional<ScanTruth> next() override {
-    if (scans.empty()) return std::nullopt;
-    ScanTruth scan = std::move(scans.front());
-    scans.pop_front();
-    return scan;
-  }
-  std::deque<ScanTruth> scans;
-};
 
 /// Hits all over the room's walls but for 5 cm along the corners, seen from inside.
 ScanTruth hits_of_room(std::size_t count) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/evaluation/reproject.hpp"
+#include "tests/evaluation/listed_sources.hpp"
 
 #include <gtest/gtest.h>
 
@@ -16,17 +17,7 @@ using namespace std::chrono_literals;
 using Eigen::Vector3d;
 using flights::sample;
 using flights::tour;
-
-class Events : public EventSource {
- public:
-  std::optional<Event> next() override {
-    if (events.empty()) return std::nullopt;
-    Event event = std::move(events.front());
-    events.pop_front();
-    return event;
-  }
-  std::deque<Event> events;
-};
+using listed::Events;
 
 const Pose kBodyFromLidar = make_pose(so3::exp({0.3, -0.2, 1.1}), Vector3d(0.1, -0.05, 0.2));
 

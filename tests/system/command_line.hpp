@@ -43,10 +43,10 @@ class Cli : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
+  /// Calls the program in the test's folder.
   Outcome call(const std::string& arguments) const {
-    const std::string command = std::string(LIDARENA_BINARY) + " " + arguments + " >" +
-                                (folder_ / "out").string() + " 2>" + (folder_ / "err").string() +
-                                " </dev/null";
+    const std::string command = "cd " + folder_.string() + " && " + LIDARENA_BINARY + " " +
+                                arguments + " >out 2>err </dev/null";
     const int status = std::system(command.c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder_ / "out"),
             content(folder_ / "err")};

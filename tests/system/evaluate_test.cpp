@@ -2,38 +2,23 @@
 // `lidarena evaluate` on files of anyone's, as a user meets it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
+#include "tests/system/command_line.hpp"
+
+namespace lidarena::testing {
 namespace {
 
-namespace fs = std::filesystem;
 using nlohmann::json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-struct Outcome {
-  int exit_code = -1;
-  std::string out;
-  std::string err;
-};
-
-std::string content(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream text;
-  text << in.rdbuf();
-  return text.str();
-}
 
 using Position = std::array<double, 3>;
 
@@ -42,23 +27,9 @@ Position tour(double t) {
   return {4.0 * std::sin(0.35 * t), 3.0 * std::sin(0.5 * t + 0.4), 1.5 + 0.8 * std::sin(0.3 * t)};
 }
 
-class Evaluate : public ::testing::Test {
+class Evaluate : public Cli {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("lidarena_evaluate_" + std::to_string(getpid()) + "_" + info->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  Outcome call(const std::string& arguments) const {
-    const std::string command = "cd " + folder_.string() + " && " + LIDARENA_BINARY + " evaluate " +
-                                arguments + " >out 2>err </dev/null";
-    const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder_ / "out"),
-            content(folder_ / "err")};
-  }
+  Outcome call(const std::string& arguments) const { return Cli::call("evaluate " + arguments); }
   /// Bad input: exit code 2, nothing on standard output, and one line of error.
   std::string refusal(const std::string& arguments) const {
     const Outcome outcome = call(arguments);
@@ -66,9 +37,6 @@ class Evaluate : public ::testing::Test {
     EXPECT_EQ(outcome.out, "");
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     return outcome.err;
-  }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
   }
   /// 30 s of `position` at `rate` Hz as TUM rows behind `comment`.
   void write_tum(const std::string& name, const std::function<Position(double)>& position,
@@ -84,8 +52,6 @@ class Evaluate : public ::testing::Test {
     }
     write(name, text);
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Evaluate, AnyonesTrajectoryIsScoredDiagnosisFirst) {
@@ -222,3 +188,4 @@ TEST_F(Evaluate, BadFilesAreOneClearMessageEach) {
 }
 
 }  // namespace
+}  // namespace lidarena::testing

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <utility>
+
+#include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/point_truth.hpp"
+
+/// Sources that give what a test lists.
+namespace lidarena::listed {
+
+/// Takes the first of `items`, if there is one.
+template <class Item>
+std::optional<Item> take_first(std::deque<Item>& items) {
+  if (items.empty()) return std::nullopt;
+  Item item = std::move(items.front());
+  items.pop_front();
+  return item;
+}
+
+class Truths : public ScanTruthSource {
+ public:
+  std::optional<ScanTruth> next() override { return take_first(scans); }
+  std::deque<ScanTruth> scans;
+};
+
+class Events : public EventSource {
+ public:
+  std::optional<Event> next() override { return take_first(events); }
+  std::deque<Event> events;
+};
+
+}  // namespace lidarena::listed
