@@ -79,6 +79,7 @@ Json to_json(const VertexDistance& distance) {
     json["refused"] = distance.refusal;
     return json;
   }
+  json["points"] = error.points;
   json["rmse_m"] = error.distance_m.rmse;
   json["rmse_inliers_m"] = error.inliers > 0 ? Json(error.rmse_inliers_m) : Json(nullptr);
   json["median_m"] = error.distance_m.median;

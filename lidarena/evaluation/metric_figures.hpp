@@ -6,18 +6,24 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/statistics.hpp"
 
 namespace lidarena {
+
+/// The tables of metrics_table.hpp.
+enum class FigureTable { kNone, kMain, kMap };
 
 /// A figure and where it stands in metrics.json.
 struct MetricFigure {
   const char* key;
-  const char* heading;  ///< in tables; null = not in tables
+  const char* heading;  ///< in its table; null = in none
   const char* group;    ///< pointer to the object with definition, used, total
   const char* value;    ///< pointer from there
   double factor;
   const char* unit;
   const char* words;  ///< on a terminal
+  FigureTable table = FigureTable::kNone;
+  Better better = Better::kLess;
 };
 
 /// The main figures, in the order in which they are shown.
@@ -29,6 +35,9 @@ const Json* find_in(const Json& json, const std::string& path);
 std::optional<double> number_in(const Json& json, const std::string& path, double factor = 1.0);
 /// The text there, or nothing.
 std::string text_in(const Json& json, const std::string& path);
+
+/// Why there is no such figure, where the JSON says so: at its group or at what that is a part of.
+std::string refusal_of(const Json& metrics, const MetricFigure& figure);
 
 std::optional<double> value_of(const Json& metrics, const MetricFigure& figure);
 /// Of the "live" or the "final" trajectory.

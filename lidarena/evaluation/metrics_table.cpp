@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -25,14 +26,16 @@ std::string basis_of(const Json& metrics, const MetricFigure& figure) {
   const auto used = number_in(metrics, group + "/used");
   const auto total = number_in(metrics, group + "/total");
   if (used && total) return fmt::format("{:.0f} of {:.0f} pieces", *used, *total);
-  if (const auto pieces = number_in(metrics, group + "/pieces")) {
-    return fmt::format("{:.0f} pieces", *pieces);
-  }
-  if (const auto count = number_in(metrics, group + "/translation/count")) {
-    return fmt::format("{:.0f} poses", *count);
-  }
-  if (const auto points = number_in(metrics, group + "/points")) {
-    return fmt::format("{:.0f} points", *points);
+  constexpr std::array<std::array<const char*, 2>, 6> kCounts{{{"/pieces", "pieces"},
+                                                               {"/translation/count", "poses"},
+                                                               {"/points", "points"},
+                                                               {"/samples", "samples"},
+                                                               {"/patches", "patches"},
+                                                               {"/distance/count", "points"}}};
+  for (const auto& [path, what] : kCounts) {
+    if (const auto count = number_in(metrics, group + path)) {
+      return fmt::format("{:.0f} {}", *count, what);
+    }
   }
   return {};
 }
@@ -84,12 +87,19 @@ std::string diagnosis_text(const Json& metrics) {
   return text + gauge_text(metrics);
 }
 
+std::string block_of(const MetricFigure& figure) {
+  const std::string_view group = figure.group;
+  return group.starts_with("/maps")        ? "map"
+         : group.starts_with("/resources") ? "resources"
+                                           : "trajectory";
+}
+
 std::string figure_text(const Json& metrics, const MetricFigure& figure) {
   const std::string refused = text_in(metrics, std::string(figure.group) + "/refused");
-  if (!refused.empty()) return fmt::format("  {:<34}   refused: {}\n", figure.words, refused);
+  if (!refused.empty()) return fmt::format("  {:<38}   refused: {}\n", figure.words, refused);
   const auto value = value_of(metrics, figure);
   if (!value) return {};
-  std::string line = fmt::format("  {:<34}{:>10.3f} {:<4}", figure.words, *value, figure.unit);
+  std::string line = fmt::format("  {:<38}{:>10.3f} {:<4}", figure.words, *value, figure.unit);
   const auto coverage = coverage_of(metrics, figure);
   if (has_coverage(figure) && coverage) {
     const std::string basis = basis_of(metrics, figure);
@@ -105,29 +115,35 @@ std::string figure_text(const Json& metrics, const MetricFigure& figure) {
 
 using Cell = std::optional<double>;
 
-std::vector<const MetricFigure*> table_figures() {
+/// The columns of a table; of the map's, those that some run has.
+std::vector<const MetricFigure*> table_figures(std::span<const ScoredRun> runs, FigureTable table) {
   std::vector<const MetricFigure*> figures;
   for (const MetricFigure& figure : metric_figures()) {
-    if (figure.heading != nullptr) figures.push_back(&figure);
+    if (figure.table != table) continue;
+    const bool known = std::any_of(runs.begin(), runs.end(), [&](const ScoredRun& run) {
+      return value_of(run.metrics, figure).has_value();
+    });
+    if (known || table == FigureTable::kMain) figures.push_back(&figure);
   }
   return figures;
 }
 
-/// How many of the other runs have a smaller value than run `i`; empty where there is no contest.
+/// How many of the other runs have a better value than run `i`; empty where there is no contest.
 std::optional<std::size_t> rank_of(std::span<const ScoredRun> runs, std::size_t i,
                                    const MetricFigure& figure) {
   const Cell mine = value_of(runs[i].metrics, figure);
   if (!mine) return std::nullopt;
-  std::size_t smaller = 0;
+  const double sign = figure.better == Better::kLess ? 1.0 : -1.0;
+  std::size_t better = 0;
   std::size_t others = 0;
   for (const ScoredRun& run : runs) {
     const Cell value = value_of(run.metrics, figure);
     if (!value) continue;
     ++others;
-    if (*value < *mine) ++smaller;
+    if (sign * *value < sign * *mine) ++better;
   }
   if (others < 2) return std::nullopt;
-  return smaller;
+  return better;
 }
 
 std::string title_of(const ScoredRun& run) {
@@ -204,6 +220,38 @@ std::string latex_row(std::span<const ScoredRun> runs, std::size_t i,
   return row + " \\\\\n";
 }
 
+std::string markdown_table(std::span<const ScoredRun> runs,
+                           const std::vector<const MetricFigure*>& figures) {
+  std::string text = "| run | coverage % |";
+  std::string rule = "| --- | ---: |";
+  for (const MetricFigure* figure : figures) {
+    text += fmt::format(" {} |", figure->heading);
+    rule += " ---: |";
+  }
+  text += " status |\n" + rule + " --- |\n";
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    text += fmt::format("| {} | {} |", for_markdown(title_of(runs[i])),
+                        cell_text(coverage_percent(runs[i].metrics, "final")));
+    for (const MetricFigure* figure : figures) {
+      const std::string cell = cell_text(value_of(runs[i].metrics, *figure));
+      text += rank_of(runs, i, *figure) == 0U ? fmt::format(" **{}** |", cell)
+                                              : fmt::format(" {} |", cell);
+    }
+    text += fmt::format(" {} |\n", for_markdown(status_and_reason(runs[i].metrics)));
+  }
+  return text;
+}
+
+std::string latex_table(std::span<const ScoredRun> runs,
+                        const std::vector<const MetricFigure*>& figures) {
+  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\nrun & coverage \\%",
+                                 std::string(figures.size() + 1, 'r'));
+  for (const MetricFigure* figure : figures) text += " & " + for_latex(figure->heading);
+  text += " \\\\\n\\midrule\n";
+  for (std::size_t i = 0; i < runs.size(); ++i) text += latex_row(runs, i, figures);
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
 }  // namespace
 
 std::string metrics_text(const ScoredRun& run) {
@@ -215,9 +263,15 @@ std::string metrics_text(const ScoredRun& run) {
   text += diagnosis_text(m);
   const bool live_is_final =
       find_in(m, "/live") != nullptr && find_in(m, "/final") != nullptr && m["live"] == m["final"];
+  std::string block;
   for (const MetricFigure& figure : metric_figures()) {
     if (live_is_final && std::string_view(figure.group).starts_with("/live")) continue;
-    text += figure_text(m, figure);
+    const std::string line = figure_text(m, figure);
+    if (!line.empty() && block != block_of(figure)) {
+      block = block_of(figure);
+      text += block + "\n";
+    }
+    text += line;
   }
   return text;
 }
@@ -253,35 +307,19 @@ std::string metrics_csv(std::span<const ScoredRun> runs) {
 }
 
 std::string metrics_markdown(std::span<const ScoredRun> runs) {
-  const std::vector<const MetricFigure*> figures = table_figures();
-  std::string text = "| run | coverage % |";
-  std::string rule = "| --- | ---: |";
-  for (const MetricFigure* figure : figures) {
-    text += fmt::format(" {} |", figure->heading);
-    rule += " ---: |";
-  }
-  text += " status |\n" + rule + " --- |\n";
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    text += fmt::format("| {} | {} |", for_markdown(title_of(runs[i])),
-                        cell_text(coverage_percent(runs[i].metrics, "final")));
-    for (const MetricFigure* figure : figures) {
-      const std::string cell = cell_text(value_of(runs[i].metrics, *figure));
-      text += rank_of(runs, i, *figure) == 0U ? fmt::format(" **{}** |", cell)
-                                              : fmt::format(" {} |", cell);
-    }
-    text += fmt::format(" {} |\n", for_markdown(status_and_reason(runs[i].metrics)));
-  }
-  return text;
+  std::string text = markdown_table(runs, table_figures(runs, FigureTable::kMain));
+  const auto map_figures = table_figures(runs, FigureTable::kMap);
+  if (map_figures.empty()) return text;
+  text += '\n';
+  return text += markdown_table(runs, map_figures);
 }
 
 std::string metrics_latex(std::span<const ScoredRun> runs) {
-  const std::vector<const MetricFigure*> figures = table_figures();
-  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\nrun & coverage \\%",
-                                 std::string(figures.size() + 1, 'r'));
-  for (const MetricFigure* figure : figures) text += " & " + for_latex(figure->heading);
-  text += " \\\\\n\\midrule\n";
-  for (std::size_t i = 0; i < runs.size(); ++i) text += latex_row(runs, i, figures);
-  return text + "\\bottomrule\n\\end{tabular}\n";
+  std::string text = latex_table(runs, table_figures(runs, FigureTable::kMain));
+  const auto map_figures = table_figures(runs, FigureTable::kMap);
+  if (map_figures.empty()) return text;
+  text += '\n';
+  return text += latex_table(runs, map_figures);
 }
 
 }  // namespace lidarena

@@ -25,10 +25,11 @@ struct ScoredRun {
 std::string metrics_text(const ScoredRun& run);
 
 /// Long form, a row a figure: run, algorithm, flight, seed, status, reason, coverage_percent,
-/// trajectory, figure, definition, value, unit, used, total. A run without figures is one row.
+/// figure, definition, value, unit, used, total. A run without figures is one row.
 std::string metrics_csv(std::span<const ScoredRun> runs);
 
-/// A row a run, lower is better: the best of each column bold where several runs have it.
+/// A row a run, the best of each column bold where several runs have it; below it a second table of
+/// what else is known of the re-projected maps.
 std::string metrics_markdown(std::span<const ScoredRun> runs);
 
 /// The same for the booktabs package: best bold, second best underlined, failures in words.

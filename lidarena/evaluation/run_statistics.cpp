@@ -20,9 +20,8 @@ std::vector<RunFigure> figures_of(std::span<const ScoredRun> runs, const std::st
   std::vector<RunFigure> figures;
   for (const ScoredRun& run : runs) {
     if (run.algorithm != algorithm) continue;
-    const std::string failure = scored(run)
-                                    ? text_in(run.metrics, std::string(figure.group) + "/refused")
-                                    : status_and_reason(run.metrics);
+    const std::string failure =
+        scored(run) ? refusal_of(run.metrics, figure) : status_and_reason(run.metrics);
     const std::optional<double> value = scored(run) ? value_of(run.metrics, figure) : std::nullopt;
     figures.push_back({run.flight, run.seed, value, failure});
   }
@@ -84,7 +83,8 @@ Json statistics_json(std::span<const ScoredRun> runs, std::uint64_t seed) {
   Json json{{"algorithms", Json::object()}, {"paired", nullptr}};
   for (const std::string& algorithm : algorithms) {
     for (const MetricFigure& figure : metric_figures()) {
-      const Spread spread = spread_of(figures_of(runs, algorithm, figure), seed);
+      const Spread spread =
+          spread_of(figures_of(runs, algorithm, figure), seed, kResamples, figure.better);
       json["algorithms"][algorithm][figure.key] = to_json(spread, figure.unit);
     }
   }
@@ -106,7 +106,7 @@ std::string statistics_text(const Json& statistics) {
     for (const MetricFigure& figure : metric_figures()) {
       const Json& s = figures.at(figure.key);
       if (s.at("values") == 0 || s.at("runs") == 1) continue;
-      text += fmt::format("  {:<34}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.words,
+      text += fmt::format("  {:<38}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.words,
                           shown(s.at("median")), figure.unit, shown(s.at("min")),
                           shown(s.at("max")), interval_text(s.at("median_95")),
                           s.at("values").get<std::size_t>(), s.at("runs").get<std::size_t>());
@@ -122,7 +122,7 @@ std::string statistics_text(const Json& statistics) {
   for (const MetricFigure& figure : metric_figures()) {
     const Json& c = paired.at("figures").at(figure.key);
     if (c.at("pairs") == 0) continue;
-    text += fmt::format("  {:<34}{:>8} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.words,
+    text += fmt::format("  {:<38}{:>8} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.words,
                         shown(c.at("median_difference")), figure.unit,
                         interval_text(c.at("difference_95")), shown(c.at("wilcoxon_p")),
                         c.at("pairs").get<std::size_t>());

@@ -59,12 +59,14 @@ std::string reason_of(const RunFigure& run) {
   return run.failure.empty() ? "has no such figure" : run.failure;
 }
 
-/// Median where `failed` further values are larger than all.
-std::optional<double> median_with_failures(std::vector<double> values, std::size_t failed) {
+/// Median where `failed` further values are worse than all.
+std::optional<double> median_with_failures(std::vector<double> values, std::size_t failed,
+                                           Better better) {
   const std::size_t n = values.size() + failed;
-  const std::size_t upper = n / 2;  // the larger of the middle ones
+  const std::size_t upper = n / 2;  // the worse of the middle ones
   if (n == 0 || upper >= values.size()) return std::nullopt;
   std::sort(values.begin(), values.end());
+  if (better == Better::kMore) std::reverse(values.begin(), values.end());
   return n % 2 == 1 ? values[upper] : 0.5 * (values[upper - 1] + values[upper]);
 }
 
@@ -129,7 +131,8 @@ double normal_p(const SignedRanks& ranks) {
 
 }  // namespace
 
-Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed, std::size_t resamples) {
+Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed, std::size_t resamples,
+                 Better better) {
   Spread spread;
   spread.runs = runs.size();
   ByFlight flights;
@@ -143,7 +146,7 @@ Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed, std::size_
   std::vector<double> values = all_values(flights);
   spread.values = values.size();
   spread.flights = flights.size();
-  spread.median_with_failures = median_with_failures(values, spread.failures.size());
+  spread.median_with_failures = median_with_failures(values, spread.failures.size(), better);
   if (values.empty()) return spread;
   std::sort(values.begin(), values.end());
   for (const double value : values) spread.mean += value / static_cast<double>(values.size());

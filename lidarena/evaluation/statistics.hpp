@@ -39,12 +39,15 @@ struct Spread {
 
 inline constexpr std::size_t kResamples = 10'000;
 
+/// Which values of a figure are the good ones.
+enum class Better { kLess, kMore };
+
 /// The interval is the percentile bootstrap (Efron, Tibshirani, "An introduction to the bootstrap",
 /// 1993, ch. 13) of the median over *flights*: a flight is drawn with all of its runs, for runs of
 /// one flight are no independent samples. The same bits for the same seed, whatever the order of
 /// the runs.
 Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed = 1,
-                 std::size_t resamples = kResamples);
+                 std::size_t resamples = kResamples, Better better = Better::kLess);
 
 /// `b` against `a` on the same flights and seeds.
 struct PairedComparison {

@@ -6,6 +6,7 @@
 
 #include <sstream>
 
+#include "lidarena/evaluation/map_json.hpp"
 #include "lidarena/evaluation/run_statistics.hpp"
 
 namespace lidarena {
@@ -50,6 +51,29 @@ ScoredRun diverged(const std::string& name, const std::string& algorithm,
           {{"status", "diverged"}, {"reason", "900 m from the truth, 50 % & more"}}};
 }
 
+/// Gives it a re-projected map with a recall of `percent` within 5 cm and none within others.
+ScoredRun with_map(ScoredRun run, double percent) {
+  Completeness complete;
+  complete.samples = 5000;
+  for (std::size_t i = 0; i < complete.rows.size(); ++i) {
+    if (Completeness::kWithin_m[i] == 0.05) complete.rows[i] = {0.0, percent, percent - 1.0};
+  }
+  Ghosting ghosts;
+  ghosts.patches = 400;
+  ghosts.double_percent = 1.5;
+  Json& se3 = run.metrics["maps"]["reprojected"]["se3"];
+  se3 = {{"definition", "map_error"}, {"points", 900}, {"distance", {{"rmse_m", 0.03}}}};
+  se3["completeness"] = to_json(complete);
+  se3["ghosting"] = to_json(ghosts);
+  se3["identity"] = nullptr;
+  VertexDistance vertices;
+  vertices.refusal = "too many vertices";
+  se3["point_vertex"] = to_json(vertices);
+  run.metrics["maps"]["reprojected"]["robust"] = {
+      {"definition", "map_error"}, {"points", 900}, {"distance", {{"rmse_m", 0.02}}}};
+  return run;
+}
+
 std::vector<std::string> lines_of(const std::string& text) {
   std::vector<std::string> lines;
   std::istringstream in(text);
@@ -91,6 +115,24 @@ TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
   EXPECT_THAT(live.substr(0, live.find('\n')), AllOf(HasSubstr("3.000 cm"), HasSubstr("50 %")));
 }
 
+TEST(MetricsText, HasTheMapsMeasuresInABlockOfTheirOwn) {
+  const std::string text = metrics_text(with_map(run_of("run_a", "x:y", "house", 1.25), 87.5));
+  const std::size_t map = text.find("\nmap\n"), resources = text.find("\nresources\n");
+  ASSERT_LT(text.find("\ntrajectory\n"), map);
+  ASSERT_LT(map, resources);
+  const auto lines = lines_of(text.substr(map + 1, resources - map));
+  ASSERT_EQ(lines.size(), 7U) << text;
+  EXPECT_THAT(lines[1], AllOf(HasSubstr("RMSE "), HasSubstr("3.000 cm"), HasSubstr("900 points")));
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("robust gauge"), HasSubstr("2.000 cm")));
+  EXPECT_THAT(lines[3], AllOf(HasSubstr("to vertices"), HasSubstr("refused: too many vertices")));
+  EXPECT_THAT(lines[4], AllOf(HasSubstr("completeness at 5 cm"), HasSubstr("87.500 %"),
+                              HasSubstr("coverage 87 %, 5000 samples")));
+  EXPECT_THAT(lines[5], AllOf(HasSubstr("F-score at 5 cm"), HasSubstr("86.500 %")));
+  EXPECT_THAT(lines[6], AllOf(HasSubstr("double walls"), HasSubstr("1.500 %   "),
+                              HasSubstr("coverage 87 %, 400 patches")));
+  EXPECT_EQ(metrics_text(run_of("run_a", "", "house", 1.25)).find("\nmap\n"), std::string::npos);
+}
+
 TEST(MetricsText, OfARunThatDivergedIsItsReason) {
   EXPECT_EQ(metrics_text(diverged("bad", "x:y", "house")),
             "bad (x:y)\nstatus: diverged: 900 m from the truth, 50 % & more\n");
@@ -115,6 +157,18 @@ TEST(MetricsCsv, HasARowAFigureAndARowForARunWithout) {
   }
 }
 
+TEST(MetricsCsv, HasTheMapsMeasuresWithTheirDefinitions) {
+  const std::string csv =
+      metrics_csv(std::vector{with_map(run_of("a", "x:y", "house", 1.25), 87.5)});
+  EXPECT_THAT(csv, HasSubstr("a,x:y,house,1,ok,,87.100,reprojected_map_completeness,"
+                             "\"completeness[seen2cm,stratified-by-area]\",87.5,%,,\n"));
+  EXPECT_THAT(csv, HasSubstr("reprojected_map_f_score,"));
+  EXPECT_THAT(csv, HasSubstr("reprojected_map_rmse_robust,map_error,2,cm,,\n"));
+  EXPECT_THAT(csv, HasSubstr("reprojected_map_double_walls,"));
+  EXPECT_THAT(csv, Not(HasSubstr("identity")));  // null
+  EXPECT_THAT(csv, Not(HasSubstr("vertices")));  // refused
+}
+
 TEST(MetricsMarkdown, MarksTheBestOfSeveralAndKeepsTheFailed) {
   const auto lines = lines_of(
       metrics_markdown(std::vector{run_of("a", "", "house", 2.0), run_of("b|c", "", "house", 1.0),
@@ -126,6 +180,36 @@ TEST(MetricsMarkdown, MarksTheBestOfSeveralAndKeepsTheFailed) {
   EXPECT_THAT(lines[4], AllOf(HasSubstr("| bad | - | - |"), HasSubstr("diverged: 900 m")));
   // of one run nothing is the best
   EXPECT_THAT(metrics_markdown(std::vector{run_of("a", "", "house", 2.0)}), Not(HasSubstr("**")));
+}
+
+TEST(MetricsMarkdown, HasASecondTableOfMapsWhereMoreIsBetterForCompleteness) {
+  const auto lines = lines_of(metrics_markdown(std::vector{
+      with_map(run_of("a", "", "house", 2.0), 90.0), with_map(run_of("b", "", "house", 1.0), 80.0),
+      run_of("c", "", "house", 3.0), diverged("bad", "", "house")}));
+  ASSERT_EQ(lines.size(), 13U);
+  EXPECT_EQ(lines[6], "");
+  // no column for what no run has: identity, vertices
+  EXPECT_EQ(lines[7],
+            "| run | coverage % | robust cm | complete % | F-score % | double walls % | status |");
+  EXPECT_EQ(lines[9], "| a | 87.1 | **2** | **90** | **89** | **1.5** | ok |");
+  EXPECT_EQ(lines[10], "| b | 87.1 | **2** | 80 | 79 | **1.5** | ok |");
+  EXPECT_EQ(lines[11], "| c | 87.1 | - | - | - | - | ok |");
+  EXPECT_THAT(lines[12], HasSubstr("| bad | - | - | - | - | - | diverged: 900 m"));
+}
+
+TEST(MetricsLatex, HasASecondTableOfMaps) {
+  const std::string text = metrics_latex(std::vector{
+      with_map(run_of("a", "", "house", 2.0), 80.0), with_map(run_of("b", "", "house", 1.0), 90.0),
+      with_map(run_of("c", "", "house", 3.0), 70.0)});
+  const std::size_t second = text.find("\\end{tabular}\n\n\\begin{tabular}{lrrrrr}\n");
+  ASSERT_NE(second, std::string::npos) << text;
+  const std::string map = text.substr(second);
+  EXPECT_THAT(map, HasSubstr("run & coverage \\% & robust cm & complete \\% & F-score \\%"));
+  EXPECT_THAT(map, HasSubstr("a & 87.1 & \\textbf{2} & \\underline{80} & \\underline{79} &"));
+  EXPECT_THAT(map, HasSubstr("b & 87.1 & \\textbf{2} & \\textbf{90} & \\textbf{89} &"));
+  EXPECT_THAT(map, HasSubstr("c & 87.1 & \\textbf{2} & 70 & 69 &"));
+  EXPECT_THAT(metrics_latex(std::vector{run_of("a", "", "house", 2.0)}),
+              Not(HasSubstr("robust cm")));
 }
 
 TEST(MetricsLatex, IsABooktabsTableWithBestAndSecondBestAndFailuresInWords) {
@@ -183,6 +267,22 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
   // a figure that was refused says why
   EXPECT_EQ(json["algorithms"]["first"]["ate_se3_translation"]["failures"][0],
             "flight0 1: the flight is a line");
+}
+
+TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeGaugeWasRefused) {
+  std::vector<ScoredRun> runs;
+  for (const double percent : {70.0, 80.0, 90.0}) {
+    const std::string flight = "flight" + std::to_string(runs.size());
+    runs.push_back(with_map(run_of(flight, "x", flight, 1.0), percent));
+  }
+  runs.push_back(diverged("bad", "x", "flight3"));
+  runs.push_back(run_of("line", "x", "flight4", 1.0));
+  runs.back().metrics["maps"]["reprojected"]["se3"]["refused"] = "the flight is a line";
+  const Json json = statistics_json(runs);
+  const Json& recall = json["algorithms"]["x"]["reprojected_map_completeness"];
+  EXPECT_NEAR(recall["median"], 80.0, 1e-9);
+  EXPECT_NEAR(recall["median_with_failures"], 70.0, 1e-9);  // of -inf -inf 70 80 90
+  EXPECT_EQ(recall["failures"][1], "flight4 1: the flight is a line");
 }
 
 }  // namespace

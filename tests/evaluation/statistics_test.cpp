@@ -46,7 +46,8 @@ TEST(Spread, AFailureIsNamedAndCountsAsWorstNotAsAbsent) {
   EXPECT_EQ(spread.runs, 5U);
   EXPECT_EQ(spread.values, 3U);
   EXPECT_EQ(spread.median, 2.0);
-  EXPECT_EQ(spread.median_with_failures, 3.0);  // of 1 2 3 inf inf
+  EXPECT_EQ(spread.median_with_failures, 3.0);                                 // of 1 2 3 inf inf
+  EXPECT_EQ(spread_of(runs, 1, 10, Better::kMore).median_with_failures, 1.0);  // -inf -inf 1 2 3
   EXPECT_THAT(spread.failures, ElementsAre("flight3 7: diverged: 1e+06 m from the truth",
                                            "flight4 1: has no such figure"));
   runs.push_back({"flight5", "1", std::nullopt, "timeout"});
