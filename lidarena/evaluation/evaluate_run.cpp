@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kLowCoverage = 0.9;     // below, numbers speak of a part of the flight alone
 constexpr double kLateStamps_s = 0.005;  // 5 cm at 10 m/s
+constexpr double kHighFloor = 0.5;       // share of an error beyond which it says little
+constexpr double kSmallFloor_m = 0.005;  // nobody minds so little
 
 struct Status {
   std::string name = "ok";
@@ -56,6 +58,15 @@ Json describe_truth(const Trajectory& truth) {
           {"path_m", truth.path_length()}};
 }
 
+/// What a perfect estimate would give at the same instants.
+Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth) {
+  std::vector<StampedPose> poses;
+  for (const PosePair& pair : matched_poses(estimate, truth)) {
+    poses.push_back({pair.stamp, pair.truth});
+  }
+  return Trajectory(std::move(poses), "truth at the estimates");
+}
+
 Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   Json warnings = Json::array();
   const Association found = associate(estimate, truth);
@@ -68,6 +79,15 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
     warnings.push_back(fmt::format("the estimate's stamps seem {:.0f} ms late (not corrected)",
                                    1e3 * offset->late_s));
   }
+  const double rpe = relative_pose_error(estimate, truth).translation_m.rmse;
+  const double floor =
+      relative_pose_error(truth_at_estimates(estimate, truth), truth).translation_m.rmse;
+  if (floor > kHighFloor * rpe && floor > kSmallFloor_m) {
+    warnings.push_back(
+        fmt::format("of the {:.2f} cm of RPE per metre, {:.2f} cm are interpolation between the "
+                    "estimates, which a perfect one would show, too: give poses more often",
+                    100.0 * rpe, 100.0 * floor));
+  }
   const std::string quaternions = suspect_quaternion_order(estimate, truth);
   const std::optional<LeverArm> arm = find_lever_arm(estimate, truth);
   for (const std::string& warning :
@@ -76,6 +96,18 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
     if (!warning.empty()) warnings.push_back(warning);
   }
   return warnings;
+}
+
+/// A relative error with its floor: the same of a perfect estimate, which is what interpolating
+/// between the estimates makes of it.
+Json with_floor(const RelativePoseError& error, const RelativePoseError& of_perfect) {
+  Json json = to_json(error);
+  json["floor"] = nullptr;
+  if (of_perfect.used > 0) {
+    json["floor"] = {{"translation_rmse_m", of_perfect.translation_m.rmse},
+                     {"rotation_rmse_rad", of_perfect.rotation_rad.rmse}};
+  }
+  return json;
 }
 
 /// Null for a map that was not made.
@@ -112,12 +144,15 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
   json["association"]["lever_arm"] = to_json(find_lever_arm(estimate, truth));
 
   Json over_time;
+  const Trajectory perfect = truth_at_estimates(estimate, truth);
   for (const double length : kLadder_m) {
     const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
-    json["rpe"][fmt::format("{}m", length)] = to_json(rpe);
+    json["rpe"][fmt::format("{}m", length)] =
+        with_floor(rpe, relative_pose_error(perfect, truth, length, length));
     if (length == 1.0) over_time["rpe_1m"] = errors_over_time(rpe.segments, truth.begin_time());
   }
-  json["rpe"]["1s"] = to_json(relative_pose_error_over_time(estimate, truth));
+  json["rpe"]["1s"] = with_floor(relative_pose_error_over_time(estimate, truth),
+                                 relative_pose_error_over_time(perfect, truth));
   for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3, Gauge::kPosYaw}) {
     const AbsoluteTrajectoryError ate = absolute_trajectory_error(estimate, truth, gauge);
     json["ate"][to_string(gauge)] = to_json(ate);

@@ -21,6 +21,8 @@ constexpr std::array kFigures{
                  "cm", "RPE per metre", kMain},
     MetricFigure{"rpe_1m_rotation", "RPE deg/m", "/final/rpe/1m", "/rotation/rmse_rad", kDegrees,
                  "deg", "RPE per metre, rotation", kMain},
+    MetricFigure{"rpe_1m_floor", nullptr, "/final/rpe/1m", "/floor/translation_rmse_m", 100, "cm",
+                 "of it, interpolation (floor)"},
     MetricFigure{"rpe_1s_translation", nullptr, "/final/rpe/1s", "/translation/rmse_m", 100, "cm",
                  "RPE per second"},
     MetricFigure{"rpe_10m_translation", nullptr, "/final/rpe/10m", "/translation/rmse_m", 100, "cm",

@@ -66,6 +66,9 @@ TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
   EXPECT_EQ(m["final"]["rpe"]["1m"]["used"], m["final"]["rpe"]["1m"]["total"]);
   // what linear interpolation at 10 Hz leaves: a T^2 / 8 = 1.6 mm at each end
   EXPECT_LT(m["final"]["rpe"]["1m"]["translation"]["rmse_m"], 0.0033);
+  const Json& rpe = m["final"]["rpe"]["1m"];
+  EXPECT_NEAR(rpe["floor"]["translation_rmse_m"], rpe["translation"]["rmse_m"], 1e-12);
+  EXPECT_NEAR(rpe["floor"]["rotation_rmse_rad"], rpe["rotation"]["rmse_rad"], 1e-12);
   for (const char* gauge : {"first_pose", "se3"}) {
     EXPECT_LT(m["final"]["ate"][gauge]["translation"]["rmse_m"], 1e-9);
     for (const char* map : {"own", "reprojected"}) {
@@ -127,6 +130,20 @@ TEST_F(EvaluateRun, AnotherBodyFrameIsWarnedOfAndItsArmShown) {
   const Json& seen = m["final"]["association"]["lever_arm"];
   EXPECT_NEAR(seen["position_m"][0], 0.25, 0.01);
   EXPECT_NEAR(seen["rotation_vector_rad"][2], 0.3, 0.01);
+}
+
+TEST_F(EvaluateRun, PosesTooSeldomForTheMotionAreWarnedOf) {
+  // Two poses a second: a T^2 / 8 = 4 cm in a curve of 1.3 m/s^2.
+  std::vector<StampedPose> seldom;
+  for (std::size_t i = 0; i < run_.trajectory.size(); i += 5) {
+    seldom.push_back(run_.trajectory.poses()[i]);
+  }
+  run_.trajectory = Trajectory(seldom);
+  const Json m = evaluate();
+  const Json& rpe = m["final"]["rpe"]["1m"];
+  EXPECT_NEAR(rpe["floor"]["translation_rmse_m"], rpe["translation"]["rmse_m"], 1e-12);
+  EXPECT_GT(rpe["floor"]["translation_rmse_m"], 0.005);
+  EXPECT_THAT(m["warnings"].dump(), HasSubstr("give poses more often"));
 }
 
 TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
