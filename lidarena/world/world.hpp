@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
@@ -23,6 +24,16 @@ enum class RayOrder {
   kAny,
   kNeighbours  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
 };
+
+/// What finds the triangles. Answers are the same but for rounding: of a ray that meets two
+/// triangles at one range, or an edge, either may be the hit.
+enum class RayCaster {
+  kEmbree,  ///< Embree, in single precision
+  kBvh      ///< our own (see bvh.hpp): needs Eigen alone, in double precision, slower
+};
+
+/// Those of this build, the default first: Embree may be left out (LIDARENA_WITH_EMBREE).
+std::span<const RayCaster> ray_casters();
 
 /// First surface along a ray.
 struct Hit {
@@ -46,8 +57,9 @@ struct ClosestPoint {
 class World {
  public:
   /// Takes the mesh over and cleans it (see clean_mesh), so mesh() may have fewer triangles; throws
-  /// InputError (place `name`) when it has no faces.
-  explicit World(TriangleMesh mesh, const std::string& name = "mesh");
+  /// InputError (place `name`) when it has no faces, Error when the build lacks the ray caster.
+  explicit World(TriangleMesh mesh, const std::string& name = "mesh",
+                 RayCaster caster = ray_casters().front());
   ~World();
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
@@ -71,7 +83,6 @@ class World {
 
  private:
   struct Impl;
-  void cast_packets(std::span<const Ray> rays, double max_range, std::span<Hit> hits) const;
   std::unique_ptr<Impl> impl_;
 };
 

@@ -8,12 +8,21 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/world/triangle_frame.hpp"
 #include "lidarena/world/world.hpp"
-#include "shapes.hpp"
+#include "tests/world/every_ray_caster.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {
 
 using Eigen::Vector3d;
+
+class ClosestPoints : public testing::EveryRayCaster {
+ protected:
+  static void expect_same(const TriangleMesh& mesh, const std::vector<Vector3d>& points,
+                          double max_distance);
+};
+INSTANTIATE_TEST_SUITE_P(With, ClosestPoints, testing::every_ray_caster(),
+                         testing::ray_caster_name);
 
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
@@ -33,9 +42,9 @@ ClosestPoint one_by_one(const TriangleMesh& mesh, const Vector3d& point, double 
   return best;
 }
 
-void expect_same(const TriangleMesh& mesh, const std::vector<Vector3d>& points,
-                 double max_distance) {
-  const World world(mesh);
+void ClosestPoints::expect_same(const TriangleMesh& mesh, const std::vector<Vector3d>& points,
+                                double max_distance) {
+  const World world = make_world(mesh);
   ASSERT_EQ(world.mesh().triangles.size(), mesh.triangles.size());
   std::vector<ClosestPoint> found(points.size());
   world.closest_points(points, max_distance, found, Parallel(2));
@@ -75,17 +84,17 @@ std::vector<Vector3d> walk(std::size_t count, double step, double reach) {
   return points;
 }
 
-TEST(ClosestPoints, OfAWalkThroughASoupAreThoseOfAllTrianglesOneByOne) {
+TEST_P(ClosestPoints, OfAWalkThroughASoupAreThoseOfAllTrianglesOneByOne) {
   const TriangleMesh soup = testing::triangle_soup(1500, 5.0, 52);
   for (const double step : {0.01, 0.1, 1.0, 30.0}) expect_same(soup, walk(700, step, 50.0), kFar);
 }
 
-TEST(ClosestPoints, WithinALimitAreThoseOfAllTrianglesOneByOne) {
+TEST_P(ClosestPoints, WithinALimitAreThoseOfAllTrianglesOneByOne) {
   const TriangleMesh soup = testing::triangle_soup(300, 5.0, 53);
   for (const double limit : {0.05, 0.3, 2.0}) expect_same(soup, walk(700, 0.1, 8.0), limit);
 }
 
-TEST(ClosestPoints, OfEquallyNearTrianglesAreThoseWithTheLowestIndex) {
+TEST_P(ClosestPoints, OfEquallyNearTrianglesAreThoseWithTheLowestIndex) {
   const TriangleMesh floor = floor_of_squares(8);
   std::vector<Vector3d> points;
   // every eighth of a metre: above corners (six triangles), edges (two), diagonals (two), faces
@@ -99,14 +108,14 @@ TEST(ClosestPoints, OfEquallyNearTrianglesAreThoseWithTheLowestIndex) {
   expect_same(floor, points, 0.25);  // just within the limit
 }
 
-TEST(ClosestPoints, OfAFineFloorThatOverflowsAGroupAreThoseOfAllTrianglesOneByOne) {
+TEST_P(ClosestPoints, OfAFineFloorThatOverflowsAGroupAreThoseOfAllTrianglesOneByOne) {
   // From 3 m above, thousands of triangles are nearly as near as the nearest.
   std::vector<Vector3d> points = walk(200, 0.02, 10.0);
   for (Vector3d& p : points) p += Vector3d(4.0, 4.0, 3.0);
   expect_same(floor_of_squares(32), points, kFar);
 }
 
-TEST(ClosestPoints, FarFromTheOriginAreThoseOfAllTrianglesOneByOne) {
+TEST_P(ClosestPoints, FarFromTheOriginAreThoseOfAllTrianglesOneByOne) {
   const Vector3d far(5.0e5, 5.4e6, 300.0);
   TriangleMesh shifted;
   shifted.append(testing::triangle_soup(500, 5.0, 54),
@@ -116,12 +125,12 @@ TEST(ClosestPoints, FarFromTheOriginAreThoseOfAllTrianglesOneByOne) {
   expect_same(shifted, points, kFar);
 }
 
-TEST(ClosestPoints, APointThatIsNotFiniteHasNoneAndHarmsNoNeighbour) {
+TEST_P(ClosestPoints, APointThatIsNotFiniteHasNoneAndHarmsNoNeighbour) {
   const TriangleMesh soup = testing::triangle_soup(300, 5.0, 55);
   std::vector<Vector3d> points = walk(100, 0.01, 5.0);
   points[0].x() = std::numeric_limits<double>::quiet_NaN();
   points[41].y() = std::numeric_limits<double>::infinity();
-  const World world(soup);
+  const World world = make_world(soup);
   std::vector<ClosestPoint> found(points.size());
   world.closest_points(points, kFar, found, Parallel(1));
   for (std::size_t i = 0; i < points.size(); ++i) {

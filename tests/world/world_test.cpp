@@ -8,6 +8,8 @@
 #include <numbers>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/world/primitives.hpp"
+#include "tests/world/every_ray_caster.hpp"
 #include "tests/world/shapes.hpp"
 
 namespace lidarena {
@@ -15,6 +17,19 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+
+class WorldCast : public testing::EveryRayCaster {};
+class WorldRecentring : public testing::EveryRayCaster {};
+class WorldClosestPoint : public testing::EveryRayCaster {};
+class WorldVisible : public testing::EveryRayCaster {};
+class WorldMesh : public testing::EveryRayCaster {};
+INSTANTIATE_TEST_SUITE_P(With, WorldCast, testing::every_ray_caster(), testing::ray_caster_name);
+INSTANTIATE_TEST_SUITE_P(With, WorldRecentring, testing::every_ray_caster(),
+                         testing::ray_caster_name);
+INSTANTIATE_TEST_SUITE_P(With, WorldClosestPoint, testing::every_ray_caster(),
+                         testing::ray_caster_name);
+INSTANTIATE_TEST_SUITE_P(With, WorldVisible, testing::every_ray_caster(), testing::ray_caster_name);
+INSTANTIATE_TEST_SUITE_P(With, WorldMesh, testing::every_ray_caster(), testing::ray_caster_name);
 
 Hit cast_one(const World& world, const Vector3d& origin, const Vector3d& direction,
              double max_range = 1e6) {
@@ -46,14 +61,14 @@ SlowHit meet(const TriangleMesh& mesh, std::size_t triangle, const Vector3d& ori
   return {range, clearance, std::abs(normal.normalized().dot(direction))};
 }
 
-TEST(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
+TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
   const TriangleMesh soup = testing::triangle_soup(4000, 5.0, 11);
-  const World world(soup);
+  const World world = make_world(soup);
   SequentialRandom random(12);
   constexpr std::size_t kRays = 2000;
   // Coordinates are below 6 m, where a float is off by at most 2.4e-7 m; origin, corners and
-  // Embree's arithmetic add up to a few of these. Along the ray that grows with 1 / cos(incidence),
-  // and sideways a ray may pass an edge on the other side.
+  // the caster's arithmetic add up to a few of these. Along the ray that grows with 1 /
+  // cos(incidence), and sideways a ray may pass an edge on the other side.
   constexpr double kRounding = 4e-6;
   std::size_t compared = 0, hit_count = 0;
   for (std::size_t i = 0; i < kRays; ++i) {
@@ -87,8 +102,8 @@ TEST(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
   EXPECT_GT(hit_count, kRays / 2);
 }
 
-TEST(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
-  const World world(testing::triangle_soup(4000, 5.0, 11));
+TEST_P(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
+  const World world = make_world(testing::triangle_soup(4000, 5.0, 11));
   SequentialRandom random(13);
   for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last are no neighbours at all
     std::vector<Ray> rays;
@@ -117,9 +132,9 @@ TEST(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
   }
 }
 
-TEST(WorldCast, MeetsTheWallsOfARoomWhereTheClosedFormSays) {
+TEST_P(WorldCast, MeetsTheWallsOfARoomWhereTheClosedFormSays) {
   const Vector3d half(2.0, 3.0, 1.5);
-  const World world(testing::box_mesh(-half, half));
+  const World world = make_world(testing::box_mesh(-half, half));
   SequentialRandom random(3);
   for (int i = 0; i < 1000; ++i) {
     const Vector3d origin = 0.9 * testing::random_point(random, 1.0).cwiseProduct(half);
@@ -137,8 +152,8 @@ TEST(WorldCast, MeetsTheWallsOfARoomWhereTheClosedFormSays) {
   }
 }
 
-TEST(WorldCast, SeesAFaceFromBothSidesWithTheNormalTowardsTheViewer) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldCast, SeesAFaceFromBothSidesWithTheNormalTowardsTheViewer) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   const Hit inside = cast_one(world, {0, 0.1, 0.2}, Vector3d::UnitX());
   const Hit outside = cast_one(world, {5, 0.1, 0.2}, -Vector3d::UnitX());
   EXPECT_FLOAT_EQ(inside.range, 1.0F);
@@ -148,8 +163,8 @@ TEST(WorldCast, SeesAFaceFromBothSidesWithTheNormalTowardsTheViewer) {
   EXPECT_EQ(inside.triangle, outside.triangle);
 }
 
-TEST(WorldCast, FindsNothingBeyondItsRangeOrInTheOpen) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldCast, FindsNothingBeyondItsRangeOrInTheOpen) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   EXPECT_TRUE(cast_one(world, {5, 0.1, 0}, -Vector3d::UnitX(), 4.001).valid());
   const Hit too_far = cast_one(world, {5, 0.1, 0}, -Vector3d::UnitX(), 3.999);
   EXPECT_FALSE(too_far.valid());
@@ -157,7 +172,7 @@ TEST(WorldCast, FindsNothingBeyondItsRangeOrInTheOpen) {
   EXPECT_FALSE(cast_one(world, {5, 0.1, 0}, Vector3d::UnitX()).valid());
 }
 
-TEST(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
+TEST_P(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
   // A finely triangulated room; rays aimed at corners and edges of its triangles. Sixteenths of a
   // metre are exact floats, so neighbours share their corners to the last bit.
   TriangleMesh wall;
@@ -185,7 +200,7 @@ TEST(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
     }
   }
   for (Vector3d& v : room.vertices) v = (v * kCells).array().round() / kCells;
-  const World world(room);
+  const World world = make_world(room);
   SequentialRandom random(5);
   for (const auto& [a, b, c] : room.triangles) {
     const Vector3d origin = testing::random_point(random, 0.3);
@@ -199,13 +214,36 @@ TEST(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
   }
 }
 
-TEST(WorldRecentring, KeepsATenthOfAMillimetreFarFromTheOrigin) {
+TEST_P(WorldCast, NoRaySlipsThroughTheEdgesAndCornersOfASphere) {
+  // Corners are at no round numbers, and at the poles 64 triangles meet. Embree's edges are tight,
+  // its corners are not: of 400,000 rays aimed at them 423 were seen to pass, far fewer than 1 %.
+  const TriangleMesh sphere = sphere_shape(2.0);
+  const World world = make_world(sphere);
+  SequentialRandom random(6);
+  std::size_t lost_at_corners = 0;
+  for (const auto& [ia, ib, ic] : sphere.triangles) {
+    const Vector3d &a = sphere.vertices[ia], &b = sphere.vertices[ib], &c = sphere.vertices[ic];
+    const Vector3d origin = testing::random_point(random, 1.0);
+    const double share = random.uniform();
+    const Hit corner = cast_one(world, origin, (a - origin).normalized());
+    lost_at_corners += corner.valid() ? 0 : 1;
+    for (const Vector3d& target : {Vector3d(a + share * (b - a)), Vector3d(b + share * (c - b))}) {
+      const Hit hit = cast_one(world, origin, (target - origin).normalized());
+      ASSERT_TRUE(hit.valid());
+      // Single precision of 4 m is 2.4e-7 m; the sphere is met at 30 degrees or more.
+      EXPECT_NEAR(hit.range, (target - origin).norm(), 4e-6);
+    }
+  }
+  EXPECT_LE(lost_at_corners, GetParam() == RayCaster::kBvh ? 0 : sphere.triangles.size() / 100);
+}
+
+TEST_P(WorldRecentring, KeepsATenthOfAMillimetreFarFromTheOrigin) {
   // UTM-like coordinates: a float there is off by 3 cm (easting) and 25 cm (northing).
   const Vector3d far(5.0e5, 5.4e6, 300.0);
   const TriangleMesh soup = testing::triangle_soup(500, 5.0, 21);
   TriangleMesh shifted;
   shifted.append(soup, make_pose(Eigen::Matrix3d(Eigen::Matrix3d::Identity()), far));
-  const World here(soup), there(shifted);
+  const World here = make_world(soup), there = make_world(shifted);
   SequentialRandom random(22);
   int agreed = 0;
   for (int i = 0; i < 500; ++i) {
@@ -226,9 +264,9 @@ TEST(WorldRecentring, KeepsATenthOfAMillimetreFarFromTheOrigin) {
   EXPECT_GE(agreed, 499);
 }
 
-TEST(WorldClosestPoint, AgreesWithAllTrianglesOneByOne) {
+TEST_P(WorldClosestPoint, AgreesWithAllTrianglesOneByOne) {
   const TriangleMesh soup = testing::triangle_soup(1500, 5.0, 31);
-  const World world(soup);
+  const World world = make_world(soup);
   SequentialRandom random(32);
   for (int i = 0; i < 1000; ++i) {
     const Vector3d point = testing::random_point(random, i % 10 == 0 ? 100.0 : 6.0);
@@ -253,29 +291,29 @@ TEST(WorldClosestPoint, AgreesWithAllTrianglesOneByOne) {
   }
 }
 
-TEST(WorldClosestPoint, OfABoxIsTheClosedForm) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldClosestPoint, OfABoxIsTheClosedForm) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   EXPECT_EQ(world.closest_point({0.25, 0.5, 3}).point, Vector3d(0.25, 0.5, 1));
   EXPECT_EQ(world.closest_point({2, 2, 3}).point, Vector3d(1, 1, 1));
   EXPECT_DOUBLE_EQ(world.closest_point({2, 3, 3}).distance, 3.0);
   EXPECT_DOUBLE_EQ(world.closest_point({0.75, 0, 0}).distance, 0.25);
 }
 
-TEST(WorldClosestPoint, OfEquallyNearTrianglesIsTheOneWithTheLowerIndex) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldClosestPoint, OfEquallyNearTrianglesIsTheOneWithTheLowerIndex) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   EXPECT_EQ(world.closest_point({0, 0, 0}).triangle, 0U);
   EXPECT_EQ(world.closest_point({0.0, 0.0, 2}).triangle, 10U);  // on the diagonal of the lid
 }
 
-TEST(WorldClosestPoint, IsNoneBeyondTheMaximumDistance) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldClosestPoint, IsNoneBeyondTheMaximumDistance) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   EXPECT_FALSE(world.closest_point({0, 0, 3}, 1.999999).valid());
   EXPECT_TRUE(std::isinf(world.closest_point({0, 0, 3}, 1.999999).distance));
   EXPECT_TRUE(world.closest_point({0, 0, 3}, 2.0).valid());
 }
 
-TEST(WorldClosestPoint, IsTheSameBitsOnAnyNumberOfThreads) {
-  const World world(testing::triangle_soup(1000, 5.0, 41));
+TEST_P(WorldClosestPoint, IsTheSameBitsOnAnyNumberOfThreads) {
+  const World world = make_world(testing::triangle_soup(1000, 5.0, 41));
   SequentialRandom random(42);
   std::vector<Vector3d> points(3000);
   for (Vector3d& point : points) point = testing::random_point(random, 6.0);
@@ -289,8 +327,8 @@ TEST(WorldClosestPoint, IsTheSameBitsOnAnyNumberOfThreads) {
   }
 }
 
-TEST(WorldVisible, AWallBlocksAndTheSurfaceUnderEitherEndDoesNot) {
-  const World world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldVisible, AWallBlocksAndTheSurfaceUnderEitherEndDoesNot) {
+  const World world = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   EXPECT_FALSE(world.visible({-3, 0.1, 0.2}, {3, 0.1, 0.2}));
   EXPECT_FALSE(world.visible({-3, 0.1, 0.2}, {0, 0.1, 0.2}));
   EXPECT_TRUE(world.visible({-3, 0.1, 1.1}, {3, 0.1, 1.1}));
@@ -300,17 +338,17 @@ TEST(WorldVisible, AWallBlocksAndTheSurfaceUnderEitherEndDoesNot) {
   EXPECT_TRUE(world.visible({2, 2, 2}, {2, 2, 2}));
 }
 
-TEST(World, ForgetsDegenerateTrianglesAndRefusesNothingButThem) {
+TEST_P(WorldMesh, ForgetsDegenerateTrianglesAndRefusesNothingButThem) {
   TriangleMesh mesh = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
   mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});
-  const World world(mesh);
+  const World world = make_world(mesh);
   EXPECT_EQ(world.mesh().triangles.size(), 12U);
   EXPECT_EQ(cast_one(world, {0, 0.1, 0.2}, Vector3d::UnitX()).range, 1.0F);
-  EXPECT_THROW(World(TriangleMesh{}), InputError);
+  EXPECT_THROW(make_world(TriangleMesh{}), InputError);
 }
 
-TEST(World, StaysWholeWhenMoved) {
-  World first(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
+TEST_P(WorldMesh, StaysWholeWhenMoved) {
+  World first = make_world(testing::box_mesh({-1, -1, -1}, {1, 1, 1}));
   World second = std::move(first);
   EXPECT_FLOAT_EQ(cast_one(second, {0, 0.1, 0.2}, Vector3d::UnitZ()).range, 0.8F);
 }

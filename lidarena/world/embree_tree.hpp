@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "lidarena/world/mesh_tree.hpp"
+#include "lidarena/world/triangle_mesh.hpp"
+
+namespace lidarena {
+
+/// Embree's tree over a clean mesh, of which it keeps a copy in single precision around the middle
+/// of its bounds; throws Error (that names `name`) when Embree fails.
+std::unique_ptr<MeshTree> make_embree_tree(const TriangleMesh& mesh, const std::string& name);
+
+}  // namespace lidarena
