@@ -16,7 +16,7 @@ Config improved(const LidarInfo& lidar) {
   Config config;
   config.point_stride = 1;
   config.min_range_m = std::max(0.3, lidar.min_range_m);
-  config.scan_voxel_m = 0.3;
+  config.scan_voxel_m = 0.2;
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.noise_model = NoiseModel::kDensity;
