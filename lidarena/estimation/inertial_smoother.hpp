@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <deque>
+
+#include "lidarena/estimation/preintegration.hpp"
+
+namespace lidarena {
+
+/// A pose of the IMU as something else measured it.
+struct PoseMeasurement {
+  using Information = Eigen::Matrix<double, 6, 6>;
+  Pose world_from_imu = Pose::Identity();
+  /// Inverse covariance of (rotation in the IMU's frame, position in the world); may be singular.
+  Information information = Information::Identity();
+};
+
+/// Where a smoother starts from.
+struct InertialStart {
+  NavState state;
+  NavState::Matrix covariance = NavState::Matrix::Identity();
+  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world
+  double gravity_sigma = 0.0;                   ///< rad, of its direction; 0: it is known
+};
+
+/// Fuses poses from scan matching with the IMU: a factor graph of the last few states joined by
+/// preintegrated measurements (Shan et al., "LIO-SAM", IROS 2020, section III-B), solved by
+/// Gauss-Newton; what is older is marginalised into a prior. Beside the states it can estimate in
+/// which direction gravity points in the world, whose frame the first scan has fixed.
+class InertialSmoother {
+ public:
+  /// `lag` measurements stay in the graph (at least 1).
+  explicit InertialSmoother(int lag = 6) : lag_(static_cast<std::size_t>(lag)) {}
+
+  void start(const InertialStart& start);
+  /// The state at the end of `since_last`, measured.
+  void add(const Preintegration& since_last, const PoseMeasurement& measured);
+
+  const NavState& latest() const { return states_.back(); }
+  const Eigen::Vector3d& gravity() const { return gravity_; }
+  /// Of the latest state.
+  const NavState::Matrix& covariance() const { return covariance_; }
+  std::size_t size() const { return states_.size(); }
+
+ private:
+  /// Gravity's direction as a turn of two angles from where it was at the start, then one state
+  /// after the other.
+  static constexpr int kGravityDof = 2;
+  using Prior = Eigen::Matrix<double, kGravityDof + NavState::kDof, 1>;
+  using PriorInformation =
+      Eigen::Matrix<double, Prior::RowsAtCompileTime, Prior::RowsAtCompileTime>;
+  struct Equations {
+    Eigen::MatrixXd hessian;
+    Eigen::VectorXd gradient;
+  };
+
+  Equations equations(std::size_t states, std::size_t measurements) const;
+  void add_prior(Equations& sum) const;
+  void add_motion(std::size_t first, Equations& sum) const;
+  void add_measurement(std::size_t state, Equations& sum) const;
+  void move(const Eigen::VectorXd& step);
+  void set_tilt(const Eigen::Vector2d& tilt);
+  void marginalize_oldest();
+
+  std::size_t lag_;
+  std::deque<NavState> states_;
+  std::deque<Preintegration> motions_;        ///< from each state to the next
+  std::deque<PoseMeasurement> measurements_;  ///< of each state
+  Eigen::Vector3d start_gravity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
+  Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
+  NavState prior_state_;  ///< of the oldest state
+  Eigen::Vector2d prior_tilt_ = Eigen::Vector2d::Zero();
+  PriorInformation prior_information_ = PriorInformation::Identity();
+  NavState::Matrix covariance_ = NavState::Matrix::Identity();
+};
+
+}  // namespace lidarena

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/preintegration.hpp"
+
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena {
+namespace {
+
+using State = NavState;
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+/// Jacobians of one step's motion by the motion before and by the step's rate and force.
+struct Step {
+  Eigen::Matrix<double, 9, 9> by_motion = Eigen::Matrix<double, 9, 9>::Identity();
+  Eigen::Matrix<double, 9, 6> by_input = Eigen::Matrix<double, 9, 6>::Zero();
+};
+
+Step advance(RelativeMotion& motion, const Vector3d& rate, const Vector3d& force, double dt) {
+  const Vector3d half_turn = 0.5 * dt * rate;
+  const Matrix3d middle = motion.rotation * so3::exp(half_turn);
+  const Matrix3d push = -middle * so3::hat(force);  // of the force by an error of the middle
+
+  Step step;
+  step.by_motion.block<3, 3>(0, 0) = so3::exp(-2.0 * half_turn);
+  step.by_motion.block<3, 3>(3, 0) = push * so3::exp(-half_turn) * dt;
+  step.by_motion.block<3, 3>(6, 0) = 0.5 * dt * step.by_motion.block<3, 3>(3, 0);
+  step.by_motion.block<3, 3>(6, 3) = dt * Matrix3d::Identity();
+  step.by_input.block<3, 3>(0, 0) = so3::right_jacobian(2.0 * half_turn) * dt;
+  step.by_input.block<3, 3>(3, 0) = push * so3::right_jacobian(half_turn) * (0.5 * dt * dt);
+  step.by_input.block<3, 3>(3, 3) = middle * dt;
+  step.by_input.block<3, 6>(6, 0) = 0.5 * dt * step.by_input.block<3, 6>(3, 0);
+
+  motion.position += motion.velocity * dt + middle * force * (0.5 * dt * dt);
+  motion.velocity += middle * force * dt;
+  motion.rotation *= so3::exp(2.0 * half_turn);
+  return step;
+}
+
+}  // namespace
+
+NavState plus(const NavState& state, const NavState::Vector& delta) {
+  NavState moved = state;
+  moved.world_from_imu.linear() *= so3::exp(delta.segment<3>(State::kRotation));
+  moved.world_from_imu.translation() += delta.segment<3>(State::kPosition);
+  moved.velocity += delta.segment<3>(State::kVelocity);
+  moved.bias.gyro += delta.segment<3>(State::kGyroBias);
+  moved.bias.accel += delta.segment<3>(State::kAccelBias);
+  return moved;
+}
+
+NavState::Vector minus(const NavState& a, const NavState& b) {
+  NavState::Vector delta;
+  delta << so3::log(b.world_from_imu.linear().transpose() * a.world_from_imu.linear()),
+      a.velocity - b.velocity, a.world_from_imu.translation() - b.world_from_imu.translation(),
+      a.bias.gyro - b.bias.gyro, a.bias.accel - b.bias.accel;
+  return delta;
+}
+
+void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, double seconds) {
+  integrate(gyro, accel, seconds, noise_);
+}
+
+void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, double seconds,
+                               const ImuNoise& noise) {
+  const Step step = advance(motion_, gyro - bias_.gyro, accel - bias_.accel, seconds);
+  by_bias_ = step.by_motion * by_bias_ - step.by_input;
+
+  const auto variance = [&](double density) { return density * density; };
+  Eigen::Matrix<double, 6, 1> input;  // of a mean over the step
+  input << Vector3d::Constant(variance(noise.gyro_density) / seconds),
+      Vector3d::Constant(variance(noise.accel_density) / seconds);
+  auto moved = covariance_.topLeftCorner<9, 9>();
+  moved = (step.by_motion * moved * step.by_motion.transpose() +
+           step.by_input * input.asDiagonal() * step.by_input.transpose())
+              .eval();
+  covariance_.diagonal().segment<3>(State::kGyroBias).array() +=
+      variance(noise.gyro_walk) * seconds;
+  covariance_.diagonal().segment<3>(State::kAccelBias).array() +=
+      variance(noise.accel_walk) * seconds;
+  seconds_ += seconds;
+}
+
+RelativeMotion Preintegration::motion(const ImuBias& bias) const {
+  Eigen::Matrix<double, 6, 1> change;
+  change << bias.gyro - bias_.gyro, bias.accel - bias_.accel;
+  const Eigen::Matrix<double, 9, 1> delta = by_bias_ * change;
+  return {motion_.rotation * so3::exp(delta.head<3>()), motion_.velocity + delta.segment<3>(3),
+          motion_.position + delta.tail<3>()};
+}
+
+NavState Preintegration::predict(const NavState& first, const Vector3d& gravity) const {
+  const RelativeMotion felt = motion(first.bias);
+  const Matrix3d rotation = first.world_from_imu.linear();
+  NavState second = first;
+  second.world_from_imu.linear() = rotation * felt.rotation;
+  second.velocity += gravity * seconds_ + rotation * felt.velocity;
+  second.world_from_imu.translation() +=
+      first.velocity * seconds_ + 0.5 * seconds_ * seconds_ * gravity + rotation * felt.position;
+  return second;
+}
+
+InertialResidual Preintegration::residual(const NavState& first, const NavState& second,
+                                          const Vector3d& gravity) const {
+  const RelativeMotion felt = motion(first.bias);
+  const Matrix3d back = first.world_from_imu.linear().transpose();  // world to the first IMU frame
+  const Matrix3d turned = back * second.world_from_imu.linear();
+  const Vector3d speed = back * (second.velocity - first.velocity - gravity * seconds_);
+  const Vector3d way =
+      back * (second.world_from_imu.translation() - first.world_from_imu.translation() -
+              first.velocity * seconds_ - 0.5 * seconds_ * seconds_ * gravity);
+  const Vector3d turn_error = so3::log(felt.rotation.transpose() * turned);
+  const Vector3d bias_turn =
+      by_bias_.topRows<3>() * (Eigen::Matrix<double, 6, 1>() << first.bias.gyro - bias_.gyro,
+                               first.bias.accel - bias_.accel)
+                                  .finished();
+
+  InertialResidual r;
+  r.value << turn_error, speed - felt.velocity, way - felt.position,
+      second.bias.gyro - first.bias.gyro, second.bias.accel - first.bias.accel;
+  const Matrix3d by_turn = so3::right_jacobian_inverse(turn_error);
+  r.by_first = -State::Matrix::Identity();
+  r.by_first.block<3, 3>(0, State::kRotation) = -by_turn * turned.transpose();
+  r.by_first.block<3, 3>(0, State::kGyroBias) = -by_turn * so3::exp(-turn_error) *
+                                                so3::right_jacobian(bias_turn) *
+                                                by_bias_.topLeftCorner<3, 3>();
+  r.by_first.block<3, 3>(3, State::kRotation) = so3::hat(speed);
+  r.by_first.block<3, 3>(3, State::kVelocity) = -back;
+  r.by_first.block<3, 3>(6, State::kRotation) = so3::hat(way);
+  r.by_first.block<3, 3>(6, State::kVelocity) = -seconds_ * back;
+  r.by_first.block<3, 3>(6, State::kPosition) = -back;
+  r.by_first.block<6, 6>(3, State::kGyroBias) = -by_bias_.bottomRows<6>();
+  r.by_second = State::Matrix::Identity();
+  r.by_second.block<3, 3>(0, State::kRotation) = by_turn;
+  r.by_second.block<3, 3>(3, State::kVelocity) = back;
+  r.by_second.block<3, 3>(6, State::kPosition) = back;
+  r.by_gravity.setZero();
+  r.by_gravity.block<3, 3>(3, 0) = -seconds_ * back;
+  r.by_gravity.block<3, 3>(6, 0) = -0.5 * seconds_ * seconds_ * back;
+  return r;
+}
+
+}  // namespace lidarena
