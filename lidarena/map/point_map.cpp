@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/map/point_map.hpp"
 
+#include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "lidarena/base/error.hpp"
 
@@ -14,8 +16,8 @@ std::size_t slots_for(std::size_t count) {
 }
 }  // namespace
 
-PointMap::PointMap(double voxel_size, std::size_t expected)
-    : inverse_size_(static_cast<float>(1.0 / voxel_size)) {
+PointMap::PointMap(double voxel_size, std::size_t expected, VoxelRounding rounding)
+    : inverse_size_(static_cast<float>(1.0 / voxel_size)), rounding_(rounding) {
   if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
   points_.reserve(expected);
   resize_table(slots_for(expected));
@@ -43,14 +45,12 @@ std::vector<Eigen::Vector3f> PointMap::take() {
   return points;
 }
 
-std::vector<Eigen::Vector3f> PointMap::take_shuffled() {
-  std::vector<Eigen::Vector3f> shuffled;
-  shuffled.reserve(points_.size());
-  for (const std::uint32_t index : slots_) {
-    if (index != kFree) shuffled.push_back(points_[index]);
-  }
-  take();
-  return shuffled;
+std::vector<std::uint32_t> PointMap::shuffled() const {
+  std::vector<std::uint32_t> indices;
+  indices.reserve(points_.size());
+  std::copy_if(slots_.begin(), slots_.end(), std::back_inserter(indices),
+               [](std::uint32_t index) { return index != kFree; });
+  return indices;
 }
 
 std::size_t PointMap::memory_bytes() const {

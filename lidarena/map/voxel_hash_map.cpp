@@ -43,7 +43,7 @@ VoxelHashMap::VoxelHashMap(const Options& options)
 
 bool VoxelHashMap::insert(const Eigen::Vector3f& point) {
   if (!point.allFinite()) return false;
-  Cell& cell = cells_[voxel_key(voxel_of(point, inverse_size_))];
+  Cell& cell = cells_[voxel_key(cell_of(point))];
   if (cell.count == options_.max_points) return false;
   const std::span<const Eigen::Vector3f> present(cell.points, cell.count);
   const bool crowded = std::any_of(present.begin(), present.end(), [&](const auto& other) {
@@ -89,14 +89,16 @@ void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
 VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
                                              float max_distance) const {
   if (!query.allFinite()) return {};
-  const Voxel voxel = voxel_of(query, inverse_size_);
+  const Voxel voxel = cell_of(query);
   const VoxelKey key = voxel_key(voxel);
   // Squared distance along each axis to the cells below, here and above: a cell that begins beyond
   // the best distance so far need not be looked up.
-  const Eigen::Array3f above_face = query.array() - voxel.cast<float>().array() * size_m_;
-  const Eigen::Array3f below_face = size_m_ - above_face;
-  const Eigen::Array3f low = above_face.square();
-  const Eigen::Array3f high = below_face.square();
+  const bool wide = options_.rounding == VoxelRounding::kTruncate;
+  const Eigen::Array3i index = voxel.array();
+  const Eigen::Array3i lower = wide ? Eigen::Array3i(index - (index <= 0).cast<int>()) : index;
+  const Eigen::Array3i upper = wide ? Eigen::Array3i(index + (index >= 0).cast<int>()) : index + 1;
+  const Eigen::Array3f low = (query.array() - lower.cast<float>() * size_m_).square();
+  const Eigen::Array3f high = (upper.cast<float>() * size_m_ - query.array()).square();
   const auto gap = [&](int axis, int step) {
     return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
   };

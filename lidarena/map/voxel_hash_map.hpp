@@ -22,6 +22,7 @@ class VoxelHashMap {
     double voxel_size = 1.0;   ///< edge of a cell, m
     int max_points = 20;       ///< of a cell; later ones are refused (1..4096)
     double min_spacing = 0.0;  ///< m; a point nearer to another one of its own cell is refused
+    VoxelRounding rounding = VoxelRounding::kFloor;
   };
   struct Neighbor {
     const Eigen::Vector3f* point = nullptr;  ///< in the map; null if there is none
@@ -40,7 +41,7 @@ class VoxelHashMap {
   void remove_far(const Eigen::Vector3f& center, double radius);
 
   /// Nearest point to `query` among its cell and the 26 around, nearer than `max_distance`: the
-  /// true nearest one if that is at most a cell's edge away.
+  /// true nearest one if that is at most `voxel_size` away.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
 
   bool empty() const { return cells_.empty(); }
@@ -56,6 +57,9 @@ class VoxelHashMap {
     std::uint8_t level = 0;  ///< of the block, see PointBlocks
   };
 
+  Voxel cell_of(const Eigen::Vector3f& point) const {
+    return voxel_of(point, inverse_size_, options_.rounding);
+  }
   void append(Cell& cell, const Eigen::Vector3f& point);
 
   Options options_;

@@ -8,8 +8,14 @@
 
 namespace lidarena {
 
-/// Integer cell of a cubic grid: floor(coordinate / edge) on each axis.
+/// Integer cell of a cubic grid, by default floor(coordinate / edge) on each axis.
 using Voxel = Eigen::Vector3i;
+
+/// How coordinates become cells.
+enum class VoxelRounding {
+  kFloor,     ///< all cells are alike
+  kTruncate,  ///< towards zero: the cells around the planes x = 0, y = 0, z = 0 are twice as wide
+};
 
 /// A voxel in one number, 21 bits an axis. Keys of neighbours differ by a constant.
 using VoxelKey = std::uint64_t;
@@ -19,12 +25,14 @@ using VoxelKey = std::uint64_t;
 inline constexpr int kMaxVoxelIndex = (1 << 20) - 2;
 
 /// Cell of a finite point (m); `inverse_edge` in 1/m.
-inline Voxel voxel_of(const Eigen::Vector3f& point, float inverse_edge) {
+inline Voxel voxel_of(const Eigen::Vector3f& point, float inverse_edge,
+                      VoxelRounding rounding = VoxelRounding::kFloor) {
   const auto index = [&](float coordinate) {
     constexpr auto kLimit = static_cast<float>(kMaxVoxelIndex);
     const float cells = std::clamp(coordinate * inverse_edge, -kLimit, kLimit);
     const int truncated = static_cast<int>(cells);
-    return truncated - (cells < static_cast<float>(truncated) ? 1 : 0);
+    const bool below = cells < static_cast<float>(truncated);
+    return truncated - (below && rounding == VoxelRounding::kFloor ? 1 : 0);
   };
   return {index(point.x()), index(point.y()), index(point.z())};
 }

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <set>
 
 #include "lidarena/base/error.hpp"
@@ -115,6 +116,41 @@ TEST(VoxelFilter, ThinningKeepsTheSamePointsInAnOrderOfItsOwn) {
   std::sort(expected.begin(), expected.end(), before);
   std::sort(thinned.begin(), thinned.end(), before);
   EXPECT_EQ(thinned, expected);
+}
+
+/// A hash table by the letter: each point takes the first free slot from its own on.
+Points in_slots(const Points& points, double size, std::uint32_t y_factor, std::size_t slot_count) {
+  std::map<std::size_t, Eigen::Vector3f> slots;
+  for (const auto& p : points) {
+    const Cell cell = cell_of(p, size);
+    const auto hash = static_cast<std::uint32_t>(cell[0]) * 73856093U ^
+                      static_cast<std::uint32_t>(cell[1]) * y_factor ^
+                      static_cast<std::uint32_t>(cell[2]) * 83492791U;
+    std::size_t slot = hash % slot_count * 1000;  // 1000 places for who wants the same slot
+    while (slots.contains(slot)) ++slot;
+    slots[slot] = p;
+  }
+  Points ordered;
+  for (const auto& [slot, p] : slots) ordered.push_back(p);
+  return ordered;
+}
+
+TEST(VoxelFilter, ThinnedPointsStandInTheOrderOfTheHashTheyAreToldToHave) {
+  const Points points = random_points(5000, 3.0);
+  const Points first = first_ones(points, 0.5);
+  constexpr std::size_t kSlots = 16384;  // the power of two that holds twice 5000
+  EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschner}),
+            in_slots(first, 0.5, 19349663U, kSlots));
+  EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschnerPrime}),
+            in_slots(first, 0.5, 19349669U, kSlots));
+}
+
+TEST(VoxelFilter, RoundedTowardsZeroTheCellAroundTheOriginIsTwiceAsWide) {
+  const Points points{{-0.4F, 0.1F, 0.1F}, {0.4F, 0.1F, 0.1F},  {0.4F, -0.3F, -0.4F},
+                      {0.6F, 0.1F, 0.1F},  {-0.6F, 0.1F, 0.1F}, {-0.9F, 0.2F, 0.2F}};
+  EXPECT_EQ(first_of_each_voxel(points, 0.5, VoxelRounding::kTruncate),
+            (std::vector<std::uint32_t>{0, 3, 4}));
+  EXPECT_EQ(first_of_each_voxel(points, 0.5), (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
 }
 
 TEST(VoxelFilter, ASecondPassTakesItsPointsFromTheWholeScan) {

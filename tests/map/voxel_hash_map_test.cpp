@@ -18,9 +18,13 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Cell = std::array<int, 3>;
 
-Cell cell_of(const Eigen::Vector3f& p, double size) {
-  return {static_cast<int>(std::floor(p.x() / size)), static_cast<int>(std::floor(p.y() / size)),
-          static_cast<int>(std::floor(p.z() / size))};
+Cell cell_of(const Eigen::Vector3f& p, const VoxelHashMap::Options& options) {
+  const auto index = [&](float coordinate) {
+    const double cells = coordinate / options.voxel_size;
+    const bool floor = options.rounding == VoxelRounding::kFloor;
+    return static_cast<int>(floor ? std::floor(cells) : std::trunc(cells));
+  };
+  return {index(p.x()), index(p.y()), index(p.z())};
 }
 
 Points random_points(std::size_t count, double reach, std::uint64_t seed = 3) {
@@ -40,7 +44,7 @@ struct SlowMap {
   std::map<Cell, Points> cells{};
 
   void insert(const Eigen::Vector3f& p) {
-    Points& cell = cells[cell_of(p, options.voxel_size)];
+    Points& cell = cells[cell_of(p, options)];
     if (static_cast<int>(cell.size()) >= options.max_points) return;
     for (const auto& q : cell) {
       if ((p - q).norm() < options.min_spacing) return;
@@ -52,7 +56,7 @@ struct SlowMap {
         cells, [&](const auto& entry) { return (entry.second.front() - center).norm() >= radius; });
   }
   double nearest_distance(const Eigen::Vector3f& query, double max_distance) const {
-    const Cell home = cell_of(query, options.voxel_size);
+    const Cell home = cell_of(query, options);
     double best = max_distance;
     for (const auto& [cell, points] : cells) {
       if (std::abs(cell[0] - home[0]) > 1 || std::abs(cell[1] - home[1]) > 1 ||
@@ -76,8 +80,7 @@ Points sorted(Points points) {
   return points;
 }
 
-TEST(VoxelHashMap, HoldsWhatTheSlowMapHoldsAndFindsWhatItFinds) {
-  const VoxelHashMap::Options options{0.5, 12, 0.1};
+void compare_with_the_slow_map(const VoxelHashMap::Options& options) {
   VoxelHashMap map(options);
   SlowMap slow{options};
   for (std::uint64_t round = 0; round < 5; ++round) {  // wander, so that freed blocks come back
@@ -106,8 +109,16 @@ TEST(VoxelHashMap, HoldsWhatTheSlowMapHoldsAndFindsWhatItFinds) {
   }
 }
 
+TEST(VoxelHashMap, HoldsWhatTheSlowMapHoldsAndFindsWhatItFinds) {
+  compare_with_the_slow_map({0.5, 12, 0.1, VoxelRounding::kFloor});
+}
+
+TEST(VoxelHashMap, SoItDoesWithCellsRoundedTowardsZero) {
+  compare_with_the_slow_map({0.5, 12, 0.1, VoxelRounding::kTruncate});
+}
+
 TEST(VoxelHashMap, ANeighbourWithinOneEdgeIsTheTrueNearestOfAllPoints) {
-  VoxelHashMap map({1.0, 4096, 0.0});
+  VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096});
   const Points points = random_points(3000, 4.0);
   map.insert(points);
   for (const Eigen::Vector3f& query : random_points(500, 4.0, 9)) {
@@ -119,7 +130,7 @@ TEST(VoxelHashMap, ANeighbourWithinOneEdgeIsTheTrueNearestOfAllPoints) {
 }
 
 TEST(VoxelHashMap, ACellTakesNoMoreThanItsLimitAndNothingNearerThanTheSpacing) {
-  VoxelHashMap map({1.0, 3, 0.2});
+  VoxelHashMap map({.voxel_size = 1.0, .max_points = 3, .min_spacing = 0.2});
   EXPECT_TRUE(map.insert({0.5F, 0.5F, 0.5F}));
   EXPECT_FALSE(map.insert({0.5F, 0.5F, 0.69F}));
   EXPECT_TRUE(map.insert({0.5F, 0.5F, 0.71F}));
@@ -130,7 +141,7 @@ TEST(VoxelHashMap, ACellTakesNoMoreThanItsLimitAndNothingNearerThanTheSpacing) {
 }
 
 TEST(VoxelHashMap, MemoryFollowsTheContentsUpAndReturnsToUseWhenCellsAreDropped) {
-  VoxelHashMap map({1.0, 20, 0.0});
+  VoxelHashMap map({.voxel_size = 1.0});
   const std::size_t empty = map.memory_bytes();
   map.insert(random_points(20000, 10.0));
   const std::size_t full = map.memory_bytes();
@@ -149,15 +160,15 @@ TEST(VoxelHashMap, MemoryFollowsTheContentsUpAndReturnsToUseWhenCellsAreDropped)
 
 TEST(VoxelHashMap, OddInputDoesNoHarm) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  VoxelHashMap map({1.0, 20, 0.0});
+  VoxelHashMap map({.voxel_size = 1.0});
   EXPECT_FALSE(map.insert({kNan, 0.0F, 0.0F}));
   EXPECT_TRUE(map.empty());
   EXPECT_FALSE(map.nearest({0.0F, 0.0F, 0.0F}, 1.0F));
   EXPECT_TRUE(map.insert({1e30F, 0.0F, 0.0F}));
   EXPECT_FALSE(map.nearest({kNan, 0.0F, 0.0F}, 1.0F));
   EXPECT_FALSE(map.nearest({-1e30F, 0.0F, 0.0F}, 1.0F));
-  EXPECT_THROW(VoxelHashMap({0.0, 20, 0.0}), InputError);
-  EXPECT_THROW(VoxelHashMap({1.0, 0, 0.0}), InputError);
+  EXPECT_THROW(VoxelHashMap({.voxel_size = 0.0}), InputError);
+  EXPECT_THROW(VoxelHashMap({.voxel_size = 1.0, .max_points = 0}), InputError);
 }
 
 }  // namespace

@@ -48,9 +48,15 @@ std::vector<Eigen::Vector3f> look_around(const Pose& room_from_lidar, std::size_
 }
 
 VoxelHashMap map_of(std::span<const Eigen::Vector3f> points) {
-  VoxelHashMap map({0.5, 4096, 0.0});
+  VoxelHashMap map({.voxel_size = 0.5, .max_points = 4096});
   map.insert(points);
   return map;
+}
+
+/// ICP of points that are de-skewed already.
+Registration register_still(const std::vector<Eigen::Vector3f>& points, const VoxelHashMap& map,
+                            const Pose& guess, double sigma, const Config& config) {
+  return register_points({points, {}}, map, {}, guess, sigma, config, Parallel(1));
 }
 
 TEST(Registration, JacobianOfTheResidualIsItsNumericDerivative) {
@@ -82,7 +88,7 @@ TEST(Registration, TheSamePointsMovedAreFoundWhereTheyWere) {
     Config config;
     config.convergence = 1e-9;
     config.sensor_centred = sensor_centred;
-    const Registration found = register_points(points, map, shift, 0.5, config, Parallel(1));
+    const Registration found = register_still(points, map, shift, 0.5, config);
     EXPECT_LT((found.map_from_lidar.matrix() - Pose::Identity().matrix()).norm(), 1e-6);
     EXPECT_EQ(found.matches, points.size());
     EXPECT_LT(found.iterations, 50);
@@ -98,8 +104,7 @@ TEST(Registration, MotionBetweenTwoNoisyScansOfARoomIsFoundToTheNoiseOfItsMean) 
   const auto keypoints = look_around(first * motion, kKeypoints, 0.7, kNoise);
   Config config;
   config.convergence = 1e-6;
-  const Registration found =
-      register_points(keypoints, map, Pose::Identity(), 0.5, config, Parallel(1));
+  const Registration found = register_still(keypoints, map, Pose::Identity(), 0.5, config);
   const Pose error = motion.inverse() * found.map_from_lidar;
   // A residual is the noise of two ranges and, along the wall, half the map's spacing of at most
   // 5 cm; of the keypoints a third pulls along each axis. Five standard deviations.
@@ -120,7 +125,7 @@ TEST(Registration, TurningAboutTheSensorOrTheOriginEndsAtTheSamePose) {
   config.convergence = 1e-7;
   for (const bool sensor_centred : {false, true}) {
     config.sensor_centred = sensor_centred;
-    const Registration found = register_points(points, map, guess, 0.5, config, Parallel(1));
+    const Registration found = register_still(points, map, guess, 0.5, config);
     const Pose error = far_away.inverse() * found.map_from_lidar;
     EXPECT_LT(error.translation().norm(), 1e-4) << "floats at 360 m round to 3e-5 m";
     EXPECT_LT(so3::angle(error.linear()), 1e-5);
@@ -131,13 +136,74 @@ TEST(Registration, WithoutMapOrMatchesTheGuessStands) {
   const auto points = look_around(Pose::Identity(), 500, 0.0, 0.0);
   const Pose guess = pose_of(1.0, 2.0, 3.0, 0.1, 0.2, 0.3);
   const Config config;
-  const auto alone = register_points(points, map_of({}), guess, 0.5, config, Parallel(1));
+  const auto alone = register_still(points, map_of({}), guess, 0.5, config);
   EXPECT_EQ(alone.map_from_lidar.matrix(), guess.matrix());
   const std::vector<Eigen::Vector3f> elsewhere{{500.0F, 0.0F, 0.0F}};
-  const auto lost = register_points(points, map_of(elsewhere), guess, 0.5, config, Parallel(1));
+  const auto lost = register_still(points, map_of(elsewhere), guess, 0.5, config);
   EXPECT_LT((lost.map_from_lidar.matrix() - guess.matrix()).norm(), 1e-14);
   EXPECT_EQ(lost.matches, 0U);
   EXPECT_EQ(lost.iterations, 1);
+}
+
+/// What the lidar sees while it moves with constant `twist` (per second) through the scan of 0.1 s
+/// that ends at `room_from_lidar`: points at their own instants.
+TimedPoints look_around_moving(const Pose& room_from_lidar, const Vector6& twist,
+                               std::size_t count) {
+  TimedPoints points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double seconds = -0.1 * static_cast<double>(count - 1 - i) / static_cast<double>(count);
+    const Pose pose = room_from_lidar * se3::exp(twist * seconds);
+    const std::size_t place = i * 7 % count;  // beams jump about, as those of a rosette
+    const double z = 1.0 - (2.0 * static_cast<double>(place) + 1.0) / static_cast<double>(count);
+    const double azimuth = 2.399963 * static_cast<double>(place);
+    const Eigen::Vector3d beam(std::sqrt(1.0 - z * z) * std::cos(azimuth),
+                               std::sqrt(1.0 - z * z) * std::sin(azimuth), z);
+    points.positions.push_back(
+        (synthetic::cast(pose.translation(), pose.linear() * beam) * beam).cast<float>());
+    points.seconds.push_back(static_cast<float>(seconds));
+  }
+  return points;
+}
+
+TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
+  // 1.5 m/s and 172 deg/s, none of it foreseen: prediction and de-skewing start from rest
+  const Vector6 twist = vector6(1.2, -0.8, 0.4, 0.5, -0.8, 3.0);
+  const Pose start = synthetic::flight(0.0);
+  const Pose end = start * se3::exp(0.1 * twist);
+  std::vector<Eigen::Vector3f> walls;
+  for (const auto& p : look_around(start, 100000, 0.3, 0.0))
+    walls.push_back((start * p.cast<double>()).cast<float>());
+  const VoxelHashMap map = map_of(walls);
+  const TimedPoints keypoints = look_around_moving(end, twist, 2003);
+  Config config;
+  config.sensor_centred = true;
+  config.convergence = 1e-6;
+  const auto error_of = [&](const TimedPoints& points) {
+    const auto found = register_points(points, map, {start, 0.1}, start, 1.0, config, Parallel(1));
+    return Pose(end.inverse() * found.map_from_lidar);
+  };
+  // The map's points stand 5 cm apart: 2.5 cm a residual along the wall, of 2000 keypoints a third
+  // pulls along each axis, and late ones only with their share; five standard deviations.
+  const double deviation = 0.025 / std::sqrt(2003.0 / 9.0);
+  const Pose moving = error_of(keypoints);
+  EXPECT_LT(moving.translation().norm(), 5.0 * deviation);
+  EXPECT_LT(so3::angle(moving.linear()), 5.0 * deviation / 2.0);  // levers are 2 m and more
+  const Pose frozen = error_of({keypoints.positions, {}});
+  EXPECT_GT(so3::angle(frozen.linear()), 0.1) << "half of the turn is missed when left skewed";
+}
+
+TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
+  const auto points = look_around(synthetic::flight(0.0), 2000, 0.0, 0.0);
+  const VoxelHashMap map = map_of(points);
+  const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
+  Config config;
+  config.sensor_centred = true;
+  const std::vector<float> all_at_it(points.size(), 0.0F);
+  const Departure departure{pose_of(1, 2, 3, 0, 0, 1), 0.1};
+  const auto moving =
+      register_points({points, all_at_it}, map, departure, shift, 0.5, config, Parallel(1));
+  const auto still = register_still(points, map, shift, 0.5, config);
+  EXPECT_LT((moving.map_from_lidar.matrix() - still.map_from_lidar.matrix()).norm(), 1e-12);
 }
 
 TEST(AdaptiveThreshold, DisplacementIsHowFarAPointAtTheRangeMoves) {
@@ -153,10 +219,10 @@ TEST(AdaptiveThreshold, SigmaIsTheRootMeanSquareOfTheFirstGuessAndLargeErrors) {
   config.initial_threshold_m = 2.0;
   AdaptiveThreshold threshold(config);
   EXPECT_EQ(threshold.sigma(), 2.0);
-  threshold.observe(Pose::Identity(), pose_of(0.09, 0, 0, 0, 0, 0));
+  threshold.observe(Pose::Identity(), pose_of(0.09, 0, 0, 0, 0, 0), 7.0);
   EXPECT_EQ(threshold.sigma(), 2.0) << "below the minimum motion of 0.1 m";
-  threshold.observe(Pose::Identity(), pose_of(0.5, 0, 0, 0, 0, 0));
-  threshold.observe(pose_of(0, 7, 0, 0, 0, 1), pose_of(0, 8, 0, 0, 0, 1));
+  threshold.observe(Pose::Identity(), pose_of(0.5, 0, 0, 0, 0, 0), 7.0);
+  threshold.observe(pose_of(0, 7, 0, 0, 0, 1), pose_of(0, 8, 0, 0, 0, 1), 7.0);
   EXPECT_NEAR(threshold.sigma(), std::sqrt((4.0 + 0.25 + 1.0) / 3.0), 1e-12);
 }
 
@@ -164,10 +230,42 @@ TEST(AdaptiveThreshold, In2023TheFirstGuessHoldsForHalfAMetreAndThenDropsOut) {
   Config config;
   config.threshold_start = ThresholdStart::kUntilMoved;
   AdaptiveThreshold threshold(config);
-  threshold.observe(Pose::Identity(), pose_of(0.3, 0, 0, 0, 0, 0));
+  threshold.observe(Pose::Identity(), pose_of(0.3, 0, 0, 0, 0, 0), 7.0);
   EXPECT_EQ(threshold.sigma(), 2.0) << "0.3 m from the start";
-  threshold.observe(pose_of(0.3, 0, 0, 0, 0, 0), pose_of(0.7, 0, 0, 0, 0, 0));
+  threshold.observe(pose_of(0.3, 0, 0, 0, 0, 0), pose_of(0.7, 0, 0, 0, 0, 0), 7.0);
   EXPECT_NEAR(threshold.sigma(), std::sqrt((0.09 + 0.16) / 2.0), 1e-12);
+}
+
+TEST(AdaptiveThreshold, WithAMemoryItForgetsLargeErrorsAndSeesSmallOnes) {
+  Config config;
+  config.initial_threshold_m = 2.0;
+  config.threshold_memory = 10.0;
+  AdaptiveThreshold threshold(config);
+  const Pose small = pose_of(0.02, 0, 0, 0, 0, 0);
+  double squares = 4.0, weights = 1.0;
+  for (int i = 1; i <= 60; ++i) {
+    threshold.observe(Pose::Identity(), small, 7.0);
+    squares = squares * std::exp(-0.1) + 0.01;  // errors below 0.1 m count as 0.1 m
+    weights = weights * std::exp(-0.1) + 1.0;
+    ASSERT_NEAR(threshold.sigma(), std::sqrt(squares / weights), 1e-12) << i;
+  }
+  EXPECT_LT(threshold.sigma(), 0.11) << "2 m are forgotten";
+  threshold.observe(Pose::Identity(), pose_of(1.0, 0, 0, 0, 0, 0), 7.0);
+  EXPECT_GT(threshold.sigma(), 0.3) << "and 1 m counts a tenth at once";
+}
+
+TEST(AdaptiveThreshold, TheLeverIsTheMaximumRangeOrTheMeanRangeOfTheScan) {
+  const Pose turned = pose_of(0, 0, 0, 0, 0, 0.1);
+  Config config;
+  config.initial_threshold_m = 1e-9;
+  config.max_range_m = 40.0;
+  for (const auto& [lever, range] :
+       {std::pair{ThresholdLever::kMaxRange, 40.0}, std::pair{ThresholdLever::kMeanRange, 5.0}}) {
+    config.threshold_lever = lever;
+    AdaptiveThreshold threshold(config);
+    threshold.observe(Pose::Identity(), turned, 5.0);
+    EXPECT_NEAR(threshold.sigma(), displacement(turned, range) / std::sqrt(2.0), 1e-9);
+  }
 }
 
 Scan scan_of(std::initializer_list<Eigen::Vector3f> positions, std::int32_t step_ns) {
@@ -199,8 +297,9 @@ TEST(Preprocess, TheRangeGateIsOpenAtBothEndsAndRefusesWhatIsNotFinite) {
   const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
   const auto kept = preprocess(scan, times, Vector6::Zero(), config, Parallel(1));
   ASSERT_EQ(kept.size(), 2U);
-  EXPECT_EQ(kept[0], Eigen::Vector3f(1.01F, 0, 0));
-  EXPECT_EQ(kept[1], Eigen::Vector3f(0, 9.99F, 0));
+  EXPECT_EQ(kept.positions[0], Eigen::Vector3f(1.01F, 0, 0));
+  EXPECT_EQ(kept.positions[1], Eigen::Vector3f(0, 9.99F, 0));
+  EXPECT_TRUE(kept.deskewed());
 }
 
 TEST(Preprocess, APoseBelongsToTheLastPointOrTheMiddleOfTheScan) {
@@ -221,7 +320,7 @@ TEST(Preprocess, EqualTimesLoseTheScanInTheOriginalAndMeanNoTimesWhenCured) {
   const Pose motion = pose_of(0.1, 0, 0, 0, 0, 0.1);
   const Vector6 twist = twist_within(times, motion, 0.1, config);
   EXPECT_EQ(twist, Vector6::Zero());
-  EXPECT_TRUE(preprocess(scan, times, twist, config, Parallel(1)).empty());
+  EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 0U);
   config.equal_times_are_no_times = true;
   EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 2U);
 }
@@ -236,6 +335,58 @@ TEST(Preprocess, MotionFillsTheScanInTheOriginalAndTheTimeItTookWhenCured) {
   EXPECT_LT((twist_within(times, se3::exp(moved), 0.1, config) - moved / 0.1).norm(), 1e-12);
   config.deskew = false;
   EXPECT_EQ(twist_within(times, se3::exp(moved), 0.1, config), Vector6::Zero());
+}
+
+TEST(Preprocess, PointsWhoseMotionIsToBeEstimatedStayAtTheirInstantsUntilItIsKnown) {
+  const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, 50'000'000);
+  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
+  Config config;
+  config.motion_within = MotionWithin::kEstimated;
+  const Vector6 wrong = vector6(9, 9, 9, 9, 9, 9);
+  const TimedPoints points = preprocess(scan, times, wrong, config, Parallel(1));
+  ASSERT_EQ(points.seconds, (std::vector<float>{-0.1F, -0.05F, 0.0F}));
+  EXPECT_EQ(points.positions[1], scan.points[1].position);
+  // 1 m/s along x: what was seen 0.1 s ago is 0.1 m nearer now
+  const auto still = deskewed(points, vector6(1, 0, 0, 0, 0, 0), Parallel(1));
+  EXPECT_NEAR(still[0].x(), 1.9F, 1e-6F);
+  EXPECT_NEAR(still[1].x(), 2.95F, 1e-6F);
+  EXPECT_NEAR(still[2].x(), 4.0F, 1e-6F);
+}
+
+TEST(Preprocess, ThinningTakesTheTimesAlong) {
+  const TimedPoints points{{{0.1F, 0, 0}, {0.2F, 0, 0}, {5.1F, 0, 0}}, {-3.0F, -2.0F, -1.0F}};
+  const TimedPoints thinned = thin(points, 1.0, {});
+  ASSERT_EQ(thinned.size(), 2U);
+  for (std::size_t i = 0; i < 2; ++i)
+    EXPECT_EQ(thinned.seconds[i], thinned.positions[i].x() < 1.0F ? -3.0F : -1.0F);
+}
+
+TEST(Preprocess, SlicesAreThePartsOfTheScanInOrderOfTime) {
+  Scan scan;
+  scan.stamp = Time{5000};
+  for (const std::int32_t dt : {900, 0, 100, 399, 400, 450, 1000})  // none in 600 ... 799
+    scan.points.emplace_back().dt_ns = dt;
+  const auto slices = sliced(scan, 5);
+  std::vector<std::vector<std::int32_t>> times;
+  for (const Scan& slice : slices) {
+    EXPECT_EQ(slice.stamp, scan.stamp);
+    EXPECT_TRUE(slice.timed);
+    times.emplace_back();
+    for (const Point& point : slice.points) times.back().push_back(point.dt_ns);
+  }
+  EXPECT_EQ(times,
+            (std::vector<std::vector<std::int32_t>>{{0, 100}, {399, 400}, {450}, {900, 1000}}))
+      << "1000 ns in five: 201 ns each, so that the last point is in";
+}
+
+TEST(Preprocess, AScanWithoutTimesOrPointsIsOneSlice) {
+  Scan scan = scan_of({{1, 0, 0}, {2, 0, 0}}, 0);
+  EXPECT_EQ(sliced(scan, 4).size(), 1U);
+  scan.points[1].dt_ns = 1000;
+  scan.timed = false;
+  EXPECT_EQ(sliced(scan, 4).size(), 1U);
+  scan.points.clear();
+  EXPECT_EQ(sliced(scan, 4).size(), 1U);
 }
 
 }  // namespace

@@ -19,17 +19,19 @@ class AdaptiveThreshold {
   explicit AdaptiveThreshold(const Config& config);
 
   double sigma() const;
-  /// `prediction` and `estimate` of the same pose.
-  void observe(const Pose& prediction, const Pose& estimate);
+  /// `prediction` and `estimate` of the same pose; `mean_range` (m) of the points that show it.
+  void observe(const Pose& prediction, const Pose& estimate, double mean_range);
 
  private:
   double initial_;
   double min_motion_;
   double range_;
   ThresholdStart start_;
+  ThresholdLever lever_;
+  double kept_;         ///< share of the past that is kept at each error seen
   bool moved_ = false;  ///< beyond 5 minimum motions from the start
   double squared_sum_ = 0.0;
-  std::size_t count_ = 0;
+  double count_ = 0.0;
 };
 
 }  // namespace lidarena::kiss_icp

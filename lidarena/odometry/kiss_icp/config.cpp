@@ -12,6 +12,8 @@ Config original() {
   Config config;
   config.min_range_m = 5.0;
   config.min_spacing = false;
+  config.cell_rounding = VoxelRounding::kTruncate;
+  config.thinning_order = ThinningOrder::kTeschner;
   config.pose_instant = PoseInstant::kScanMiddle;
   config.threshold_start = ThresholdStart::kUntilMoved;
   config.kernel_fraction = 1.0 / 3.0;
@@ -20,6 +22,7 @@ Config original() {
 
 Config improved(const LidarInfo& lidar) {
   Config config;
+  config.thinning_order = ThinningOrder::kMixed;
   config.max_range_m = lidar.max_range_m;
   config.min_range_m = lidar.min_range_m;
   config.voxel_size_m = 0.5;  // a third of the error of 1 m at three times the work, see README.md

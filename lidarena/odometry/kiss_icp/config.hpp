@@ -9,6 +9,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/map/voxel_filter.hpp"
 
 namespace lidarena::kiss_icp {
 
@@ -21,6 +22,18 @@ enum class ThresholdStart {
   kUntilMoved,  ///< sigma0 alone until 5 minimum motions from the start, then samples alone
 };
 
+/// Which motion a scan is de-skewed with.
+enum class MotionWithin {
+  kPrevious,   ///< the one before, as the public program does
+  kEstimated,  ///< the scan's own: keypoints move with the estimate in each iteration of ICP
+};
+
+/// Lever arm of the adaptive threshold: how far a wrong angle moves points.
+enum class ThresholdLever {
+  kMaxRange,   ///< max_range_m
+  kMeanRange,  ///< mean range of the scan's keypoints
+};
+
 /// The defaults are the public program's (2025); preset() changes them.
 struct Config {
   double max_range_m = 100.0;
@@ -28,15 +41,23 @@ struct Config {
   std::optional<double> voxel_size_m;  ///< unset: max_range_m / 100
   int max_points_per_voxel = 20;
   bool min_spacing = true;
+  VoxelRounding cell_rounding = VoxelRounding::kFloor;
+  ThinningOrder thinning_order = ThinningOrder::kTeschnerPrime;
 
+  int slices = 1;
   bool deskew = true;
+  MotionWithin motion_within = MotionWithin::kPrevious;
+  bool rebuild_start = false;
   PoseInstant pose_instant = PoseInstant::kScanEnd;
 
   double initial_threshold_m = 2.0;
   double min_motion_m = 0.1;
   ThresholdStart threshold_start = ThresholdStart::kBlended;
+  std::optional<double> threshold_memory;
+  ThresholdLever threshold_lever = ThresholdLever::kMaxRange;
 
   double kernel_fraction = 1.0;
+  bool kernel_in_metres = false;
   int max_iterations = 500;
   double convergence = 1e-4;
 
@@ -60,15 +81,33 @@ struct Config {
     v("min_spacing", self.min_spacing, "",
       "keep the points of a cell voxel_size / sqrt(max_points_per_voxel) apart; false: the first "
       "ones met");
+    v("cell_rounding", self.cell_rounding, "",
+      "how points fall into cells: floor; truncate: cells around x, y, z = 0 are twice as wide");
+    v("thinning_order", self.thinning_order, "",
+      "which points the second thinning meets first: mixed, teschner or teschner_prime");
+    v("slices", self.slices, "",
+      "cure above 1: parts that a scan is cut into by time, each registered on its own",
+      Limits{1, 100});
     v("deskew", self.deskew, "", "undo the motion within the scan, where points carry times");
+    v("motion_within", self.motion_within, "",
+      "de-skew with the motion before (previous), or, cure, with the scan's own (estimated)");
+    v("rebuild_start", self.rebuild_start, "",
+      "cure: the first scan is de-skewed with the motion that the second shows");
     v("pose_instant", self.pose_instant, "", "instant of the pose: scan_middle or scan_end");
     v("initial_threshold_m", self.initial_threshold_m, "m",
       "first guess of the prediction's error sigma; the search radius is 3 sigma", above(0));
     v("min_motion_m", self.min_motion_m, "m",
       "smaller errors of the prediction do not count into sigma", at_least(0));
     v("threshold_start", self.threshold_start, "", "blended or until_moved");
+    v("threshold_memory", self.threshold_memory, "registrations",
+      "cure: after so many, an error's share in sigma is down to 1/e; null: never forgotten",
+      at_least(1));
+    v("threshold_lever", self.threshold_lever, "",
+      "what turns an angle into metres in sigma: max_range or, cure, mean_range of the keypoints");
     v("kernel_fraction", self.kernel_fraction, "",
       "scale of the robust kernel as a fraction of sigma", above(0));
+    v("kernel_in_metres", self.kernel_in_metres, "",
+      "cure: the kernel's scale is that length; false: the root of it, as its formula has it");
     v("max_iterations", self.max_iterations, "", "of ICP; bounds the time of a lost scan",
       at_least(1));
     v("convergence", self.convergence, "m and rad", "ICP ends below this step", at_least(0));
@@ -99,6 +138,31 @@ template <>
 struct EnumNames<kiss_icp::PoseInstant> {
   static constexpr std::array names{std::pair{"scan_middle", kiss_icp::PoseInstant::kScanMiddle},
                                     std::pair{"scan_end", kiss_icp::PoseInstant::kScanEnd}};
+};
+
+template <>
+struct EnumNames<kiss_icp::MotionWithin> {
+  static constexpr std::array names{std::pair{"previous", kiss_icp::MotionWithin::kPrevious},
+                                    std::pair{"estimated", kiss_icp::MotionWithin::kEstimated}};
+};
+
+template <>
+struct EnumNames<kiss_icp::ThresholdLever> {
+  static constexpr std::array names{std::pair{"max_range", kiss_icp::ThresholdLever::kMaxRange},
+                                    std::pair{"mean_range", kiss_icp::ThresholdLever::kMeanRange}};
+};
+
+template <>
+struct EnumNames<VoxelRounding> {
+  static constexpr std::array names{std::pair{"floor", VoxelRounding::kFloor},
+                                    std::pair{"truncate", VoxelRounding::kTruncate}};
+};
+
+template <>
+struct EnumNames<ThinningOrder> {
+  static constexpr std::array names{std::pair{"mixed", ThinningOrder::kMixed},
+                                    std::pair{"teschner", ThinningOrder::kTeschner},
+                                    std::pair{"teschner_prime", ThinningOrder::kTeschnerPrime}};
 };
 
 template <>

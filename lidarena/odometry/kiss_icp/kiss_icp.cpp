@@ -2,8 +2,7 @@
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
 
 #include <cmath>
-
-#include "lidarena/map/voxel_filter.hpp"
+#include <utility>
 
 namespace lidarena::kiss_icp {
 
@@ -15,7 +14,8 @@ constexpr int kMotionSteps = 4;            // poses within a scan handed out, be
 
 VoxelHashMap::Options map_options(const Config& config) {
   const double spacing = config.voxel_size() / std::sqrt(config.max_points_per_voxel);
-  return {config.voxel_size(), config.max_points_per_voxel, config.min_spacing ? spacing : 0.0};
+  return {config.voxel_size(), config.max_points_per_voxel, config.min_spacing ? spacing : 0.0,
+          config.cell_rounding};
 }
 
 std::vector<Eigen::Vector3f> transformed(const Pose& pose,
@@ -25,6 +25,24 @@ std::vector<Eigen::Vector3f> transformed(const Pose& pose,
   for (const Eigen::Vector3f& point : points)
     moved.push_back((pose * point.cast<double>()).cast<float>());
   return moved;
+}
+
+double mean_range(std::span<const Eigen::Vector3f> points) {
+  double sum = 0.0;
+  for (const Eigen::Vector3f& point : points) sum += point.cast<double>().norm();
+  return points.empty() ? 0.0 : sum / static_cast<double>(points.size());
+}
+
+/// Adds the outcome of the next slice to that of the scan: counts add up, the rest is the latest.
+void append(ScanResult slice, ScanResult& scan) {
+  for (const char* count : {"points", "keypoints", "matches", "iterations"})
+    slice.counters[count] += scan.counters[count];
+  // a slice starts where, or just after, the one before ended
+  for (const StampedPose& pose : slice.motion) {
+    if (scan.motion.empty() || pose.stamp > scan.motion.back().stamp) scan.motion.push_back(pose);
+  }
+  slice.motion = std::move(scan.motion);
+  scan = std::move(slice);
 }
 
 }  // namespace
@@ -40,25 +58,40 @@ KissIcp::KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel
 
 ScanResult KissIcp::register_scan(const Scan& scan) {
   const ScanTimes times = times_of(scan, scan_duration_, config_.pose_instant);
-  const se3::Vector6 twist = twist_within(times, motion_, motion_seconds_, config_);
-  const auto points = preprocess(scan, times, twist, config_, parallel_);
+  if (times.timed) scan_duration_ = times.last - times.first;
+  registered_scan_.clear();
+  ScanResult result;
+  for (const Scan& slice : sliced(scan, config_.slices)) append(register_slice(slice), result);
+  poses_.push_back(result.estimate);
+  return result;
+}
 
-  const auto map_points = thin(points, kMapThinning * config_.voxel_size());
-  const auto keypoints = thin(map_points, kKeypointThinning * config_.voxel_size());
+ScanResult KissIcp::register_slice(const Scan& slice) {
+  const ScanTimes times = times_of(slice, scan_duration_, config_.pose_instant);
+  const se3::Vector6 before = twist_within(times, motion_, motion_seconds_, config_);
+  const TimedPoints points = preprocess(slice, times, before, config_, parallel_);
+
+  const double voxel = config_.voxel_size();
+  const Thinning thinning{config_.cell_rounding, config_.thinning_order};
+  const TimedPoints map_points = thin(points, kMapThinning * voxel, thinning);
+  const TimedPoints keypoints = thin(map_points, kKeypointThinning * voxel, thinning);
 
   const double sigma = threshold_.sigma();
   const Pose guess = map_from_lidar_ * predicted_motion(times);
-  const Registration found = register_points(keypoints, map_, guess, sigma, config_, parallel_);
+  const Registration found = registered(keypoints, departure(times), guess);
   const Pose& pose = found.map_from_lidar;
-  threshold_.observe(guess, pose);
+  threshold_.observe(guess, pose, mean_range(keypoints.positions));
 
   const ScanStatus status = status_of(found, points.size());
-  map_.insert(transformed(pose, map_points));
+  const se3::Vector6 twist = points.deskewed() ? before : twist_since(departure(times), pose);
+  if (config_.rebuild_start && map_.empty()) first_points_ = map_points;
+  map_.insert(transformed(pose, deskewed(map_points, twist, parallel_)));
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
 
   advance(pose, times, status);
-  registered_scan_ = transformed(body_from_lidar_ * pose, points);
-  return {poses_.back(),
+  for (const auto& p : transformed(body_from_lidar_ * pose, deskewed(points, twist, parallel_)))
+    registered_scan_.push_back(p);
+  return {{times.reference, body_pose(pose)},
           status,
           std::nullopt,
           {{"points", points.size()},
@@ -70,9 +103,29 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
           motion_within(times, twist)};
 }
 
+Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& departure,
+                                 const Pose& guess) {
+  const double sigma = threshold_.sigma();
+  const auto register_from = [&](const Pose& start) {
+    return register_points(keypoints, map_, departure, start, sigma, config_, parallel_);
+  };
+  const Registration found = register_from(guess);
+  if (first_points_.size() == 0 || found.matches == 0) return found;
+  const TimedPoints first = std::exchange(first_points_, {});
+  if (first.deskewed()) return found;
+  const se3::Vector6 twist = twist_since(departure, found.map_from_lidar);
+  map_ = VoxelHashMap(map_options(config_));
+  map_.insert(transformed(departure.map_from_lidar, deskewed(first, twist, parallel_)));
+  return register_from(found.map_from_lidar);
+}
+
+Departure KissIcp::departure(const ScanTimes& times) const {
+  return {map_from_lidar_, instant_ ? to_seconds(times.reference - *instant_) : 0.0};
+}
+
 Pose KissIcp::predicted_motion(const ScanTimes& times) const {
-  if (!config_.motion_per_second || poses_.empty()) return motion_;
-  const double seconds = to_seconds(times.reference - instant());
+  if (!config_.motion_per_second || !instant_) return motion_;
+  const double seconds = to_seconds(times.reference - *instant_);
   return se3::exp(se3::log(motion_) * (seconds / motion_seconds_));
 }
 
@@ -85,12 +138,11 @@ ScanStatus KissIcp::status_of(const Registration& registration, std::size_t poin
 
 void KissIcp::advance(const Pose& pose, const ScanTimes& times, ScanStatus status) {
   motion_ = map_from_lidar_.inverse() * pose;
-  if (!poses_.empty()) motion_seconds_ = to_seconds(times.reference - instant());
+  if (instant_) motion_seconds_ = to_seconds(times.reference - *instant_);
   if (status == ScanStatus::kTooFewPoints)
     motion_ = se3::exp(config_.motion_kept_when_lost * se3::log(motion_));
-  if (times.timed) scan_duration_ = times.last - times.first;
   map_from_lidar_ = pose;
-  poses_.push_back({times.reference, body_pose(pose)});
+  instant_ = times.reference;
 }
 
 std::vector<StampedPose> KissIcp::motion_within(const ScanTimes& times,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -28,6 +29,13 @@ class KissIcp : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
+  /// register_scan of a part of a scan; `registered_scan_` grows by it.
+  ScanResult register_slice(const Scan& slice);
+  /// register_points from the predicted pose, the start of the map mended before if it is time.
+  Registration registered(const TimedPoints& keypoints, const Departure& departure,
+                          const Pose& guess);
+  /// Where the lidar comes from.
+  Departure departure(const ScanTimes& times) const;
   /// The lidar's motion until now, if it goes on as before.
   Pose predicted_motion(const ScanTimes& times) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
@@ -37,17 +45,18 @@ class KissIcp : public Odometry {
   std::vector<StampedPose> motion_within(const ScanTimes& times, const se3::Vector6& twist) const;
   /// Pose of the body in its own frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
-  Time instant() const { return poses_.back().stamp; }
 
   Config config_;
   Pose body_from_lidar_;
   Parallel parallel_;
-  VoxelHashMap map_;  ///< in the lidar's frame at its first pose
+  VoxelHashMap map_;          ///< in the lidar's frame at its first pose
+  TimedPoints first_points_;  ///< all that is in the map, until the second scan de-skews it
   AdaptiveThreshold threshold_;
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< lidar's, between the last two scans
   double motion_seconds_;           ///< that it took
+  std::optional<Time> instant_;     ///< of the last pose
   Time scan_duration_;              ///< of the last scan that had times
   std::vector<StampedPose> poses_;  ///< of the body
   std::vector<Eigen::Vector3f> registered_scan_;

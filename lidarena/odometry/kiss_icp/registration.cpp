@@ -3,6 +3,7 @@
 
 #include "lidarena/base/se3.hpp"
 #include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/deskew.hpp"
 #include "lidarena/estimation/least_squares.hpp"
 
 namespace lidarena::kiss_icp {
@@ -15,6 +16,41 @@ double kernel_weight(double squared_error, double sigma) {
   const double ratio = sigma / (sigma + squared_error);
   return ratio * ratio;
 }
+
+/// Sigma that gives that weight the scale `scale` m.
+double kernel_of(double scale, const Config& config) {
+  return config.kernel_in_metres ? scale * scale : scale;
+}
+
+/// Pose of the lidar at a point's instant, and the share that it has in the scan's increment.
+struct PoseShare {
+  Pose map_from_instant;
+  double share;
+};
+
+/// The lidar's way through the scan as the present estimate has it.
+class MovingFrame {
+ public:
+  MovingFrame(const Pose& pose, const Departure& departure, const TimedPoints& points)
+      : pose_(pose),
+        departure_(departure),
+        points_(points),
+        motion_(points.deskewed() ? se3::Vector6(se3::Vector6::Zero())
+                                  : twist_since(departure, pose)) {}
+
+  PoseShare at(std::size_t i) const {
+    if (points_.deskewed()) return {pose_, 1.0};
+    const double seconds = double{points_.seconds[i]};
+    const double share = departure_.seconds > 0.0 ? 1.0 + seconds / departure_.seconds : 1.0;
+    return {pose_ * motion_.at(seconds), share};
+  }
+
+ private:
+  const Pose& pose_;
+  const Departure& departure_;
+  const TimedPoints& points_;
+  ConstantTwist motion_;
+};
 
 /// `increment` as a transform of the map frame, its rotation about `center`.
 Pose apply_about(const se3::Vector6& increment, const Eigen::Vector3d& center) {
@@ -31,25 +67,35 @@ PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d
   return residual;
 }
 
-Registration register_points(std::span<const Eigen::Vector3f> keypoints, const VoxelHashMap& map,
-                             const Pose& guess, double sigma, const Config& config,
-                             const Parallel& parallel) {
+se3::Vector6 twist_since(const Departure& departure, const Pose& map_from_lidar) {
+  if (departure.seconds <= 0.0) return se3::Vector6::Zero();
+  return se3::log(departure.map_from_lidar.inverse() * map_from_lidar) / departure.seconds;
+}
+
+Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
+                             const Departure& departure, const Pose& guess, double sigma,
+                             const Config& config, const Parallel& parallel) {
   Registration result{guess};
   if (map.empty()) return result;
   const auto radius = static_cast<float>(3.0 * sigma);
-  const double kernel = sigma * config.kernel_fraction;
+  const double kernel = kernel_of(sigma * config.kernel_fraction, config);
   Pose& pose = result.map_from_lidar;
   while (result.iterations < config.max_iterations) {
-    const Eigen::Vector3d center =
-        config.sensor_centred ? Eigen::Vector3d(pose.translation()) : Eigen::Vector3d::Zero();
+    const MovingFrame frame(pose, departure, keypoints);
     const auto add_match = [&](std::size_t i, NormalEquations<6>& equations) {
-      const Eigen::Vector3d point = pose * keypoints[i].cast<double>();
+      const auto [map_from_instant, share] = frame.at(i);
+      const Eigen::Vector3d point = map_from_instant * keypoints.positions[i].cast<double>();
       const auto match = map.nearest(point.cast<float>(), radius);
       if (!match) return;
+      const Eigen::Vector3d center = config.sensor_centred
+                                         ? Eigen::Vector3d(map_from_instant.translation())
+                                         : Eigen::Vector3d::Zero();
       const auto [error, jacobian] = point_to_point(point, match.point->cast<double>(), center);
-      equations.add<3>(jacobian, error, kernel_weight(error.squaredNorm(), kernel));
+      equations.add<3>(share * jacobian, error, kernel_weight(error.squaredNorm(), kernel));
     };
     const auto equations = accumulate_normal_equations<6>(parallel, keypoints.size(), add_match);
+    const Eigen::Vector3d center =
+        config.sensor_centred ? Eigen::Vector3d(pose.translation()) : Eigen::Vector3d::Zero();
     const se3::Vector6 increment = equations.solve();
     pose = orthonormalized(apply_about(increment, center) * pose);
     result.matches = equations.count;

@@ -3,17 +3,17 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <span>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/map/voxel_hash_map.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
+#include "lidarena/odometry/kiss_icp/preprocess.hpp"
 
 namespace lidarena::kiss_icp {
 
 /// Error of a point against its counterpart, and its derivative by a left increment
-/// (translation, rotation about `center`) of the point's pose (paper, eq. 10).
+/// (translation, rotation about `center`) of the point's pose (paper, eq. 10). All m, map frame.
 struct PointResidual {
   Eigen::Vector3d error;
   Eigen::Matrix<double, 3, 6> jacobian;
@@ -21,16 +21,26 @@ struct PointResidual {
 PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d& counterpart,
                              const Eigen::Vector3d& center);
 
+/// The pose before the scan's, from which the lidar came with constant twist.
+struct Departure {
+  Pose map_from_lidar = Pose::Identity();
+  double seconds = 0.0;  ///< from that pose's instant to this one's
+};
+
 struct Registration {
   Pose map_from_lidar = Pose::Identity();
   int iterations = 0;
   std::size_t matches = 0;  ///< keypoints with a counterpart, in the last iteration
 };
 
-/// Point-to-point ICP of `keypoints` (lidar frame, m) against `map`, from the pose `guess`, with
-/// search radius 3 sigma (paper, section III-D).
-Registration register_points(std::span<const Eigen::Vector3f> keypoints, const VoxelHashMap& map,
-                             const Pose& guess, double sigma, const Config& config,
-                             const Parallel& parallel);
+/// Point-to-point ICP of `keypoints` against `map`, from the pose `guess`, with search radius
+/// 3 sigma (paper, section III-D). Keypoints that are not de-skewed yet move with the motion from
+/// `departure` to the estimate, anew in each iteration; an increment moves each by its share.
+Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
+                             const Departure& departure, const Pose& guess, double sigma,
+                             const Config& config, const Parallel& parallel);
+
+/// Twist (m/s, rad/s) that leads from `departure` to `map_from_lidar`.
+se3::Vector6 twist_since(const Departure& departure, const Pose& map_from_lidar);
 
 }  // namespace lidarena::kiss_icp
