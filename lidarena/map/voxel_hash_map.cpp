@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <cstdlib>
 
 #include "lidarena/base/error.hpp"
 
@@ -114,6 +116,75 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
     }
   }
   return best;
+}
+
+namespace {
+
+/// The nearest of many, kept as a heap whose first one is the farthest.
+class NearestFew {
+ public:
+  using Neighbor = VoxelHashMap::Neighbor;
+  NearestFew(std::span<Neighbor> out, float radius) : out_(out), bound_(radius * radius) {}
+
+  /// Squared distance from which on a point does not matter.
+  float bound() const { return bound_; }
+  std::size_t count() const { return count_; }
+
+  void offer(const Eigen::Vector3f& point, float squared_distance) {
+    if (squared_distance >= bound_) return;
+    if (count_ == out_.size()) std::pop_heap(out_.begin(), end(), nearer);
+    if (count_ < out_.size()) ++count_;
+    *(end() - 1) = {&point, squared_distance};
+    std::push_heap(out_.begin(), end(), nearer);
+    if (count_ == out_.size()) bound_ = out_.front().squared_distance;
+  }
+
+ private:
+  static bool nearer(const Neighbor& a, const Neighbor& b) {
+    return a.squared_distance < b.squared_distance;
+  }
+  std::span<Neighbor>::iterator end() const {
+    return out_.begin() + static_cast<std::ptrdiff_t>(count_);
+  }
+
+  std::span<Neighbor> out_;
+  std::size_t count_ = 0;
+  float bound_;
+};
+
+}  // namespace
+
+std::size_t VoxelHashMap::nearest(const Eigen::Vector3f& query, float radius,
+                                  std::span<Neighbor> out) const {
+  if (!query.allFinite() || out.empty()) return 0;
+  const Voxel voxel = voxel_of(query, inverse_size_);
+  const VoxelKey key = voxel_key(voxel);
+  const Eigen::Array3f above_face = query.array() - voxel.cast<float>().array() * size_m_;
+  const auto gap = [&](int axis, int step) {
+    if (step == 0) return 0.0F;
+    const float face = step < 0 ? above_face[axis] : size_m_ - above_face[axis];
+    const float distance = face + static_cast<float>(std::abs(step) - 1) * size_m_;
+    return distance * distance;
+  };
+  NearestFew few(out, radius);
+  const auto look_into = [&](const Step& step) {
+    if (gap(0, step.dx) + gap(1, step.dy) + gap(2, step.dz) >= few.bound()) return;
+    const auto found = cells_.find(key + voxel_key_step(step.dx, step.dy, step.dz));
+    if (found == cells_.end()) return;
+    const Cell& cell = found->second;
+    for (std::size_t i = 0; i < cell.count; ++i)
+      few.offer(cell.points[i], (cell.points[i] - query).squaredNorm());
+  };
+  for (const Step& step : kSteps) look_into(step);
+  const int rings = static_cast<int>(std::ceil(radius * inverse_size_));
+  for (int dz = -rings; rings > 1 && dz <= rings; ++dz) {
+    for (int dy = -rings; dy <= rings; ++dy) {
+      for (int dx = -rings; dx <= rings; ++dx) {
+        if (std::max({std::abs(dx), std::abs(dy), std::abs(dz)}) > 1) look_into({dx, dy, dz});
+      }
+    }
+  }
+  return few.count();
 }
 
 std::vector<Eigen::Vector3f> VoxelHashMap::points() const {

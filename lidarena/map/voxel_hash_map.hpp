@@ -44,6 +44,11 @@ class VoxelHashMap {
   /// true nearest one if that is at most `voxel_size` away.
   Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
 
+  /// The points nearest to `query` among those nearer than `radius`, as many as `out` holds, in an
+  /// order that is the same for the same map; returns how many were found. Looks up
+  /// (2 ceil(radius / edge) + 1)^3 cells, less those that begin beyond the farthest one in `out`.
+  std::size_t nearest(const Eigen::Vector3f& query, float radius, std::span<Neighbor> out) const;
+
   bool empty() const { return cells_.empty(); }
   std::size_t size() const { return size_; }  ///< points
   std::size_t cell_count() const { return cells_.size(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/factory.hpp"
 
+#include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
 
@@ -20,6 +21,12 @@ MadeOdometry make_kiss_icp(const OdometryRequest& request, const Rig&, const Lid
                            const Parallel& parallel) {
   const auto config = configured(kiss_icp::preset(request.preset, lidar), request);
   return {std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel), to_json(config)};
+}
+
+MadeOdometry make_ct_icp(const OdometryRequest& request, const Rig&, const LidarInfo& lidar,
+                         const Parallel& parallel) {
+  const auto config = configured(ct_icp::preset(request.preset, lidar), request);
+  return {std::make_unique<ct_icp::CtIcp>(config, lidar, parallel), to_json(config)};
 }
 
 MadeOdometry make_fast_lio2(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
@@ -42,6 +49,9 @@ std::vector<Algorithm> algorithms() {
       {{"kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo et al. 2023)",
         kiss_icp::preset_names(), false},
        make_kiss_icp},
+      {{"ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach et al. 2022)",
+        ct_icp::preset_names(), false},
+       make_ct_icp},
       {{"fast_lio2", "LiDAR and IMU: iterated Kalman filter on points and planes (Xu et al. 2022)",
         fast_lio2::preset_names(), true},
        make_fast_lio2},

@@ -1,0 +1,236 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The same cost as in elastic_alignment.cpp, written a second time for automatic derivatives.
+#include <ceres/ceres.h>
+#include <ceres/rotation.h>
+
+#include <array>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "lidarena/estimation/elastic_alignment.hpp"
+
+namespace lidarena {
+
+namespace {
+
+/// A knot as Ceres holds it: quaternion x y z w, then position.
+using Knot = std::array<double, 7>;
+constexpr int kKnot = 7;
+
+template <class T>
+using Vector3 = Eigen::Matrix<T, 3, 1>;
+template <class T>
+using Quaternion = Eigen::Quaternion<T>;
+
+template <class T>
+Quaternion<T> rotation_of(const T* knot) {
+  return Quaternion<T>(Eigen::Map<const Eigen::Matrix<T, 4, 1>>(knot));
+}
+template <class T>
+Vector3<T> position_of(const T* knot) {
+  return Eigen::Map<const Vector3<T>>(knot + 4);
+}
+
+template <class T>
+Vector3<T> rotation_vector(const Quaternion<T>& q) {
+  const std::array<T, 4> wxyz{q.w(), q.x(), q.y(), q.z()};
+  Vector3<T> vector;
+  ceres::QuaternionToAngleAxis(wxyz.data(), vector.data());
+  return vector;
+}
+template <class T>
+Vector3<T> turn_between(const T* from, const T* to) {
+  return rotation_vector<T>(rotation_of(to) * rotation_of(from).conjugate());
+}
+template <class T>
+bool put(double weight, const Vector3<T>& error, T* residual) {
+  Eigen::Map<Vector3<T>>{residual} = T(weight) * error;
+  return true;
+}
+
+template <int kRows>
+struct MatchCost {
+  const ElasticMatch& match;
+  double a;  ///< within the segment
+
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    const Quaternion<T> rotation = rotation_of(from).slerp(T(a), rotation_of(to));
+    const Vector3<T> position =
+        rotation * match.point.cast<T>() + T(1.0 - a) * position_of(from) + T(a) * position_of(to);
+    Eigen::Map<Eigen::Matrix<T, kRows, 1>>{residual} =
+        T(match.weight) *
+        (match.shape.topRows<kRows>().template cast<T>() * (position - match.anchor.cast<T>()));
+    return true;
+  }
+};
+
+struct LocationCost {
+  double weight;
+  Eigen::Vector3d expected;
+  template <class T>
+  bool operator()(const T* knot, T* residual) const {
+    return put<T>(weight, position_of(knot) - expected.cast<T>(), residual);
+  }
+};
+
+struct OrientationCost {
+  double weight;
+  Eigen::Quaterniond expected;
+  template <class T>
+  bool operator()(const T* knot, T* residual) const {
+    return put<T>(weight, rotation_vector<T>(rotation_of(knot) * expected.conjugate().cast<T>()),
+                  residual);
+  }
+};
+
+struct StepCost {
+  double weight;
+  Eigen::Vector3d expected;
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    return put<T>(weight, position_of(to) - position_of(from) - expected.cast<T>(), residual);
+  }
+};
+
+struct TurnCost {
+  double weight;
+  Eigen::Vector3d expected;
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    return put<T>(weight, turn_between(from, to) - expected.cast<T>(), residual);
+  }
+};
+
+struct BendCost {
+  double weight;
+  template <class T>
+  bool operator()(const T* before, const T* here, const T* after, T* residual) const {
+    return put<T>(weight, position_of(before) - T(2.0) * position_of(here) + position_of(after),
+                  residual);
+  }
+};
+
+struct AngularBendCost {
+  double weight;
+  template <class T>
+  bool operator()(const T* before, const T* here, const T* after, T* residual) const {
+    return put<T>(weight, turn_between(here, after) - turn_between(before, here), residual);
+  }
+};
+
+std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double scale) {
+  switch (loss) {
+    case Loss::kNone:
+      return nullptr;
+    case Loss::kHuber:
+      return std::make_unique<ceres::HuberLoss>(scale);
+    case Loss::kCauchy:
+      return std::make_unique<ceres::CauchyLoss>(scale);
+    case Loss::kTukey:
+      return std::make_unique<ceres::TukeyLoss>(scale);
+  }
+  return nullptr;
+}
+
+/// An ElasticProblem in Ceres' terms, about knots that lie in `knots`.
+class Adjustment {
+ public:
+  Adjustment(const ElasticProblem& problem, std::vector<Knot>& knots)
+      : problem_(problem),
+        knots_(knots),
+        manifold_(ceres::EigenQuaternionManifold{}, ceres::EuclideanManifold<3>{}),
+        loss_(loss_function(problem.loss, problem.loss_scale)),
+        adjustment_(options()) {
+    for (Knot& knot : knots_) adjustment_.AddParameterBlock(knot.data(), kKnot, &manifold_);
+    for (const ElasticMatch& match : problem_.matches) add(match);
+    add_prior();
+  }
+
+  void solve(int iterations) {
+    ceres::Solver::Options options;
+    options.max_num_iterations = iterations;
+    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.num_threads = 1;
+    options.logging_type = ceres::SILENT;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, &adjustment_, &summary);
+  }
+
+ private:
+  static ceres::Problem::Options options() {
+    ceres::Problem::Options options;
+    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    return options;
+  }
+
+  void add(const ElasticMatch& match) {
+    const double position = match.alpha * static_cast<double>(knots_.size() - 1);
+    const std::size_t first = std::min(static_cast<std::size_t>(position), knots_.size() - 2);
+    const double a = position - static_cast<double>(first);
+    ceres::CostFunction* cost = nullptr;
+    if (match.rows == 1) {
+      cost = new ceres::AutoDiffCostFunction<MatchCost<1>, 1, kKnot, kKnot>(
+          new MatchCost<1>{match, a});
+    } else {
+      cost = new ceres::AutoDiffCostFunction<MatchCost<3>, 3, kKnot, kKnot>(
+          new MatchCost<3>{match, a});
+    }
+    adjustment_.AddResidualBlock(cost, loss_.get(), knots_[first].data(), knots_[first + 1].data());
+  }
+
+  /// One term of the prior over the knots with these indices; none if it weighs nothing.
+  template <class Cost, class... Blocks>
+  void add_term(double weight, Cost cost, Blocks... knots) {
+    if (!(weight > 0.0)) return;
+    cost.weight = std::sqrt(weight * static_cast<double>(problem_.matches.size()));
+    using Function = ceres::AutoDiffCostFunction<Cost, 3, ((void)sizeof(Blocks), kKnot)...>;
+    adjustment_.AddResidualBlock(new Function(new Cost(cost)), nullptr, knots_[knots].data()...);
+  }
+
+  void add_prior() {
+    const MotionPrior& prior = problem_.prior;
+    const std::size_t first = 0;
+    const std::size_t last = knots_.size() - 1;
+    add_term(prior.location, LocationCost{0.0, prior.begin.translation()}, first);
+    add_term(prior.orientation, OrientationCost{0.0, Eigen::Quaterniond(prior.begin.linear())},
+             first);
+    add_term(prior.velocity, StepCost{0.0, prior.step}, first, last);
+    add_term(prior.small_velocity, StepCost{0.0, Eigen::Vector3d::Zero()}, first, last);
+    add_term(prior.angular_velocity, TurnCost{0.0, prior.turn}, first, last);
+    for (std::size_t i = 1; i < last; ++i) {
+      add_term(prior.bend, BendCost{0.0}, i - 1, i, i + 1);
+      add_term(prior.angular_bend, AngularBendCost{0.0}, i - 1, i, i + 1);
+    }
+  }
+
+  const ElasticProblem& problem_;
+  std::vector<Knot>& knots_;
+  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold_;
+  std::unique_ptr<ceres::LossFunction> loss_;
+  ceres::Problem adjustment_;
+};
+
+Knot knot_of(const Pose& pose) {
+  Knot knot;
+  Eigen::Map<Eigen::Vector4d>{knot.data()} = Eigen::Quaterniond(pose.linear()).coeffs();
+  Eigen::Map<Eigen::Vector3d>{knot.data() + 4} = pose.translation();
+  return knot;
+}
+
+}  // namespace
+
+ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion, int iterations) {
+  if (problem.matches.empty()) return motion;
+  std::vector<Knot> knots;
+  for (const Pose& pose : motion.knots) knots.push_back(knot_of(pose));
+  Adjustment(problem, knots).solve(iterations);
+  for (std::size_t i = 0; i < knots.size(); ++i)
+    motion.knots[i] =
+        make_pose(rotation_of<double>(knots[i].data()), position_of<double>(knots[i].data()));
+  return motion;
+}
+
+}  // namespace lidarena

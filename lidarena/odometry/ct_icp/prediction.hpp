@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lidarena/base/se3.hpp"
+#include "lidarena/estimation/elastic_alignment.hpp"
+#include "lidarena/odometry/ct_icp/config.hpp"
+#include "lidarena/odometry/ct_icp/sampling.hpp"
+
+namespace lidarena::ct_icp {
+
+/// The lidar's motion so far, as far as the next scan's start depends on it.
+class MotionHistory {
+ public:
+  /// Takes in a scan's motion. A `lost` one is a prediction: the speed is then `kept` of what it
+  /// was.
+  void add(const ElasticMotion& motion, const ScanTimes& times, bool lost, double kept);
+
+  /// Where registration of the next scan starts (CT-ICP, III-A).
+  ElasticMotion predict(const ScanTimes& times, const RegistrationConfig& config) const;
+
+  /// What the next scan's motion is tied to (III-C): where the last one ended and how it moved;
+  /// with constant_twist the prediction, which is the same by real time.
+  MotionPrior prior(const ElasticMotion& prediction, const RegistrationConfig& config,
+                    const PriorConfig& weights) const;
+
+ private:
+  ElasticMotion constant_motion(int segments) const;
+  ElasticMotion constant_twist(const ScanTimes& times, int segments) const;
+
+  int scans_ = 0;
+  ElasticMotion last_ = ElasticMotion::still(Pose::Identity(), 1);
+  ElasticMotion before_ = last_;
+  Time instant_{0};                            ///< of the last scan's end
+  se3::Vector6 twist_ = se3::Vector6::Zero();  ///< m/s, rad/s, lidar
+};
+
+}  // namespace lidarena::ct_icp
