@@ -19,6 +19,9 @@ enum class KeypointSampling {
   kAdaptive,  ///< one a cell whose edge grows with the range, from 0.1 to 1.6 m
 };
 
+/// How coordinates become cells.
+enum class CellCut { kFloor, kTruncate };
+
 /// Where registration starts.
 enum class InitialMotion {
   kLastPose,        ///< begin and end of the scan where the last one ended
@@ -53,6 +56,7 @@ struct SamplingConfig {
   double start_frame_voxel_m = 0.2;
   double start_keypoint_voxel_m = 1.0;
   int rigid_scans = 2;
+  CellCut cell_cut = CellCut::kTruncate;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -70,6 +74,8 @@ struct SamplingConfig {
     v("start_keypoint_voxel_m", self.start_keypoint_voxel_m, "m", "", above(0));
     v("rigid_scans", self.rigid_scans, "", "the first scans are taken for instantaneous",
       at_least(1));
+    v("cell_cut", self.cell_cut, "",
+      "truncate (the public program: cells about zero are twice as wide) or floor");
   }
 };
 
@@ -256,6 +262,12 @@ struct EnumNames<ct_icp::KeypointSampling> {
   static constexpr std::array names{std::pair{"all", ct_icp::KeypointSampling::kAll},
                                     std::pair{"grid", ct_icp::KeypointSampling::kGrid},
                                     std::pair{"adaptive", ct_icp::KeypointSampling::kAdaptive}};
+};
+
+template <>
+struct EnumNames<ct_icp::CellCut> {
+  static constexpr std::array names{std::pair{"floor", ct_icp::CellCut::kFloor},
+                                    std::pair{"truncate", ct_icp::CellCut::kTruncate}};
 };
 
 template <>

@@ -41,8 +41,9 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const ScanTimes times = times_of(scan, scan_duration_);
   const bool rigid = !times.timed || map_.empty() || scans_ < config_.sampling.rigid_scans;
   const auto points = timed_points(scan, times, rigid, config_.sampling);
-  const auto frame = thin(
-      points, starting() ? config_.sampling.start_frame_voxel_m : config_.sampling.frame_voxel_m);
+  const double voxel =
+      starting() ? config_.sampling.start_frame_voxel_m : config_.sampling.frame_voxel_m;
+  const auto frame = thin(points, voxel, config_.sampling.cell_cut);
 
   const ElasticMotion guess = history_.predict(times, config_.registration);
   const RobustRegistration found = align(frame, guess);

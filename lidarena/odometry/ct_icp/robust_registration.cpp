@@ -58,7 +58,7 @@ RobustRegistration register_robustly(std::span<const TimedPoint> frame, const Vo
     const auto [sampling, registration, p, m, i, r] = at_level(config, result.level);
     const double voxel = starting ? sampling.start_keypoint_voxel_m : sampling.keypoint_voxel_m;
     const auto keypoints =
-        sample_keypoints(frame, sampling.keypoints, voxel, starting ? 0 : sampling.max_keypoints);
+        sample_keypoints(frame, sampling, voxel, starting ? 0 : sampling.max_keypoints);
     const int iterations =
         starting ? std::max(registration.start_iterations, registration.max_iterations)
                  : registration.max_iterations;
