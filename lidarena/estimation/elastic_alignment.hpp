@@ -62,7 +62,8 @@ double cost_of(const ElasticProblem& problem, const ElasticMotion& motion);
 ElasticMotion align_by_gauss_newton(const ElasticProblem& problem, ElasticMotion motion,
                                     int iterations, const Parallel& parallel);
 
-/// Up to `iterations` steps of Levenberg-Marquardt by Ceres, with automatic derivatives.
+/// Up to `iterations` steps of Levenberg-Marquardt by Ceres (which ends earlier when a step lowers
+/// the cost by less than 1e-6 of it).
 ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion, int iterations);
 
 template <>

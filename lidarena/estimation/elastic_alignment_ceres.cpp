@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same cost as in elastic_alignment.cpp, written a second time for automatic derivatives.
+// The same cost as in elastic_alignment.cpp; the prior is written a second time, for automatic
+// derivatives.
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
@@ -8,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/elastic_alignment.hpp"
 
 namespace lidarena {
@@ -49,21 +51,47 @@ bool put(double weight, const Vector3<T>& error, T* residual) {
   return true;
 }
 
+/// A point's error, with the derivative of ElasticSegment: automatic ones cost ten times as much.
 template <int kRows>
-struct MatchCost {
-  const ElasticMatch& match;
-  double a;  ///< within the segment
+class MatchCost : public ceres::SizedCostFunction<kRows, kKnot, kKnot> {
+ public:
+  /// `a`: where in the segment.
+  MatchCost(const ElasticMatch& match, double a) : match_(match), a_(a) {}
 
-  template <class T>
-  bool operator()(const T* from, const T* to, T* residual) const {
-    const Quaternion<T> rotation = rotation_of(from).slerp(T(a), rotation_of(to));
-    const Vector3<T> position =
-        rotation * match.point.cast<T>() + T(1.0 - a) * position_of(from) + T(a) * position_of(to);
-    Eigen::Map<Eigen::Matrix<T, kRows, 1>>{residual} =
-        T(match.weight) *
-        (match.shape.topRows<kRows>().template cast<T>() * (position - match.anchor.cast<T>()));
+  bool Evaluate(double const* const* knots, double* residual, double** jacobians) const override {
+    const ElasticSegment segment(pose_of(knots[0]), pose_of(knots[1]));
+    const Eigen::Vector3d gap = segment.place(match_.point, a_) - match_.anchor;
+    for (int r = 0; r < kRows; ++r) {
+      const Eigen::Vector3d direction = match_.weight * match_.shape.row(r);
+      residual[r] = direction.dot(gap);
+      if (jacobians == nullptr) continue;
+      const auto row = segment.row(match_.point, a_, direction);
+      for (int k = 0; k < 2; ++k) {
+        if (jacobians[k] == nullptr) continue;
+        Eigen::Map<Eigen::RowVector4d>(jacobians[k] + r * kKnot) =
+            by_quaternion(row.segment<3>(6 * k + 3), knots[k]);
+        Eigen::Map<Eigen::RowVector3d>(jacobians[k] + r * kKnot + 4) = row.segment<3>(6 * k);
+      }
+    }
     return true;
   }
+
+ private:
+  static Pose pose_of(const double* knot) {
+    return make_pose(rotation_of(knot).toRotationMatrix(), Eigen::Vector3d(position_of(knot)));
+  }
+  /// A derivative by the rotation vector on the left as one by x y z w. The manifold's increment d
+  /// makes of q the product (d, 1) q, whose derivative G has orthonormal columns, and turns by 2 d.
+  static Eigen::RowVector4d by_quaternion(const Eigen::RowVector3d& by_rotation,
+                                          const double* knot) {
+    const Eigen::Vector3d v(knot[0], knot[1], knot[2]);
+    Eigen::Matrix<double, 4, 3> g;
+    g << knot[3] * Eigen::Matrix3d::Identity() - so3::hat(v), -v.transpose();
+    return 2.0 * by_rotation * g.transpose();
+  }
+
+  const ElasticMatch& match_;
+  double a_;
 };
 
 struct LocationCost {
@@ -171,13 +199,8 @@ class Adjustment {
     const std::size_t first = std::min(static_cast<std::size_t>(position), knots_.size() - 2);
     const double a = position - static_cast<double>(first);
     ceres::CostFunction* cost = nullptr;
-    if (match.rows == 1) {
-      cost = new ceres::AutoDiffCostFunction<MatchCost<1>, 1, kKnot, kKnot>(
-          new MatchCost<1>{match, a});
-    } else {
-      cost = new ceres::AutoDiffCostFunction<MatchCost<3>, 3, kKnot, kKnot>(
-          new MatchCost<3>{match, a});
-    }
+    if (match.rows == 1) cost = new MatchCost<1>(match, a);
+    if (match.rows == 3) cost = new MatchCost<3>(match, a);
     adjustment_.AddResidualBlock(cost, loss_.get(), knots_[first].data(), knots_[first + 1].data());
   }
 

@@ -157,12 +157,18 @@ class NearestFew {
 std::size_t VoxelHashMap::nearest(const Eigen::Vector3f& query, float radius,
                                   std::span<Neighbor> out) const {
   if (!query.allFinite() || out.empty()) return 0;
-  const Voxel voxel = voxel_of(query, inverse_size_);
+  const Voxel voxel = cell_of(query);
   const VoxelKey key = voxel_key(voxel);
-  const Eigen::Array3f above_face = query.array() - voxel.cast<float>().array() * size_m_;
+  const bool wide = options_.rounding == VoxelRounding::kTruncate;
+  const Eigen::Array3i index = voxel.array();
+  // Distances (m) to the faces of the cell, and by how much more each step away goes.
+  const Eigen::Array3i lower = wide ? Eigen::Array3i(index - (index <= 0).cast<int>()) : index;
+  const Eigen::Array3i upper = wide ? Eigen::Array3i(index + (index >= 0).cast<int>()) : index + 1;
+  const Eigen::Array3f below = query.array() - lower.cast<float>() * size_m_;
+  const Eigen::Array3f above = upper.cast<float>() * size_m_ - query.array();
   const auto gap = [&](int axis, int step) {
     if (step == 0) return 0.0F;
-    const float face = step < 0 ? above_face[axis] : size_m_ - above_face[axis];
+    const float face = step < 0 ? below[axis] : above[axis];
     const float distance = face + static_cast<float>(std::abs(step) - 1) * size_m_;
     return distance * distance;
   };

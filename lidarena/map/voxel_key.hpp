@@ -3,8 +3,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
+
+#include "lidarena/base/config.hpp"
 
 namespace lidarena {
 
@@ -15,6 +19,12 @@ using Voxel = Eigen::Vector3i;
 enum class VoxelRounding {
   kFloor,     ///< all cells are alike
   kTruncate,  ///< towards zero: the cells around the planes x = 0, y = 0, z = 0 are twice as wide
+};
+
+template <>
+struct EnumNames<VoxelRounding> {
+  static constexpr std::array names{std::pair{"floor", VoxelRounding::kFloor},
+                                    std::pair{"truncate", VoxelRounding::kTruncate}};
 };
 
 /// A voxel in one number, 21 bits an axis. Keys of neighbours differ by a constant.

@@ -171,5 +171,38 @@ TEST(VoxelHashMap, OddInputDoesNoHarm) {
   EXPECT_THROW(VoxelHashMap({.voxel_size = 1.0, .max_points = 0}), InputError);
 }
 
+TEST(VoxelHashMap, NearestFewAreThoseOfTheWholeMapWithinTheRadius) {
+  const Points points = random_points(4000, 3.0);
+  const Points queries = random_points(60, 3.2, 4);
+  for (const VoxelRounding rounding : {VoxelRounding::kFloor, VoxelRounding::kTruncate}) {
+    VoxelHashMap map({0.5, 4096, 0.0, rounding});
+    map.insert(points);
+    for (const float radius : {0.2F, 0.5F, 1.2F}) {  // one ring of cells, and three
+      for (const Eigen::Vector3f& query : queries) {
+        std::vector<float> expected;
+        for (const auto& p : points) {
+          const float squared = (p - query).squaredNorm();
+          if (squared < radius * radius) expected.push_back(squared);
+        }
+        std::sort(expected.begin(), expected.end());
+        expected.resize(std::min<std::size_t>(expected.size(), 20));
+        std::array<VoxelHashMap::Neighbor, 20> out;
+        const std::size_t count = map.nearest(query, radius, out);
+        std::vector<float> found;
+        for (std::size_t i = 0; i < count; ++i) {
+          EXPECT_EQ((*out[i].point - query).squaredNorm(), out[i].squared_distance);
+          found.push_back(out[i].squared_distance);
+        }
+        std::sort(found.begin(), found.end());
+        EXPECT_EQ(found, expected);
+      }
+    }
+  }
+  const Eigen::Vector3f nowhere =
+      Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  std::array<VoxelHashMap::Neighbor, 3> out;
+  EXPECT_EQ(VoxelHashMap(VoxelHashMap::Options{}).nearest(nowhere, 1.0F, out), 0U);
+}
+
 }  // namespace
 }  // namespace lidarena

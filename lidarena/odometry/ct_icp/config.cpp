@@ -20,7 +20,7 @@ Config improved(const LidarInfo& lidar) {
   sampling.max_keypoints = 1000;
   sampling.start_scans = 0;
   sampling.rigid_scans = 1;
-  sampling.cell_cut = CellCut::kFloor;
+  config.cell_rounding = VoxelRounding::kFloor;
 
   RegistrationConfig& registration = config.registration;
   registration.solver = Solver::kGaussNewton;

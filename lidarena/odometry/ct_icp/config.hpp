@@ -9,6 +9,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/estimation/elastic_alignment.hpp"
+#include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena::ct_icp {
 
@@ -18,9 +19,6 @@ enum class KeypointSampling {
   kGrid,      ///< one a cell
   kAdaptive,  ///< one a cell whose edge grows with the range, from 0.1 to 1.6 m
 };
-
-/// How coordinates become cells.
-enum class CellCut { kFloor, kTruncate };
 
 /// Where registration starts.
 enum class InitialMotion {
@@ -56,7 +54,6 @@ struct SamplingConfig {
   double start_frame_voxel_m = 0.2;
   double start_keypoint_voxel_m = 1.0;
   int rigid_scans = 2;
-  CellCut cell_cut = CellCut::kTruncate;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -74,8 +71,6 @@ struct SamplingConfig {
     v("start_keypoint_voxel_m", self.start_keypoint_voxel_m, "m", "", above(0));
     v("rigid_scans", self.rigid_scans, "", "the first scans are taken for instantaneous",
       at_least(1));
-    v("cell_cut", self.cell_cut, "",
-      "truncate (the public program: cells about zero are twice as wide) or floor");
   }
 };
 
@@ -228,6 +223,7 @@ struct RobustConfig {
 
 /// The defaults are the public program's handheld profile (2022); preset() changes them.
 struct Config {
+  VoxelRounding cell_rounding = VoxelRounding::kTruncate;
   SamplingConfig sampling;
   RegistrationConfig registration;
   PriorConfig prior;
@@ -237,6 +233,8 @@ struct Config {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
+    v("cell_rounding", self.cell_rounding, "",
+      "floor, or truncate: in the scan's grids and the map, cells about zero are twice as wide");
     v("sampling", self.sampling, "", "which points are used");
     v("registration", self.registration, "", "how they are aligned with the map");
     v("prior", self.prior, "", "what is expected of the motion, against a point's squared error");
@@ -262,12 +260,6 @@ struct EnumNames<ct_icp::KeypointSampling> {
   static constexpr std::array names{std::pair{"all", ct_icp::KeypointSampling::kAll},
                                     std::pair{"grid", ct_icp::KeypointSampling::kGrid},
                                     std::pair{"adaptive", ct_icp::KeypointSampling::kAdaptive}};
-};
-
-template <>
-struct EnumNames<ct_icp::CellCut> {
-  static constexpr std::array names{std::pair{"floor", ct_icp::CellCut::kFloor},
-                                    std::pair{"truncate", ct_icp::CellCut::kTruncate}};
 };
 
 template <>

@@ -33,7 +33,7 @@ CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
     : config_(config),
       body_from_lidar_(lidar.body_from_lidar),
       parallel_(std::move(parallel)),
-      map_({config.map.voxel_m, config.map.max_points, config.map.spacing_m}),
+      map_({config.map.voxel_m, config.map.max_points, config.map.spacing_m, config.cell_rounding}),
       gate_(config.insertion),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
@@ -43,7 +43,7 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const auto points = timed_points(scan, times, rigid, config_.sampling);
   const double voxel =
       starting() ? config_.sampling.start_frame_voxel_m : config_.sampling.frame_voxel_m;
-  const auto frame = thin(points, voxel, config_.sampling.cell_cut);
+  const auto frame = thin(points, voxel, config_.cell_rounding);
 
   const ElasticMotion guess = history_.predict(times, config_.registration);
   const RobustRegistration found = align(frame, guess);

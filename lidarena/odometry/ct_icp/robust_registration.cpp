@@ -55,10 +55,13 @@ RobustRegistration register_robustly(std::span<const TimedPoint> frame, const Vo
   const int attempts = config.robust.enabled ? config.robust.max_attempts : 1;
   for (int attempt = 0; attempt < attempts; ++attempt) {
     result.level = first_level + attempt;
-    const auto [sampling, registration, p, m, i, r] = at_level(config, result.level);
+    const Config settings = at_level(config, result.level);
+    const SamplingConfig& sampling = settings.sampling;
+    const RegistrationConfig& registration = settings.registration;
     const double voxel = starting ? sampling.start_keypoint_voxel_m : sampling.keypoint_voxel_m;
     const auto keypoints =
-        sample_keypoints(frame, sampling, voxel, starting ? 0 : sampling.max_keypoints);
+        sample_keypoints(frame, sampling.keypoints, voxel, starting ? 0 : sampling.max_keypoints,
+                         config.cell_rounding);
     const int iterations =
         starting ? std::max(registration.start_iterations, registration.max_iterations)
                  : registration.max_iterations;

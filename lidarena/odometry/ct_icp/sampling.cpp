@@ -29,14 +29,7 @@ std::uint32_t rank_of(std::uint32_t index) {
   return index ^ (index >> 16U);
 }
 
-Voxel cell_of(const Eigen::Vector3f& point, float inverse_edge, CellCut cut) {
-  if (cut == CellCut::kFloor) return voxel_of(point, inverse_edge);
-  // Mirrored into the positive octant, where truncating is flooring.
-  const Voxel magnitude = voxel_of(point.cwiseAbs(), inverse_edge);
-  return magnitude.array() * point.array().sign().cast<int>();
-}
-
-std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, CellCut cut) {
+std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, VoxelRounding rounding) {
   std::array<std::vector<TimedPoint>, kRings.size()> by_ring;
   for (const TimedPoint& point : frame) {
     const float range = point.position.norm();
@@ -48,7 +41,7 @@ std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, CellCut cut)
   }
   std::vector<TimedPoint> keypoints;
   for (std::size_t i = 0; i < kRings.size(); ++i) {
-    const auto part = thin(by_ring[i], kRings[i].edge, cut);
+    const auto part = thin(by_ring[i], kRings[i].edge, rounding);
     keypoints.insert(keypoints.end(), part.begin(), part.end());
   }
   return keypoints;
@@ -97,12 +90,13 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, b
   return points;
 }
 
-std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel, CellCut cut) {
+std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
+                             VoxelRounding rounding) {
   const auto inverse = static_cast<float>(1.0 / voxel);
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto [cell, is_new] =
-        cells.try_emplace(voxel_key(cell_of(points[i].position, inverse, cut)), i);
+        cells.try_emplace(voxel_key(voxel_of(points[i].position, inverse, rounding)), i);
     if (!is_new && rank_of(i) < rank_of(cell->second)) cell.value() = i;
   }
   std::vector<TimedPoint> kept;
@@ -112,17 +106,18 @@ std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel, C
 }
 
 std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,
-                                         const SamplingConfig& config, double voxel, int limit) {
+                                         KeypointSampling sampling, double voxel, int limit,
+                                         VoxelRounding rounding) {
   std::vector<TimedPoint> keypoints;
-  switch (config.keypoints) {
+  switch (sampling) {
     case KeypointSampling::kAll:
       keypoints.assign(frame.begin(), frame.end());
       break;
     case KeypointSampling::kGrid:
-      keypoints = thin(frame, voxel, config.cell_cut);
+      keypoints = thin(frame, voxel, rounding);
       break;
     case KeypointSampling::kAdaptive:
-      keypoints = adaptive(frame, config.cell_cut);
+      keypoints = adaptive(frame, rounding);
       break;
   }
   const auto most = static_cast<std::size_t>(limit);

@@ -35,10 +35,12 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, b
 /// Of each cubic cell (edge in m) one point, drawn evenly from all that lie in it, so that the
 /// sample covers the scan's duration evenly. Which one depends on the input alone; the order is as
 /// mixed.
-std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel, CellCut cut);
+std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
+                             VoxelRounding rounding);
 
 /// The points to register among those of a thinned scan (CT-ICP, III-A). `limit` at most, unless 0.
 std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,
-                                         const SamplingConfig& config, double voxel, int limit);
+                                         KeypointSampling sampling, double voxel, int limit,
+                                         VoxelRounding rounding);
 
 }  // namespace lidarena::ct_icp

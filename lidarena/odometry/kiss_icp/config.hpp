@@ -153,12 +153,6 @@ struct EnumNames<kiss_icp::ThresholdLever> {
 };
 
 template <>
-struct EnumNames<VoxelRounding> {
-  static constexpr std::array names{std::pair{"floor", VoxelRounding::kFloor},
-                                    std::pair{"truncate", VoxelRounding::kTruncate}};
-};
-
-template <>
 struct EnumNames<ThinningOrder> {
   static constexpr std::array names{std::pair{"mixed", ThinningOrder::kMixed},
                                     std::pair{"teschner", ThinningOrder::kTeschner},
