@@ -4,6 +4,8 @@
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
+#include "lidarena/odometry/lio_sam/lio_sam.hpp"
+#include "lidarena/odometry/with_loop.hpp"
 
 namespace lidarena {
 
@@ -17,26 +19,87 @@ Config configured(Config config, const OdometryRequest& request) {
   return config;
 }
 
-MadeOdometry make_kiss_icp(const OdometryRequest& request, const Rig&, const LidarInfo& lidar,
-                           const Parallel& parallel) {
-  const auto config = configured(kiss_icp::preset(request.preset, lidar), request);
-  return {std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel), to_json(config)};
-}
+/// An odometry's own configuration, and that of the loop closure around it.
+template <class Inner>
+struct LoopedConfig {
+  Inner odometry;
+  WithLoopConfig loops;
 
-MadeOdometry make_ct_icp(const OdometryRequest& request, const Rig&, const LidarInfo& lidar,
-                         const Parallel& parallel) {
-  const auto config = configured(ct_icp::preset(request.preset, lidar), request);
-  return {std::make_unique<ct_icp::CtIcp>(config, lidar, parallel), to_json(config)};
-}
-
-MadeOdometry make_fast_lio2(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
-                            const Parallel& parallel) {
-  const auto config = configured(fast_lio2::preset(request.preset, lidar), request);
-  const ImuInfo* imu = rig.imu_beside(lidar);
-  if (imu == nullptr) {
-    throw InputError("rig", "it has no IMU, which fast_lio2 needs", "use kiss_icp without one");
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("odometry", self.odometry, "", "of the odometry itself");
+    v("loops", self.loops, "", "of the loop closure around it");
   }
-  return {std::make_unique<fast_lio2::FastLio2>(config, lidar, *imu, parallel), to_json(config)};
+};
+
+const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const LidarInfo& lidar) {
+  if (const ImuInfo* imu = rig.imu_beside(lidar)) return *imu;
+  throw InputError("rig", "it has no IMU, which " + algorithm + " needs",
+                   "use kiss_icp without one");
+}
+
+/// Each knows its configuration and how to build from it.
+struct Kiss {
+  using Config = kiss_icp::Config;
+  static constexpr auto preset = kiss_icp::preset;
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
+                                         const Parallel& parallel) {
+    return std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel);
+  }
+};
+
+struct Ct {
+  using Config = ct_icp::Config;
+  static constexpr auto preset = ct_icp::preset;
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
+                                         const Parallel& parallel) {
+    return std::make_unique<ct_icp::CtIcp>(config, lidar, parallel);
+  }
+};
+
+struct FastLio {
+  using Config = fast_lio2::Config;
+  static constexpr auto preset = fast_lio2::preset;
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
+                                         const LidarInfo& lidar, const Parallel& parallel) {
+    const ImuInfo& imu = imu_for("fast_lio2", rig, lidar);
+    return std::make_unique<fast_lio2::FastLio2>(config, lidar, imu, parallel);
+  }
+};
+
+struct LioSam {
+  using Config = lio_sam::Config;
+  static constexpr auto preset = lio_sam::preset;
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
+                                         const LidarInfo& lidar, const Parallel& parallel) {
+    const ImuInfo& imu = imu_for("lio_sam", rig, lidar);
+    return std::make_unique<lio_sam::LioSam>(config, lidar, imu, parallel);
+  }
+};
+
+struct LioSamLc : LioSam {
+  static Config preset(const std::string& name, const LidarInfo& lidar) {
+    Config config = lio_sam::preset(name, lidar);
+    config.loop_closure = true;
+    return config;
+  }
+};
+
+template <class Maker>
+MadeOdometry make(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
+                  const Parallel& parallel) {
+  const auto config = configured(Maker::preset(request.preset, lidar), request);
+  return {Maker::build(config, rig, lidar, parallel), to_json(config)};
+}
+
+template <class Maker>
+MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
+                            const Parallel& parallel) {
+  const LoopedConfig<typename Maker::Config> defaults{Maker::preset(request.preset, lidar), {}};
+  const auto config = configured(defaults, request);
+  return {std::make_unique<WithLoop>(Maker::build(config.odometry, rig, lidar, parallel),
+                                     config.loops, parallel),
+          to_json(config)};
 }
 
 struct Algorithm {
@@ -48,13 +111,21 @@ std::vector<Algorithm> algorithms() {
   return {
       {{"kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo et al. 2023)",
         kiss_icp::preset_names(), false},
-       make_kiss_icp},
+       make<Kiss>},
       {{"ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach et al. 2022)",
         ct_icp::preset_names(), false},
-       make_ct_icp},
+       make<Ct>},
       {{"fast_lio2", "LiDAR and IMU: iterated Kalman filter on points and planes (Xu et al. 2022)",
         fast_lio2::preset_names(), true},
-       make_fast_lio2},
+       make<FastLio>},
+      {{"lio_sam", "LiDAR and IMU: edges and planes, smoothed in a factor graph (Shan et al. 2020)",
+        lio_sam::preset_names(), true},
+       make<LioSam>},
+      {{"lio_sam_lc", "LIO-SAM with loop closure", lio_sam::preset_names(), true}, make<LioSamLc>},
+      {{"kiss_icp+loop", "KISS-ICP with loop closure around it", kiss_icp::preset_names(), false},
+       make_with_loop<Kiss>},
+      {{"fast_lio2+loop", "FAST-LIO2 with loop closure around it", fast_lio2::preset_names(), true},
+       make_with_loop<FastLio>},
   };
 }
 

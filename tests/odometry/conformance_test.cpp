@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "lidarena/base/so3.hpp"
@@ -261,7 +262,9 @@ TEST_P(OdometryConformance, FinishingTwiceIsFinishingOnceAndNothingGivesNothing)
 }
 
 std::string name_of(const testing::TestParamInfo<Candidate>& candidate) {
-  return candidate.param.algorithm + "_" + candidate.param.preset;
+  std::string name = candidate.param.algorithm + "_" + candidate.param.preset;
+  std::replace(name.begin(), name.end(), '+', '_');
+  return name;
 }
 
 INSTANTIATE_TEST_SUITE_P(All, OdometryConformance, testing::ValuesIn(candidates()), name_of);

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/loop/icp.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/least_squares.hpp"
+
+namespace lidarena {
+namespace {
+
+using Equations = NormalEquations<6>;  // turn about the target's origin, shift
+using Eigen::Vector3d;
+
+constexpr std::size_t kPlanePoints = 6;
+constexpr double kFlat = 0.1;        // spread across by spread along, as lengths squared
+constexpr double kPlaneReach = 1.0;  // m: points of a plane are not further from each other
+constexpr std::size_t kFewest = 10;  // correspondences that could hold a pose
+constexpr double kStill = 3e-4;      // m, rad: a step that has converged
+constexpr double kShrink = 0.7;      // of the reach, each iteration
+
+/// The normal at the nearest points, if they lie flat.
+bool find_normal(std::span<const Neighbour> near, Vector3d& normal) {
+  Vector3d centre = Vector3d::Zero();
+  for (const Neighbour& n : near)
+    centre += n.point.cast<double>() / static_cast<double>(near.size());
+  Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
+  for (const Neighbour& n : near) {
+    const Vector3d d = n.point.cast<double>() - centre;
+    spread += d * d.transpose();
+  }
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(spread);
+  normal = solver.eigenvectors().col(0);
+  return solver.eigenvalues()[0] < kFlat * solver.eigenvalues()[1];
+}
+
+void add_point(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
+  std::array<Neighbour, 1> near;
+  if (target.nearest(moved.cast<float>(), near, static_cast<float>(reach)) == 0) return;
+  Eigen::Matrix<double, 3, 6> j;
+  j << -so3::hat(moved), Eigen::Matrix3d::Identity();
+  const Vector3d residual = moved - near[0].point.cast<double>();
+  sum.add<3>(j, residual, 1.0);
+}
+
+void add_plane(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
+  std::array<Neighbour, kPlanePoints> near;
+  const std::size_t found =
+      target.nearest(moved.cast<float>(), near, static_cast<float>(std::max(reach, kPlaneReach)));
+  if (found < kPlanePoints || double{near[0].squared_distance} > reach * reach) return;
+  Vector3d normal;
+  if (!find_normal(near, normal)) return;
+  const double distance = normal.dot(moved - near[0].point.cast<double>());
+  Eigen::Matrix<double, 1, 6> j;
+  j << moved.cross(normal).transpose(), normal.transpose();
+  // Geman-McClure: what does not belong to the place hardly pulls
+  const double scale = 0.3 * reach;
+  const double weight = 1.0 / (1.0 + distance * distance / (scale * scale));
+  sum.add<1>(j, Eigen::Matrix<double, 1, 1>(distance), weight * weight);
+}
+
+Equations equations(std::span<const Eigen::Vector3f> source, const KdTree& target, const Pose& pose,
+                    IcpMetric metric, double reach, const Parallel& parallel) {
+  return accumulate_normal_equations<6>(
+      parallel, source.size(), [&](std::size_t i, Equations& sum) {
+        const Vector3d moved = pose * source[i].cast<double>();
+        (metric == IcpMetric::kPlanes ? add_plane : add_point)(moved, target, reach, sum);
+      });
+}
+
+void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
+             const LoopConfig& config, IcpResult& result) {
+  double sum = 0.0;
+  std::size_t reached = 0;
+  std::size_t inliers = 0;
+  const bool planes = config.metric == IcpMetric::kPlanes;
+  const auto reach = static_cast<float>(planes ? config.inlier_m : config.correspondence_m);
+  for (const Eigen::Vector3f& p : source) {
+    std::array<Neighbour, 1> near;
+    const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
+    if (target.nearest(moved, near, reach) == 0) continue;
+    const auto squared = static_cast<double>(near[0].squared_distance);
+    sum += squared;
+    ++reached;
+    if (squared <= config.inlier_m * config.inlier_m) ++inliers;
+  }
+  result.fitness =
+      reached == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(reached);
+  result.overlap =
+      source.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(source.size());
+}
+
+/// Share of the least held direction; turning is about the middle of the correspondences.
+double constraint_of(Equations sum, double lever, const Vector3d& centre) {
+  Eigen::Matrix<double, 6, 6> to_centre = Eigen::Matrix<double, 6, 6>::Identity();
+  to_centre.bottomLeftCorner<3, 3>() = so3::hat(centre);
+  Eigen::Matrix<double, 6, 6> hessian = to_centre.transpose() * sum.hessian * to_centre;
+  Eigen::Matrix<double, 6, 1> unit = Eigen::Matrix<double, 6, 1>::Ones();
+  unit.head<3>().setConstant(1.0 / lever);
+  hessian = (unit.asDiagonal() * hessian * unit.asDiagonal()).eval();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 6, 6>> solver(hessian,
+                                                                          Eigen::EigenvaluesOnly);
+  const double all = hessian.trace();
+  return all > 0.0 ? solver.eigenvalues()[0] / all : 0.0;
+}
+
+}  // namespace
+
+IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& target,
+                       const Pose& guess, const LoopConfig& config, const Parallel& parallel) {
+  IcpResult result;
+  result.target_from_source = guess;
+  const bool planes = config.metric == IcpMetric::kPlanes;
+  double reach = config.correspondence_m;
+  Equations sum;
+  while (result.iterations < config.max_iterations && !result.converged) {
+    ++result.iterations;
+    const bool at_last = !planes || reach <= config.inlier_m;
+    sum = equations(source, target, result.target_from_source, config.metric, reach, parallel);
+    if (sum.count < kFewest) break;
+    const Eigen::Matrix<double, 6, 1> step = sum.solve();
+    if (!step.allFinite()) break;
+    result.target_from_source = orthonormalized(
+        make_pose(so3::exp(step.head<3>()), step.tail<3>()) * result.target_from_source);
+    result.converged = at_last && step.cwiseAbs().maxCoeff() < kStill;
+    if (planes) reach = std::max(config.inlier_m, kShrink * reach);
+  }
+  measure(source, target, config, result);
+  Vector3d centre = Vector3d::Zero();
+  for (const Eigen::Vector3f& p : source)
+    centre += p.cast<double>() / static_cast<double>(source.size());
+  double squared = 1e-6;
+  for (const Eigen::Vector3f& p : source)
+    squared += (p.cast<double>() - centre).squaredNorm() / static_cast<double>(source.size());
+  result.constraint = constraint_of(sum, std::sqrt(squared), result.target_from_source * centre);
+  return result;
+}
+
+}  // namespace lidarena

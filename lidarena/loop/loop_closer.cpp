@@ -1,0 +1,305 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/loop/loop_closer.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <queue>
+#include <utility>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/map/voxel_filter.hpp"
+
+namespace lidarena {
+namespace {
+
+using Covariance = PoseGraph::Covariance;
+
+constexpr double kLeastShift = 0.1;       // m: loops are no better known than this
+constexpr double kLeastTurn = 0.01;       // rad
+constexpr double kLeverArm = 1.0;         // m of way for a radian of turning
+constexpr std::size_t kWaitingKept = 20;  // keyframes that a loop waits for another one
+constexpr double kLeastVariance = 1e-6;   // of a loop's fitness, m^2
+
+Covariance diagonal(double shift_variance, double turn_variance) {
+  Covariance covariance = Covariance::Zero();
+  covariance.diagonal().head<3>().setConstant(shift_variance);
+  covariance.diagonal().tail<3>().setConstant(turn_variance);
+  return covariance;
+}
+
+/// In an order that depends on the number of points alone, so that the first ones are from all
+/// over.
+std::vector<Eigen::Vector3f> shuffled(std::vector<Eigen::Vector3f> points) {
+  SequentialRandom random(points.size());
+  for (std::size_t i = points.size(); i > 1; --i) {
+    const auto other = static_cast<std::size_t>(random.uniform() * static_cast<double>(i));
+    std::swap(points[i - 1], points[std::min(other, i - 1)]);
+  }
+  return points;
+}
+
+std::vector<Eigen::Vector3f> turned(std::span<const Eigen::Vector3f> points,
+                                    const Eigen::Matrix3d& rotation) {
+  std::vector<Eigen::Vector3f> moved;
+  const Eigen::Matrix3f r = rotation.cast<float>();
+  for (const Eigen::Vector3f& p : points) moved.emplace_back(r * p);
+  return moved;
+}
+
+}  // namespace
+
+const char* to_string(LoopVerdict verdict) {
+  constexpr std::array kNames{"accepted", "waiting",        "too few points", "not converged",
+                              "poor fit", "little overlap", "unconstrained",  "beyond drift"};
+  return kNames[static_cast<std::size_t>(verdict)];
+}
+
+bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeCloud& cloud) {
+  const std::size_t index = graph_.nodes.size();
+  stamps_.push_back(stamp);
+  steps_.push_back(previous_from_this.translation().norm() +
+                   kLeverArm * so3::angle(previous_from_this.linear()));
+  if (index == 0) {
+    graph_.nodes.push_back(previous_from_this);
+    graph_.priors.push_back({0, previous_from_this, diagonal(1e-8, 1e-8)});
+  } else {
+    graph_.nodes.push_back(orthonormalized(graph_.nodes.back() * previous_from_this));
+    graph_.betweens.push_back(
+        {index - 1, index, previous_from_this,
+         diagonal(config_.odometry_shift_sigma_m * config_.odometry_shift_sigma_m,
+                  config_.odometry_turn_sigma_rad * config_.odometry_turn_sigma_rad)});
+  }
+  if (config_.appearance_candidates > 0) {
+    const auto n = static_cast<std::size_t>(config_.source_keyframes);
+    descriptors_.push_back(
+        describe(turned(around(index, n, 0, cloud), graph_.nodes.back().linear()),
+                 config_.appearance_range_m));
+  }
+  if (index % static_cast<std::size_t>(config_.keyframes_per_search) != 0) return false;
+
+  const std::vector<double> ways = ways_to_last();
+  for (const Candidate& candidate : candidates(ways)) {
+    records_.push_back(verify(candidate, ways[candidate.keyframe], cloud));
+    if (records_.back().verdict != LoopVerdict::kAccepted) continue;
+    const std::vector<LoopRecord> loops = believed();
+    if (!loops.empty()) close(loops);
+    return !loops.empty();
+  }
+  return false;
+}
+
+bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& ways) const {
+  return to_seconds(stamps_.back() - stamps_[keyframe]) > config_.least_gap_s &&
+         ways[keyframe] >= config_.least_way_m;
+}
+
+std::vector<LoopCloser::Candidate> LoopCloser::candidates(const std::vector<double>& ways) const {
+  std::vector<Candidate> found;
+  add_nearest(ways, found);
+  add_alike(ways, found);
+  return found;
+}
+
+void LoopCloser::add_nearest(const std::vector<double>& ways, std::vector<Candidate>& found) const {
+  const Pose& here = graph_.nodes.back();
+  double nearest = config_.search_radius_m;
+  std::size_t best = graph_.nodes.size();
+  for (std::size_t i = 0; i + 1 < graph_.nodes.size(); ++i) {
+    const double distance = (graph_.nodes[i].translation() - here.translation()).norm();
+    if (distance >= nearest || !may_close(i, ways)) continue;
+    nearest = distance;
+    best = i;
+  }
+  if (best < graph_.nodes.size())
+    found.push_back({best, false, graph_.nodes[best].inverse() * here});
+}
+
+void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const {
+  if (config_.appearance_candidates == 0) return;
+  const PlaceDescriptor& here = descriptors_.back();
+  std::vector<std::pair<float, std::size_t>> by_rings;
+  for (std::size_t i = 0; i + 1 < descriptors_.size(); ++i) {
+    if (may_close(i, ways))
+      by_rings.emplace_back((descriptors_[i].ring_means - here.ring_means).norm(), i);
+  }
+  std::sort(by_rings.begin(), by_rings.end());
+  by_rings.resize(
+      std::min(by_rings.size(), 4 * static_cast<std::size_t>(config_.appearance_candidates)));
+  std::vector<std::pair<double, Candidate>> alike;
+  for (const auto& [unused, i] : by_rings) {
+    const Resemblance resemblance = compare(descriptors_[i], here);
+    if (resemblance.distance > config_.appearance_distance) continue;
+    const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.turn});
+    const Eigen::Matrix3d rotation =
+        graph_.nodes[i].linear().transpose() * level * graph_.nodes.back().linear();
+    alike.push_back(
+        {resemblance.distance, {i, true, make_pose(rotation, Eigen::Vector3d::Zero().eval())}});
+  }
+  std::stable_sort(alike.begin(), alike.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  alike.resize(std::min(alike.size(), static_cast<std::size_t>(config_.appearance_candidates)));
+  for (const auto& [unused, candidate] : alike) found.push_back(candidate);
+}
+
+std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_t before,
+                                                std::size_t after,
+                                                const KeyframeCloud& cloud) const {
+  std::vector<Eigen::Vector3f> points;
+  const std::size_t begin = keyframe - std::min(keyframe, before);
+  const std::size_t end = std::min(keyframe + after + 1, graph_.nodes.size());
+  for (std::size_t i = begin; i < end; ++i) {
+    const Eigen::Isometry3f moved =
+        (graph_.nodes[keyframe].inverse() * graph_.nodes[i]).cast<float>();
+    for (const Eigen::Vector3f& p : cloud(i)) points.push_back(moved * p);
+  }
+  return shuffled(voxel_means(points, config_.leaf_m));
+}
+
+bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
+  if (config_.drift_per_metre <= 0.0) return false;
+  const double apart =
+      (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
+  return apart - config_.correspondence_m >
+         config_.drift_gate * (kLeastShift + config_.drift_per_metre * loop.way);
+}
+
+LoopRecord LoopCloser::verify(const Candidate& candidate, double way,
+                              const KeyframeCloud& cloud) const {
+  const auto source_size = static_cast<std::size_t>(config_.source_keyframes);
+  const auto target_size = static_cast<std::size_t>(config_.target_keyframes);
+  LoopRecord loop;
+  loop.first = candidate.keyframe;
+  loop.second = graph_.nodes.size() - 1;
+  loop.by_appearance = candidate.by_appearance;
+  loop.way = way;
+  loop.first_from_second = candidate.guess;
+  if (candidate.by_appearance && is_out_of_reach(loop)) {
+    loop.verdict = LoopVerdict::kBeyondDrift;
+    return loop;
+  }
+  auto source = around(loop.second, source_size, 0, cloud);
+  // The target must not reach into the source, which would fit itself.
+  const std::size_t after =
+      std::min(target_size, loop.second - std::min(loop.second, loop.first + source_size + 1));
+  auto target = around(loop.first, target_size, after, cloud);
+  if (source.size() < static_cast<std::size_t>(config_.least_source_points) ||
+      target.size() < static_cast<std::size_t>(config_.least_target_points))
+    return loop;
+  if (config_.source_points > 0 && source.size() > static_cast<std::size_t>(config_.source_points))
+    source.resize(static_cast<std::size_t>(config_.source_points));
+  KdTree tree;
+  tree.build(std::move(target));
+  const IcpResult icp = align_clouds(source, tree, candidate.guess, config_, parallel_);
+  const Pose contradiction =
+      (graph_.nodes[loop.first].inverse() * graph_.nodes[loop.second]).inverse() *
+      icp.target_from_source;
+  loop.first_from_second = icp.target_from_source;
+  loop.fitness = icp.fitness;
+  loop.overlap = icp.overlap;
+  loop.constraint = icp.constraint;
+  loop.shift = contradiction.translation().norm();
+  loop.turn = so3::angle(contradiction.linear());
+  loop.verdict = judge(icp, loop);
+  return loop;
+}
+
+LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) const {
+  if (!icp.converged) return LoopVerdict::kNotConverged;
+  if (!(icp.fitness < config_.max_fitness_m2)) return LoopVerdict::kPoorFit;
+  if (icp.overlap < config_.least_overlap) return LoopVerdict::kLittleOverlap;
+  if (icp.constraint < config_.least_constraint) return LoopVerdict::kUnconstrained;
+  if (config_.drift_per_metre > 0.0) {
+    const double shift = kLeastShift + config_.drift_per_metre * loop.way;
+    const double turn = kLeastTurn + config_.turn_drift_rad_per_metre * loop.way;
+    if (loop.shift > config_.drift_gate * shift || loop.turn > config_.drift_gate * turn)
+      return LoopVerdict::kBeyondDrift;
+  }
+  return LoopVerdict::kAccepted;
+}
+
+std::vector<double> LoopCloser::ways_to_last() const {
+  const std::size_t count = graph_.nodes.size();
+  std::vector<double> ways(count, std::numeric_limits<double>::infinity());
+  using Reached = std::pair<double, std::size_t>;
+  std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
+  const auto reach = [&](std::size_t keyframe, double way) {
+    if (way >= ways[keyframe]) return;
+    ways[keyframe] = way;
+    next.emplace(way, keyframe);
+  };
+  reach(count - 1, 0.0);
+  while (!next.empty()) {
+    const auto [way, i] = next.top();
+    next.pop();
+    if (way > ways[i]) continue;
+    if (i > 0) reach(i - 1, way + steps_[i]);
+    if (i + 1 < count) reach(i + 1, way + steps_[i + 1]);
+    for (const LoopRecord& loop : accepted_) {
+      if (loop.first == i) reach(loop.second, way);
+      if (loop.second == i) reach(loop.first, way);
+    }
+  }
+  return ways;
+}
+
+bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
+  // Where each loop would move the newer of the two keyframes.
+  const std::vector<Pose>& x = graph_.nodes;
+  const Pose by_b = x[b.first] * b.first_from_second;
+  const Pose by_a = x[a.first] * a.first_from_second * x[a.second].inverse() * x[b.second];
+  const Pose apart = by_a.inverse() * by_b;
+  return apart.translation().norm() < config_.agreement_m &&
+         so3::angle(apart.linear()) < config_.agreement_rad;
+}
+
+std::vector<LoopRecord> LoopCloser::believed() {
+  LoopRecord& last = records_.back();
+  std::erase_if(waiting_,
+                [&](const LoopRecord& loop) { return loop.second + kWaitingKept < last.second; });
+  std::vector<LoopRecord> loops;
+  for (const LoopRecord& loop : waiting_) {
+    if (agree(loop, last)) loops.push_back(loop);
+  }
+  loops.push_back(last);
+  if (loops.size() >= static_cast<std::size_t>(config_.agreeing_loops)) return loops;
+  last.verdict = LoopVerdict::kWaiting;
+  waiting_.push_back(last);
+  return {};
+}
+
+void LoopCloser::close(const std::vector<LoopRecord>& loops) {
+  for (const LoopRecord& loop : loops) {
+    const bool by_fitness = config_.loop_shift_sigma_m <= 0.0;
+    const double variance = std::max(loop.fitness, kLeastVariance);
+    const auto squared = [](double sigma) { return sigma * sigma; };
+    const RobustLoss loss = config_.robust_scale > 0.0
+                                ? RobustLoss{RobustLoss::Kind::kCauchy, config_.robust_scale}
+                                : RobustLoss{};
+    graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
+                               by_fitness
+                                   ? diagonal(variance, variance)
+                                   : diagonal(squared(config_.loop_shift_sigma_m),
+                                              squared(std::max(config_.loop_turn_sigma_rad, 1e-6))),
+                               loss});
+    accepted_.push_back(loop);
+    for (LoopRecord& record : records_) {
+      if (record.first == loop.first && record.second == loop.second &&
+          record.verdict == LoopVerdict::kWaiting)
+        record.verdict = LoopVerdict::kAccepted;
+    }
+  }
+  waiting_.clear();
+  graph_.nodes = optimize(graph_).nodes;
+}
+
+std::uint64_t LoopCloser::memory_bytes() const {
+  return stamps_.capacity() * sizeof(Time) + steps_.capacity() * sizeof(double) +
+         descriptors_.capacity() * sizeof(PlaceDescriptor) +
+         graph_.nodes.capacity() * sizeof(Pose) +
+         graph_.betweens.capacity() * sizeof(PoseGraph::Between) +
+         (records_.capacity() + waiting_.capacity() + accepted_.capacity()) * sizeof(LoopRecord);
+}
+
+}  // namespace lidarena

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/lio_sam/config.hpp"
+
+#include <algorithm>
+
+namespace lidarena::lio_sam {
+namespace {
+
+/// The program's settings for spinning sensors, leaf sizes and ranges as for rooms.
+Config original_spinning(const LidarInfo& lidar) {
+  Config config;
+  config.min_range_m = 0.5;
+  if (lidar.columns > 0) config.columns = lidar.columns;
+  config.loop.leaf_m = config.surface_leaf_m;
+  return config;
+}
+
+/// Those of its port to the Mid-360 with a 6-axis IMU.
+Config original_livox() {
+  Config config;
+  config.columns_by = Columns::kArrival;
+  config.min_range_m = 0.5;
+  config.max_range_m = 40.0;
+  config.smoothness_neighbours = 2;
+  config.edges_per_sector = 40;
+  config.occluded_points = 3;
+  config.grazing_share = 0.1;
+  config.max_iterations = 25;
+  config.keyframe_distance_m = 0.5;
+  config.keyframe_angle_rad = 0.1;
+  config.keyframe_age_s = 1.0;
+  config.submap_radius_m = 20.0;
+  config.submap_density_m = 0.5;
+  config.gravity = 9.8035;
+  config.gyro_noise = 1e-4;
+  config.accel_noise = 1e-4;
+  config.gyro_walk = 0.04;
+  config.accel_walk = 0.19;
+  config.loop.leaf_m = config.surface_leaf_m;
+  return config;
+}
+
+Config original(const LidarInfo& lidar) {
+  return lidar.kind == "spinning" ? original_spinning(lidar) : original_livox();
+}
+
+Config improved(const LidarInfo& lidar) {
+  Config config = original(lidar);
+  config.process_interval_s = 0.0;
+  config.min_range_m = std::max(0.3, lidar.min_range_m);
+  config.max_range_m = lidar.max_range_m;
+  config.deskew_translation = true;
+  config.deskew_bias = true;
+  config.min_edges = 0;
+  config.turn_tolerance_rad = 2e-4;
+  config.shift_tolerance_m = 2e-4;
+  config.search_step_m = 0.01;
+  config.plane_fit = PlaneFit::kPrincipal;
+  config.plane_thickness_m = 0.06;
+  config.degeneracy = Degeneracy::kShare;
+  config.keyframe_distance_m = 1.0;
+  config.keyframe_angle_rad = 0.2;
+  config.keyframe_age_s = 0.0;
+  config.scans_per_keyframe = 16;
+  config.submap_radius_m = 30.0;
+  config.submap_density_m = 1.0;
+  config.level_start = true;
+  config.gravity = 9.80665;
+  config.gravity_sigma_rad = 0.02;
+  config.imu_noise_factor = 10.0;
+  config.turn_sigma_rad = 1e-3;
+  config.shift_sigma_m = 5e-3;
+  config.point_sigma_m = 0.05;
+  config.loop = careful_loops();
+  return config;
+}
+
+}  // namespace
+
+std::vector<std::string> preset_names() { return {"improved", "original"}; }
+
+Config preset(const std::string& name, const LidarInfo& lidar) {
+  if (name == "improved") return improved(lidar);
+  if (name == "original") return original(lidar);
+  const std::string nearest = nearest_word(name, preset_names());
+  throw InputError(
+      "preset", "lio_sam has no preset '" + name + "'",
+      nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
+}
+
+}  // namespace lidarena::lio_sam

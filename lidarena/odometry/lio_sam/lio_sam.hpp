@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/imu_buffer.hpp"
+#include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/estimation/inertial_smoother.hpp"
+#include "lidarena/estimation/preintegration.hpp"
+#include "lidarena/loop/anchored_trajectory.hpp"
+#include "lidarena/loop/loop_closer.hpp"
+#include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/odometry/lio_sam/keyframes.hpp"
+#include "lidarena/odometry/lio_sam/registration.hpp"
+#include "lidarena/odometry/odometry.hpp"
+
+namespace lidarena::lio_sam {
+
+/// LiDAR-inertial odometry on edges and planes, smoothed with the IMU, after Shan, Englot, Meyers,
+/// Wang, Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping"
+/// (IROS 2020). Poses hold for the scan's stamp, its first firing. See README.md beside.
+class LioSam : public Odometry {
+ public:
+  LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
+
+  OdometryTraits traits() const override {
+    return {.needs_imu = true,
+            .revises_past = config_.loop_closure,
+            .gravity_aligned = true,
+            .publishes_scans = false};
+  }
+  void register_imu(const ImuSample& sample) override { imu_.add(sample); }
+  ScanResult register_scan(const Scan& scan) override;
+  Trajectory trajectory() const override;
+  std::vector<Eigen::Vector3f> map() const override;
+  std::map<std::string, std::uint64_t> memory() const override;
+
+  const LoopCloser& loops() const { return closer_; }
+
+ private:
+  /// What the IMU says of the scan to come.
+  struct Prediction {
+    Pose world_from_lidar;  ///< at the scan's stamp
+    ImuTrack track;         ///< through the scan, to de-skew along
+    Pose track_from_imu;    ///< at the scan's stamp
+  };
+
+  /// Instant of the scan's last firing; for a scan without points, where it should have been.
+  Time end_of_sweep(const Scan& scan);
+  /// Begins with the samples so far, if they are enough; whether it has.
+  bool start(Time stamp, Time end);
+  bool is_due(Time stamp) const;
+  Prediction predict(Time stamp, Time end);
+  /// Adds the IMU's intervals to `sum`, which began in `state`; lays down `track` if there is one.
+  void integrate(const std::vector<ImuInterval>& intervals, const NavState& state,
+                 Preintegration& sum, ImuTrack* track);
+  std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
+  Registration match(const Features& features, const Pose& guess, Time stamp);
+  ScanStatus status_of(const Registration& found, const Features& features) const;
+  /// Takes the registered pose over and tells the smoother.
+  void fuse(const Registration& found);
+  PoseMeasurement::Information information_of(const Registration& found,
+                                              const Pose& odom_from_imu) const;
+  void restart_if_failed();
+  /// Makes a keyframe of the scan if one is due; `world_from_lidar` follows when a loop moves it.
+  void keep(Time stamp, Pose& world_from_lidar, Features features);
+  /// Averages the scan into the last keyframe, unless it is due to be the next one: then false.
+  bool merge(Time stamp, const Pose& world_from_lidar, const Features& features);
+  /// The result of a scan that is part of the trajectory.
+  ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
+                         std::map<std::string, double> counters);
+  ScanResult result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
+                       std::map<std::string, double> counters) const;
+  Preintegration nothing_yet() const { return {smoother_.latest().bias, noise_}; }
+
+  Config config_;
+  Pose body_from_imu_;
+  Pose body_from_lidar_;
+  Pose imu_from_lidar_;
+  ImuNoise noise_;
+  Parallel parallel_;
+
+  ImuBuffer imu_;
+  bool started_ = false;
+  double accel_scale_ = 1.0;
+  Time sweep_;  ///< duration of the last scan that had points
+
+  InertialSmoother smoother_;  ///< in the world as it would be without loops: it never jumps
+  Preintegration pending_;     ///< since the smoother's last state
+  Time integrated_until_{0};
+  double longest_gap_s_ = 0.0;  ///< of the IMU, since the last scan
+  int restarts_ = 0;
+  Pose odom_from_lidar_ = Pose::Identity();   ///< last registered one, in the smoother's world
+  Pose world_from_lidar_ = Pose::Identity();  ///< the same one in the map's
+  std::optional<Time> last_mapped_;
+
+  std::vector<Keyframe> keyframes_;
+  KeyframeMerger merger_;       ///< of the last one
+  std::uint64_t revision_ = 0;  ///< how often keyframes have been moved or renewed
+  Submap submap_;
+  AnchoredTrajectory poses_;  ///< of the LiDAR
+  LoopCloser closer_;
+};
+
+}  // namespace lidarena::lio_sam

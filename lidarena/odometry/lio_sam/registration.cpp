@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/lio_sam/registration.hpp"
+
+#include <Eigen/Dense>
+#include <cmath>
+
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena::lio_sam {
+namespace {
+
+using Eigen::Vector3d;
+using Columns3 = Eigen::Matrix<double, 3, kNeighbours>;
+
+constexpr float kMaxNeighbour = 1.0F;       // m, the fifth
+constexpr double kLineRatio = 3.0;          // spread along by spread across
+constexpr double kLeastWeight = 0.1;        // of a match that counts
+constexpr std::size_t kLeastMatches = 50;   // fewer tell nothing
+constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's
+constexpr double kLeastShare = 0.003;       // of all; 1/6 if all alike
+
+Columns3 columns_of(const Neighbours& points) {
+  Columns3 columns;
+  for (std::size_t i = 0; i < kNeighbours; ++i)
+    columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
+  return columns;
+}
+
+/// Eigenvectors of the spread about the centre, the smallest first.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread_of(const Columns3& points,
+                                                         const Vector3d& centre) {
+  const Columns3 centred = points.colwise() - centre;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
+  spread.computeDirect(centred * centred.transpose());
+  return spread;
+}
+
+Plane through_origin(const Columns3& points) {
+  const Eigen::Matrix<float, kNeighbours, 3> rows = points.transpose().cast<float>();
+  const Vector3d a = rows.colPivHouseholderQr()
+                         .solve(Eigen::Matrix<float, kNeighbours, 1>::Constant(-1.0F))
+                         .cast<double>();
+  return {a / a.norm(), 1.0 / a.norm()};
+}
+
+PointResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
+                             double weight) {
+  PointResidual residual{weight * distance, {}};
+  residual.row << arm.cross(direction).transpose(), direction.transpose();
+  residual.row *= weight;
+  return residual;
+}
+
+/// What the points of one kind were matched with.
+template <class Shape>
+using Matches = std::vector<std::optional<Shape>>;
+
+template <class Shape, class Fit>
+void search(const std::vector<Eigen::Vector3f>& points, const KdTree& map, const Pose& pose,
+            const Parallel& parallel, Fit&& fit, Matches<Shape>& matches) {
+  constexpr std::size_t kGrain = 256;
+  parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
+    Neighbours near;
+    const auto found =
+        map.nearest((pose * points[i].cast<double>()).cast<float>(), near, kMaxNeighbour);
+    matches[i] = found == kNeighbours ? fit(near) : std::nullopt;
+  });
+}
+
+template <class Shape, class Residual>
+PoseEquations sum_of(const std::vector<Eigen::Vector3f>& points, const Matches<Shape>& matches,
+                     const Pose& pose, const Parallel& parallel, Residual&& residual_of) {
+  return accumulate_normal_equations<6>(
+      parallel, points.size(), [&](std::size_t i, PoseEquations& sum) {
+        if (!matches[i]) return;
+        const auto residual = residual_of(points[i].cast<double>(), *matches[i], pose);
+        if (residual) sum.add<1>(residual->row, Eigen::Matrix<double, 1, 1>(residual->distance), 1);
+      });
+}
+
+/// Lines and planes of all points, searched anew or kept.
+class Matcher {
+ public:
+  Matcher(const Features& features, const FeatureMap& map, const Config& config,
+          const Parallel& parallel)
+      : features_(features),
+        map_(map),
+        config_(config),
+        parallel_(parallel),
+        lines_(features.edges.size()),
+        planes_(features.surfaces.size()) {}
+
+  PoseEquations equations(const Pose& pose, bool anew) {
+    if (anew) {
+      search(features_.edges, map_.edges, pose, parallel_, fit_line, lines_);
+      search(
+          features_.surfaces, map_.surfaces, pose, parallel_,
+          [&](const Neighbours& near) {
+            return fit_plane(near, config_.plane_fit, config_.plane_thickness_m);
+          },
+          planes_);
+    }
+    PoseEquations sum = sum_of(features_.edges, lines_, pose, parallel_, edge_residual);
+    sum += sum_of(features_.surfaces, planes_, pose, parallel_, surface_residual);
+    return sum;
+  }
+
+ private:
+  const Features& features_;
+  const FeatureMap& map_;
+  const Config& config_;
+  const Parallel& parallel_;
+  Matches<Line> lines_;
+  Matches<Plane> planes_;
+};
+
+/// Root of the mean square of the points' ranges.
+double lever_of(const std::vector<Eigen::Vector3f>& points) {
+  double sum = 0.0;
+  for (const Eigen::Vector3f& p : points) sum += static_cast<double>(p.squaredNorm());
+  return points.empty() ? 1.0 : std::sqrt(sum / static_cast<double>(points.size()));
+}
+
+}  // namespace
+
+std::optional<Line> fit_line(const Neighbours& points) {
+  const Columns3 columns = columns_of(points);
+  const Vector3d centre = columns.rowwise().mean();
+  const auto spread = spread_of(columns, centre);
+  if (!(spread.eigenvalues()[2] > kLineRatio * spread.eigenvalues()[1])) return std::nullopt;
+  return Line{centre, spread.eigenvectors().col(2)};
+}
+
+std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness) {
+  const Columns3 columns = columns_of(points);
+  Plane plane;
+  if (fit == PlaneFit::kThroughOrigin) {
+    plane = through_origin(columns);
+  } else {
+    const Vector3d centre = columns.rowwise().mean();
+    plane.normal = spread_of(columns, centre).eigenvectors().col(0);
+    plane.offset = -plane.normal.dot(centre);
+  }
+  const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
+  // Not "greater than": a fit that failed is not finite.
+  if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
+  return plane;
+}
+
+std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& line,
+                                           const Pose& map_from_lidar) {
+  const Vector3d arm = map_from_lidar.linear() * point;
+  const Vector3d from_centre = arm + map_from_lidar.translation() - line.centre;
+  const Vector3d away = from_centre - line.direction.dot(from_centre) * line.direction;
+  const double distance = away.norm();
+  const double weight = 1.0 - 0.9 * distance;
+  if (weight <= kLeastWeight || distance == 0.0) return std::nullopt;
+  return residual_along(away / distance, distance, arm, weight);
+}
+
+std::optional<PointResidual> surface_residual(const Vector3d& point, const Plane& plane,
+                                              const Pose& map_from_lidar) {
+  const Vector3d arm = map_from_lidar.linear() * point;
+  const double distance = plane.normal.dot(arm + map_from_lidar.translation()) + plane.offset;
+  const double weight = 1.0 - 0.9 * std::abs(distance) / std::sqrt(point.norm());
+  if (!(weight > kLeastWeight)) return std::nullopt;
+  return residual_along(plane.normal, distance, arm, weight);
+}
+
+Degenerate find_degenerate(const PoseEquations& equations, double lever, Degeneracy rule) {
+  using Vector6 = Eigen::Matrix<double, 6, 1>;
+  using Matrix6 = Eigen::Matrix<double, 6, 6>;
+  Vector6 unit = Vector6::Ones();  // of each error, so that all are alike
+  double least = kLeastEigenvalue;
+  if (rule == Degeneracy::kShare) {
+    unit.head<3>().setConstant(1.0 / lever);
+    least = kLeastShare * static_cast<double>(equations.count);
+  }
+  const Matrix6 scaled = unit.asDiagonal() * equations.hessian * unit.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
+  Degenerate result;
+  Matrix6 kept = Matrix6::Zero();
+  for (Eigen::Index i = 0; i < 6; ++i) {
+    if (solver.eigenvalues()[i] < least) {
+      ++result.directions;
+    } else {
+      kept += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
+    }
+  }
+  if (result.directions > 0)
+    result.observed = unit.asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
+  return result;
+}
+
+Registration register_features(const Features& features, const FeatureMap& map, const Pose& guess,
+                               const Config& config, const Parallel& parallel) {
+  Registration result;
+  result.map_from_lidar = guess;
+  Matcher matcher(features, map, config, parallel);
+  Degenerate degenerate;
+  const double lever = lever_of(features.surfaces);
+  double shift = 1.0;
+  while (result.iterations < config.max_iterations && !result.converged) {
+    const PoseEquations points =
+        matcher.equations(result.map_from_lidar, shift > config.search_step_m);
+    if (points.count < kLeastMatches) break;
+    if (result.iterations == 0) degenerate = find_degenerate(points, lever, config.degeneracy);
+    const Eigen::Matrix<double, 6, 1> step = degenerate.observed * points.solve();
+    result.map_from_lidar.linear() = so3::exp(step.head<3>()) * result.map_from_lidar.linear();
+    result.map_from_lidar.translation() += step.tail<3>();
+    result.points = points;
+    result.degenerate_directions = degenerate.directions;
+    shift = step.tail<3>().norm() + lever * step.head<3>().norm();
+    result.converged = step.head<3>().norm() < config.turn_tolerance_rad &&
+                       step.tail<3>().norm() < config.shift_tolerance_m;
+    ++result.iterations;
+  }
+  result.map_from_lidar = orthonormalized(result.map_from_lidar);
+  return result;
+}
+
+}  // namespace lidarena::lio_sam

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/pose.hpp"
+#include "lidarena/estimation/least_squares.hpp"
+#include "lidarena/map/kd_tree.hpp"
+#include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/odometry/lio_sam/features.hpp"
+
+namespace lidarena::lio_sam {
+
+inline constexpr std::size_t kNeighbours = 5;
+using Neighbours = std::array<Neighbour, kNeighbours>;
+/// Errors of a pose: turn (rad, about the sensor, axes of the world), then shift (m, world).
+using PoseEquations = NormalEquations<6>;
+
+struct Line {
+  Eigen::Vector3d centre;
+  Eigen::Vector3d direction;  ///< unit
+};
+/// normal . x + offset = 0, with a unit normal.
+struct Plane {
+  Eigen::Vector3d normal;
+  double offset = 0.0;
+};
+
+/// The line through points that spread three times as much along it as across.
+std::optional<Line> fit_line(const Neighbours& points);
+/// The plane through points that all lie within `thickness` (m) of it.
+std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness);
+
+/// A point's distance (m, not negative) from its line or plane and how it grows with the pose's
+/// errors, both times the weight of the match; nothing when that is too small.
+struct PointResidual {
+  double distance = 0.0;
+  Eigen::Matrix<double, 1, 6> row;
+};
+std::optional<PointResidual> edge_residual(const Eigen::Vector3d& point, const Line& line,
+                                           const Pose& map_from_lidar);
+std::optional<PointResidual> surface_residual(const Eigen::Vector3d& point, const Plane& plane,
+                                              const Pose& map_from_lidar);
+
+/// Directions in which the points do not hold the pose.
+struct Degenerate {
+  Eigen::Matrix<double, 6, 6> observed = Eigen::Matrix<double, 6, 6>::Identity();  ///< projection
+  int directions = 0;
+};
+/// By the eigenvalues of J^T J (Zhang, Kaess, Singh, "On Degeneracy of Optimization-based State
+/// Estimation Problems", ICRA 2016). `lever` (m) is the points' mean distance, by which turning is
+/// brought to the scale of shifting; used by Degeneracy::kShare.
+Degenerate find_degenerate(const PoseEquations& equations, double lever, Degeneracy rule);
+
+/// The map a scan is matched with.
+struct FeatureMap {
+  KdTree edges;
+  KdTree surfaces;
+};
+
+struct Registration {
+  Pose map_from_lidar = Pose::Identity();
+  int iterations = 0;
+  bool converged = false;
+  PoseEquations points;  ///< of the last iteration; count 0: the guess stands
+  int degenerate_directions = 0;
+};
+
+/// Gauss-Newton on edges to lines and surface points to planes, from `guess` (LIO-SAM, eq. 10-13).
+Registration register_features(const Features& features, const FeatureMap& map, const Pose& guess,
+                               const Config& config, const Parallel& parallel);
+
+}  // namespace lidarena::lio_sam

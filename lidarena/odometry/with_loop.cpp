@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/with_loop.hpp"
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/map/voxel_filter.hpp"
+
+namespace lidarena {
+
+OdometryTraits WithLoop::traits() const {
+  OdometryTraits traits = odometry_->traits();
+  traits.revises_past = true;
+  traits.publishes_scans = false;
+  return traits;
+}
+
+ScanResult WithLoop::register_scan(const Scan& scan) {
+  ScanResult result = odometry_->register_scan(scan);
+  if (result.status == ScanStatus::kDiverged) return result;
+  const Time stamp = result.estimate.stamp;
+  const Pose odom_from_body = result.estimate.world_from_body;
+  const bool usable =
+      result.status != ScanStatus::kTooFewPoints && !odometry_->registered_scan().empty();
+  if (usable && is_keyframe(odom_from_body)) keep(stamp, odom_from_body);
+  poses_.add(stamp,
+             clouds_.empty() ? odom_from_body : odom_from_keyframe_.inverse() * odom_from_body);
+  result.estimate.world_from_body = orthonormalized(world_from_odom_ * odom_from_body);
+  for (StampedPose& pose : result.motion)
+    pose.world_from_body = orthonormalized(world_from_odom_ * pose.world_from_body);
+  result.counters["keyframes"] = static_cast<double>(clouds_.size());
+  result.counters["loops"] = static_cast<double>(closer_.accepted());
+  result.counters["loops_tried"] = static_cast<double>(closer_.records().size());
+  return result;
+}
+
+bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
+  if (clouds_.empty()) return true;
+  const Pose moved = odom_from_keyframe_.inverse() * odom_from_body;
+  return moved.translation().norm() >= config_.keyframe_distance_m ||
+         so3::angle(moved.linear()) >= config_.keyframe_angle_rad;
+}
+
+void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
+  const Eigen::Isometry3f body_from_odom = odom_from_body.inverse().cast<float>();
+  std::vector<Eigen::Vector3f> cloud;
+  for (const Eigen::Vector3f& p : odometry_->registered_scan()) cloud.push_back(body_from_odom * p);
+  const Pose previous_from_this =
+      clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
+  clouds_.push_back(voxel_means(cloud, config_.cloud_leaf_m));
+  poses_.add_anchor(stamp, previous_from_this);
+  odom_from_keyframe_ = odom_from_body;
+  closer_.add(stamp, previous_from_this, [this](std::size_t keyframe) {
+    return std::span<const Eigen::Vector3f>(clouds_[keyframe]);
+  });
+  world_from_odom_ = closer_.poses().back() * odom_from_body.inverse();
+}
+
+Trajectory WithLoop::trajectory() const {
+  return Trajectory(poses_.placed(closer_.poses()), "with_loop");
+}
+
+std::vector<Eigen::Vector3f> WithLoop::map() const {
+  std::vector<Eigen::Vector3f> points;
+  for (std::size_t i = 0; i < clouds_.size(); ++i) {
+    for (const Eigen::Vector3f& p : clouds_[i])
+      points.push_back((closer_.poses()[i] * p.cast<double>()).cast<float>());
+  }
+  return points;
+}
+
+std::map<std::string, std::uint64_t> WithLoop::memory() const {
+  std::map<std::string, std::uint64_t> memory = odometry_->memory();
+  for (const auto& cloud : clouds_) memory["map"] += cloud.capacity() * sizeof(Eigen::Vector3f);
+  memory["other"] += closer_.memory_bytes() + poses_.memory_bytes();
+  return memory;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/loop/icp.hpp"
+
+#include <gtest/gtest.h>
+
+#include "tests/loop/places.hpp"
+
+namespace lidarena {
+namespace {
+
+struct Pair {
+  Pose truth = Pose::Identity();
+  KdTree target;
+  places::Points source;
+};
+
+/// The corridor's corner, seen from two places.
+Pair corner() {
+  const places::Points world = places::ring_corridor();
+  const Pose first = places::standing(-10.0, -10.0, 0.2);
+  const Pose second = places::standing(-9.4, -9.8, 0.5);
+  Pair pair;
+  pair.truth = first.inverse() * second;
+  pair.target.build(places::seen_from(first, world, 10.0, 1));
+  pair.source = places::seen_from(second, world, 8.0, 2);
+  return pair;
+}
+
+double apart(const Pose& a, const Pose& b) { return (a.translation() - b.translation()).norm(); }
+
+TEST(Icp, LaysPlanesOnPlanes) {
+  const Pair pair = corner();
+  const Pose guess = pair.truth * make_pose(so3::exp({0.01, -0.02, 0.1}), {0.3, -0.3, 0.1});
+  LoopConfig config = careful_loops();
+  const IcpResult result = align_clouds(pair.source, pair.target, guess, config, Parallel(1));
+  EXPECT_TRUE(result.converged);
+  // 1 cm of noise a point, over some thousand points on each wall: far below 1 mm; but the clouds
+  // are the same points with other noise, which a plane through 6 of them has 1/sqrt(6) of
+  EXPECT_LT(apart(result.target_from_source, pair.truth), 2e-3);
+  EXPECT_LT(so3::angle(pair.truth.linear().transpose() * result.target_from_source.linear()), 1e-3);
+  EXPECT_GT(result.overlap, 0.99);
+  // the nearest of two noisy copies of a point: 6 * (1 cm)^2 at most
+  EXPECT_LT(result.fitness, 6e-4);
+  EXPECT_GT(result.constraint, 0.01);
+}
+
+TEST(Icp, LaysPointsOnPoints) {
+  const Pair pair = corner();
+  const Pose guess = pair.truth * make_pose(so3::exp({0.0, 0.0, 0.05}), {0.1, -0.1, 0.05});
+  const LoopConfig config;  // LIO-SAM's
+  const IcpResult result = align_clouds(pair.source, pair.target, guess, config, Parallel(1));
+  EXPECT_TRUE(result.converged);
+  EXPECT_LT(apart(result.target_from_source, pair.truth), 2e-2);
+  EXPECT_LT(result.fitness, 0.01);
+}
+
+TEST(Icp, AFarCloudHasNothingToHold) {
+  const Pair pair = corner();
+  const IcpResult result = align_clouds(pair.source, pair.target, places::standing(500.0, 0.0, 0.0),
+                                        careful_loops(), Parallel(1));
+  EXPECT_FALSE(result.converged);
+  EXPECT_EQ(result.overlap, 0.0);
+}
+
+TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
+  places::Points walls;
+  for (int i = 0; i < 200; ++i) {
+    for (int k = 0; k < 12; ++k) {
+      const float x = 0.2F * static_cast<float>(i) - 20.0F;
+      const float h = 0.25F * static_cast<float>(k);
+      walls.insert(walls.end(),
+                   {{x, 2.0F, h}, {x, -2.0F, h}, {x, h - 1.5F, 0.0F}, {x, h - 1.5F, 3.0F}});
+    }
+  }
+  KdTree target;
+  target.build(walls);
+  const places::Points source = places::seen_from(Pose::Identity(), walls, 8.0, 3);
+  const IcpResult result =
+      align_clouds(source, target, Pose::Identity(), careful_loops(), Parallel(1));
+  EXPECT_LT(result.constraint, careful_loops().least_constraint);
+}
+
+}  // namespace
+}  // namespace lidarena

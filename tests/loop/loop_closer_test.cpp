@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/loop/loop_closer.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "lidarena/base/se3.hpp"
+#include "tests/loop/places.hpp"
+
+namespace lidarena {
+namespace {
+
+using places::Points;
+
+/// A path of keyframes a second apart, as it was and as an odometry with a steady error has it.
+struct Walk {
+  std::vector<Pose> truth;
+  std::vector<Points> clouds;
+  std::vector<Pose> steps;  ///< measured
+};
+
+Walk walk(const std::vector<Pose>& truth, const Points& world, double reach,
+          const se3::Vector6& error_per_step) {
+  Walk walk;
+  walk.truth = truth;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    walk.clouds.push_back(places::seen_from(truth[i], world, reach, i));
+    walk.steps.push_back(i == 0 ? truth[0]
+                                : truth[i - 1].inverse() * truth[i] * se3::exp(error_per_step));
+  }
+  return walk;
+}
+
+/// 1.3 times around the block; the odometry is 1 % too long and turns 0.06 degrees a metre too far.
+Walk round_trip() {
+  std::vector<Pose> truth;
+  for (int i = 0; i <= 104; ++i) truth.push_back(places::around_the_block(i));
+  se3::Vector6 error;
+  error << 0.01, 0.0, 0.0, 0.0, 0.0, 0.001;
+  return walk(truth, places::ring_corridor(), 9.0, error);
+}
+
+LoopCloser closed(const Walk& walk, const LoopConfig& config, int threads = 1) {
+  LoopCloser closer(config, Parallel(threads));
+  const KeyframeCloud cloud = [&](std::size_t i) {
+    return std::span<const Eigen::Vector3f>(walk.clouds[i]);
+  };
+  for (std::size_t i = 0; i < walk.steps.size(); ++i)
+    closer.add(from_seconds(static_cast<double>(i)), walk.steps[i], cloud);
+  return closer;
+}
+
+double rms_error(const Walk& walk, const std::vector<Pose>& poses) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < poses.size(); ++i)
+    sum += (poses[i].translation() - walk.truth[i].translation()).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(poses.size()));
+}
+
+LoopConfig no_loops() {
+  LoopConfig config;
+  config.search_radius_m = 0.0;
+  return config;
+}
+
+TEST(LoopCloser, ComingBackCuresTheDrift) {
+  const Walk trip = round_trip();
+  const double drifted = rms_error(trip, closed(trip, no_loops()).poses());
+  const LoopCloser closer = closed(trip, careful_loops());
+  EXPECT_GT(drifted, 0.6);
+  EXPECT_GT(closer.accepted(), 0U);
+  EXPECT_LT(rms_error(trip, closer.poses()), 0.4 * drifted)
+      << "a steady error is shared out evenly, which it was not";
+  for (const LoopRecord& loop : closer.records()) {
+    if (loop.verdict != LoopVerdict::kAccepted) continue;
+    const Pose truth = trip.truth[loop.first].inverse() * trip.truth[loop.second];
+    EXPECT_LT((truth.inverse() * loop.first_from_second).translation().norm(), 0.05);
+  }
+}
+
+TEST(LoopCloser, LioSamsRuleDoesSoToo) {
+  const Walk trip = round_trip();
+  LoopConfig config;
+  config.leaf_m = 0.3;
+  config.target_keyframes = 8;
+  config.max_iterations = 30;
+  config.correspondence_m = 2.0;
+  config.keyframes_per_search = 4;
+  const LoopCloser closer = closed(trip, config);
+  EXPECT_GT(closer.accepted(), 2U) << "whenever one is looked for after the round";
+  EXPECT_LT(rms_error(trip, closer.poses()),
+            0.5 * rms_error(trip, closed(trip, no_loops()).poses()));
+}
+
+TEST(LoopCloser, IsFoundByLooksAloneToo) {
+  LoopConfig config = careful_loops();
+  config.search_radius_m = 0.0;
+  config.appearance_range_m = 9.0;
+  const Walk trip = round_trip();
+  const LoopCloser closer = closed(trip, config);
+  EXPECT_GT(closer.accepted(), 0U);
+  for (const LoopRecord& loop : closer.records()) EXPECT_TRUE(loop.by_appearance);
+}
+
+/// Through one room, a passage, and a second room that is the same, thrice as long in each as would
+/// be needed.
+Walk identical_rooms() {
+  Points world;
+  places::add_room(world, 0.0F);
+  places::add_room(world, 12.0F);
+  places::add_box(world, {4, -1, 0}, {8, 1, 3}, true);
+  std::vector<Pose> truth;
+  const auto circle = [&](double x) {
+    for (int i = 0; i < 60; ++i) {
+      const double angle = 0.3 * i;
+      truth.push_back(places::standing(x + 1.5 * std::cos(angle), 1.2 * std::sin(angle), angle));
+    }
+  };
+  circle(0.0);
+  for (int i = 0; i <= 18; ++i) truth.push_back(places::standing(1.5 + 0.5 * i, 0.0, 0.0));
+  circle(12.0);
+  se3::Vector6 error;
+  error << 0.001, 0.0, 0.0, 0.0, 0.0, 0.0002;
+  return walk(truth, world, 5.0, error);
+}
+
+TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
+  const Walk tour = identical_rooms();
+  LoopConfig config = careful_loops();
+  config.appearance_range_m = 5.0;
+  config.search_radius_m = 15.0;
+  const LoopCloser closer = closed(tour, config);
+  int refused = 0;
+  for (const LoopRecord& loop : closer.records()) {
+    const Pose truth = tour.truth[loop.first].inverse() * tour.truth[loop.second];
+    const double wrong = (truth.inverse() * loop.first_from_second).translation().norm();
+    if (loop.verdict == LoopVerdict::kAccepted) {
+      EXPECT_LT(wrong, 0.1) << loop.first << " " << loop.second;
+    }
+    if (wrong > 10.0 && loop.verdict == LoopVerdict::kBeyondDrift) ++refused;
+  }
+  EXPECT_GT(refused, 0) << "the rooms fit each other: only the odometry knows better";
+  EXPECT_GT(closer.accepted(), 0U) << "true ones, within each room";
+  EXPECT_LT(rms_error(tour, closer.poses()), 0.1);
+
+  // Without that knowledge false loops are believed; the graph's robust kernel is the last defence.
+  config.drift_per_metre = 0.0;
+  const LoopCloser trusting = closed(tour, config);
+  int believed = 0;
+  for (const LoopRecord& loop : trusting.records())
+    believed += loop.verdict == LoopVerdict::kAccepted && loop.shift > 10.0 ? 1 : 0;
+  EXPECT_GT(believed, 0);
+  EXPECT_LT(rms_error(tour, trusting.poses()), 0.1);
+  LoopConfig lio_sams;
+  lio_sams.leaf_m = 0.3;
+  lio_sams.source_points = 400;  // quicker
+  lio_sams.target_keyframes = 10;
+  lio_sams.max_iterations = 60;
+  EXPECT_GT(rms_error(tour, closed(tour, lio_sams).poses()), 1.0) << "one room on top of the other";
+}
+
+TEST(LoopCloser, StandingStillNoLoopIsTried) {
+  const Points world = places::ring_corridor();
+  const std::vector<Pose> truth(60, places::around_the_block(10.0));
+  const Walk still = walk(truth, world, 9.0, se3::Vector6::Zero());
+  EXPECT_TRUE(closed(still, careful_loops()).records().empty());
+  LoopConfig lio_sams;
+  lio_sams.leaf_m = 0.3;
+  lio_sams.target_keyframes = 2;
+  lio_sams.keyframes_per_search = 10;
+  EXPECT_FALSE(closed(still, lio_sams).records().empty()) << "LIO-SAM's rule tries all";
+}
+
+TEST(LoopCloser, IsTheSameBitsOnAnyNumberOfThreads) {
+  const Walk trip = round_trip();
+  const auto one = closed(trip, careful_loops(), 1).poses();
+  const auto three = closed(trip, careful_loops(), 3).poses();
+  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].matrix(), three[i].matrix());
+}
+
+TEST(LoopCloser, AFewPointsAreNoPlace) {
+  Walk trip = round_trip();
+  for (Points& cloud : trip.clouds) cloud.resize(20);
+  const LoopCloser closer = closed(trip, careful_loops());
+  EXPECT_EQ(closer.accepted(), 0U);
+  EXPECT_TRUE(std::any_of(closer.records().begin(), closer.records().end(), [](const auto& loop) {
+    return loop.verdict == LoopVerdict::kTooFewPoints;
+  }));
+}
+
+}  // namespace
+}  // namespace lidarena

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/with_loop.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "lidarena/base/so3.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena {
+namespace {
+
+/// Goes around a circle in the room and drifts outwards; publishes the room as it is seen from the
+/// true place.
+class Drifter : public Odometry {
+ public:
+  OdometryTraits traits() const override { return {}; }
+  ScanResult register_scan(const Scan& scan) override {
+    const double s = to_seconds(scan.stamp);
+    const Pose truth = true_pose(s);
+    pose_ = truth;
+    pose_.translation().z() += 0.01 * s;
+    published_.clear();
+    for (const Eigen::Vector3f& p : view_) {
+      const Eigen::Vector3d beam = truth.linear() * p.cast<double>();
+      const double range = synthetic::cast(truth.translation(), beam);
+      published_.push_back((pose_ * (range * p.cast<double>())).cast<float>());
+    }
+    poses_.push_back({scan.stamp, pose_});
+    return {poses_.back(), ScanStatus::kTracked, std::nullopt, {}, {}};
+  }
+  Trajectory trajectory() const override { return Trajectory(poses_, "drifter"); }
+  std::vector<Eigen::Vector3f> map() const override { return {}; }
+  std::span<const Eigen::Vector3f> registered_scan() const override { return published_; }
+  std::map<std::string, std::uint64_t> memory() const override { return {{"map", 0}}; }
+
+  static Pose true_pose(double s) {
+    const double angle = 0.15 * s;
+    return make_pose(so3::exp({0.0, 0.0, angle}),
+                     {2.5 * std::cos(angle), 1.8 * std::sin(angle), 0.0});
+  }
+
+ private:
+  static std::vector<Eigen::Vector3f> beams() {
+    std::vector<Eigen::Vector3f> all;
+    for (int ring = -12; ring <= 12; ++ring) {
+      for (int k = 0; k < 120; ++k) {
+        const float e = 0.06F * static_cast<float>(ring);
+        const float a = 0.05236F * static_cast<float>(k);
+        all.emplace_back(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      }
+    }
+    return all;
+  }
+  const std::vector<Eigen::Vector3f> view_ = beams();
+  Pose pose_ = Pose::Identity();
+  std::vector<Eigen::Vector3f> published_;
+  std::vector<StampedPose> poses_;
+};
+
+WithLoopConfig quick() {
+  WithLoopConfig config;
+  config.keyframe_distance_m = 0.5;
+  config.keyframe_angle_rad = 0.4;
+  config.loop.least_way_m = 10.0;
+  config.loop.least_target_points = 500;
+  return config;
+}
+
+double rms_height(std::span<const StampedPose> poses) {
+  double sum = 0.0;
+  for (const StampedPose& pose : poses)
+    sum += pose.world_from_body.translation().z() * pose.world_from_body.translation().z();
+  return std::sqrt(sum / static_cast<double>(poses.size()));
+}
+
+TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
+  Drifter alone;
+  WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
+  std::vector<StampedPose> live;
+  for (int i = 0; i < 320; ++i) {  // 64 s, one and a half rounds
+    Scan scan;
+    scan.stamp = from_seconds(0.2 * i);
+    scan.points.resize(1);
+    alone.register_scan(scan);
+    live.push_back(looped.register_scan(scan).estimate);
+  }
+  looped.finish();
+  EXPECT_TRUE(looped.traits().revises_past);
+  EXPECT_FALSE(looped.traits().publishes_scans);
+  ASSERT_GT(looped.loops().accepted(), 0U);
+  const Trajectory before = alone.trajectory();
+  const Trajectory after = looped.trajectory();
+  ASSERT_EQ(after.size(), before.size());
+  EXPECT_LT(rms_height(after.poses()), 0.6 * rms_height(before.poses()));
+  // until the first loop the live estimate is the odometry's
+  EXPECT_LT(
+      (live[50].world_from_body.translation() - before.poses()[50].world_from_body.translation())
+          .norm(),
+      1e-9);
+  EXPECT_LT(std::abs(live.back().world_from_body.translation().z()),
+            0.7 * before.poses().back().world_from_body.translation().z());
+  EXPECT_GT(looped.map().size(), 1000U);
+  for (const Eigen::Vector3f& p : looped.map())
+    EXPECT_LT(std::abs(p.z()), 2.6F) << "walls 4 m high";
+}
+
+}  // namespace
+}  // namespace lidarena
