@@ -5,6 +5,8 @@
 //                   done with the hits)
 //   of_bare         their ratio
 //   real_time       scan period / time of a measured scan, by the wall clock: on an idle machine
+// The rows simulate/... do the same for everything down to the file: the flight, the IMU, the
+// scans, the recording as MCAP in our layout (24 bytes a point) or the sensor's driver's.
 #include <benchmark/benchmark.h>
 #if LIDARENA_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -12,20 +14,25 @@
 #include <embree3/rtcore.h>
 #endif
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdlib>
 #include <ctime>
+#include <filesystem>
 #include <memory>
 #include <numbers>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "lidarena/dataset/dataset.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/sensor/lidar.hpp"
+#include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {
@@ -264,6 +271,75 @@ void register_rows() {
   }
 }
 [[maybe_unused]] const bool kRegistered = (register_rows(), true);
+
+/// Three seconds of flight, down to the file. Bare calls: every fifth scan, five times.
+void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects, Dialect dialect) {
+  namespace fs = std::filesystem;
+  constexpr std::uint64_t kEvery = 5;
+  const Stage& stage = Stage::get();
+  const Parallel parallel(static_cast<int>(state.range(0)));
+  SensorConfig config = config_of(sensor, effects);
+  config.imu.emplace();
+  SimulationOptions options;
+  options.duration = std::chrono::seconds(3);
+  std::string name = (fs::temp_directory_path() / "lidarena_benchmark_XXXXXX").string();
+  const fs::path folder = ::mkdtemp(name.data());
+
+  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const auto scans = static_cast<std::uint64_t>(options.duration / lidar.pattern().period());
+  std::vector<std::vector<RTCRayHit8>> packets;
+  for (std::uint64_t i = 0; i < scans; i += kEvery) packets.push_back(packets_of(lidar, config, i));
+  Stopwatch bare, simulated;
+  std::size_t points = 0;
+  for (auto _ : state) {
+    bare.time([&] {
+      for (const auto& scan : packets) {
+        for (std::uint64_t i = 0; i < kEvery; ++i) cast_bare(scan, parallel);
+      }
+    });
+    points = 0;
+    simulated.time([&] {
+      DatasetWriter out(folder, make_rig({config}), {DatasetFormat::kMcap, dialect});
+      const auto events = simulate(stage.world, stage.flight, {config}, options, parallel);
+      while (const auto event = events->next()) {
+        if (const auto* scan = std::get_if<Scan>(&event->data)) points += scan->points.size();
+        out.write(*event);
+      }
+      out.close();
+    });
+  }
+  const auto shots = static_cast<double>(scans * packets[0].size() * kTogether);
+  const auto bytes = static_cast<double>(fs::file_size(folder / "data.mcap"));
+  fs::remove_all(folder);
+  state.counters["bare"] = shots / bare.processor_s;
+  state.counters["simulated"] = shots / simulated.processor_s;
+  state.counters["of_bare"] = bare.processor_s / simulated.processor_s;
+  state.counters["stored/point"] = bytes / static_cast<double>(points);
+}
+
+void register_simulations() {
+  const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
+  const std::pair<const char*, Effects> effects[] = {{"geometry", kGeometry},
+                                                     {"range_noise", kRangeNoise}};
+  const std::pair<const char*, Dialect> dialects[] = {{"si", Dialect::kSi},
+                                                      {"driver", Dialect::kDriver}};
+  for (const auto& sensor : sensors) {
+    for (const auto& effect : effects) {
+      for (const auto& dialect : dialects) {
+        const std::string name =
+            std::string("simulate/") + sensor.first + "/" + effect.first + "/" + dialect.first;
+        benchmark::RegisterBenchmark(name.c_str(), simulate_to_file, sensor.second, effect.second,
+                                     dialect.second)
+            ->ArgName("threads")
+            ->Arg(1)
+            ->Iterations(3)
+            ->UseRealTime()
+            ->Unit(benchmark::kMillisecond);
+      }
+    }
+  }
+}
+[[maybe_unused]] const bool kSimulationsRegistered = (register_simulations(), true);
 
 /// The parts of a scan that are not ray casting, one thread.
 void pattern(benchmark::State& state, Sensor sensor) {

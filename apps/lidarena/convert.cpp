@@ -25,6 +25,7 @@ struct ConvertOptions {
   std::string in, out;
   std::string format;  ///< of datasets; empty: by the ending of `out`
   std::string dialect = "si";
+  bool compress = false;
   ReadOptions read;
 };
 
@@ -110,6 +111,7 @@ WriteOptions write_options(const ConvertOptions& o) {
   const std::string format = !o.format.empty() ? o.format : ending == ".bag" ? "bag" : "mcap";
   read_value(ConfigNode::parse(format, "--format"), options.format, {});
   read_value(ConfigNode::parse(o.dialect, "--dialect"), options.dialect, {});
+  options.compress = o.compress;
   return options;
 }
 
@@ -170,6 +172,8 @@ void add_convert(CLI::App& app, Common& common, int& exit_code) {
       ->required();
   verb->add_option("--format", o->format, "Of a dataset's folder: mcap, bag, pcd, ply, kitti")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}));
+  verb->add_flag("--compress", o->compress,
+                 "Chunks of MCAP by zstd: smaller, slower");
   verb->add_option("--dialect", o->dialect, "si, or driver: the drivers' own layouts and units")
       ->check(CLI::IsMember({"si", "driver"}))
       ->capture_default_str();

@@ -17,6 +17,7 @@ struct SimulateOptions {
   std::string mode;
   std::string format = "mcap";
   std::string dialect = "si";
+  bool compress = false;
   bool no_data = false;
 };
 
@@ -36,6 +37,7 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   }
   read_value(ConfigNode::parse(options.format, "--format"), request.write.format, {});
   read_value(ConfigNode::parse(options.dialect, "--dialect"), request.write.dialect, {});
+  request.write.compress = options.compress;
   Console console(common.quiet);
   const SimulateSummary s =
       simulate_dataset(request, options.out, Parallel(common.threads), console);
@@ -83,6 +85,8 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
                    "mcap or bag (one recording), pcd, ply or kitti (a file a sweep)")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}))
       ->capture_default_str();
+  verb->add_flag("--compress", o->compress,
+                 "Chunks of MCAP by zstd: smaller, slower");
   verb->add_option("--dialect", o->dialect,
                    "si, or driver: recordings in the layouts and units of the sensors' own drivers")
       ->check(CLI::IsMember({"si", "driver"}))

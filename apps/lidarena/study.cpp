@@ -5,22 +5,78 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/odometry/factory.hpp"
 #include "lidarena/report/report.hpp"
 
 namespace lidarena {
 namespace {
 
-int study_verb(const Common& common, const std::string& name, const std::string& out, bool dry) {
+struct StudyRequest {
+  std::string name;  ///< of a study; empty = one made of the following
+  std::string world;
+  std::vector<std::string> sensors;
+  std::vector<std::string> algorithms{"all"};
+  bool tour = false;  ///< finds its own way through the world
+  double seconds = 0.0;
+  std::string out;
+  bool dry = false;
+  int jobs = 1;
+  std::string shard = "1/1";
+};
+
+/// The engineer's study of one place: every algorithm that can use the sensors, on a tour that the
+/// flight finds itself.
+StudySpec spec_of_one_place(const StudyRequest& request) {
+  if (request.world.empty()) {
+    throw InputError("study", "what is to be studied?",
+                     "name a study, or give --world and --sensors");
+  }
+  if (!request.tour) {
+    throw InputError("study --world", "which way to fly?", "give --auto, and a tour will be found");
+  }
+  StudySpec spec;
+  spec.title = "Which LiDAR, which SLAM: " + std::filesystem::path(request.world).stem().string();
+  spec.scenes = {{request.world, "auto", request.seconds}};
+  spec.sensors = request.sensors;
+  for (const std::string& algorithm : request.algorithms) {
+    if (algorithm != "all") {
+      spec.algorithms.push_back(algorithm);
+      continue;
+    }
+    for (const AlgorithmInfo& info : list_algorithms()) spec.algorithms.push_back(info.name);
+  }
+  return spec;
+}
+
+void print_plan(const StudySpec& spec, const std::vector<PlannedRun>& cells,
+                const ConfigFolder& configs) {
+  CellEstimate sum;
+  for (const PlannedRun& cell : cells) {
+    const CellEstimate one = estimate(cell, configs);
+    fmt::print("{:70} {:>8} {:6.0f} MB\n", cell.name, clock_text(one.seconds), one.disk_mb);
+    sum.seconds += one.seconds;
+    sum.disk_mb += one.disk_mb;
+  }
+  fmt::print("{}: {} runs, about {} and {:.1f} GB on the disk (two cores, one job)\n", spec.title,
+             cells.size(), clock_text(sum.seconds), 1e-3 * sum.disk_mb);
+}
+
+int study_verb(const Common& common, const StudyRequest& request) {
   const ConfigFolder configs = common.config_folder();
-  const auto spec = load_config<StudySpec>(configs.resolve("studies", name));
-  if (dry) {
-    const std::vector<PlannedRun> cells = plan(spec, configs);
-    for (const PlannedRun& cell : cells) fmt::print("{}\n", cell.name);
-    fmt::print("{} runs\n", cells.size());
+  const auto spec = request.name.empty()
+                        ? spec_of_one_place(request)
+                        : load_config<StudySpec>(configs.resolve("studies", request.name));
+  StudyOptions options;
+  options.threads = common.threads;
+  options.jobs = request.jobs;
+  options.shard = parse_shard(request.shard);
+  if (request.dry) {
+    print_plan(spec, cells_of(plan(spec, configs), options.shard), configs);
     return kDone;
   }
   Console console(common.quiet);
-  const StudyOutcome outcome = run_study(spec, configs, out, common.threads, console);
+  const std::string& out = request.out;
+  const StudyOutcome outcome = run_study(spec, configs, out, options, console);
   const ReportFiles report = write_report(out, console);
   if (common.json) {
     print_json({{"study", out},
@@ -42,15 +98,23 @@ int study_verb(const Common& common, const std::string& name, const std::string&
 void add_study(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
       "study", "Fly, run and score a matrix of worlds, sensors and algorithms; writes a report");
-  auto name = std::make_shared<std::string>();
-  auto out = std::make_shared<std::string>();
-  auto dry = std::make_shared<bool>(false);
-  verb->add_option("study", *name, "Name (see: list studies) or YAML")->required();
-  verb->add_option("--out", *out, "Folder to write; what is complete there is kept")->required();
-  verb->add_flag("--dry", *dry, "Only list the runs");
+  auto request = std::make_shared<StudyRequest>();
+  verb->add_option("study", request->name, "Name (see: list studies) or YAML");
+  verb->add_option("--out", request->out, "Folder to write; what is complete there is kept")
+      ->required();
+  verb->add_option("--world", request->world, "Instead of a study: one world, a name or a mesh");
+  verb->add_option("--sensors", request->sensors, "its sensors: A,B")->delimiter(',');
+  verb->add_option("--algorithms", request->algorithms, "its algorithms: A,B or all")
+      ->delimiter(',')
+      ->default_str("all");
+  verb->add_flag("--auto", request->tour, "Let the flight find its own tour of the world");
+  verb->add_option("--seconds", request->seconds, "Length of that flight, 0 = the whole tour");
+  verb->add_flag("--dry", request->dry, "Only list the runs, with the time and disk they may take");
+  verb->add_option("--jobs", request->jobs, "Runs at work at the same time, on cores of their own")
+      ->check(CLI::Range(1, 256));
+  verb->add_option("--shard", request->shard, "K/N: only the K-th of N parts of the study");
   set_verb(
-      *verb, common, [&common, name, out, dry] { return study_verb(common, *name, *out, *dry); },
-      exit_code);
+      *verb, common, [&common, request] { return study_verb(common, *request); }, exit_code);
 }
 
 void add_report(CLI::App& app, Common& common, int& exit_code) {

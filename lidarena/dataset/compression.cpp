@@ -118,6 +118,11 @@ std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc) {
       crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
 }
 
+std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
+  return static_cast<std::uint32_t>(
+      crc32_combine(first, second, static_cast<z_off_t>(second_size)));
+}
+
 struct ZstdCompressor::Impl {
   ZSTD_CCtx* context = ZSTD_createCCtx();
   std::vector<std::byte> output;

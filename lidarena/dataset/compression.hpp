@@ -14,6 +14,8 @@ namespace lidarena {
 
 /// CRC-32 of IEEE 802.3, as zlib has it; `crc` continues an earlier one.
 std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc = 0);
+/// That of two pieces one after the other, from theirs and the size of the second.
+std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
 
 /// One zstd frame; the same input gives the same output (of one version of the library).
 class ZstdCompressor {

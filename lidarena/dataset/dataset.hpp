@@ -82,6 +82,7 @@ struct EnumNames<Dialect> {
 struct WriteOptions {
   DatasetFormat format = DatasetFormat::kMcap;
   Dialect dialect = Dialect::kSi;  ///< of recordings; sweeps are always in SI
+  bool compress = false;           ///< chunks of MCAP by zstd; those of bags always are, by LZ4
 };
 
 /// Whether a dataset folder holds its measurements; else it is a manifest alone, to be flown.

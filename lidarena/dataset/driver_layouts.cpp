@@ -112,12 +112,22 @@ struct OusterPixel {
   const Point* point = nullptr;
   std::uint32_t t = 0;
   std::uint16_t ring = 0;
+  std::uint16_t column = 0;  ///< in which it was fired
 };
 
 struct OusterImage {
   std::size_t rows = 1;
-  std::vector<OusterPixel> pixels;  ///< row by row
+  std::vector<OusterPixel> pixels;            ///< row by row
+  std::vector<Eigen::Vector3d> beam_origins;  ///< m, by column; empty when columns are not known
 };
+
+/// Where the beams start that are fired `t_ns` after the scan's begin: beside the axis, where the
+/// head points then.
+Eigen::Vector3d ouster_beam_origin(std::int64_t t_ns, const LidarInfo& lidar) {
+  const double turn = static_cast<double>(t_ns) * 1e-9 * lidar.rate_hz;
+  const double encoder = 2.0 * M_PI * (1.0 - turn);
+  return lidar.beam_origin_m * Eigen::Vector3d(std::cos(encoder), std::sin(encoder), 0.0);
+}
 
 bool has_geometry(const LidarInfo& lidar) {
   return lidar.rows > 0 && lidar.columns > 0 &&
@@ -126,14 +136,20 @@ bool has_geometry(const LidarInfo& lidar) {
 
 /// The pixels of a scan that gave none, destaggered.
 OusterImage empty_image(const LidarInfo& lidar) {
-  OusterImage image{static_cast<std::size_t>(lidar.rows), {}};
+  OusterImage image{static_cast<std::size_t>(lidar.rows), {}, {}};
+  std::vector<std::uint32_t> instants;
+  for (int column = 0; column < lidar.columns; ++column) {
+    const std::int64_t t = instant_of(column, lidar.columns, lidar.rate_hz);
+    instants.push_back(static_cast<std::uint32_t>(t));
+    image.beam_origins.push_back(ouster_beam_origin(t, lidar));
+  }
+  image.pixels.reserve(image.rows * instants.size());
   for (int row = 0; row < lidar.rows; ++row) {
     for (int pixel = 0; pixel < lidar.columns; ++pixel) {
       const int shifted = pixel - lidar.pixel_shifts[static_cast<std::size_t>(row)];
       const int column = (shifted % lidar.columns + lidar.columns) % lidar.columns;
-      image.pixels.push_back(
-          {nullptr, static_cast<std::uint32_t>(instant_of(column, lidar.columns, lidar.rate_hz)),
-           static_cast<std::uint16_t>(row)});
+      image.pixels.push_back({nullptr, instants[static_cast<std::size_t>(column)],
+                              static_cast<std::uint16_t>(row), static_cast<std::uint16_t>(column)});
     }
   }
   return image;
@@ -144,8 +160,13 @@ std::optional<OusterImage> destaggered(const Scan& scan, const LidarInfo& lidar)
   if (!scan.timed || !has_geometry(lidar)) return std::nullopt;
   OusterImage image = empty_image(lidar);
   const auto columns = static_cast<std::size_t>(lidar.columns);
+  std::optional<std::size_t> column;
+  std::int32_t column_dt = -1;
   for (const Point& point : scan.points) {
-    const auto column = shot_at(point.dt_ns, lidar.columns, lidar.rate_hz);
+    if (point.dt_ns != column_dt) {  // a column's points follow each other
+      column = shot_at(point.dt_ns, lidar.columns, lidar.rate_hz);
+      column_dt = point.dt_ns;
+    }
     if (!column || point.ring >= image.rows) return std::nullopt;
     const int shifted = static_cast<int>(*column) + lidar.pixel_shifts[point.ring];
     const int pixel = (shifted % lidar.columns + lidar.columns) % lidar.columns;
@@ -158,19 +179,20 @@ std::optional<OusterImage> destaggered(const Scan& scan, const LidarInfo& lidar)
 OusterImage in_one_row(const Scan& scan) {
   OusterImage image;
   for (const Point& point : scan.points) {
-    image.pixels.push_back({&point, static_cast<std::uint32_t>(point.dt_ns), point.ring});
+    image.pixels.push_back({&point, static_cast<std::uint32_t>(point.dt_ns), point.ring, 0});
   }
   return image;
 }
 
-/// As the sensor counts it: along the beam from its origin, and the origin's distance to the axis.
-/// Horizontally the origin lies where the head points at `t`, so the beam's start is known.
-double ouster_range(const Point& point, const LidarInfo& lidar) {
-  const double turn = static_cast<double>(point.dt_ns) * 1e-9 * lidar.rate_hz;
-  const double encoder = 2.0 * M_PI * (1.0 - turn);
-  const Eigen::Vector3d origin =
-      lidar.beam_origin_m * Eigen::Vector3d(std::cos(encoder), std::sin(encoder), 0.0);
-  return (point.position.cast<double>() - origin).norm() + lidar.beam_origin_m;
+/// As the sensor counts it, mm: along the beam from its origin, and the origin's distance to the
+/// axis.
+std::uint32_t ouster_range_mm(const OusterPixel& pixel, const OusterImage& image,
+                              const LidarInfo& lidar) {
+  const Eigen::Vector3d origin = image.beam_origins.empty()
+                                     ? ouster_beam_origin(pixel.point->dt_ns, lidar)
+                                     : image.beam_origins[pixel.column];
+  const double range = (pixel.point->position.cast<double>() - origin).norm();
+  return static_cast<std::uint32_t>(1e3 * (range + lidar.beam_origin_m) + 0.5);
 }
 
 const std::vector<PointField>& ouster_fields() {
@@ -183,7 +205,8 @@ const std::vector<PointField>& ouster_fields() {
   return kFields;
 }
 
-void store_pixel(const OusterPixel& pixel, const LidarInfo& lidar, std::byte* at) {
+void store_pixel(const OusterPixel& pixel, const OusterImage& image, const LidarInfo& lidar,
+                 std::byte* at) {
   store(pixel.t, at + 20);
   store(pixel.ring, at + 26);
   if (pixel.point == nullptr) {
@@ -195,7 +218,7 @@ void store_pixel(const OusterPixel& pixel, const LidarInfo& lidar, std::byte* at
   store(point.intensity, at + 16);
   store(static_cast<std::uint32_t>(point.dt_ns), at + 20);
   store(std::uint16_t{as_byte(point.intensity)}, at + 24);
-  store(static_cast<std::uint32_t>(std::lround(ouster_range(point, lidar) * 1e3)), at + 32);
+  store(ouster_range_mm(pixel, image, lidar), at + 32);
 }
 
 }  // namespace
@@ -265,7 +288,7 @@ void encode_ouster_cloud(const Scan& scan, const LidarInfo& lidar, std::string_v
           .data();
   bool is_dense = true;
   for (const OusterPixel& pixel : image.pixels) {
-    store_pixel(pixel, lidar, at);
+    store_pixel(pixel, image, lidar, at);
     is_dense = is_dense && pixel.point != nullptr;
     at += kStep;
   }

@@ -4,14 +4,21 @@
 namespace lidarena::mcap {
 namespace {
 
-/// Frames what `content` writes: the length is known only afterwards.
+/// Frames what `content` writes, and `to_follow` bytes after it: the length is known only
+/// afterwards.
 template <class Content>
-void append_record(ByteWriter& out, Opcode opcode, const Content& content) {
+void append_record_head(ByteWriter& out, Opcode opcode, std::uint64_t to_follow,
+                        const Content& content) {
   out.put(static_cast<std::uint8_t>(opcode));
   const std::size_t length_at = out.size();
   out.put(std::uint64_t{0});
   content();
-  out.replace(length_at, std::uint64_t{out.size() - length_at - sizeof(std::uint64_t)});
+  out.replace(length_at, std::uint64_t{out.size() - length_at - sizeof(std::uint64_t)} + to_follow);
+}
+
+template <class Content>
+void append_record(ByteWriter& out, Opcode opcode, const Content& content) {
+  append_record_head(out, opcode, 0, content);
 }
 
 /// A map or an array: uint32 length in bytes, then the elements.
@@ -88,25 +95,33 @@ void append(ByteWriter& out, const Channel& channel) {
   });
 }
 
-void append(ByteWriter& out, const Message& message) {
-  append_record(out, Opcode::kMessage, [&] {
+void append_head(ByteWriter& out, const Message& message) {
+  append_record_head(out, Opcode::kMessage, message.data.size(), [&] {
     out.put(message.channel_id);
     out.put(message.sequence);
     out.put(message.log_time);
     out.put(message.publish_time);
-    out.put(message.data);
   });
 }
 
+void append(ByteWriter& out, const Message& message) {
+  append_head(out, message);
+  out.put(message.data);
+}
+
 void append(ByteWriter& out, const Chunk& chunk) {
-  append_record(out, Opcode::kChunk, [&] {
+  append_head(out, chunk, chunk.records.size());
+  out.put(chunk.records);
+}
+
+void append_head(ByteWriter& out, const Chunk& chunk, std::uint64_t size) {
+  append_record_head(out, Opcode::kChunk, size, [&] {
     out.put(chunk.message_start_time);
     out.put(chunk.message_end_time);
     out.put(chunk.uncompressed_size);
     out.put(chunk.uncompressed_crc);
     out.put(chunk.compression);
-    out.put(std::uint64_t{chunk.records.size()});
-    out.put(chunk.records);
+    out.put(size);
   });
 }
 

@@ -136,6 +136,10 @@ void append(ByteWriter& out, const Schema& schema);
 void append(ByteWriter& out, const Channel& channel);
 void append(ByteWriter& out, const Message& message);
 void append(ByteWriter& out, const Chunk& chunk);
+/// The same without the message's data, or the chunk's records of `size` bytes, which are to
+/// follow.
+void append_head(ByteWriter& out, const Message& message);
+void append_head(ByteWriter& out, const Chunk& chunk, std::uint64_t size);
 void append(ByteWriter& out, const MessageIndex& index);
 void append(ByteWriter& out, const ChunkIndex& index);
 void append(ByteWriter& out, const Statistics& statistics);

@@ -43,6 +43,12 @@ struct McapWriter::Impl {
     file.write(bytes);
   }
 
+  /// The same for bytes whose own check sum is known.
+  void write(Bytes bytes, std::uint32_t crc_of_bytes) {
+    crc = crc32_joined(crc, crc_of_bytes, bytes.size());
+    file.write(bytes);
+  }
+
   template <class Record>
   void write_record(const Record& content) {
     record.clear();
@@ -59,14 +65,33 @@ struct McapWriter::Impl {
     append(out, channel);
   }
 
-  void close_chunk() {
+  /// Stores the chunk, `tail` being the end of its last record: bytes that need not be copied.
+  void close_chunk(Bytes tail = {}) {
     if (chunk_messages.empty()) return;
-    const Bytes records = compressor ? compressor->compress(chunk.bytes()) : chunk.bytes();
+    const std::uint64_t size = chunk.size() + tail.size();
+    const std::uint32_t crc_of_chunk = crc32_of(chunk.bytes());
+    const std::uint32_t crc_of_tail = crc32_of(tail);
+    Bytes records = chunk.bytes();
+    std::uint64_t stored_size = size;
+    if (compressor) {
+      records = compressor->compress(records);
+      stored_size = records.size();
+    }
     const std::string compression = compressor ? "zstd" : "";
     mcap::ChunkIndex index{chunk_start_time, chunk_end_time, file.size(), 0, {}, 0,
-                           compression,      records.size(), chunk.size()};
-    write_record(mcap::Chunk{chunk_start_time, chunk_end_time, chunk.size(),
-                             crc32_of(chunk.bytes()), compression, records});
+                           compression,      stored_size,    size};
+    record.clear();
+    append_head(record,
+                mcap::Chunk{chunk_start_time,
+                            chunk_end_time,
+                            size,
+                            crc32_joined(crc_of_chunk, crc_of_tail, tail.size()),
+                            compression,
+                            {}},
+                stored_size);
+    write(record.bytes());
+    compressor ? write(records) : write(records, crc_of_chunk);
+    write(tail, crc_of_tail);
     index.chunk_length = file.size() - index.chunk_start;
     for (const auto& [channel_id, messages] : chunk_messages) {
       index.message_index_offsets[channel_id] = file.size();
@@ -148,10 +173,15 @@ void McapWriter::write(std::uint16_t channel_id, Time log_time, Time publish_tim
   mcap::MessageIndex& index = w.chunk_messages[channel_id];
   index.channel_id = channel_id;
   index.entries.emplace_back(time, w.chunk.size());
-  append(w.chunk, mcap::Message{channel_id, static_cast<std::uint32_t>(count), time,
-                                static_cast<std::uint64_t>(publish_time.count()), data});
+  append_head(w.chunk, mcap::Message{channel_id, static_cast<std::uint32_t>(count), time,
+                                     static_cast<std::uint64_t>(publish_time.count()), data});
   ++count;
   ++total.message_count;
+  if (!w.compressor && data.size() >= w.options.chunk_bytes) {
+    w.close_chunk(data);
+    return;
+  }
+  w.chunk.put(data);
   if (w.chunk.size() >= w.options.chunk_bytes) w.close_chunk();
 }
 

@@ -63,7 +63,9 @@ class McapRecordingReader final : public RecordingReader {
 class McapRecordingWriter final : public RecordingWriter {
  public:
   McapRecordingWriter(const fs::path& file, const RecordingOptions& options)
-      : file_(file), metadata_beside_(options.metadata_beside), mcap_(file) {
+      : file_(file),
+        metadata_beside_(options.metadata_beside),
+        mcap_(file, {.zstd_level = options.compress ? 1 : 0}) {
     if (!options.name.empty()) mcap_.add_metadata(options.name, options.description);
   }
 
@@ -124,7 +126,8 @@ class McapRecordingWriter final : public RecordingWriter {
 class BagRecordingWriter final : public RecordingWriter {
  public:
   BagRecordingWriter(const fs::path& file, const RecordingOptions& options)
-      : bag_(file), description_(Json(options.description).dump()) {
+      : bag_(file),
+        description_(Json(options.description).dump()) {
     if (options.name.empty()) return;
     topic_ =
         bag_.add_topic("/" + options.name + std::string(kDescriptionEnding), ros::kString, true);

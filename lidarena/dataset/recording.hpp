@@ -93,6 +93,7 @@ RecordingInfo read_recording_info(const std::filesystem::path& file);
 struct RecordingOptions {
   RecordingFormat format = RecordingFormat::kMcap;
   bool metadata_beside = false;
+  bool compress = false;  ///< chunks of MCAP by zstd; those of bags always are, by LZ4
   std::string name;
   StringMap description;
 };

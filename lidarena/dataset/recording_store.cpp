@@ -22,8 +22,8 @@ std::string imu_frame(const std::string& id) { return id + "_imu"; }
 RecordingOptions recording_options(const Rig& rig, const RecordedSensors& sensors,
                                    const WriteOptions& options, bool is_folder) {
   const bool is_bag = options.format == DatasetFormat::kBag;
-  return {is_bag ? RecordingFormat::kBag : RecordingFormat::kMcap, is_folder, layout::kDescription,
-          layout::describe({rig, sensors})};
+  return {is_bag ? RecordingFormat::kBag : RecordingFormat::kMcap, is_folder, options.compress,
+          layout::kDescription, layout::describe({rig, sensors})};
 }
 
 /// The driver whose layouts a LiDAR's messages, and those of the IMU inside it, are to have.

@@ -26,15 +26,15 @@ Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d&
   return (axis + angles.x() * left + angles.y() * axis.cross(left)).normalized();
 }
 
-void merge_echoes(std::span<SubEcho> parts, double pulse_length, std::vector<Echo>& echoes) {
-  std::ranges::sort(parts, [](const SubEcho& a, const SubEcho& b) {
+void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>& echoes) {
+  std::ranges::sort(parts, [](const Echo& a, const Echo& b) {
     return a.range < b.range || (a.range == b.range && a.sub_ray < b.sub_ray);
   });
   echoes.clear();
   double strongest = 0.0;
   double last = 0.0;
   double weighted_range = 0.0;
-  for (const SubEcho& part : parts) {
+  for (const Echo& part : parts) {
     if (echoes.empty() || part.range - last > pulse_length) {
       echoes.push_back({0.0, 0.0, 0.0, part.sub_ray});
       strongest = weighted_range = 0.0;

@@ -10,20 +10,13 @@
 
 namespace lidarena {
 
-/// What one sub-ray of a beam brought back.
-struct SubEcho {
-  double range;   ///< m, as the sensor counts
-  double energy;  ///< share of the beam's, times the surface's backscatter()
-  double signal;  ///< see SignalModel
-  std::uint32_t sub_ray = 0;
-};
-
-/// One pulse as the receiver sees it: the sub-echoes that it cannot tell apart.
+/// What one sub-ray of a beam brought back, or one pulse as the receiver sees it: the parts that it
+/// cannot tell apart.
 struct Echo {
-  double range;           ///< m, of the sub-echoes, weighted by their signals
-  double energy;          ///< sum
-  double signal;          ///< sum
-  std::uint32_t sub_ray;  ///< the one with the strongest signal
+  double range;   ///< m, as the sensor counts; of several parts, weighted by their signals
+  double energy;  ///< share of the beam's, times the surface's backscatter(); sum of the parts
+  double signal;  ///< see SignalModel; sum of the parts
+  std::uint32_t sub_ray = 0;  ///< the one with the strongest signal
 };
 
 /// Directions of a beam's sub-rays around its axis, in units of the Gaussian profile's sigma:
@@ -37,7 +30,7 @@ Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d&
 
 /// Replaces `echoes` by the pulses that `parts` make, nearest first: sorted by range, parts belong
 /// together as long as each follows the one before within `pulse_length` metres. Sorts `parts`.
-void merge_echoes(std::span<SubEcho> parts, double pulse_length, std::vector<Echo>& echoes);
+void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>& echoes);
 
 /// Puts the echoes of a shot, nearest first, in the order in which they are reported, and drops
 /// those beyond the count.

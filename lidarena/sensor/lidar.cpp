@@ -83,7 +83,7 @@ struct Lidar::Block {
   std::uint64_t normals_of = std::numeric_limits<std::uint64_t>::max();  ///< the pair's number
   // Of the shot at hand.
   double axis_to_origin = 0.0;  ///< m; ranges count from the sensor's axis
-  std::vector<SubEcho> parts;
+  std::vector<Echo> parts;
   std::vector<Echo> echoes;
 };
 
@@ -96,6 +96,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
       beam_sigma_(kRadians * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
+      energy_of_ray_(1.0 / static_cast<double>(sub_rays_.size())),
       table_(*pattern_),
       order_(first_beams(*pattern_)) {
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);
@@ -126,60 +127,57 @@ void Lidar::place_rays(Block& block) const {
 }
 
 void Lidar::aim(const LidarMotion& motion, Block& block) const {
-  const double shift = start_shift(config_);
+  const auto shift = static_cast<float>(start_shift(config_));
   const std::size_t split = sub_rays_.size();
-  Pose world_from_lidar = Pose::Identity();
+  Vector3d position = Vector3d::Zero();
+  Eigen::Matrix3f turn =
+      Eigen::Matrix3f::Identity();  // world from lidar, as exact as directions are
   std::int32_t known_dt = -1;
   for (std::size_t i = 0; i < block.shots.size(); ++i) {
     const Beam& beam = block.shots[i];
     if (beam.dt_ns != known_dt) {  // shots of one instant share the pose
-      world_from_lidar = motion.at(beam.dt_ns);
+      const Pose world_from_lidar = motion.at(beam.dt_ns);
+      position = world_from_lidar.translation();
+      turn = world_from_lidar.linear().cast<float>();
       known_dt = beam.dt_ns;
     }
-    const Vector3d axis = beam.direction.cast<double>();
-    const Vector3d origin = world_from_lidar * (beam.origin.cast<double>() + shift * axis);
+    const Vector3f offset = turn * (beam.origin + shift * beam.direction);
+    const Vector3d origin = position + offset.cast<double>();
     if (split == 1) {
-      block.rays[block.places[i]] = {origin, (world_from_lidar.linear() * axis).cast<float>()};
+      block.rays[block.places[i]] = {origin, turn * beam.direction};
       continue;
     }
+    const Vector3d axis = beam.direction.cast<double>();
     const double spin = 2.0 * std::numbers::pi * random_.uniform(block.first_ray + i, kSpin);
-    const Eigen::Rotation2Dd turn(spin);
+    const Eigen::Rotation2Dd spun(spin);
     for (std::size_t k = 0; k < split; ++k) {
-      const Vector3d direction = turned_aside(axis, beam_sigma_.cwiseProduct(turn * sub_rays_[k]));
-      block.rays[block.places[i] + k] = {origin,
-                                         (world_from_lidar.linear() * direction).cast<float>()};
+      const Vector3d direction = turned_aside(axis, beam_sigma_.cwiseProduct(spun * sub_rays_[k]));
+      block.rays[block.places[i] + k] = {origin, turn * direction.cast<float>()};
     }
   }
 }
 
 /// What sub-ray `k` of a shot brings back, if anything within the limits.
-std::optional<SubEcho> Lidar::receive_ray(const World& world, std::size_t shot, std::size_t k,
-                                          const Block& block) const {
-  const Hit& hit = block.hits[block.places[shot] + k];
+std::optional<Echo> Lidar::receive_ray(const TriangleMesh& mesh, std::size_t shot, std::size_t k,
+                                       const Block& block) const {
+  const std::size_t place = block.places[shot] + k;
+  const Hit& hit = block.hits[place];
   if (!hit.valid()) return std::nullopt;
   const double range = block.axis_to_origin + static_cast<double>(hit.range);
   if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
-  const Ray& ray = block.rays[block.places[shot] + k];
-  const double cosine = -static_cast<double>(hit.normal.dot(ray.direction));
-  const double energy = backscatter(world.mesh().material(hit.triangle), cosine) /
-                        static_cast<double>(sub_rays_.size());
+  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
+  const double energy = energy_of_ray_ * backscatter(mesh.material(hit.triangle), cosine);
   const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
-  return SubEcho{range, energy, signal, static_cast<std::uint32_t>(k)};
+  return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
 }
 
 /// Fills the shot's echoes from its hits: those detected, in the order in which they are reported.
-void Lidar::receive(const World& world, std::size_t shot, Block& block) const {
-  block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
+void Lidar::receive(const TriangleMesh& mesh, std::size_t shot, Block& block) const {
   block.echoes.clear();
   block.parts.clear();
   for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
-    const auto part = receive_ray(world, shot, k, block);
-    if (!part) continue;
-    if (sub_rays_.size() == 1) {
-      block.echoes.push_back({part->range, part->energy, part->signal, 0});
-    } else {
-      block.parts.push_back(*part);
-    }
+    const auto part = receive_ray(mesh, shot, k, block);
+    if (part) (sub_rays_.size() == 1 ? block.echoes : block.parts).push_back(*part);
   }
   if (!block.parts.empty()) {
     merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
@@ -224,33 +222,29 @@ Vector3f Lidar::reported_direction(const Beam& beam, std::uint64_t ray) const {
   return turned_aside(beam.direction.cast<double>(), {sigma * left, sigma * up}).cast<float>();
 }
 
-/// Makes points, and their truth, of the shot's echoes.
-void Lidar::report(std::size_t shot, Block& block) const {
+/// Makes a point, and its truth, of the shot's `number`-th echo.
+void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const {
   const Beam& beam = block.shots[shot];
   const std::uint64_t ray = block.first_ray + shot;
-  const Vector3f direction = reported_direction(beam, ray);
+  const double way = measured_range(echo, ray, number, block) - block.axis_to_origin;
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
-  for (std::size_t k = 0; k < block.echoes.size(); ++k) {
-    const Echo& echo = block.echoes[k];
-    const double way = measured_range(echo, ray, k, block) - block.axis_to_origin;
-    Point point;
-    point.position = beam.origin + static_cast<float>(way) * direction;
-    point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
-    point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
-    point.ring = beam.ring;
-    point.echo = static_cast<std::uint8_t>(k);
-    block.points[block.count++] = point;
-    if (block.truth == nullptr) continue;
-    const std::size_t place = block.places[shot] + echo.sub_ray;
-    const Hit& hit = block.hits[place];
-    const double way_to_surface = static_cast<double>(hit.range);
-    const Vector3d to_surface = way_to_surface * block.rays[place].direction.cast<double>();
-    block.truth[block.count - 1] = {
-        .position = (block.rays[place].origin + to_surface).cast<float>(),
-        .range = static_cast<float>(block.axis_to_origin + way_to_surface + start_shift(config_)),
-        .normal = hit.normal,
-        .triangle = hit.triangle};
-  }
+  Point point;
+  point.position = beam.origin + static_cast<float>(way) * reported_direction(beam, ray);
+  point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
+  point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
+  point.ring = beam.ring;
+  point.echo = static_cast<std::uint8_t>(number);
+  block.points[block.count++] = point;
+  if (block.truth == nullptr) return;
+  const std::size_t place = block.places[shot] + echo.sub_ray;
+  const Hit& hit = block.hits[place];
+  const double way_to_surface = static_cast<double>(hit.range);
+  const Vector3d to_surface = way_to_surface * block.rays[place].direction.cast<double>();
+  block.truth[block.count - 1] = {
+      .position = (block.rays[place].origin + to_surface).cast<float>(),
+      .range = static_cast<float>(block.axis_to_origin + way_to_surface + start_shift(config_)),
+      .normal = hit.normal,
+      .triangle = hit.triangle};
 }
 
 void Lidar::shoot(const World& world, const LidarMotion& motion, Block& block) const {
@@ -259,9 +253,17 @@ void Lidar::shoot(const World& world, const LidarMotion& motion, Block& block) c
   world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
              RayOrder::kNeighbours);
   block.count = 0;
+  const TriangleMesh& mesh = world.mesh();
+  const bool one_sure_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
-    receive(world, shot, block);
-    report(shot, block);
+    block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
+    if (one_sure_echo) {
+      const auto echo = receive_ray(mesh, shot, 0, block);
+      if (echo) report(shot, *echo, 0, block);
+      continue;
+    }
+    receive(mesh, shot, block);
+    for (std::size_t k = 0; k < block.echoes.size(); ++k) report(shot, block.echoes[k], k, block);
   }
 }
 

@@ -53,10 +53,10 @@ class Lidar {
   struct Block;
   void place_rays(Block& block) const;
   void aim(const LidarMotion& motion, Block& block) const;
-  std::optional<SubEcho> receive_ray(const World& world, std::size_t shot, std::size_t k,
-                                     const Block& block) const;
-  void receive(const World& world, std::size_t shot, Block& block) const;
-  void report(std::size_t shot, Block& block) const;
+  std::optional<Echo> receive_ray(const TriangleMesh& mesh, std::size_t shot, std::size_t k,
+                                  const Block& block) const;
+  void receive(const TriangleMesh& mesh, std::size_t shot, Block& block) const;
+  void report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const;
   void shoot(const World& world, const LidarMotion& motion, Block& block) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   double range_noise(std::uint64_t ray, std::size_t number, Block& block) const;
@@ -70,6 +70,7 @@ class Lidar {
   SignalModel signal_;
   std::vector<Eigen::Vector2d> sub_rays_;  ///< in sigmas of the beam
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
+  double energy_of_ray_;                   ///< share of the beam's
   bool needs_signal_ = false;
   BeamTable table_;
   CastOrder order_;

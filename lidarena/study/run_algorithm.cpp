@@ -31,18 +31,6 @@ std::string chosen_lidar(const Dataset& dataset, const std::string& asked) {
                    nearest.empty() ? "it has: " + list : "did you mean '" + nearest + "'?");
 }
 
-Json summary_json(const RunSummary& summary) {
-  Json statuses = Json::object();
-  for (const auto& [status, count] : summary.statuses) statuses[to_string(status)] = count;
-  return {{"scans", summary.scans},
-          {"dropped", summary.dropped},
-          {"longest_delay_s", summary.longest_delay_s},
-          {"statuses", statuses},
-          {"sensor_seconds", summary.sensor_seconds},
-          {"compute_seconds", summary.compute_seconds},
-          {"diverged", summary.diverged}};
-}
-
 /// `dataset` as seen from `run`, so that the two can be moved together.
 std::string relative_path(const fs::path& dataset, const fs::path& run) {
   const fs::path relative = fs::proximate(fs::absolute(dataset), fs::absolute(run));
@@ -113,6 +101,18 @@ std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar
 
 }  // namespace
 
+Json to_json(const RunSummary& summary) {
+  Json statuses = Json::object();
+  for (const auto& [status, count] : summary.statuses) statuses[to_string(status)] = count;
+  return {{"scans", summary.scans},
+          {"dropped", summary.dropped},
+          {"longest_delay_s", summary.longest_delay_s},
+          {"statuses", statuses},
+          {"sensor_seconds", summary.sensor_seconds},
+          {"compute_seconds", summary.compute_seconds},
+          {"diverged", summary.diverged}};
+}
+
 RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
                          LogSink& log) {
   Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
@@ -141,7 +141,7 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
                            {"paced", request.paced},
                            {"status", result.summary.diverged ? "diverged" : "ok"},
                            {"reason", result.summary.reason},
-                           {"summary", summary_json(result.summary)}};
+                           {"summary", to_json(result.summary)}};
   write_run(out, result.files);
   return result.summary;
 }

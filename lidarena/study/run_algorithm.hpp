@@ -16,9 +16,12 @@ namespace lidarena {
 struct RunRequest {
   OdometryRequest odometry;
   std::filesystem::path dataset;
-  ReadOptions read;  ///< `read.sensor` names the LiDAR where the dataset has several
+  ReadOptions read;    ///< `read.sensor` names the LiDAR where the dataset has several
   bool paced = false;  ///< drop scans when the algorithm is late, as on a live robot
 };
+
+/// A run's summary as its manifest has it.
+Json to_json(const RunSummary& summary);
 
 /// Runs one algorithm over one dataset and writes the RUN folder `out`, with the re-projected map.
 /// Returns the summary; a diverged run is written too, with its reason in the manifest.

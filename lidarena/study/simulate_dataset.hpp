@@ -24,9 +24,9 @@ struct SimulateRequest {
   double seconds = 0.0;    ///< 0 = the whole flight
   bool noise = true;
   std::optional<ScanMode> mode;  ///< of all sensors; empty = as their files say
-  bool data = true;    ///< false: a manifest alone, flown anew whenever it is used
-  bool truth = false;  ///< also what each point hit, as /truth/SENSOR/hits
-  WriteOptions write;  ///< format and dialect of the measurements
+  bool data = true;              ///< false: a manifest alone, flown anew whenever it is used
+  bool truth = false;            ///< also what each point hit, as /truth/SENSOR/hits
+  WriteOptions write;            ///< format and dialect of the measurements
 };
 
 /// Counts and sizes of what was simulated.

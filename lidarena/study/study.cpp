@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/study.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cmath>
+#include <cstring>
 #include <map>
+#include <memory>
+#include <set>
+#include <thread>
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/md5.hpp"
 #include "lidarena/dataset/text_file.hpp"
-#include "lidarena/odometry/factory.hpp"
-#include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/isolate.hpp"
 #include "lidarena/study/run_algorithm.hpp"
+#include "lidarena/study/run_external.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
 namespace lidarena {
@@ -21,36 +31,68 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// NAME:PRESET into its parts; the preset defaults to the algorithm's default.
-OdometryRequest parse_algorithm(const std::string& text) {
-  OdometryRequest request;
-  const std::size_t colon = text.find(':');
-  request.algorithm = text.substr(0, colon);
-  if (colon != std::string::npos) request.preset = text.substr(colon + 1);
-  return request;
-}
+constexpr const char* kRequest = "request.json";  ///< what a finished stage was asked for
+constexpr auto kPollPeriod = std::chrono::milliseconds(50);
 
-std::string stem(const std::string& name_or_path) { return fs::path(name_or_path).stem().string(); }
+std::string digest_of(const fs::path& file) { return md5_of(read_bytes(file)); }
 
-/// True when `file` exists and its member `key` equals `value`: the stage was done with the very
-/// same request before.
-bool done_before(const fs::path& file, const std::string& key, const Json& value) {
-  if (!fs::exists(file)) return false;
+/// True when the stage in `folder` was done with the very same request before.
+bool done_before(const fs::path& folder, const Json& request) {
+  if (!fs::exists(folder / kRequest)) return false;
   try {
-    const Json json = read_json(file);
-    return json.contains(key) && json.at(key) == value;
+    return read_json(folder / kRequest) == request;
   } catch (const Error&) {
     return false;
   }
 }
 
-struct DatasetPlan {
-  SimulateRequest request;
-  Json key;  ///< what the dataset depends on, kept beside it as request.json
+/// Nobody else works in the folder while this lives.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder) {
+    const fs::path file = folder / "study.lock";
+    fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+    if (fd_ < 0) throw InputError(file.string(), std::string("cannot be made: ") + strerror(errno));
+    if (!lock_within_seconds()) {
+      close(fd_);
+      throw InputError(folder.string(), "another study is at work here",
+                       "wait for it, or give --out another folder");
+    }
+  }
+  ~FolderLock() { close(fd_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  /// The processes of a study that was just killed take a moment to end.
+  bool lock_within_seconds() const {
+    for (int attempt = 0; attempt < 40; ++attempt) {
+      if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return true;
+      std::this_thread::sleep_for(kPollPeriod);
+    }
+    return false;
+  }
+
+  int fd_ = -1;
 };
 
-DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec,
-                         const ConfigFolder& configs) {
+/// Passes on what happens, but no progress: several jobs would write over each other's.
+class MessagesOnly : public LogSink {
+ public:
+  explicit MessagesOnly(LogSink& log) : log_(log) {}
+  void message(LogLevel level, std::string_view text) override { log_.message(level, text); }
+
+ private:
+  LogSink& log_;
+};
+
+struct DatasetPlan {
+  SimulateRequest request;
+  Json key;  ///< all that the dataset depends on
+};
+
+DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec, const ConfigFolder& configs,
+                         const std::string& program) {
   DatasetPlan plan;
   plan.request.world = configs.resolve("worlds", cell.world);
   plan.request.flight = configs.resolve("flights", cell.flight);
@@ -58,18 +100,17 @@ DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec,
     plan.request.sensors.push_back(configs.resolve("sensors", sensor));
   }
   plan.request.seed = cell.seed;
+  plan.request.seconds = cell.seconds;
+  plan.request.mode = cell.mode;
   plan.request.data = false;  // flown anew for each run: no gigabytes on the disk
-  for (const StudyScene& scene : spec.scenes) {
-    if (scene.world == cell.world && scene.flight == cell.flight) {
-      plan.request.seconds = scene.seconds;
-    }
-  }
-  plan.key = {{"world", read_bytes(plan.request.world)},
-              {"flight", read_bytes(plan.request.flight)},
+  plan.key = {{"program", program},
+              {"world", digest_of(plan.request.world)},
+              {"flight", digest_of(plan.request.flight)},
+              {"sensors", Json::array()},
               {"seed", cell.seed},
-              {"seconds", plan.request.seconds},
-              {"sensors", Json::array()}};
-  for (const fs::path& file : plan.request.sensors) plan.key["sensors"].push_back(read_bytes(file));
+              {"seconds", cell.seconds},
+              {"mode", value_to_json(cell.mode)}};
+  for (const fs::path& file : plan.request.sensors) plan.key["sensors"].push_back(digest_of(file));
   return plan;
 }
 
@@ -83,149 +124,234 @@ std::string lidar_id_of(const fs::path& dataset, const StudySpec& spec, const st
 }
 
 void record_failure(const fs::path& run, const PlannedRun& cell, const std::string& reason) {
-  fs::remove(run / "metrics.json");
   fs::create_directories(run);
+  for (const auto& entry : fs::directory_iterator(run)) {
+    if (entry.path().filename() != kProgramLog) fs::remove_all(entry.path());
+  }
   write_json(run / "manifest.json", {{"kind", "run"},
                                      {"algorithm", cell.algorithm},
                                      {"preset", cell.preset},
                                      {"failed", reason}});
 }
 
-enum class CellEnd { kDone, kReused, kFailed, kDiverged };
+/// One stage of the study: a flight to be planned, or a cell to be run and scored.
+struct Stage {
+  std::string name;
+  const PlannedRun* cell = nullptr;  ///< none: a flight
+  std::string dataset;
+  fs::path folder;
+  Json key;
+  std::function<void(const Parallel&, LogSink&)> work;
+  double weight = 1.0;  ///< expected seconds
+};
 
-/// One study in progress: does its stages, each in a process of its own.
+/// One study in progress: hands stages to processes, in order, as soon as what they need is there.
 class Runner {
  public:
-  Runner(const StudySpec& spec, const ConfigFolder& configs, fs::path out, int threads,
-         LogSink& log)
-      : spec_(spec), configs_(configs), out_(std::move(out)), threads_(threads), log_(log) {}
+  Runner(const StudySpec& spec, const ConfigFolder& configs, fs::path out,
+         const StudyOptions& options, LogSink& log)
+      : spec_(spec), configs_(configs), out_(std::move(out)), log_(log) {
+    const std::vector<int> cores = usable_cores();
+    const int jobs = std::max(1, options.jobs);
+    const int threads = options.threads > 0 ? options.threads : static_cast<int>(cores.size());
+    for (int job = 0; job < jobs; ++job) {
+      Slot& slot = slots_.emplace_back();
+      slot.threads = std::max(1, threads / jobs);
+      if (jobs == 1) continue;
+      for (int i = 0; i < slot.threads; ++i) {
+        slot.cores.push_back(
+            cores[static_cast<std::size_t>(job * slot.threads + i) % cores.size()]);
+      }
+    }
+  }
 
-  CellEnd do_cell(const PlannedRun& cell) {
-    const fs::path run = out_ / "runs" / cell.name;
-    const DatasetPlan planned = dataset_plan(cell, spec_, configs_);
-    std::string reason = fly(cell.dataset, planned);
-    if (reason.empty()) {
-      const Json key = {{"dataset", planned.key}, {"cell", to_json(cell)}};
-      if (done_before(run / "request.json", "request", key)) return CellEnd::kReused;
-      log_.info("run " + cell.name);
-      reason = run_and_score(cell, run, key);
+  StudyOutcome run(const std::vector<PlannedRun>& cells) {
+    add_stages(cells);
+    begin_ = std::chrono::steady_clock::now();
+    while (!waiting_.empty() || is_busy()) {
+      for (Slot& slot : slots_) {
+        if (!slot.work) start_next(slot);
+        if (slot.work) look_after(slot);
+      }
+      show_progress();
+      if (is_busy()) std::this_thread::sleep_for(kPollPeriod);
     }
-    if (!reason.empty()) {
-      record_failure(run, cell, reason);
-      log_.warn(fmt::format("run {} failed: {}", cell.name, reason));
-      return CellEnd::kFailed;
-    }
-    const Json manifest = read_json(run / "manifest.json");
-    return manifest.at("summary").at("diverged").get<bool>() ? CellEnd::kDiverged : CellEnd::kDone;
+    return outcome_;
   }
 
  private:
-  /// Flies the dataset unless it is there; returns why it could not be flown, or nothing.
-  std::string fly(const std::string& name, const DatasetPlan& planned) {
-    const fs::path folder = out_ / "datasets" / name;
-    if (broken_.contains(name)) return broken_[name];
-    if (done_before(folder / "request.json", "request", planned.key)) return {};
-    log_.info("flight " + name);
-    const IsolatedOutcome flown = run_isolated([&] {
-      simulate_dataset(planned.request, folder, Parallel(threads_), log_);
-      write_json(folder / "request.json", {{"request", planned.key}});
-    });
-    if (flown.ok) return {};
-    return broken_[name] = "flight: " + flown.reason;
+  struct Slot {
+    int threads = 1;
+    std::vector<int> cores;
+    std::unique_ptr<IsolatedWork> work;
+    Stage stage;
+  };
+
+  void add_stages(const std::vector<PlannedRun>& cells) {
+    const std::string program = digest_of("/proc/self/exe");
+    std::set<std::string> flights;
+    for (const PlannedRun& cell : cells) {
+      const DatasetPlan planned = dataset_plan(cell, spec_, configs_, program);
+      if (flights.insert(cell.dataset).second) waiting_.push_back(flight_stage(cell, planned));
+      waiting_.push_back(cell_stage(cell, planned));
+    }
+    for (const Stage& stage : waiting_) weight_of_all_ += stage.weight;
+    weight_left_ = weight_of_all_;
+    cells_ = cells.size();
   }
 
-  std::string run_and_score(const PlannedRun& cell, const fs::path& run, const Json& key) {
-    fs::remove(run / "request.json");
-    return run_isolated([&] {
-             const Parallel parallel(threads_);
-             RunRequest request;
-             request.odometry.algorithm = cell.algorithm;
-             request.odometry.preset = cell.preset;
-             request.dataset = out_ / "datasets" / cell.dataset;
-             request.read.sensor = lidar_id_of(request.dataset, spec_, cell.sensor);
-             run_algorithm(request, run, parallel, log_);
-             score_run(run, parallel, log_);
-             write_json(run / "request.json", {{"request", key}});
-           })
-        .reason;
+  Stage flight_stage(const PlannedRun& cell, const DatasetPlan& planned) const {
+    Stage stage;
+    stage.name = "flight " + cell.dataset;
+    stage.dataset = cell.dataset;
+    stage.folder = out_ / "datasets" / cell.dataset;
+    stage.key = planned.key;
+    stage.work = [request = planned.request, folder = stage.folder](const Parallel& parallel,
+                                                                    LogSink& log) {
+      simulate_dataset(request, folder, parallel, log);
+    };
+    return stage;
+  }
+
+  Stage cell_stage(const PlannedRun& cell, const DatasetPlan& planned) const {
+    Stage stage;
+    stage.name = "run " + cell.name;
+    stage.cell = &cell;
+    stage.dataset = cell.dataset;
+    stage.folder = out_ / "runs" / cell.name;
+    stage.key = {{"dataset", planned.key}, {"cell", to_json(cell)}};
+    stage.weight = estimate(cell, configs_).seconds;
+    const ExternalProgram* external = find_external(spec_, cell.algorithm);
+    if (external != nullptr) stage.key["external"] = to_json(*external);
+    stage.work = [this, &cell, external, folder = stage.folder](const Parallel& parallel,
+                                                                LogSink& log) {
+      RunRequest request;
+      request.odometry.algorithm = cell.algorithm;
+      request.odometry.preset = cell.preset;
+      request.dataset = out_ / "datasets" / cell.dataset;
+      request.read.sensor = lidar_id_of(request.dataset, spec_, cell.sensor);
+      if (external != nullptr) {
+        run_external(*external, request, folder, parallel, log);
+      } else {
+        run_algorithm(request, folder, parallel, log);
+      }
+      score_run(folder, parallel, log);
+    };
+    return stage;
+  }
+
+  bool is_busy() const {
+    return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.work != nullptr; });
+  }
+
+  bool is_being_flown(const std::string& dataset) const {
+    return std::ranges::any_of(slots_, [&](const Slot& slot) {
+      return slot.work && slot.stage.cell == nullptr && slot.stage.dataset == dataset;
+    });
+  }
+
+  /// Takes stages from the queue until one has to be worked at.
+  void start_next(Slot& slot) {
+    while (true) {
+      const auto next = std::ranges::find_if(
+          waiting_, [&](const Stage& stage) { return !is_being_flown(stage.dataset); });
+      if (next == waiting_.end()) return;
+      slot.stage = std::move(*next);
+      waiting_.erase(next);
+      const Stage& stage = slot.stage;
+      if (broken_.contains(stage.dataset)) {
+        finish(stage, broken_[stage.dataset]);
+      } else if (done_before(stage.folder, stage.key)) {
+        outcome_.reused += stage.cell != nullptr ? 1 : 0;
+        weight_of_all_ -= stage.weight;  // tells nothing of how long the others will take
+        finish(stage, {});
+      } else {
+        start(slot);
+        return;
+      }
+    }
+  }
+
+  void start(Slot& slot) {
+    const Stage& stage = slot.stage;
+    log_.info(stage.name);
+    fs::remove_all(stage.folder);
+    const int threads = slot.threads;
+    const bool alone = slots_.size() == 1;
+    const WorkLimits limits{60.0 * spec_.limits.minutes, spec_.limits.memory_mb,
+                            spec_.limits.stall_seconds};
+    slot.work = std::make_unique<IsolatedWork>(
+        [&stage, &log = log_, threads, alone] {
+          MessagesOnly messages(log);
+          stage.work(Parallel(threads), alone ? log : static_cast<LogSink&>(messages));
+          write_json(stage.folder / kRequest, stage.key);
+        },
+        limits, slot.cores);
+  }
+
+  void look_after(Slot& slot) {
+    const auto outcome = slot.work->poll();
+    if (!outcome) return;
+    slot.work.reset();
+    finish(slot.stage, outcome->reason);
+    if (slot.stage.cell != nullptr) tell_time_left();
+  }
+
+  void tell_time_left() {
+    const double done = weight_of_all_ - weight_left_;
+    if (done <= 0.0 || outcome_.runs == cells_) return;
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
+    log_.info(fmt::format("{} of {} runs done, about {:.0f} min left", outcome_.runs, cells_,
+                          std::ceil(elapsed.count() * weight_left_ / done / 60.0)));
+  }
+
+  void finish(const Stage& stage, const std::string& reason) {
+    weight_left_ -= stage.weight;
+    if (stage.cell == nullptr) {
+      if (!reason.empty()) broken_[stage.dataset] = "flight: " + reason;
+      return;
+    }
+    ++outcome_.runs;
+    if (!reason.empty()) {
+      record_failure(stage.folder, *stage.cell, reason);
+      log_.warn(fmt::format("{} failed: {}", stage.name, reason));
+      ++outcome_.failed;
+      return;
+    }
+    const Json manifest = read_json(stage.folder / "manifest.json");
+    outcome_.diverged += manifest.at("summary").at("diverged").get<bool>() ? 1 : 0;
+  }
+
+  /// The study's own progress: between cells where a job shows its own, else all the time.
+  void show_progress() {
+    if (slots_.size() == 1 && is_busy()) return;
+    const double done = weight_of_all_ - weight_left_;
+    log_.progress("study", done, weight_of_all_);
   }
 
   const StudySpec& spec_;
   const ConfigFolder& configs_;
   fs::path out_;
-  int threads_;
   LogSink& log_;
+  std::vector<Slot> slots_;
+  std::vector<Stage> waiting_;
   std::map<std::string, std::string> broken_;  ///< datasets that could not be flown, and why
+  double weight_of_all_ = 0.0, weight_left_ = 0.0;
+  std::size_t cells_ = 0;
+  std::chrono::steady_clock::time_point begin_;
+  StudyOutcome outcome_;
 };
-
-/// Throws InputError for an algorithm or preset that the factory does not list.
-void check_algorithm(const OdometryRequest& request) {
-  std::vector<std::string> names;
-  for (const AlgorithmInfo& info : list_algorithms()) {
-    names.push_back(info.name);
-    if (info.name != request.algorithm) continue;
-    const auto& presets = info.presets;
-    if (std::find(presets.begin(), presets.end(), request.preset) != presets.end()) return;
-    throw InputError(request.algorithm, "has no preset '" + request.preset + "'");
-  }
-  const std::string nearest = nearest_word(request.algorithm, names);
-  throw InputError(
-      request.algorithm, "is no algorithm of ours",
-      nearest.empty() ? "see: lidarena list algorithms" : "did you mean '" + nearest + "'?");
-}
 
 }  // namespace
 
-std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs) {
-  const auto need = [](bool there, const char* what) {
-    if (!there) throw InputError("study", std::string("names no ") + what);
-  };
-  need(!spec.scenes.empty(), "scenes");
-  need(!spec.sensors.empty(), "sensors");
-  need(!spec.algorithms.empty(), "algorithms");
-  need(!spec.seeds.empty(), "seeds");
-  for (const std::string& sensor : spec.sensors) load_sensor(configs.resolve("sensors", sensor));
-  for (const std::string& algorithm : spec.algorithms) check_algorithm(parse_algorithm(algorithm));
-
-  std::vector<PlannedRun> cells;
-  for (const StudyScene& scene : spec.scenes) {
-    configs.resolve("worlds", scene.world);
-    configs.resolve("flights", scene.flight);
-    for (const std::uint64_t seed : spec.seeds) {
-      const std::string dataset =
-          fmt::format("{}-{}-s{}", stem(scene.world), stem(scene.flight), seed);
-      for (const std::string& sensor : spec.sensors) {
-        for (const std::string& algorithm : spec.algorithms) {
-          const OdometryRequest request = parse_algorithm(algorithm);
-          const std::string name =
-              fmt::format("{}-{}-{}-{}", dataset, stem(sensor), request.algorithm, request.preset);
-          cells.push_back({name, dataset, scene.world, scene.flight, sensor, request.algorithm,
-                           request.preset, seed});
-        }
-      }
-    }
-  }
-  return cells;
-}
-
 StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const fs::path& out,
-                       int threads, LogSink& log) {
-  const std::vector<PlannedRun> cells = plan(spec, configs);
+                       const StudyOptions& options, LogSink& log) {
+  const std::vector<PlannedRun> cells = cells_of(plan(spec, configs), options.shard);
   fs::create_directories(out);
+  const FolderLock lock(out);
   write_json(out / "study.json",
              {{"kind", "study"}, {"spec", to_json(spec)}, {"runs", value_to_json(cells)}});
-  Runner runner(spec, configs, out, threads, log);
-  StudyOutcome outcome;
-  for (const PlannedRun& cell : cells) {
-    log.progress("study", static_cast<double>(outcome.runs), static_cast<double>(cells.size()));
-    const CellEnd end = runner.do_cell(cell);
-    ++outcome.runs;
-    outcome.reused += end == CellEnd::kReused ? 1 : 0;
-    outcome.failed += end == CellEnd::kFailed ? 1 : 0;
-    outcome.diverged += end == CellEnd::kDiverged ? 1 : 0;
-  }
-  log.progress("study", static_cast<double>(cells.size()), static_cast<double>(cells.size()));
-  return outcome;
+  return Runner(spec, configs, out, options, log).run(cells);
 }
 
 }  // namespace lidarena

@@ -32,6 +32,7 @@ inline double backscatter(const Material& material, double cos_incidence) {
 
 /// Typical values; measured ones differ by make, colour and wear.
 namespace materials {
+inline const Material kDefault;
 inline const Material kPlaster{"plaster", 0.8, 0.0};
 inline const Material kWood{"wood", 0.5, 0.02};
 inline const Material kFabric{"fabric", 0.4, 0.0};

@@ -32,11 +32,6 @@ double TriangleMesh::area() const {
   return 0.5 * twice;
 }
 
-const Material& TriangleMesh::material(std::size_t triangle) const {
-  static const Material kDefault;
-  return material_ids.empty() ? kDefault : palette[material_ids[triangle]];
-}
-
 void TriangleMesh::paint(const Material& material) {
   palette = {material};
   material_ids.assign(triangles.size(), 0);

@@ -32,7 +32,9 @@ struct TriangleMesh {
   double area() const;
   /// Twice the area times the unit normal, (b - a) x (c - a), of one triangle.
   Eigen::Vector3d cross(std::size_t triangle) const;
-  const Material& material(std::size_t triangle) const;
+  const Material& material(std::size_t triangle) const {
+    return material_ids.empty() ? materials::kDefault : palette[material_ids[triangle]];
+  }
   /// Makes the whole surface of one material.
   void paint(const Material& material);
   /// Adds a transformed copy of `other`: vertices become placement * (scale .* v). A scale that

@@ -12,7 +12,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-std::vector<Echo> merged(std::vector<SubEcho> parts, double pulse_length) {
+std::vector<Echo> merged(std::vector<Echo> parts, double pulse_length) {
   std::vector<Echo> echoes;
   merge_echoes(parts, pulse_length, echoes);
   return echoes;

@@ -4,10 +4,22 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <set>
+#include <thread>
+#include <vector>
 
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/isolate.hpp"
 
 namespace lidarena {
@@ -32,6 +44,91 @@ TEST(Isolate, AnExceptionACrashAndAnExitAreReasonsNotTheEnd) {
   EXPECT_THAT(killed.reason, HasSubstr("signal 9"));
   EXPECT_THAT(killed.reason, HasSubstr("out of memory"));
   EXPECT_THAT(run_isolated([] { _Exit(7); }).reason, HasSubstr("exit code 7"));
+}
+
+TEST(Isolate, WorkBeyondItsTimeIsStoppedWithAReason) {
+  const auto endless = [] {
+    for (std::atomic<int> turns = 0;; ++turns) {
+    }
+  };
+  const auto begin = std::chrono::steady_clock::now();
+  const IsolatedOutcome late = run_isolated(endless, {.seconds = 0.3});
+  EXPECT_THAT(late.reason, HasSubstr("not done within its limit"));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
+}
+
+TEST(Isolate, WorkThatSleepsStallsAndWorkThatComputesDoesNot) {
+  const IsolatedOutcome idle = run_isolated([] { sleep(300); }, {.stall_seconds = 0.5});
+  EXPECT_THAT(idle.reason, HasSubstr("stalled"));
+  const auto busy = [] {
+    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
+    while (std::chrono::steady_clock::now() < end) {
+    }
+  };
+  EXPECT_EQ(run_isolated(busy, {.stall_seconds = 1.0}).reason, "");
+}
+
+TEST(Isolate, WorkThatTakesTooMuchMemoryIsStopped) {
+  const auto greedy = [] {
+    std::vector<char> much(300'000'000, 'x');
+    sleep(60);
+  };
+  const IsolatedOutcome outcome = run_isolated(greedy, {.memory_mb = 200.0});
+  EXPECT_THAT(outcome.reason, HasSubstr("more than its limit of 200 MB"));
+}
+
+/// Whether a process still runs (one that ended but was not waited for does not).
+bool runs(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string line;
+  if (!std::getline(file, line)) return false;
+  const char state = line[line.rfind(')') + 2];
+  return state != 'Z' && state != 'X';
+}
+
+bool ends_soon(pid_t pid) {
+  for (int i = 0; i < 500 && runs(pid); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return !runs(pid);
+}
+
+TEST(Isolate, NothingOutlivesTheProcessThatStartedIt) {
+  // A process starts work and is killed without warning; the work tells us who it is.
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    run_isolated([&] {
+      const pid_t self = getpid();
+      if (write(ends[1], &self, sizeof self) < 0) _exit(1);
+      sleep(300);
+    });
+    _exit(0);
+  }
+  pid_t work = 0;
+  ASSERT_EQ(read(ends[0], &work, sizeof work), static_cast<ssize_t>(sizeof work));
+  EXPECT_TRUE(runs(work));
+  kill(parent, SIGKILL);
+  EXPECT_TRUE(ends_soon(work));
+  waitpid(parent, nullptr, 0);
+}
+
+TEST(Isolate, WhatTheWorkLeavesRunningEndsWithIt) {
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  const IsolatedOutcome outcome = run_isolated([&] {
+    const pid_t left = fork();
+    if (left == 0) {
+      sleep(300);
+      _exit(0);
+    }
+    if (write(ends[1], &left, sizeof left) < 0) throw Error("pipe");
+  });
+  EXPECT_TRUE(outcome.ok);
+  pid_t left = 0;
+  ASSERT_EQ(read(ends[0], &left, sizeof left), static_cast<ssize_t>(sizeof left));
+  EXPECT_TRUE(ends_soon(left));
 }
 
 TEST(ConfigFolder, NamesResolveAndAMisspeltOneIsCorrected) {
@@ -89,6 +186,133 @@ TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
   EXPECT_THAT(error([](StudySpec& s) { s.scenes[0].world = "hous"; }),
               HasSubstr("did you mean 'house'?"));
   EXPECT_THAT(error([](StudySpec& s) { s.seeds.clear(); }), HasSubstr("names no seeds"));
+  EXPECT_THAT(error([](StudySpec& s) { s.seeds = {1, 1}; }), HasSubstr("plans two runs called"));
+  EXPECT_THAT(error([](StudySpec& s) { s.external = {{.name = "kiss_icp", .command = "true"}}; }),
+              HasSubstr("which is an algorithm of ours"));
+  EXPECT_THAT(error([](StudySpec& s) { s.external.emplace_back().name = "theirs"; }),
+              HasSubstr("without a name or a command"));
+}
+
+TEST(Plan, ModesMakeDatasetsOfTheirOwnAndExternalProgramsAreCells) {
+  StudySpec spec = small_spec();
+  spec.seeds = {1};
+  spec.sensors = {"livox_mid360"};
+  spec.modes = {ScanMode::kRolling, ScanMode::kFrozen};
+  spec.external = {{.name = "theirs", .command = "true"}};
+  spec.algorithms = {"kiss_icp", "theirs"};
+  const std::vector<PlannedRun> cells = plan(spec, configs());
+  ASSERT_EQ(cells.size(), 4U);
+  EXPECT_EQ(cells[0].dataset, "house-house-s1-rolling");
+  EXPECT_EQ(cells[3].dataset, "house-house-s1-frozen");
+  EXPECT_EQ(cells[3].name, "house-house-s1-frozen-livox_mid360-theirs-external");
+}
+
+TEST(Plan, ShardsShareTheCellsAmongThem) {
+  const std::vector<PlannedRun> cells = plan(small_spec(), configs());
+  std::set<std::string> names;
+  for (const char* shard : {"1/3", "2/3", "3/3"}) {
+    const auto part = cells_of(cells, parse_shard(shard));
+    EXPECT_GE(part.size(), 2U);
+    for (const PlannedRun& cell : part) EXPECT_TRUE(names.insert(cell.name).second);
+  }
+  EXPECT_EQ(names.size(), cells.size());
+  for (const char* wrong : {"", "1", "0/3", "4/3", "1/0", "-1/3", "1/3x", "a/b"}) {
+    EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
+  }
+}
+
+TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
+  const std::vector<PlannedRun> cells = plan(small_spec(), configs());
+  PlannedRun longer = cells[0];
+  longer.seconds *= 2;
+  const CellEstimate mid360 = estimate(cells[0], configs());
+  ASSERT_EQ(cells[2].sensor, "ouster_os0_128");
+  EXPECT_GT(estimate(cells[2], configs()).seconds, mid360.seconds);
+  EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
+  EXPECT_GT(estimate(longer, configs()).disk_mb, mid360.disk_mb);
+  longer.seconds = 0.0;  // the whole flight, a minute
+  EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
+}
+
+/// A folder that goes away.
+class Scratch {
+ public:
+  Scratch() {
+    std::string name = (std::filesystem::temp_directory_path() / "lidarena_study_XXXXXX").string();
+    path_ = ::mkdtemp(name.data());
+  }
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+StudySpec tiny_spec() {
+  StudySpec spec;
+  spec.scenes = {{"house", "house", 0.5}};
+  spec.sensors = {"livox_mid360"};
+  spec.algorithms = {"kiss_icp"};
+  return spec;
+}
+
+TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
+  const Scratch scratch;
+  LogSink log;
+  // The other study holds the folder while an external program waits for us.
+  StudySpec waiting = tiny_spec();
+  const std::string started = (scratch.path() / "started").string();
+  waiting.external = {
+      {.name = "theirs", .command = "sh -c 'touch " + started + "; exec sleep 300'"}};
+  waiting.algorithms = {"theirs"};
+  const pid_t other = fork();
+  if (other == 0) {
+    run_study(waiting, configs(), scratch.path() / "study", {}, log);
+    _exit(0);
+  }
+  for (int i = 0; i < 6000 && !std::filesystem::exists(started); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_TRUE(std::filesystem::exists(started));
+  EXPECT_THROW(run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log), InputError);
+  kill(other, SIGKILL);
+  waitpid(other, nullptr, 0);
+  // Its work has ended with it, and the folder is free; the half-done run is not taken for whole.
+  const StudyOutcome outcome = run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log);
+  EXPECT_EQ(outcome.runs, 1U);
+  EXPECT_EQ(outcome.failed, 0U);
+}
+
+TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
+  const Scratch scratch;
+  LogSink log;
+  // Three programs: one that stands still, one that leaves nothing, one that fails.
+  const std::string still =
+      "sh -c 'for t in 0.0 0.1 0.2 0.3 0.4; do echo $t 0 0 0 0 0 0 1; done > \"$1\"/trajectory.tum'"
+      " sh {output}";
+  StudySpec spec = tiny_spec();
+  spec.external = {{.name = "still", .command = still},
+                   {.name = "silent", .command = "true {input}"},
+                   {.name = "broken", .command = "sh -c 'echo no such luck; exit 3'"}};
+  spec.algorithms = {"still", "silent", "broken"};
+  StudyOptions two_jobs;
+  two_jobs.jobs = 2;
+  const StudyOutcome outcome = run_study(spec, configs(), scratch.path(), two_jobs, log);
+  EXPECT_EQ(outcome.runs, 3U);
+  EXPECT_EQ(outcome.failed, 2U);
+  const auto run = [&](const std::string& name) {
+    return scratch.path() / "runs" / ("house-house-s1-livox_mid360-" + name + "-external");
+  };
+  const Json metrics = read_json(run("still") / "metrics.json");
+  EXPECT_EQ(metrics.at("status"), "ok");
+  EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "gigabytes on a real flight";
+  const Json silent = read_json(run("silent") / "manifest.json");
+  EXPECT_THAT(silent.at("failed").get<std::string>(), HasSubstr("left no trajectory.tum"));
+  const Json broken = read_json(run("broken") / "manifest.json");
+  EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
+  EXPECT_EQ(read_bytes(run("broken") / "program.log"), "no such luck\n");
+  const StudyOutcome again = run_study(spec, configs(), scratch.path(), {}, log);
+  EXPECT_EQ(again.reused, 1U) << "what failed is tried again";
 }
 
 }  // namespace

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/run_external.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <chrono>
+#include <csignal>
+#include <cstring>
+
+#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/evaluation/reproject.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The dataset as one LiDAR and its IMU see it.
+struct Recording {
+  Rig rig;
+  std::size_t scans = 0;
+  double seconds = 0.0;
+  fs::path path;
+};
+
+Rig rig_of_one(const Rig& rig, const std::string& lidar_id) {
+  Rig one;
+  one.body_frame = rig.body_frame;
+  const LidarInfo* lidar = rig.find_lidar(lidar_id);
+  if (lidar == nullptr) throw InputError(lidar_id, "is no LiDAR of the dataset");
+  one.lidars.push_back(*lidar);
+  if (const ImuInfo* imu = rig.imu_beside(*lidar)) one.imus.push_back(*imu);
+  return one;
+}
+
+Recording record(const ExternalProgram& program, const RunRequest& request, const fs::path& folder,
+                 const Parallel& parallel) {
+  Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  Recording recording;
+  recording.rig = rig_of_one(dataset.rig, request.read.sensor);
+  DatasetWriter writer(folder, recording.rig, {program.input, program.dialect});
+  while (const auto event = dataset.events->next()) {
+    if (const auto* scan = std::get_if<Scan>(&event->data)) {
+      if (event->sensor_id != recording.rig.lidars[0].id) continue;
+      ++recording.scans;
+      recording.seconds = to_seconds(scan->stamp);
+    } else if (recording.rig.imus.empty() || event->sensor_id != recording.rig.imus[0].id) {
+      continue;
+    }
+    writer.write(*event);
+  }
+  writer.close();
+  recording.path = folder;
+  if (program.input == DatasetFormat::kMcap) recording.path = folder / "data.mcap";
+  if (program.input == DatasetFormat::kBag) recording.path = folder / "data.bag";
+  return recording;
+}
+
+/// As one word of a shell's.
+std::string quoted(const std::string& word) {
+  std::string text = "'";
+  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return text + "'";
+}
+
+std::string filled_in(std::string command, const std::string& key, const std::string& value) {
+  for (std::size_t at = command.find(key); at != std::string::npos;
+       at = command.find(key, at + value.size())) {
+    command.replace(at, key.size(), value);
+  }
+  return command;
+}
+
+struct Usage {
+  double wall_s = 0.0, processor_s = 0.0, peak_mb = 0.0;
+};
+
+double seconds_of(const timeval& time) {
+  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+}
+
+/// Runs the command line to its end, its output going to `log_file`.
+Usage run_command(const std::string& name, const std::string& command, const fs::path& log_file) {
+  const std::string line = "exec " + command;
+  const int log_fd = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
+  if (log_fd < 0)
+    throw InputError(log_file.string(), std::string("cannot be made: ") + strerror(errno));
+  const auto begin = std::chrono::steady_clock::now();
+  const pid_t pid = fork();
+  if (pid < 0) throw Error(std::string("fork: ") + strerror(errno));
+  if (pid == 0) {  // nothing here but system calls: other threads may have held locks
+    prctl(PR_SET_PDEATHSIG, SIGKILL);
+    dup2(log_fd, STDOUT_FILENO);
+    dup2(log_fd, STDERR_FILENO);
+    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
+    _exit(127);
+  }
+  close(log_fd);
+  int status = 0;
+  rusage used{};
+  while (wait4(pid, &status, 0, &used) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    const std::string end = WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
+                                              : fmt::format("signal {}", WTERMSIG(status));
+    throw Error(fmt::format("{} ended with {}; what it said is in {}", name, end,
+                            log_file.filename().string()));
+  }
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
+  return {wall.count(), seconds_of(used.ru_utime) + seconds_of(used.ru_stime),
+          1e-3 * static_cast<double>(used.ru_maxrss)};
+}
+
+Pose sensor_from_body(PoseOf pose_of, const Rig& rig) {
+  if (pose_of == PoseOf::kBody) return Pose::Identity();
+  if (pose_of == PoseOf::kLidar) return rig.lidars[0].body_from_lidar.inverse();
+  if (rig.imus.empty()) throw InputError("pose_of: imu", "but the dataset has no IMU");
+  return rig.imus[0].body_from_imu.inverse();
+}
+
+/// Poses of the body, in the world in which the program's first pose is.
+Trajectory body_trajectory(const Trajectory& given, const Pose& sensor_from_body) {
+  std::vector<StampedPose> poses;
+  for (const StampedPose& pose : given.poses()) {
+    poses.push_back({pose.stamp, pose.world_from_body * sensor_from_body});
+  }
+  return Trajectory(std::move(poses));
+}
+
+Cloud map_of(const fs::path& output) {
+  for (const char* name : {"map.ply", "map.pcd"}) {
+    if (fs::exists(output / name)) return read_cloud(output / name);
+  }
+  return {};
+}
+
+}  // namespace
+
+RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
+                        const fs::path& out, const Parallel& parallel, LogSink& log) {
+  const fs::path input = out / "input", output = out / "output";
+  fs::remove_all(out);
+  fs::create_directories(output);
+  log.info("recording for " + program.name);
+  const Recording recording = record(program, request, input, parallel);
+  std::string command = program.command;
+  command = filled_in(command, "{input}", quoted(fs::absolute(recording.path).string()));
+  command = filled_in(command, "{output}", quoted(fs::absolute(output).string()));
+  command = filled_in(command, "{sensor}", quoted(recording.rig.lidars[0].id));
+  command = filled_in(command, "{threads}", std::to_string(parallel.threads()));
+  log.info("running " + program.name);
+  const Usage used = run_command(program.name, command, out / kProgramLog);
+  fs::remove_all(input);
+
+  const fs::path left = output / "trajectory.tum";
+  if (!fs::exists(left)) {
+    throw InputError(program.name, "left no trajectory.tum in {output}",
+                     "see docs/external_slam.md; what it said is in program.log");
+  }
+  RunFiles files;
+  files.trajectory =
+      body_trajectory(read_trajectory(left), sensor_from_body(program.pose_of, recording.rig));
+  files.live = files.trajectory;
+  files.map = map_of(output);
+  const LidarInfo& lidar = recording.rig.lidars[0];
+  Dataset again = open_any_dataset(request.dataset, request.read, parallel);
+  files.reprojected = reproject(*again.events, lidar.id, lidar.body_from_lidar, files.trajectory);
+
+  RunSummary summary;
+  summary.scans = recording.scans;
+  summary.sensor_seconds = recording.seconds;
+  summary.compute_seconds = used.wall_s;
+  files.manifest = {
+      {"kind", "run"},
+      {"algorithm", program.name},
+      {"preset", "external"},
+      {"config", to_json(program)},
+      {"dataset", fs::proximate(fs::absolute(request.dataset), fs::absolute(out)).generic_string()},
+      {"sensor", lidar.id},
+      {"threads", parallel.threads()},
+      {"paced", false},
+      {"status", "ok"},
+      {"reason", ""},
+      {"processor_seconds", used.processor_s},
+      {"peak_mb", used.peak_mb},
+      {"summary", to_json(summary)}};
+  write_run(out, files);
+  fs::remove_all(output);
+  return summary;
+}
+
+}  // namespace lidarena
