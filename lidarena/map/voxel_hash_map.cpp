@@ -132,19 +132,31 @@ class NearestFew {
 
   void offer(const Eigen::Vector3f& point, float squared_distance) {
     if (squared_distance >= bound_) return;
-    if (count_ == out_.size()) std::pop_heap(out_.begin(), end(), nearer);
-    if (count_ < out_.size()) ++count_;
-    *(end() - 1) = {&point, squared_distance};
-    std::push_heap(out_.begin(), end(), nearer);
-    if (count_ == out_.size()) bound_ = out_.front().squared_distance;
+    if (count_ < out_.size()) {
+      out_[count_++] = {&point, squared_distance};
+      if (count_ < out_.size()) return;
+      std::make_heap(out_.begin(), out_.end(), [](const Neighbor& a, const Neighbor& b) {
+        return a.squared_distance < b.squared_distance;
+      });
+    } else {
+      replace_farthest({&point, squared_distance});
+    }
+    bound_ = out_.front().squared_distance;
   }
 
  private:
-  static bool nearer(const Neighbor& a, const Neighbor& b) {
-    return a.squared_distance < b.squared_distance;
-  }
-  std::span<Neighbor>::iterator end() const {
-    return out_.begin() + static_cast<std::ptrdiff_t>(count_);
+  /// Sifts `neighbor` down from the heap's top.
+  void replace_farthest(const Neighbor& neighbor) {
+    std::size_t hole = 0;
+    while (2 * hole + 1 < count_) {
+      std::size_t child = 2 * hole + 1;
+      if (child + 1 < count_ && out_[child].squared_distance < out_[child + 1].squared_distance)
+        ++child;
+      if (out_[child].squared_distance <= neighbor.squared_distance) break;
+      out_[hole] = out_[child];
+      hole = child;
+    }
+    out_[hole] = neighbor;
   }
 
   std::span<Neighbor> out_;

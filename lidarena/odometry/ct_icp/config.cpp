@@ -15,9 +15,9 @@ Config improved(const LidarInfo& lidar) {
   sampling.min_range_m = lidar.min_range_m;
   sampling.max_range_m = lidar.max_range_m;
   sampling.frame_voxel_m = 0.1;
-  sampling.keypoint_voxel_m = 0.5;
+  sampling.keypoint_voxel_m = 0.25;
   sampling.keypoints = KeypointSampling::kGrid;
-  sampling.max_keypoints = 1000;
+  sampling.max_keypoints = 2500;
   sampling.start_scans = 0;
   sampling.rigid_scans = 1;
   config.cell_rounding = VoxelRounding::kFloor;
@@ -25,8 +25,11 @@ Config improved(const LidarInfo& lidar) {
   RegistrationConfig& registration = config.registration;
   registration.solver = Solver::kGaussNewton;
   registration.initial_motion = InitialMotion::kConstantTwist;
+  registration.segments = 3;
+  registration.search_again_m = 0.03;
+  registration.loss_scale_m = 0.05;
   registration.inner_iterations = 1;
-  registration.max_iterations = 15;
+  registration.max_iterations = 30;
   registration.translation_threshold_m = 1e-3;
   registration.rotation_threshold_rad = 2e-4;
   registration.search_radius_m = 0.4;
@@ -36,8 +39,14 @@ Config improved(const LidarInfo& lidar) {
   registration.start_iterations = 0;
   registration.min_residuals = 50;
 
+  config.prior.location = 0.01;
+  config.prior.orientation = 0.01;
+  config.prior.bend = 0.01;
+  config.prior.angular_bend = 0.02;
+
   config.map = {0.4, 40, 0.05, 1.5 * lidar.max_range_m};
   config.insertion.rule = Insertion::kAlways;
+  config.robust.max_turn_rad = 1.2;  // 690 deg/s at 10 Hz: aggressive flights reach 330 deg/s
   config.robust.stop_when_lost = false;
   config.robust.motion_kept_when_lost = 0.5;
   return config;

@@ -94,6 +94,7 @@ std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
                              VoxelRounding rounding) {
   const auto inverse = static_cast<float>(1.0 / voxel);
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
+  cells.reserve(points.size() / 2);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto [cell, is_new] =
         cells.try_emplace(voxel_key(voxel_of(points[i].position, inverse, rounding)), i);

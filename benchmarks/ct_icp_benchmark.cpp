@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The steps of CT-ICP, each on its own, with the settings of preset improved, in a box of 16 x 12 x
+// 4 m: thinning, keypoints, search with description, one step of each solver, insertion.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/odometry/ct_icp/neighbourhood.hpp"
+#include "lidarena/odometry/ct_icp/registration.hpp"
+
+namespace lidarena::ct_icp {
+namespace {
+
+/// Points of a scan at rest in the middle of the box, noise 2 cm, evenly over the sphere.
+std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
+  const CounterRandom random(seed);
+  const Eigen::Array3d half(8.0, 6.0, 2.0);
+  std::vector<TimedPoint> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 2.0 * random.uniform(i, 0) - 1.0;
+    const double azimuth = 2.0 * M_PI * random.uniform(i, 1);
+    const double radius = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d beam(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+    const double range = (half / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
+    const double alpha = static_cast<double>(i) / static_cast<double>(count);
+    points.push_back({(range * beam).cast<float>(), static_cast<float>(alpha)});
+  }
+  return points;
+}
+
+const Config& config() {
+  static const Config improved = preset("improved", LidarInfo{});
+  return improved;
+}
+
+const VoxelHashMap& map() {
+  static const VoxelHashMap filled = [] {
+    VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+    for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
+    return made;
+  }();
+  return filled;
+}
+
+std::vector<TimedPoint> keypoints() {
+  return sample_keypoints(scan_of(20'000, 2), KeypointSampling::kGrid,
+                          config().sampling.keypoint_voxel_m, config().sampling.max_keypoints,
+                          VoxelRounding::kFloor);
+}
+
+void thin_scan(benchmark::State& state) {
+  const auto points = scan_of(static_cast<std::size_t>(state.range(0)), 2);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(thin(points, config().sampling.frame_voxel_m, VoxelRounding::kFloor));
+  state.SetItemsProcessed(state.iterations() * state.range(0));
+}
+BENCHMARK(thin_scan)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
+
+void choose_keypoints(benchmark::State& state) {
+  const auto frame = scan_of(20'000, 2);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        sample_keypoints(frame, KeypointSampling::kGrid, config().sampling.keypoint_voxel_m,
+                         config().sampling.max_keypoints, VoxelRounding::kFloor));
+}
+BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
+
+void search_neighbours(benchmark::State& state) {
+  const auto queries = keypoints();
+  std::vector<VoxelHashMap::Neighbor> near(20);
+  for (auto _ : state) {
+    for (const TimedPoint& query : queries)
+      benchmark::DoNotOptimize(map().nearest(query.position, 0.4F, near));
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
+}
+BENCHMARK(search_neighbours)->Unit(benchmark::kMillisecond);
+
+void describe_neighbours(benchmark::State& state) {
+  std::vector<VoxelHashMap::Neighbor> near(20);
+  near.resize(map().nearest(keypoints().front().position, 0.4F, near));
+  for (auto _ : state) benchmark::DoNotOptimize(describe(near, PlanePoint::kMean));
+}
+BENCHMARK(describe_neighbours);
+
+/// Matches of a scan that moved a little, by the planes of the box.
+std::vector<ElasticMatch> matches() {
+  std::vector<ElasticMatch> made;
+  for (const TimedPoint& keypoint : keypoints()) {
+    ElasticMatch match;
+    match.point = keypoint.position.cast<double>();
+    match.alpha = keypoint.alpha;
+    match.anchor = match.point;
+    const Eigen::Array3d share = match.point.array().abs() / Eigen::Array3d(8.0, 6.0, 2.0);
+    Eigen::Index axis = 0;
+    share.maxCoeff(&axis);
+    match.shape.row(0) = Eigen::Vector3d::Unit(axis);
+    made.push_back(match);
+  }
+  return made;
+}
+
+template <bool kCeresSolver>
+void solve(benchmark::State& state) {
+  const auto made = matches();
+  const ElasticProblem problem{made, {}, Loss::kCauchy, 0.05, true};
+  const auto guess = ElasticMotion::still(make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}),
+                                          static_cast<int>(state.range(0)));
+  const Parallel one(1);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(kCeresSolver ? align_by_ceres(problem, guess, 1)
+                                          : align_by_gauss_newton(problem, guess, 1, one));
+  }
+}
+BENCHMARK(solve<false>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+BENCHMARK(solve<true>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+
+void insert_scan(benchmark::State& state) {
+  const auto frame =
+      thin(scan_of(20'000, 3), config().sampling.frame_voxel_m, VoxelRounding::kFloor);
+  VoxelHashMap grown = [] {
+    VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+    for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
+    return made;
+  }();
+  for (auto _ : state) {
+    for (const TimedPoint& point : frame) grown.insert(point.position);
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(frame.size()));
+}
+BENCHMARK(insert_scan)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace lidarena::ct_icp
