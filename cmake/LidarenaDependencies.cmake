@@ -32,6 +32,18 @@ if(LIDARENA_WITH_SDF)
   set(LIDARENA_HAVE_SDF ${sdformat12_FOUND})
 endif()
 
+# The pages' scripts come from npm: `npm ci --prefix viewer` (cmake/setup.sh does it) fetches them,
+# configuring and building never reach out.
+set(LIDARENA_HAVE_VIEWER OFF)
+if(LIDARENA_WITH_VIEWER)
+  find_program(LIDARENA_NODE NAMES node nodejs)
+  if(LIDARENA_NODE AND EXISTS ${PROJECT_SOURCE_DIR}/viewer/node_modules/esbuild)
+    set(LIDARENA_HAVE_VIEWER ON)
+  endif()
+endif()
+# The small server of `lidarena view`; without it the view is written to a file.
+pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
+
 function(lidarena_print_summary)
   message(STATUS "lidarena ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, ${CMAKE_CXX_COMPILER_ID} "
                  "${CMAKE_CXX_COMPILER_VERSION}")
@@ -42,6 +54,9 @@ function(lidarena_print_summary)
   endif()
   message(STATUS "  ray casting    ${ray_caster} (LIDARENA_WITH_EMBREE; needs Embree 3 or 4)")
   message(STATUS "  SDF worlds     ${LIDARENA_HAVE_SDF} (LIDARENA_WITH_SDF; needs sdformat 12)")
+  message(STATUS "  viewer         ${LIDARENA_HAVE_VIEWER} (LIDARENA_WITH_VIEWER; needs Node.js 18 and npm ci "
+                 "--prefix viewer)")
+  message(STATUS "  view server    ${httplib_FOUND} (needs cpp-httplib)")
   message(STATUS "  tests          ${LIDARENA_BUILD_TESTS} (LIDARENA_BUILD_TESTS)")
   message(STATUS "  benchmarks     ${LIDARENA_BUILD_BENCHMARKS} (LIDARENA_BUILD_BENCHMARKS)")
   message(STATUS "  sanitizers     ${LIDARENA_SANITIZE} (LIDARENA_SANITIZE)")

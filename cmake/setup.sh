@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 packages=(g++ cmake ninja-build pkg-config ca-certificates
           libeigen3-dev libembree-dev libtbb-dev libassimp-dev libyaml-cpp-dev
           nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
-          liblz4-dev libceres-dev libgtest-dev libgmock-dev libbenchmark-dev)
+          liblz4-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev)
 # Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off. Without
 # libbz2 old bags with bz2 chunks are not read.
 optional=(libsdformat-dev libbz2-dev)
@@ -17,10 +17,10 @@ installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = i
 
 missing=()
 for p in "${packages[@]}"; do installed "$p" || missing+=("$p"); done
+# the pages' scripts are bundled by an npm package; a Node.js from elsewhere serves as well
+command -v node >/dev/null || missing+=(nodejs)
+command -v npm >/dev/null || missing+=(npm)
 if [ "${1:-run}" = test ]; then
-  # the official MCAP reader is an npm package; a Node.js from elsewhere serves as well
-  command -v node >/dev/null || missing+=(nodejs)
-  command -v npm >/dev/null || missing+=(npm)
   command -v python3 >/dev/null || missing+=(python3)
   # ROS 1's own reader of bags; without it the test that needs it is reported as skipped
   optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
@@ -53,14 +53,21 @@ if [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
   fi
 fi
 
-if [ "${1:-run}" = test ]; then
-  reader=tests/dataset/mcap_official
-  if [ -f "$reader/package-lock.json" ] && ! cmp -s "$reader/package-lock.json" "$reader/node_modules/.lock-installed"; then
-    echo "set-up: installing independent readers of recordings from npm"
-    if npm ci --prefix "$reader" --no-audit --no-fund --loglevel=error; then
-      cp "$reader/package-lock.json" "$reader/node_modules/.lock-installed"
-    else
-      echo "set-up: they could not be installed; the tests that need them will be reported as skipped"
-    fi
+# npm_packages FOLDER WHAT WITHOUT: what FOLDER/package-lock.json names, once
+npm_packages() {
+  local lock=$1/package-lock.json mark=$1/node_modules/.lock-installed
+  if cmp -s "$lock" "$mark"; then return; fi
+  echo "set-up: installing $2 from npm"
+  if npm ci --prefix "$1" --no-audit --no-fund --loglevel=error; then
+    cp "$lock" "$mark"
+  else
+    echo "set-up: they could not be installed; $3"
   fi
+}
+
+npm_packages viewer "the libraries of the 3D view and the charts" \
+  "the build goes without the view, and the report without charts"
+if [ "${1:-run}" = test ]; then
+  npm_packages tests/dataset/mcap_official "independent readers of recordings" \
+    "the tests that need them will be reported as skipped"
 fi

@@ -57,6 +57,7 @@ int parse_and_do(int argc, char** argv) {
   add_study(app, common, exit_code);
   add_report(app, common, exit_code);
   add_convert(app, common, exit_code);
+  add_view(app, common, exit_code);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

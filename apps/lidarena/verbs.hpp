@@ -35,6 +35,7 @@ void add_run(CLI::App& app, Common& common, int& exit_code);
 void add_evaluate(CLI::App& app, Common& common, int& exit_code);
 void add_study(CLI::App& app, Common& common, int& exit_code);
 void add_convert(CLI::App& app, Common& common, int& exit_code);
+void add_view(CLI::App& app, Common& common, int& exit_code);
 void add_report(CLI::App& app, Common& common, int& exit_code);
 
 /// One JSON document on standard output.

@@ -2,12 +2,33 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/base/log.hpp"
+#include "lidarena/base/parallel.hpp"
 #include "lidarena/report/result_table.hpp"
+#include "lidarena/report/table.hpp"
 
 namespace lidarena {
 
-/// The report as one HTML file that needs nothing else: no network, no script.
-std::string html_page(const Results& results);
+/// A part of the page: tables below a heading.
+struct ReportSection {
+  std::string id;
+  std::string title;
+  std::string text;   ///< a paragraph before the tables; may be empty
+  std::string world;  ///< where set, the world's pictures, 3D view and charts follow
+  std::vector<ReportTable> tables;
+};
+
+/// All sections in the order of the page: summary, findings, the paper's tables, world by world,
+/// the rest.
+std::vector<ReportSection> report_sections(const Results& results);
+
+/// The report as one HTML file that needs nothing else and no network; at most 60 MB whatever the
+/// study. `data` is what the charts are drawn from (see report_data()). Where the build has no
+/// viewer it is a plain page: tables and pictures.
+std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
+                      const Json& data, const Parallel& parallel, LogSink& log);
 
 }  // namespace lidarena

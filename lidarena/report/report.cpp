@@ -1,11 +1,33 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/report/report.hpp"
 
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/report/page.hpp"
+#include "lidarena/report/report_data.hpp"
 #include "lidarena/report/result_table.hpp"
+#include "lidarena/report/svg_figures.hpp"
+#include "lidarena/report/table.hpp"
+#include "lidarena/report/web_bundle.hpp"
 
 namespace lidarena {
+namespace {
+
+/// Every table as CSV, Markdown, LaTeX and JSON.
+void write_tables(const std::vector<ReportSection>& sections, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const ReportSection& section : sections) {
+    for (const ReportTable& table : section.tables) {
+      write_text_file(folder / (table.id + ".csv"), table_csv(table));
+      write_text_file(folder / (table.id + ".md"), table_markdown(table));
+      write_text_file(folder / (table.id + ".tex"), table_latex(table));
+      write_json(folder / (table.id + ".json"), table_json(table));
+    }
+  }
+}
+
+}  // namespace
 
 ReportFiles write_report(const std::filesystem::path& folder, LogSink& log) {
   const Results results = read_results(folder);
@@ -13,8 +35,17 @@ ReportFiles write_report(const std::filesystem::path& folder, LogSink& log) {
   ReportFiles files;
   files.page = folder / "report.html";
   files.csv = folder / "results.csv";
+  const std::vector<ReportSection> sections = report_sections(results);
+  const Json data = report_data(results);
   write_text_file(files.csv, results_csv(results));
-  write_text_file(files.page, html_page(results));
+  write_tables(sections, folder / "tables");
+  write_json(folder / "report.json", data);
+  if (!draw_svg_figures(folder / "report.json", folder / "figures")) {
+    log.info(web_bundle("figures.cjs").empty()
+                 ? "figures are left out: this build has no viewer"
+                 : "SVG files of the figures are left out: they need Node.js; the page has them");
+  }
+  write_text_file(files.page, html_page(results, sections, data, Parallel(), log));
   files.text_table = results_text(results);
   return files;
 }

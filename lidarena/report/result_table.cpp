@@ -63,6 +63,19 @@ void summarize_resources(const fs::path& folder, ResultRow& row) {
   row.latency_p95_ms = *p95;
 }
 
+/// What the row's dataset says of its LiDAR and of how it was flown.
+void read_dataset_manifest(ResultRow& row) {
+  const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
+  if (!row.manifest.contains("dataset") || !fs::exists(file)) return;
+  const Json manifest = read_json(file);
+  row.simulation = manifest.value("simulation", Json());
+  const Json::json_pointer lidars("/rig/lidars");
+  if (!manifest.contains(lidars)) return;
+  for (const Json& lidar : manifest.at(lidars)) {
+    if (lidar.value("id", "") == row.sensor) row.lidar = lidar;
+  }
+}
+
 void read_row(ResultRow& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
     row.status = "missing";
@@ -73,6 +86,7 @@ void read_row(ResultRow& row) {
   row.algorithm = row.manifest.value("algorithm", row.algorithm);
   row.preset = row.manifest.value("preset", row.preset);
   row.sensor = row.manifest.value("sensor", row.sensor);
+  read_dataset_manifest(row);
   if (row.manifest.contains("failed")) {
     row.status = "failed";
     row.reason = row.manifest.at("failed").get<std::string>();

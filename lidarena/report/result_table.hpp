@@ -30,8 +30,10 @@ struct ResultRow {
   std::optional<double> rpe_cm_per_m, rpe_deg_per_m, ate_cm, coverage_percent;
   std::optional<MapFigures> own_map, reprojected_map;
   std::optional<double> real_time_factor, latency_p95_ms, own_memory_mb, process_memory_mb;
-  Json metrics;   ///< metrics.json, null if there is none
-  Json manifest;  ///< manifest.json, null if there is none
+  Json metrics;     ///< metrics.json, null if there is none
+  Json manifest;    ///< manifest.json, null if there is none
+  Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
+  Json simulation;  ///< how its dataset was flown, null if not by us
 };
 
 struct Results {

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/verbs.hpp"
+#include "apps/lidarena/view_server.hpp"
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/report/scene_files.hpp"
+#include "lidarena/report/view_page.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/load_world.hpp"
+#include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/ply.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct ViewOptions {
+  std::vector<std::string> files;
+  std::string out;
+  std::string map = "reprojected";
+  double million_points = 5.0;
+  int port = 0;
+  ReadOptions read;
+};
+
+bool is_run(const fs::path& folder) {
+  const fs::path manifest = folder / "manifest.json";
+  return fs::exists(manifest) && read_json(manifest).value("kind", "") == "run";
+}
+
+/// A .ply without faces is a cloud of points.
+bool has_faces(const fs::path& file) {
+  try {
+    return !read_ply(file).empty();
+  } catch (const InputError&) {
+    return false;  // no mesh's layout; the cloud's reader names what is wrong
+  }
+}
+
+void add_world(Scene& scene, const fs::path& file, LogSink& log) {
+  scene.meshes.push_back({file.stem().string(), load_world(file, {}, log).mesh});
+}
+
+/// Adds whatever `name` is: a folder, a file, or the name of a world of ours.
+void add_thing(Scene& scene, const Common& common, const ViewOptions& o, const std::string& name,
+               const SceneOptions& options, const Parallel& parallel, LogSink& log) {
+  fs::path path = name;
+  if (!fs::exists(path)) path = common.config_folder().resolve("worlds", name);
+  std::string ending = path.extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const bool is_cloud = ending == ".pcd" || (ending == ".ply" && !has_faces(path));
+  if (fs::is_directory(path) && is_run(path)) {
+    add_run(scene, path, options, log);
+  } else if (fs::is_directory(path) || ending == ".mcap" || ending == ".bag") {
+    Dataset dataset = open_any_dataset(path, o.read, parallel);
+    for (const std::string& note : dataset.notes) log.info("note: " + note);
+    add_dataset(scene, std::move(dataset), options, log);
+  } else if (is_cloud) {
+    add_cloud_file(scene, path, options);
+  } else if (ending == ".tum" || ending == ".txt" || ending == ".csv") {
+    add_path_file(scene, path);
+  } else {
+    add_world(scene, path, log);
+  }
+}
+
+std::string title_of(const std::vector<std::string>& files) {
+  std::string title;
+  for (const std::string& file : files) {
+    const fs::path path = fs::absolute(file).lexically_normal();
+    const fs::path name = path.has_filename() ? path.filename() : path.parent_path().filename();
+    title += (title.empty() ? "" : ", ") + name.string();
+  }
+  return title;
+}
+
+Scene load_scene(const Common& common, const ViewOptions& o, const Parallel& parallel,
+                 LogSink& log) {
+  SceneOptions options;
+  options.max_points = static_cast<std::size_t>(o.million_points * 1e6);
+  read_value(ConfigNode::parse(o.map, "--map"), options.map, {});
+  Scene scene;
+  scene.title = title_of(o.files);
+  for (const std::string& file : o.files) {
+    add_thing(scene, common, o, file, options, parallel, log);
+  }
+  measure_distances(scene, parallel);
+  for (const SceneCloud& cloud : scene.clouds) {
+    if (cloud.left_out == 0) continue;
+    log.info(fmt::format("{}: {} points at random of {} (--points raises the limit)", cloud.name,
+                         cloud.points.size(), cloud.points.size() + cloud.left_out));
+  }
+  return scene;
+}
+
+Json summary_of(const PackedScene& packed) {
+  Json layers = Json::array();
+  for (const Json& cloud : packed.header.at("clouds")) {
+    layers.push_back({{"cloud", cloud.at("name")},
+                      {"points", cloud.at("points")},
+                      {"left_out", cloud.at("left_out")}});
+  }
+  for (const Json& mesh : packed.header.at("meshes")) {
+    layers.push_back({{"mesh", mesh.at("name")}, {"triangles", mesh.at("triangles")}});
+  }
+  for (const Json& path : packed.header.at("paths")) {
+    layers.push_back({{"path", path.at("name")}, {"poses", path.at("poses")}});
+  }
+  return layers;
+}
+
+int view_verb(const Common& common, const ViewOptions& o) {
+  Console console(common.quiet);
+  std::string picture;
+  const PackedScene packed = [&] {
+    const Parallel parallel(common.threads);
+    const Scene scene = load_scene(common, o, parallel, console);
+    picture = scene_picture(scene);
+    return pack(scene, parallel);
+  }();
+  Json told{{"layers", summary_of(packed)}};
+  if (!o.out.empty()) {
+    write_view_page(o.out, packed, picture);
+    told["page"] = o.out;
+    if (common.json) {
+      print_json(told);
+    } else {
+      fmt::print("{}\n", o.out);
+    }
+    return kDone;
+  }
+  serve_view(served_view_page(packed, picture), packed, o.port, [&](const std::string& address) {
+    told["address"] = address;
+    if (common.json) {
+      print_json(told);
+    } else {
+      fmt::print("{}\nopen this address in a browser of this machine; Ctrl-C ends it\n", address);
+    }
+    std::fflush(stdout);
+  });
+  return kDone;
+}
+
+}  // namespace
+
+void add_view(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand(
+      "view", "Look at clouds, maps, meshes, paths, datasets and runs in 3D, in a browser");
+  auto o = std::make_shared<ViewOptions>();
+  verb->add_option(
+          "file", o->files,
+          "Clouds (.pcd, .ply), meshes, .tum, .mcap, .bag, DATASET and RUN folders, worlds")
+      ->required();
+  verb->add_option("--out", o->out,
+                   "One self-contained page; without it a server on 127.0.0.1 shows the same");
+  verb->add_option("--points", o->million_points, "Millions of points of a cloud at most")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  verb->add_option(
+          "--map", o->map,
+          "Of a run: reprojected (all returns), own (as published), both, or scored (a sample)")
+      ->check(CLI::IsMember({"reprojected", "own", "both", "scored"}))
+      ->capture_default_str();
+  verb->add_option("--port", o->port, "Of the server, 0 = any free one")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  verb->add_option("--sensor", o->read.sensor, "Of a dataset: which LiDAR, where one is wanted");
+  verb->add_option("--layout", o->read.layout, "Of raw binary sweeps")
+      ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
+  set_verb(
+      *verb, common, [&common, o] { return view_verb(common, *o); }, exit_code);
+}
+
+}  // namespace lidarena

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/scene_blocks.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+#include <span>
+
+#include "lidarena/base/random.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr std::size_t kChunkPoints = 65'536;
+constexpr std::size_t kBlockPoints = 1'000'000;
+constexpr double kLargest = 65'535.0;       // of a coordinate
+constexpr double kLargestValue = 65'534.0;  // of a field; 65535 is "none"
+constexpr std::uint16_t kNone = 65'535;
+
+static_assert(std::endian::native == std::endian::little);
+
+template <class T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+Json to_list(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+struct Field {
+  const char* name;
+  const char* unit;
+  const std::vector<float>* values;
+  float min = 0.0F;
+  float max = 0.0F;
+
+  std::uint16_t stored(std::size_t i) const {
+    const float v = (*values)[i];
+    if (!std::isfinite(v)) return kNone;
+    if (!(max > min)) return 0;
+    const double share = (static_cast<double>(v) - min) / (static_cast<double>(max) - min);
+    return static_cast<std::uint16_t>(std::lround(share * kLargestValue));
+  }
+};
+
+std::vector<Field> fields_of(const SceneCloud& cloud) {
+  std::vector<Field> fields;
+  for (Field field : {Field{"distance", "m", &cloud.distance},
+                      Field{"intensity", "", &cloud.intensity}, Field{"time", "s", &cloud.time}}) {
+    if (field.values->empty()) continue;
+    field.min = INFINITY;
+    field.max = -INFINITY;
+    for (const float v : *field.values) {
+      if (!std::isfinite(v)) continue;
+      field.min = std::min(field.min, v);
+      field.max = std::max(field.max, v);
+    }
+    if (field.max < field.min) field.min = field.max = 0.0F;
+    fields.push_back(field);
+  }
+  return fields;
+}
+
+using Indices = std::span<std::uint32_t>;
+
+Eigen::AlignedBox3f box_of(const SceneCloud& cloud, Indices indices) {
+  Eigen::AlignedBox3f box;
+  for (const std::uint32_t i : indices) box.extend(cloud.points[i]);
+  return box;
+}
+
+/// Halves the points across the longest side of their box until they fit into chunks.
+void cut_into_chunks(const SceneCloud& cloud, Indices indices, std::vector<Indices>& chunks) {
+  if (indices.size() <= kChunkPoints) {
+    if (!indices.empty()) chunks.push_back(indices);
+    return;
+  }
+  Eigen::Index axis = 0;
+  box_of(cloud, indices).sizes().maxCoeff(&axis);
+  const auto middle = indices.begin() + static_cast<std::ptrdiff_t>(indices.size() / 2);
+  std::nth_element(indices.begin(), middle, indices.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return cloud.points[a][axis] < cloud.points[b][axis];
+  });
+  cut_into_chunks(cloud, indices.first(indices.size() / 2), chunks);
+  cut_into_chunks(cloud, indices.subspan(indices.size() / 2), chunks);
+}
+
+/// Fisher and Yates, with numbers that depend on the place alone.
+void shuffle(Indices indices, std::uint32_t stream) {
+  const CounterRandom random(0, stream);
+  for (std::size_t i = indices.size(); i > 1; --i) {
+    const auto j = static_cast<std::size_t>(random.uniform(i) * static_cast<double>(i));
+    std::swap(indices[i - 1], indices[j]);
+  }
+}
+
+/// Positions of `indices` in `box`, then field after field.
+void append_points(std::string& bytes, const SceneCloud& cloud, const std::vector<Field>& fields,
+                   const Eigen::AlignedBox3f& box, Indices indices) {
+  const Eigen::Vector3d low = box.min().cast<double>();
+  const Eigen::Vector3d size = box.sizes().cast<double>().cwiseMax(1e-6);
+  for (const std::uint32_t i : indices) {
+    const Eigen::Vector3d share = (cloud.points[i].cast<double>() - low).cwiseQuotient(size);
+    for (int axis = 0; axis < 3; ++axis) {
+      append(bytes, static_cast<std::uint16_t>(std::lround(share[axis] * kLargest)));
+    }
+  }
+  for (const Field& field : fields) {
+    for (const std::uint32_t i : indices) append(bytes, field.stored(i));
+  }
+}
+
+/// As sharePoints() of viewer/src/view/cloud.ts.
+std::size_t share(std::size_t count, std::size_t part, std::size_t parts) {
+  return count * part / parts;
+}
+
+class Packer {
+ public:
+  Packer(const Scene& scene, const Parallel& parallel) : scene_(scene), parallel_(parallel) {}
+
+  PackedScene packed() {
+    Json& header = packed_.header;
+    const Eigen::AlignedBox3d bounds = bounds_to_show(scene_);
+    const auto time = time_span(scene_);
+    header = {{"title", scene_.title},
+              {"version", LIDARENA_VERSION},
+              {"frame", scene_.frame},
+              {"origin", to_list(scene_.origin)},
+              {"bounds", {to_list(bounds.min()), to_list(bounds.max())}},
+              {"time", time ? Json{time->first, time->second} : Json(nullptr)},
+              {"time_origin_s", to_seconds(scene_.time_origin)},
+              {"window_s", scene_.window_s > 0 ? Json(scene_.window_s) : Json(nullptr)},
+              {"outlier_m", kOutlier_m},
+              {"paths", Json::array()},
+              {"meshes", Json::array()},
+              {"clouds", Json::array()},
+              {"block_bytes", Json::array()}};
+    for (const ScenePath& path : scene_.paths) header["paths"].push_back(add_path(path));
+    for (const SceneMesh& mesh : scene_.meshes) header["meshes"].push_back(add_mesh(mesh));
+    for (const SceneCloud& cloud : scene_.clouds) header["clouds"].push_back(add_cloud(cloud));
+    for (const std::string& block : packed_.blocks) header["block_bytes"].push_back(block.size());
+    return std::move(packed_);
+  }
+
+ private:
+  std::size_t add_block(std::string bytes) {
+    packed_.blocks.push_back(std::move(bytes));
+    return packed_.blocks.size() - 1;
+  }
+
+  Json add_path(const ScenePath& path) {
+    std::string bytes;
+    for (const StampedPose& p : path.trajectory.poses()) {
+      const Eigen::Vector3d position = p.world_from_body.translation() - scene_.origin;
+      for (const double x : position) append(bytes, static_cast<float>(x));
+    }
+    for (const StampedPose& p : path.trajectory.poses()) {
+      append(bytes, static_cast<float>(to_seconds(p.stamp - scene_.time_origin)));
+    }
+    for (const StampedPose& p : path.trajectory.poses()) {
+      const Eigen::Quaterniond q(p.world_from_body.linear());
+      for (const double x : q.coeffs()) append(bytes, static_cast<float>(x));
+    }
+    for (const double error : path.error_m) append(bytes, static_cast<float>(error));
+    return {{"name", path.name},
+            {"role", path.role == PathRole::kTruth ? "truth" : "estimate"},
+            {"poses", path.trajectory.size()},
+            {"has_error", !path.error_m.empty()},
+            {"block", add_block(std::move(bytes))}};
+  }
+
+  Json add_mesh(const SceneMesh& mesh) {
+    std::string bytes;
+    for (const Eigen::Vector3d& vertex : mesh.mesh.vertices) {
+      const Eigen::Vector3d position = vertex - scene_.origin;
+      for (const double x : position) append(bytes, static_cast<float>(x));
+    }
+    for (const Triangle& triangle : mesh.mesh.triangles) {
+      for (const std::uint32_t corner : triangle) append(bytes, corner);
+    }
+    return {{"name", mesh.name},
+            {"vertices", mesh.mesh.vertices.size()},
+            {"triangles", mesh.mesh.triangles.size()},
+            {"block", add_block(std::move(bytes))}};
+  }
+
+  Json add_cloud(const SceneCloud& cloud) {
+    std::vector<std::uint32_t> order;
+    order.reserve(cloud.points.size());
+    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+      if (cloud.points[i].allFinite()) order.push_back(static_cast<std::uint32_t>(i));
+    }
+    std::vector<Indices> chunks;
+    cut_into_chunks(cloud, order, chunks);
+    std::vector<Eigen::AlignedBox3f> boxes(chunks.size());
+    parallel_.for_each(chunks.size(), 1, [&](std::size_t c) {
+      boxes[c] = box_of(cloud, chunks[c]);
+      shuffle(chunks[c], static_cast<std::uint32_t>(c));
+    });
+
+    const std::vector<Field> fields = fields_of(cloud);
+    const std::size_t parts = std::max<std::size_t>(1, order.size() / kBlockPoints);
+    std::vector<std::string> blocks(parts);
+    parallel_.for_each(parts, 1, [&](std::size_t part) {
+      blocks[part].reserve((order.size() / parts + chunks.size()) * (6 + 2 * fields.size()));
+      for (std::size_t c = 0; c < chunks.size(); ++c) {
+        const std::size_t begin = share(chunks[c].size(), part, parts);
+        const std::size_t end = share(chunks[c].size(), part + 1, parts);
+        append_points(blocks[part], cloud, fields, boxes[c], chunks[c].subspan(begin, end - begin));
+      }
+    });
+    return cloud_header(cloud, fields, chunks, boxes, order.size(), std::move(blocks));
+  }
+
+  Json cloud_header(const SceneCloud& cloud, const std::vector<Field>& fields,
+                    const std::vector<Indices>& chunks,
+                    const std::vector<Eigen::AlignedBox3f>& boxes, std::size_t points,
+                    std::vector<std::string> blocks) {
+    Json header{{"name", cloud.name},       {"points", points},        {"left_out", cloud.left_out},
+                {"visible", cloud.visible}, {"fields", Json::array()}, {"chunks", Json::array()},
+                {"blocks", Json::array()}};
+    for (const Field& f : fields) {
+      header["fields"].push_back(
+          {{"name", f.name}, {"unit", f.unit}, {"min", f.min}, {"max", f.max}});
+    }
+    for (std::size_t c = 0; c < chunks.size(); ++c) {
+      header["chunks"].push_back({{"count", chunks[c].size()},
+                                  {"min", to_list(boxes[c].min().cast<double>())},
+                                  {"size", to_list(boxes[c].sizes().cast<double>())}});
+    }
+    for (std::string& block : blocks) header["blocks"].push_back(add_block(std::move(block)));
+    return header;
+  }
+
+  const Scene& scene_;
+  const Parallel& parallel_;
+  PackedScene packed_;
+};
+
+}  // namespace
+
+PackedScene pack(const Scene& scene, const Parallel& parallel) {
+  return Packer(scene, parallel).packed();
+}
+
+}  // namespace lidarena

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lidarena/world/triangle_mesh.hpp"
+
+namespace lidarena {
+
+/// A coarser mesh for pictures: vertices that fall into one cell of a grid become one, its cells
+/// doubled until at most `max_triangles` are left (J. Rossignac, P. Borrel, "Multi-resolution 3D
+/// approximations for rendering complex scenes", 1993). A mesh that is small enough is unchanged.
+TriangleMesh simplified(const TriangleMesh& mesh, std::size_t max_triangles);
+
+}  // namespace lidarena

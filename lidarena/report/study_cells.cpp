@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/study_cells.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+
+namespace lidarena {
+namespace {
+
+std::vector<std::string> distinct(const std::vector<const ResultRow*>& rows,
+                                  std::string ResultRow::*member) {
+  std::vector<std::string> values;
+  for (const ResultRow* row : rows) {
+    if (std::find(values.begin(), values.end(), row->*member) == values.end()) {
+      values.push_back(row->*member);
+    }
+  }
+  return values;
+}
+
+}  // namespace
+
+std::optional<double> rpe_of(const ResultRow& row) { return row.rpe_cm_per_m; }
+std::optional<double> outliers_of(const ResultRow& row) {
+  return row.own_map ? std::optional(row.own_map->outliers_percent) : std::nullopt;
+}
+std::optional<double> map_rmse_of(const ResultRow& row) {
+  return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
+}
+
+StudyCells::StudyCells(const Results& results, std::string preset) {
+  for (const ResultRow& row : results.rows) {
+    if (preset.empty() || row.preset == preset) rows_.push_back(&row);
+  }
+}
+
+std::vector<std::string> StudyCells::worlds() const { return distinct(rows_, &ResultRow::world); }
+std::vector<std::string> StudyCells::sensors() const { return distinct(rows_, &ResultRow::sensor); }
+std::vector<std::string> StudyCells::algorithms() const {
+  return distinct(rows_, &ResultRow::algorithm);
+}
+
+std::vector<const ResultRow*> StudyCells::rows(const std::string& world, const std::string& sensor,
+                                               const std::string& algorithm) const {
+  std::vector<const ResultRow*> found;
+  std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found), [&](const ResultRow* row) {
+    return row->world == world && row->sensor == sensor && row->algorithm == algorithm;
+  });
+  return found;
+}
+
+std::optional<double> StudyCells::median(const std::string& world, const std::string& sensor,
+                                         const std::string& algorithm,
+                                         const RowFigure& figure) const {
+  std::vector<double> values;
+  for (const ResultRow* row : rows(world, sensor, algorithm)) {
+    if (const auto value = figure(*row); value && row->status == "ok") values.push_back(*value);
+  }
+  if (values.empty()) return std::nullopt;
+  std::sort(values.begin(), values.end());
+  const std::size_t half = values.size() / 2;
+  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::string StudyCells::status_text(const std::string& world, const std::string& sensor,
+                                    const std::string& algorithm) const {
+  const auto all = rows(world, sensor, algorithm);
+  std::map<std::string, std::size_t> states;
+  for (const ResultRow* row : all) {
+    if (row->status != "ok") ++states[row->status];
+  }
+  std::string text;
+  for (const auto& [state, count] : states) {
+    text += (text.empty() ? "" : ", ") +
+            (all.size() == 1 ? state : fmt::format("{} of {} {}", count, all.size(), state));
+  }
+  return text;
+}
+
+std::vector<std::string> presets_of(const Results& results) {
+  std::vector<const ResultRow*> rows;
+  for (const ResultRow& row : results.rows) rows.push_back(&row);
+  return distinct(rows, &ResultRow::preset);
+}
+
+std::string paper_world(const std::string& world) {
+  if (world.rfind("cave", 0) == 0) return "Cave";
+  return world.rfind("house", 0) == 0 ? "House" : "";
+}
+
+std::string paper_sensor(const std::string& sensor) {
+  if (sensor.find("mid360") != std::string::npos) return "Mid-360";
+  return sensor.find("os0") != std::string::npos ? "Os0-128" : "";
+}
+
+std::string paper_algorithm(const std::string& algorithm) {
+  static const std::map<std::string, std::string> names{{"ct_icp", "CT ICP"},
+                                                        {"kiss_icp", "KISS ICP"},
+                                                        {"lio_sam_lc", "LIO SAM lc"},
+                                                        {"lio_sam", "LIO SAM"},
+                                                        {"fast_lio2", "Fast LIO2"}};
+  const auto found = names.find(algorithm);
+  return found == names.end() ? "" : found->second;
+}
+
+}  // namespace lidarena

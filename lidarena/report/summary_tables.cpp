@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/summary_tables.hpp"
+
+#include <fmt/format.h>
+
+#include "lidarena/report/study_cells.hpp"
+
+namespace lidarena {
+namespace {
+
+/// "fast_lio2 (improved): 0.84" of the least figure; empty when none has one.
+std::string least(const Results& results, const std::string& world, const std::string& sensor,
+                  const RowFigure& of) {
+  std::optional<double> best;
+  std::string text;
+  for (const std::string& preset : presets_of(results)) {
+    const StudyCells cells(results, preset);
+    for (const std::string& algorithm : cells.algorithms()) {
+      const auto value = cells.median(world, sensor, algorithm, of);
+      if (!value || (best && *best <= *value)) continue;
+      best = value;
+      text = fmt::format("{}{}: {}", algorithm, preset.empty() ? "" : " (" + preset + ")",
+                         figure(value).text);
+    }
+  }
+  return text;
+}
+
+std::optional<double> map_value(const std::optional<MapFigures>& map, double MapFigures::*member) {
+  return map ? std::optional((*map).*member) : std::nullopt;
+}
+
+/// What is left of a path in a command: the file's or folder's own name, quoted.
+std::string argument(const std::string& text) {
+  return text.find_first_of(" '\"$&;()") == std::string::npos ? text : "'" + text + "'";
+}
+
+std::string simulate_command(const ResultRow& row) {
+  const Json& made = row.simulation;
+  if (!made.is_object()) return "(the dataset was not flown by us)";
+  std::string command =
+      fmt::format("lidarena simulate --world {} --flight {}", argument(row.world),
+                  argument(row.flight.empty() ? made.value("flight_source", "") : row.flight));
+  for (const Json& sensor : made.value("sensors", Json::array())) {
+    command += " --sensor " + argument(sensor.value("name", ""));
+  }
+  if (made.contains("seed")) command += fmt::format(" --seed {}", made.at("seed").dump());
+  if (made.contains("seconds")) command += fmt::format(" --seconds {}", made.at("seconds").dump());
+  if (!made.value("noise", true)) command += " --noise off";
+  return command + " --no-data --out data";
+}
+
+}  // namespace
+
+ReportTable winners_table(const Results& results) {
+  ReportTable table{"winners",
+                    "Who is best where",
+                    "Medians over flights and seeds of the runs that went well.",
+                    {"world, sensor", "least drift, cm per m", "fewest points beyond 20 cm, %"},
+                    {}};
+  const StudyCells all(results, "");
+  for (const std::string& world : all.worlds()) {
+    for (const std::string& sensor : all.sensors()) {
+      table.rows.push_back({word(world + ", " + sensor),
+                            word(least(results, world, sensor, rpe_of)),
+                            word(least(results, world, sensor, outliers_of))});
+    }
+  }
+  return table;
+}
+
+ReportTable runs_table(const Results& results, const std::string& world) {
+  ReportTable table{
+      "runs-" + world,
+      "All runs, " + world,
+      "RPE over 1 m; ATE after SE(3); own map: as published, all returns: every return "
+      "moved with the estimated path; P95 of the time for a scan; own memory: map, scan "
+      "buffer and backlog as the algorithm counts them.",
+      {"sensor, algorithm, seed", "RPE, cm per m", "RPE, deg per m", "ATE, cm", "coverage, %",
+       "own map RMSE, cm", "own map > 20 cm, %", "all returns RMSE, cm", "all returns > 20 cm, %",
+       "times real time", "P95, ms", "own memory, MB"},
+      {}};
+  for (const ResultRow& row : results.rows) {
+    if (row.world != world) continue;
+    std::vector<TableCell> cells{
+        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, row.preset, row.seed))};
+    if (row.status != "ok") cells.push_back(word(row.status + ": " + row.reason));
+    for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
+                              map_value(row.own_map, &MapFigures::rmse_cm),
+                              map_value(row.own_map, &MapFigures::outliers_percent),
+                              map_value(row.reprojected_map, &MapFigures::rmse_cm),
+                              map_value(row.reprojected_map, &MapFigures::outliers_percent),
+                              row.real_time_factor, row.latency_p95_ms, row.own_memory_mb}) {
+      if (cells.size() < table.head.size()) cells.push_back(figure(value));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+ReportTable failures_table(const Results& results) {
+  ReportTable table{"failures", "Runs that did not go well", "", {"run", "state", "reason"}, {}};
+  for (const ResultRow& row : results.rows) {
+    if (row.status == "ok") continue;
+    table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
+  }
+  return table;
+}
+
+ReportTable commands_table(const Results& results) {
+  ReportTable table{
+      "commands",
+      "How each run is made again",
+      "Noise is keyed by seed and sensor, so the same seed gives the same measurements; "
+      "all sensors of a study are flown together.",
+      {"run", "commands"},
+      {}};
+  for (const ResultRow& row : results.rows) {
+    table.rows.push_back(
+        {word(row.name),
+         word(
+             fmt::format("{} && lidarena run {} data --preset {} --sensor {} --out run && lidarena "
+                         "evaluate run",
+                         simulate_command(row), row.algorithm, row.preset, argument(row.sensor)))});
+  }
+  return table;
+}
+
+ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset) {
+  ReportTable table{"claims-" + preset,
+                    "The paper's findings on our runs, " + preset,
+                    "A finding holds here when every one of its checks does.",
+                    {"finding", "here", "what is asked", "our figures"},
+                    {}};
+  for (const Claim& claim : claims) {
+    std::string evidence;
+    for (const std::string& line : claim.evidence)
+      evidence += (evidence.empty() ? "" : "; ") + line;
+    const char* verdict = !claim.holds ? "not measured" : *claim.holds ? "holds" : "does not hold";
+    if (claim.holds == false && !claim.guess.empty()) evidence += ". A guess why: " + claim.guess;
+    table.rows.push_back({word(claim.text), word(verdict), word(claim.rule), word(evidence)});
+  }
+  return table;
+}
+
+}  // namespace lidarena

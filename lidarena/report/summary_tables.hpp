@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <vector>
+
+#include "lidarena/report/claims.hpp"
+#include "lidarena/report/result_table.hpp"
+#include "lidarena/report/table.hpp"
+
+namespace lidarena {
+
+/// The best algorithm for each world and sensor by drift, and by outliers of the map.
+ReportTable winners_table(const Results& results);
+/// All runs of a world with all their figures; failures are rows.
+ReportTable runs_table(const Results& results, const std::string& world);
+/// Runs that failed, diverged or were not scored, with their reasons.
+ReportTable failures_table(const Results& results);
+/// The commands that make each run again, from the dataset on.
+ReportTable commands_table(const Results& results);
+/// Claims with their figures and "holds here", "does not hold here" or "not measured".
+ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);
+
+}  // namespace lidarena

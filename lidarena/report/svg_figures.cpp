@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/svg_figures.hpp"
+
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <string>
+
+#include "lidarena/dataset/part_file.hpp"
+#include "lidarena/report/web_bundle.hpp"
+
+namespace lidarena {
+namespace {
+
+/// Calls `node SCRIPT DATA FOLDER` with its output thrown away; true when it ended well.
+bool call_node(std::string script, std::string data, std::string folder) {
+  std::string node = "node";
+  std::array<char*, 5> arguments{node.data(), script.data(), data.data(), folder.data(), nullptr};
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+    posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  }
+  pid_t child = 0;
+  const int refused =
+      posix_spawnp(&child, node.c_str(), &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  int status = 0;
+  return refused == 0 && waitpid(child, &status, 0) == child && WIFEXITED(status) &&
+         WEXITSTATUS(status) == 0;
+}
+
+}  // namespace
+
+bool draw_svg_figures(const std::filesystem::path& data, const std::filesystem::path& folder) {
+  const std::string_view bundled = web_bundle("figures.cjs");
+  if (bundled.empty()) return false;
+  std::filesystem::create_directories(folder);
+  const std::filesystem::path script = folder / "figures.cjs";
+  write_text_file(script, bundled);
+  const bool drawn = call_node(script.string(), data.string(), folder.string());
+  std::filesystem::remove(script);
+  return drawn;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string_view>
+
+namespace lidarena {
+
+/// A file that viewer/build.mjs made, carried in the binary: view.js, view.css, report.js,
+/// report.css, figures.cjs (for Node.js), licenses.txt. Empty where the build was configured
+/// without the viewer (LIDARENA_WITH_VIEWER).
+std::string_view web_bundle(std::string_view name);
+
+}  // namespace lidarena

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// The parts of ECharts that our figures use.
+import { BarChart, BoxplotChart, LineChart, ScatterChart } from "echarts/charts";
+import { GridComponent, LegendComponent, MarkLineComponent, TitleComponent, TooltipComponent } from "echarts/components";
+import * as echarts from "echarts/core";
+import { SVGRenderer } from "echarts/renderers";
+
+echarts.use([BarChart, BoxplotChart, LineChart, ScatterChart, GridComponent, LegendComponent,
+  MarkLineComponent, TitleComponent, TooltipComponent, SVGRenderer]);
+
+export { echarts };

@@ -1,0 +1,275 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Every figure of a report as an ECharts option: the page and the SVG files draw the same ones.
+import { RUN_COLORS } from "../view/colors";
+import { distinct, fiveNumbers, label, meanOf, type Figure, type ReportData, type Run } from "./data";
+
+const INK = "#1c2430";
+const FAINT = "#5b6470";
+const THRESHOLD = "#e0a800";
+const OUTLIER = "#d62027";
+const FONT = "sans-serif";
+const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
+
+/** Blue for the Mid-360, red for the OS0-128, as in the paper's figures; others in turn. */
+export function sensorColor(sensor: string, sensors: string[]): string {
+  if (/mid.?360/i.test(sensor)) return "#2b6cb0";
+  if (/os0/i.test(sensor)) return "#d1453b";
+  return RUN_COLORS[(2 + sensors.indexOf(sensor)) % RUN_COLORS.length];
+}
+
+const base = (title: string) => ({
+  animation: false,
+  textStyle: { fontFamily: FONT, color: INK },
+  title: { text: title, left: 6, top: 2, textStyle: { fontSize: 14, fontFamily: FONT, color: INK } },
+  tooltip: { confine: true },
+});
+
+interface Cell { left: number; top: number; width: number; height: number }
+
+/** Small multiples: where panel `i` of `columns` a row stands, px. */
+function cellOf(i: number, columns: number, width: number, height: number): Cell {
+  return { left: 56 + (i % columns) * width, top: 64 + Math.floor(i / columns) * height, width: width - 70, height: height - 84 };
+}
+
+function panelTitle(text: string, cell: Cell) {
+  return { text, left: cell.left, top: cell.top - 20, textStyle: { fontSize: 11.5, fontWeight: 600, fontFamily: FONT, color: INK } };
+}
+
+const valueAxis = (gridIndex: number, name: string, more = {}) => ({
+  type: "value", gridIndex, name, nameLocation: "middle", nameTextStyle: { fontSize: 10, color: FAINT },
+  axisLabel: { fontSize: 10, color: FAINT }, splitLine: { lineStyle: { color: "#e3e6ea" } }, ...more,
+});
+
+type MapKind = "map" | "all_returns";
+
+/**
+ * Figures 6 and 7 of the paper: shares of points by their distance to the mesh, a panel an
+ * algorithm, the sensors over each other, the threshold in yellow. The last bar holds all beyond.
+ */
+function histograms(data: ReportData, world: string, kind: MapKind): Figure | null {
+  const runs = data.runs.filter((run) => run.world === world && run[kind]);
+  if (runs.length === 0) return null;
+  const algorithms = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  const columns = Math.min(algorithms.length, 4);
+  const bins = runs[0][kind]!.histogram_percent.length;
+  const names = [...Array(bins).keys()].map(String).concat(`>${bins}`);
+  let top = 0;
+  const series: unknown[] = [];
+  algorithms.forEach((algorithm, panel) => sensors.forEach((sensor) => {
+    const same = runs.filter((run) => label(run) === algorithm && run.sensor === sensor);
+    if (same.length === 0) return;
+    const shares = meanOf(same.map((run) => [...run[kind]!.histogram_percent, run[kind]!.outliers_percent]));
+    top = Math.max(top, ...shares);
+    const color = sensorColor(sensor, sensors);
+    series.push({
+      type: "bar", name: sensor, xAxisIndex: panel, yAxisIndex: panel, barGap: "-100%", barCategoryGap: "8%",
+      itemStyle: { color, opacity: 0.55 }, data: shares.map((v) => Number(v.toPrecision(4))),
+      markLine: sensor !== sensors[0] ? undefined : {
+        symbol: "none", silent: true, label: { show: false }, lineStyle: { color: THRESHOLD, width: 2, type: "solid" },
+        data: [{ xAxis: bins - 0.5 }],
+      },
+    });
+  }));
+  const cells = algorithms.map((_, i) => cellOf(i, columns, 290, 230));
+  const title = `Distance from map to mesh, ${world}` + (kind === "map" ? "" : ", all returns");
+  return {
+    id: `histogram-${world}${kind === "map" ? "" : "-all-returns"}`, title,
+    caption: `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar holds all beyond ${bins} cm (yellow line). ` +
+      (kind === "map" ? "The map as the program publishes it." : "Every return moved with the estimated path, made alike for every algorithm."),
+    width: 60 + 290 * columns, height: 70 + 230 * Math.ceil(algorithms.length / columns), overTime: false,
+    option: {
+      ...base(""),
+      title: [{ ...base(title).title }, ...algorithms.map((name, i) => panelTitle(name, cells[i]))],
+      tooltip: { trigger: "axis", confine: true, axisPointer: { type: "shadow" } },
+      legend: { top: 22, left: 50, data: sensors, textStyle: { fontSize: 11 } },
+      grid: cells,
+      xAxis: cells.map((_, i) => ({
+        type: "category", gridIndex: i, data: names, name: "cm", nameGap: 4, nameTextStyle: { fontSize: 10, color: FAINT },
+        axisLabel: { fontSize: 10, color: FAINT, interval: (k: number) => k % 5 === 0 || k === bins }, axisTick: { show: false },
+      })),
+      yAxis: cells.map((_, i) => valueAxis(i, i % columns === 0 ? "% of points" : "", { max: Math.ceil(top * 1.05), nameGap: 30 })),
+      series,
+    },
+  };
+}
+
+/** Figure 8 of the paper: what the algorithm holds, its parts apart. */
+function memory(data: ReportData, world: string): Figure | null {
+  const first = firstSeed(data.runs.filter((run) => run.world === world && run.memory));
+  if (first.length === 0) return null;
+  const columns = Math.min(first.length, 4);
+  const cells = first.map((_, i) => cellOf(i, columns, 290, 210));
+  const parts: [string, string, string][] = [
+    ["map_mb", "map (tree)", "#2b6cb0"], ["scan_buffer_mb", "scan buffer", "#d9a441"], ["backlog_mb", "backlog", "#d1453b"],
+  ];
+  const title = `Memory that the algorithm holds, ${world}`;
+  return {
+    id: `memory-${world}`, title, caption: "As the algorithm itself counts it, stacked: map (or tree), scan buffer, backlog of measurements not worked on yet. First seed.",
+    width: 60 + 290 * columns, height: 70 + 210 * Math.ceil(first.length / columns), overTime: true,
+    option: {
+      ...base(""),
+      title: [{ ...base(title).title }, ...first.map((run, i) => panelTitle(`${label(run)}, ${run.sensor}`, cells[i]))],
+      tooltip: { trigger: "axis", confine: true },
+      legend: { top: 22, left: 50, data: parts.map(([, name]) => name), textStyle: { fontSize: 11 } },
+      grid: cells,
+      xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0), showMaxLabel: true } })),
+      yAxis: cells.map((_, i) => valueAxis(i, i % columns === 0 ? "MB" : "", { nameGap: 34, min: 0 })),
+      series: first.flatMap((run, i) => parts.map(([key, name, color]) => ({
+        type: "line", name, stack: `s${i}`, xAxisIndex: i, yAxisIndex: i, symbol: "none", lineStyle: { width: 1, color },
+        itemStyle: { color }, areaStyle: { color, opacity: 0.5 },
+        data: run.memory!.t_s.map((t, k) => [t, run.memory![key][k]]),
+      }))),
+    },
+  };
+}
+
+/** Error of the path over time, a panel a sensor, a line an algorithm. */
+function drift(data: ReportData, world: string): Figure | null {
+  const first = firstSeed(data.runs.filter((run) => run.world === world && run.error));
+  if (first.length === 0) return null;
+  const sensors = distinct(first, (run) => run.sensor);
+  const algorithms = distinct(first, label);
+  const columns = Math.min(sensors.length, 2);
+  const cells = sensors.map((_, i) => cellOf(i, columns, 560, 260));
+  const title = `Error of the path over time, ${world}`;
+  return {
+    id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after laying the whole paths over each other by SE(3). First seed.",
+    width: 60 + 560 * columns, height: 70 + 260 * Math.ceil(sensors.length / columns), overTime: true,
+    option: {
+      ...base(""),
+      title: [{ ...base(title).title }, ...sensors.map((name, i) => panelTitle(name, cells[i]))],
+      tooltip: { trigger: "axis", confine: true },
+      legend: { top: 22, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
+      grid: cells,
+      xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0) } })),
+      yAxis: cells.map((_, i) => valueAxis(i, "cm", { nameGap: 34, min: 0 })),
+      series: first.map((run) => ({
+        type: "line", name: label(run), xAxisIndex: sensors.indexOf(run.sensor), yAxisIndex: sensors.indexOf(run.sensor), symbol: "none",
+        lineStyle: { width: 1.3 }, color: RUN_COLORS[algorithms.indexOf(label(run)) % RUN_COLORS.length],
+        data: run.error!.t_s.map((t, k) => [t, run.error!.cm[k]]),
+      })),
+    },
+  };
+}
+
+/** RPE over flights and seeds: boxes with every run as a dot. */
+function spread(data: ReportData, world: string): Figure | null {
+  const runs = data.runs.filter((run) => run.world === world && run.rpe_cm_per_m !== null);
+  const algorithms = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  const several = algorithms.some((a) => sensors.some((s) => runs.filter((r) => label(r) === a && r.sensor === s).length > 1));
+  if (!several) return null;
+  const title = `Spread over flights and seeds, ${world}`;
+  const boxes = sensors.map((sensor) => ({
+    type: "boxplot", name: sensor, itemStyle: { color: "#ffffff00", borderColor: sensorColor(sensor, sensors) }, boxWidth: [8, 26],
+    data: algorithms.map((algorithm) => {
+      const values = valuesOf(runs, algorithm, sensor);
+      return values.length > 0 ? fiveNumbers(values) : [];
+    }),
+  }));
+  const dots = sensors.map((sensor, k) => ({
+    type: "scatter", name: sensor, symbolSize: 6, itemStyle: { color: sensorColor(sensor, sensors), opacity: 0.8 },
+    symbolOffset: [`${(k - (sensors.length - 1) / 2) * 480}%`, 0],
+    data: algorithms.flatMap((algorithm, i) => valuesOf(runs, algorithm, sensor).map((v) => [i, v])),
+  }));
+  const width = Math.max(480, 120 + 150 * algorithms.length);
+  return {
+    id: `spread-${world}`, title, caption: "RPE over 1 m of each flight and seed: every run a dot; boxes from the lower to the upper quartile with the median, whiskers to the extremes.",
+    width, height: 320, overTime: false,
+    option: {
+      ...base(title), legend: { top: 24, left: 50, data: sensors },
+      grid: { left: 60, right: 20, top: 60, bottom: 44 },
+      xAxis: { type: "category", data: algorithms, axisLabel: { fontSize: 10.5, interval: 0, width: 140, overflow: "break" } },
+      yAxis: valueAxis(0, "RPE, cm per m", { nameGap: 36, min: 0 }),
+      series: [...boxes, ...dots],
+    },
+  };
+}
+
+function valuesOf(runs: Run[], algorithm: string, sensor: string): number[] {
+  return runs.filter((r) => label(r) === algorithm && r.sensor === sensor).map((r) => r.rpe_cm_per_m!);
+}
+
+/** Error against cost; who is on the lower left edge is beaten by nobody. */
+function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, axis: string): Figure | null {
+  const runs = data.runs.filter((run) => run.rpe_cm_per_m !== null && run[key] !== null);
+  if (runs.length < 2) return null;
+  const algorithms = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  const title = `Error against ${id === "pareto-cpu" ? "computing time" : "memory"}`;
+  return {
+    id, title, caption: `Every run of every world: colour the algorithm, shape the sensor. Lower left is better; the grey steps join the runs that no other beats in both.`,
+    width: 560, height: 400, overTime: false,
+    option: {
+      ...base(title), legend: { top: 24, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
+      tooltip: { confine: true, formatter: (p: { data: { name: string; value: number[] } }) => `${p.data.name}<br>${p.data.value.map((v) => Number(v.toPrecision(3))).join(", ")}` },
+      grid: { left: 60, right: 24, top: 76, bottom: 48 },
+      xAxis: { ...valueAxis(0, axis, { nameGap: 26 }), type: "log" },
+      yAxis: { ...valueAxis(0, "RPE, cm per m", { nameGap: 36 }), type: "log" },
+      series: [
+        { type: "line", step: "end", symbol: "none", silent: true, lineStyle: { color: "#9aa3ad", width: 1, type: "dashed" }, data: unbeaten(runs.map((r) => [r[key]!, r.rpe_cm_per_m!])) },
+        ...algorithms.map((algorithm, i) => ({
+          type: "scatter", name: algorithm, symbolSize: 10, itemStyle: { color: RUN_COLORS[i % RUN_COLORS.length], opacity: 0.85 },
+          data: runs.filter((run) => label(run) === algorithm).map((run) => ({
+            name: `${label(run)}, ${run.sensor}, ${run.world}, seed ${run.seed}`, value: [run[key]!, run.rpe_cm_per_m!],
+            symbol: SYMBOLS[sensors.indexOf(run.sensor) % SYMBOLS.length],
+          })),
+        })),
+      ],
+    },
+  };
+}
+
+/** Points that no other beats in both coordinates, by the first. */
+export function unbeaten(points: number[][]): number[][] {
+  const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
+  let best = Infinity;
+  return sorted.filter(([, y]) => (y < best ? ((best = y), true) : false));
+}
+
+function firstSeed(runs: Run[]): Run[] {
+  const seen = new Set<string>();
+  return runs.filter((run) => {
+    const cell = `${label(run)}|${run.sensor}`;
+    return seen.has(cell) ? false : seen.add(cell);
+  });
+}
+
+/** Outlier shares as bars, a group an algorithm: Table 4 at a glance. */
+function outliers(data: ReportData, world: string): Figure | null {
+  const runs = data.runs.filter((run) => run.world === world && run.map);
+  if (runs.length === 0) return null;
+  const algorithms = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  const title = `Points beyond 20 cm, ${world}`;
+  return {
+    id: `outliers-${world}`, title, caption: "Share of the published map's points farther than 20 cm from the mesh, mean over seeds, on a logarithmic scale.",
+    width: Math.max(480, 120 + 150 * algorithms.length), height: 300, overTime: false,
+    option: {
+      ...base(title), legend: { top: 24, left: 50, data: sensors }, tooltip: { trigger: "axis", confine: true },
+      grid: { left: 60, right: 20, top: 60, bottom: 44 },
+      xAxis: { type: "category", data: algorithms, axisLabel: { fontSize: 10.5, interval: 0, width: 140, overflow: "break" } },
+      yAxis: { ...valueAxis(0, "%", { nameGap: 40 }), type: "log", min: 0.001, max: 100 },
+      series: sensors.map((sensor) => ({
+        type: "bar", name: sensor, barMaxWidth: 30, itemStyle: { color: sensorColor(sensor, sensors) }, 
+        markLine: undefined, emphasis: { itemStyle: { color: OUTLIER } },
+        data: algorithms.map((algorithm) => {
+          const same = runs.filter((r) => label(r) === algorithm && r.sensor === sensor);
+          if (same.length === 0) return null;
+          return Number(Math.max(0.001, meanOf(same.map((r) => [r.map!.outliers_percent]))[0]).toPrecision(4));
+        }),
+      })),
+    },
+  };
+}
+
+export function figuresOf(data: ReportData): Figure[] {
+  const perWorld = data.worlds.flatMap((world) => [
+    histograms(data, world, "map"), histograms(data, world, "all_returns"), outliers(data, world), drift(data, world), memory(data, world), spread(data, world),
+  ]);
+  return [...perWorld,
+    pareto(data, "cpu_share", "pareto-cpu", "computing, s per s of flight"),
+    pareto(data, "memory_mb", "pareto-memory", "memory of the algorithm, MB"),
+  ].filter((figure): figure is Figure => figure !== null);
+}

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A cloud on the GPU: one buffer a chunk, filled block by block.
+import * as THREE from "three";
+import type { ChunkHeader, CloudHeader, FieldHeader } from "./scene";
+import { pointMaterial, type PointStyle } from "./point_material";
+
+interface Chunk {
+  header: ChunkHeader;
+  points: THREE.Points;
+  box: THREE.Box3;
+  loaded: number;
+}
+
+/** How many points of a chunk the blocks before `part` hold, of `parts` in all. */
+export function sharePoints(count: number, part: number, parts: number): number {
+  return Math.floor((count * part) / parts);
+}
+
+export interface PickedPoint {
+  cloud: Cloud;
+  position: THREE.Vector3;
+  values: { field: FieldHeader; value: number | null }[];
+  pixels: number;
+}
+
+export class Cloud {
+  readonly group = new THREE.Group();
+  private chunks: Chunk[] = [];
+  private material: THREE.ShaderMaterial;
+  private partsLoaded = 0;
+
+  constructor(readonly header: CloudHeader, style: PointStyle) {
+    this.material = pointMaterial(header.fields, style);
+    for (const chunk of header.chunks) this.addChunk(chunk);
+  }
+
+  get loaded(): number {
+    return this.chunks.reduce((sum, chunk) => sum + chunk.loaded, 0);
+  }
+
+  field(name: string): FieldHeader | undefined {
+    return this.header.fields.find((field) => field.name === name);
+  }
+
+  private addChunk(header: ChunkHeader) {
+    const geometry = new THREE.BufferGeometry();
+    const columns: [string, number][] = [["position", 3]];
+    for (const field of this.header.fields) columns.push([`a_${field.name}`, 1]);
+    for (const [name, width] of columns) {
+      const array = new Uint16Array(header.count * width);
+      const attribute = new THREE.BufferAttribute(array, width, true);
+      attribute.setUsage(THREE.StaticDrawUsage);
+      geometry.setAttribute(name, attribute);
+    }
+    geometry.setDrawRange(0, 0);
+    const points = new THREE.Points(geometry, this.material);
+    points.frustumCulled = false;  // culled in plan(), which also shares the budget out
+    points.position.set(...header.min);
+    points.scale.set(...(header.size.map((s) => Math.max(s, 1e-6)) as [number, number, number]));
+    points.updateMatrixWorld();
+    const min = new THREE.Vector3(...header.min);
+    const box = new THREE.Box3(min, min.clone().add(new THREE.Vector3(...header.size)));
+    this.chunks.push({ header, points, box, loaded: 0 });
+    this.group.add(points);
+  }
+
+  /** Takes the next block: for each chunk its positions, then its fields one after the other. */
+  addBlock(bytes: ArrayBuffer) {
+    const parts = this.header.blocks.length;
+    let offset = 0;
+    for (const chunk of this.chunks) {
+      const begin = sharePoints(chunk.header.count, this.partsLoaded, parts);
+      const count = sharePoints(chunk.header.count, this.partsLoaded + 1, parts) - begin;
+      for (const attribute of Object.values(chunk.points.geometry.attributes)) {
+        const buffer = attribute as THREE.BufferAttribute;
+        const values = new Uint16Array(bytes, offset, count * buffer.itemSize);
+        (buffer.array as Uint16Array).set(values, begin * buffer.itemSize);
+        buffer.addUpdateRange(begin * buffer.itemSize, values.length);
+        buffer.needsUpdate = true;
+        offset += values.byteLength;
+      }
+      chunk.loaded = begin + count;
+    }
+    if (offset !== bytes.byteLength) throw new Error(`${this.header.name}: a block of odd length`);
+    this.partsLoaded += 1;
+  }
+
+  /** Points of the chunks that `frustum` touches. */
+  inSight(frustum: THREE.Frustum): number {
+    let sum = 0;
+    for (const chunk of this.chunks) {
+      if (frustum.intersectsBox(chunk.box)) sum += chunk.loaded;
+    }
+    return sum;
+  }
+
+  /** Sets what is drawn next: `share` of the points of each chunk in sight. Returns how many. */
+  plan(frustum: THREE.Frustum, share: number): number {
+    let drawn = 0;
+    for (const chunk of this.chunks) {
+      const count = frustum.intersectsBox(chunk.box) ? Math.ceil(share * chunk.loaded) : 0;
+      chunk.points.visible = count > 0;
+      chunk.points.geometry.setDrawRange(0, count);
+      drawn += count;
+    }
+    return drawn;
+  }
+
+  /** Position and fields of point `i` of a chunk. */
+  private pointOf(chunk: Chunk, i: number) {
+    const attributes = chunk.points.geometry.attributes;
+    const raw = attributes.position.array as Uint16Array;
+    const position = new THREE.Vector3(raw[3 * i], raw[3 * i + 1], raw[3 * i + 2])
+      .divideScalar(65535)
+      .applyMatrix4(chunk.points.matrixWorld);
+    const values = this.header.fields.map((field) => {
+      const q = (attributes[`a_${field.name}`].array as Uint16Array)[i];
+      return { field, value: q === 65535 ? null : field.min + ((field.max - field.min) * q) / 65534 };
+    });
+    return { position, values };
+  }
+
+  /** The drawn point nearest to a pixel, within `radius` pixels; of those the foremost. */
+  pick(toClip: THREE.Matrix4, width: number, height: number, x: number, y: number, radius: number,
+       accepts: (picked: PickedPoint) => boolean): PickedPoint | null {
+    let best: PickedPoint | null = null;
+    let bestDepth = Infinity;
+    const clip = new THREE.Vector4();
+    for (const chunk of this.chunks) {
+      if (!chunk.points.visible) continue;
+      const raw = chunk.points.geometry.attributes.position.array as Uint16Array;
+      const matrix = toClip.clone().multiply(chunk.points.matrixWorld);
+      const drawn = chunk.points.geometry.drawRange.count;
+      for (let i = 0; i < drawn; ++i) {
+        clip.set(raw[3 * i] / 65535, raw[3 * i + 1] / 65535, raw[3 * i + 2] / 65535, 1);
+        clip.applyMatrix4(matrix);
+        if (clip.w <= 0) continue;
+        const dx = (0.5 + (0.5 * clip.x) / clip.w) * width - x;
+        const dy = (0.5 - (0.5 * clip.y) / clip.w) * height - y;
+        if (Math.abs(dx) > radius || Math.abs(dy) > radius || clip.w >= bestDepth) continue;
+        const picked = { cloud: this, ...this.pointOf(chunk, i), pixels: Math.hypot(dx, dy) };
+        if (!accepts(picked)) continue;
+        best = picked;
+        bestDepth = clip.w;
+      }
+    }
+    return best;
+  }
+}
