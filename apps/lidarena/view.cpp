@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
+#include <fstream>
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
@@ -12,7 +14,6 @@
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/load_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
-#include "lidarena/world/ply.hpp"
 
 namespace lidarena {
 namespace {
@@ -33,13 +34,17 @@ bool is_run(const fs::path& folder) {
   return fs::exists(manifest) && read_json(manifest).value("kind", "") == "run";
 }
 
-/// A .ply without faces is a cloud of points.
+/// Whether the header of a .ply announces faces; without them it is a cloud of points.
 bool has_faces(const fs::path& file) {
-  try {
-    return !read_ply(file).empty();
-  } catch (const InputError&) {
-    return false;  // no mesh's layout; the cloud's reader names what is wrong
+  std::ifstream in(file, std::ios::binary);
+  constexpr int kHeaderLines = 1000;
+  std::string line;
+  for (int i = 0; i < kHeaderLines && std::getline(in, line); ++i) {
+    if (line.rfind("element face ", 0) == 0)
+      return line.find_first_of("123456789") != std::string::npos;
+    if (line.rfind("end_header", 0) == 0) break;
   }
+  return false;
 }
 
 void add_world(Scene& scene, const fs::path& file, LogSink& log) {

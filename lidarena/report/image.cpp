@@ -32,16 +32,15 @@ std::string encode_png(const Image& image) {
 std::string base64(std::string_view bytes) {
   constexpr std::string_view kAlphabet =
       "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+  std::string text((bytes.size() + 2) / 3 * 4, '=');
+  for (std::size_t i = 0, out = 0; i < bytes.size(); i += 3, out += 4) {
     const std::size_t n = std::min<std::size_t>(3, bytes.size() - i);
     std::uint32_t group = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       group = (group << 8U) | (k < n ? static_cast<unsigned char>(bytes[i + k]) : 0U);
     }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += k <= n ? kAlphabet[(group >> (18U - 6U * k)) & 63U] : '=';
+    for (std::size_t k = 0; k <= n; ++k) {
+      text[out + k] = kAlphabet[(group >> (18U - 6U * k)) & 63U];
     }
   }
   return text;

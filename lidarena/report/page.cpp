@@ -37,22 +37,22 @@ constexpr std::size_t kPictureBytes = 12 << 20;  // of the pictures from above
 constexpr const char* kStyle = R"css(
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2430;background:#f6f7f9;margin:0}
 main{max-width:1280px;margin:0 auto;padding:24px 20px 60px}
-h1{font-size:26px;margin:8px 0 2px}h2{font-size:20px;margin:36px 0 6px;border-top:1px solid #d7dce2;padding-top:14px}
+h1{font-size:26px;margin:8px 0 2px}main>h2{font-size:20px;margin:36px 0 6px;border-top:1px solid #d7dce2;padding-top:14px}
 p{max-width:82ch;margin:6px 0 12px}.note,figcaption{color:#5b6470;font-size:13px}.note{max-width:none}
 nav a{margin-right:14px;color:#2b5a97}
 table{border-collapse:collapse;background:#fff;font-variant-numeric:tabular-nums;font-size:13px;margin-top:10px}
-caption{text-align:left;font-weight:600;padding:4px 0;font-size:14px}
+caption{text-align:left;white-space:nowrap;font-weight:600;padding:4px 0;font-size:14px}
 th,td{padding:5px 8px;border-bottom:1px solid #e3e6ea;text-align:right;vertical-align:top}
 th{font-weight:600;background:#eef1f4;vertical-align:bottom}td.l,th.l{text-align:left}
-.paper{color:#7a828d;font-size:12px}.scroll{overflow-x:auto}
+.paper{color:#7a828d;font-size:12px}.scroll{overflow-x:auto;display:inline-block;vertical-align:top;max-width:100%;margin-right:28px}
 .row,.figures{display:flex;flex-wrap:wrap;gap:12px;align-items:flex-start;margin-top:10px}
 figure{margin:0;background:#fff;border:1px solid #e3e6ea;border-radius:6px;padding:6px;max-width:100%;overflow-x:auto}
 figcaption{max-width:82ch;padding:2px 6px}svg{display:block;max-width:100%;height:auto}
 .t{font:11px system-ui,sans-serif;fill:#5b6470}.h{font:600 12.5px system-ui,sans-serif;fill:#1c2430}
-.key{display:inline-block;width:110px;height:10px;vertical-align:middle;border-radius:2px}
+.ramp{display:inline-block;width:110px;height:10px;vertical-align:middle;border-radius:2px}
 #commands td{font:12px ui-monospace,monospace;white-space:normal;overflow-wrap:anywhere}
 @media print{body{background:#fff;font-size:11px}main{max-width:none;padding:0}nav,.start{display:none}
-h2{break-after:avoid}figure,tr{break-inside:avoid}table,.note,figcaption{font-size:9px}
+main>h2{break-after:avoid}figure,tr{break-inside:avoid}table,.note,figcaption{font-size:9px}
 .scroll,figure{overflow:visible}th,td{padding:2px 4px}}
 )css";
 
@@ -116,9 +116,9 @@ std::string color_key() {
   const Rgb far = distance_color(1.0);
   return fmt::format(
       "<p class='note'>Each map from above, like an X-ray: upright surfaces are dark. Colour: mean "
-      "point-to-mesh distance, 0 <span class='key' "
+      "point-to-mesh distance, 0 <span class='ramp' "
       "style='background:linear-gradient(90deg{})'></span> "
-      "20 cm, beyond <span class='key' style='width:14px;background:rgb({},{},{})'></span>. Grey: "
+      "20 cm, beyond <span class='ramp' style='width:14px;background:rgb({},{},{})'></span>. Grey: "
       "the true path; orange: the estimate, laid over it by SE(3) over all positions. First "
       "seed.</p>",
       stops, far[0], far[1], far[2]);
@@ -152,7 +152,13 @@ std::string section_html(const Results& results, const ReportSection& section, s
   std::string html =
       fmt::format("<h2 id='{}'>{}</h2>", escaped(section.id), escaped(section.title));
   if (!section.text.empty()) html += "<p>" + escaped(section.text) + "</p>";
-  for (const ReportTable& table : section.tables) html += table_html(table);
+  for (std::size_t i = 0; i < section.tables.size(); ++i) {
+    ReportTable table = section.tables[i];
+    const bool said_again =
+        i + 1 < section.tables.size() && section.tables[i + 1].note == table.note;
+    if (said_again) table.note.clear();  // once is enough for tables side by side
+    html += table_html(table);
+  }
   if (section.id == "costs") html += "<div class='figures' id='figures'></div>";
   if (section.world.empty()) return html;
   const std::string id = escaped(section.world);

@@ -70,20 +70,31 @@ Eigen::AlignedBox3f box_of(const SceneCloud& cloud, Indices indices) {
   return box;
 }
 
-/// Halves the points across the longest side of their box until they fit into chunks.
-void cut_into_chunks(const SceneCloud& cloud, Indices indices, std::vector<Indices>& chunks) {
-  if (indices.size() <= kChunkPoints) {
-    if (!indices.empty()) chunks.push_back(indices);
-    return;
-  }
+/// Parts the points into two halves across the longest side of their box.
+void halve(const SceneCloud& cloud, Indices indices) {
   Eigen::Index axis = 0;
   box_of(cloud, indices).sizes().maxCoeff(&axis);
   const auto middle = indices.begin() + static_cast<std::ptrdiff_t>(indices.size() / 2);
   std::nth_element(indices.begin(), middle, indices.end(), [&](std::uint32_t a, std::uint32_t b) {
     return cloud.points[a][axis] < cloud.points[b][axis];
   });
-  cut_into_chunks(cloud, indices.first(indices.size() / 2), chunks);
-  cut_into_chunks(cloud, indices.subspan(indices.size() / 2), chunks);
+}
+
+/// Halves all, again and again, until they fit into chunks.
+std::vector<Indices> cut_into_chunks(const SceneCloud& cloud, Indices all,
+                                     const Parallel& parallel) {
+  if (all.empty()) return {};
+  std::vector<Indices> chunks{all};
+  while (chunks.back().size() > kChunkPoints) {  // the last half is never the smaller one
+    parallel.for_each(chunks.size(), 1, [&](std::size_t c) { halve(cloud, chunks[c]); });
+    std::vector<Indices> halves;
+    for (const Indices chunk : chunks) {
+      halves.push_back(chunk.first(chunk.size() / 2));
+      halves.push_back(chunk.subspan(chunk.size() / 2));
+    }
+    chunks = std::move(halves);
+  }
+  return chunks;
 }
 
 /// Fisher and Yates, with numbers that depend on the place alone.
@@ -192,8 +203,7 @@ class Packer {
     for (std::size_t i = 0; i < cloud.points.size(); ++i) {
       if (cloud.points[i].allFinite()) order.push_back(static_cast<std::uint32_t>(i));
     }
-    std::vector<Indices> chunks;
-    cut_into_chunks(cloud, order, chunks);
+    const std::vector<Indices> chunks = cut_into_chunks(cloud, order, parallel_);
     std::vector<Eigen::AlignedBox3f> boxes(chunks.size());
     parallel_.for_each(chunks.size(), 1, [&](std::size_t c) {
       boxes[c] = box_of(cloud, chunks[c]);

@@ -82,7 +82,10 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
 std::vector<std::string> presets_of(const Results& results) {
   std::vector<const ResultRow*> rows;
   for (const ResultRow& row : results.rows) rows.push_back(&row);
-  return distinct(rows, &ResultRow::preset);
+  std::vector<std::string> presets = distinct(rows, &ResultRow::preset);
+  std::stable_partition(presets.begin(), presets.end(),
+                        [](const std::string& preset) { return preset == "original"; });
+  return presets;
 }
 
 std::string paper_world(const std::string& world) {

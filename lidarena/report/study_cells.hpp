@@ -38,7 +38,8 @@ class StudyCells {
   std::vector<const ResultRow*> rows_;
 };
 
-/// Presets in the order of their first use.
+/// Presets in the order of their first use, `original` first: it is the one to compare with the
+/// paper.
 std::vector<std::string> presets_of(const Results& results);
 
 /// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm

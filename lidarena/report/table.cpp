@@ -81,9 +81,11 @@ TableCell figure(std::optional<double> value, int digits) {
   if (!value || !std::isfinite(*value)) return cell;
   cell.value = value;
   const double size = std::abs(*value);
+  const bool whole = size >= 1.0 && size < 1e6 && size == std::floor(size);
   const int before = size >= 1.0 ? static_cast<int>(std::log10(size)) + 1 : 1;
-  cell.text = size > 0.0 && size < 1e-3 ? fmt::format("{:.{}e}", *value, digits - 1)
-              : size < 1.0              ? fmt::format("{:.{}g}", *value, digits)
+  cell.text = whole                       ? fmt::format("{:.0f}", *value)
+              : size > 0.0 && size < 1e-3 ? fmt::format("{:.{}e}", *value, digits - 1)
+              : size < 1.0                ? fmt::format("{:.{}g}", *value, digits)
                            : fmt::format("{:.{}f}", *value, std::max(0, digits - before));
   return cell;
 }
@@ -112,7 +114,9 @@ std::string table_html(const ReportTable& table) {
       fmt::format("<div class='scroll'><table id='{}'><caption>{}</caption><thead><tr>",
                   escaped(table.id), escaped(table.title));
   for (std::size_t i = 0; i < table.head.size(); ++i) {
-    html += fmt::format("<th{}>{}</th>", i == 0 ? " class='l'" : "", escaped(table.head[i]));
+    const bool words = i == 0 || (!table.rows.empty() && i < table.rows[0].size() &&
+                                  !table.rows[0][i].value && !table.rows[0][i].text.empty());
+    html += fmt::format("<th{}>{}</th>", words ? " class='l'" : "", escaped(table.head[i]));
   }
   html += "</tr></thead><tbody>";
   for (const auto& row : table.rows) {

@@ -19,7 +19,7 @@ struct TableCell {
 };
 
 TableCell word(std::string text);
-/// A figure with `digits` significant digits, or a dash.
+/// A figure with `digits` significant digits (whole numbers in full), or a dash.
 TableCell figure(std::optional<double> value, int digits = 3);
 
 /// A table as the page, CSV, JSON, Markdown and LaTeX files show it. The first column names rows.

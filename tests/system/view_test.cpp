@@ -132,6 +132,52 @@ TEST_F(ViewInBrowser, WithoutWebGlThePictureInThePageStays) {
   EXPECT_THAT(dom, Not(HasSubstr("lidarena-view page live")));
 }
 
+/// A study of two runs in one world, as its result files tell it; no map, no dataset.
+void write_study(const fs::path& folder) {
+  nlohmann::json study{{"kind", "study"}, {"spec", {{"title", "Two runs"}}}, {"runs", {}}};
+  for (const std::string algorithm : {"kiss_icp", "fast_lio2"}) {
+    study["runs"].push_back({{"name", algorithm},
+                             {"world", "cave"},
+                             {"flight", "cave"},
+                             {"sensor", "livox_mid360"},
+                             {"algorithm", algorithm},
+                             {"preset", "improved"},
+                             {"seed", 1}});
+    const fs::path run = folder / "runs" / algorithm;
+    fs::create_directories(run);
+    std::ofstream(run / "manifest.json") << nlohmann::json{
+        {"kind", "run"}, {"summary", {{"sensor_seconds", 2.0}, {"compute_seconds", 1.0}}}};
+    const nlohmann::json curve{{"t_s", {0.0, 1.0, 2.0}}, {"translation_m", {0.0, 0.01, 0.02}}};
+    const nlohmann::json final{{"rpe", {{"1m", {{"translation", {{"rmse_m", 0.012}}}}}}},
+                               {"errors_over_time", {{"ate_se3", curve}}}};
+    std::ofstream(run / "metrics.json") << nlohmann::json{{"status", "ok"}, {"final", final}};
+    std::ofstream(run / "resources.csv")
+        << "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes\n"
+           "0.1,0.01,1,1,1000000,100,10\n1,0.01,1,1,2000000,100,10\n2,0.01,1,1,3000000,100,10\n";
+  }
+  std::ofstream(folder / "study.json") << study;
+}
+
+TEST_F(ViewInBrowser, TheReportDrawsItsChartsAndItsFiles) {
+  write_study(path("study"));
+  const Outcome made = call("report study");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  fs::rename(path("study") + "/report.html", path("page.html"));
+  const std::string dom = browse("--dump-dom", "");
+  EXPECT_THAT(page_errors(), ElementsAre());
+  // error and memory over time, and error against computing time and memory
+  EXPECT_THAT(dom, AllOf(HasSubstr("data-ready=\"1\""), HasSubstr("data-figures=\"4\"")));
+  for (const char* file :
+       {"results.csv", "report.json", "tables/runs-cave.csv", "tables/runs-cave.md",
+        "tables/runs-cave.tex", "tables/runs-cave.json"}) {
+    EXPECT_TRUE(fs::exists(path("study") + "/" + file)) << file;
+  }
+  if (std::system("command -v node >/dev/null") != 0) return;
+  for (const char* id : {"drift-cave", "memory-cave", "pareto-cpu", "pareto-memory"}) {
+    EXPECT_THAT(content(path("study") + "/figures/" + id + ".svg"), HasSubstr("<svg")) << id;
+  }
+}
+
 /// The program serving in the background; ended with the object.
 class Server {
  public:

@@ -6,7 +6,6 @@ import { distinct, fiveNumbers, label, meanOf, type Figure, type ReportData, typ
 const INK = "#1c2430";
 const FAINT = "#5b6470";
 const THRESHOLD = "#e0a800";
-const OUTLIER = "#d62027";
 const FONT = "sans-serif";
 const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
 
@@ -28,7 +27,12 @@ interface Cell { left: number; top: number; width: number; height: number }
 
 /** Small multiples: where panel `i` of `columns` a row stands, px. */
 function cellOf(i: number, columns: number, width: number, height: number): Cell {
-  return { left: 56 + (i % columns) * width, top: 64 + Math.floor(i / columns) * height, width: width - 70, height: height - 84 };
+  return { left: 56 + (i % columns) * width, top: 70 + Math.floor(i / columns) * height, width: width - 70, height: height - 72 };
+}
+
+/** Height of `count` panels with their title and legend, px. */
+function heightOf(count: number, columns: number, height: number): number {
+  return 42 + height * Math.ceil(count / columns);
 }
 
 function panelTitle(text: string, cell: Cell) {
@@ -65,11 +69,13 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
     series.push({
       type: "bar", name: sensor, xAxisIndex: panel, yAxisIndex: panel, barGap: "-100%", barCategoryGap: "8%",
       itemStyle: { color, opacity: 0.55 }, data: shares.map((v) => Number(v.toPrecision(4))),
-      markLine: sensor !== sensors[0] ? undefined : {
-        symbol: "none", silent: true, label: { show: false }, lineStyle: { color: THRESHOLD, width: 2, type: "solid" },
-        data: [{ xAxis: bins - 0.5 }],
-      },
     });
+  }));
+  const full = Math.ceil((top * 1.02) / 10) * 10;
+  // the threshold stands on an axis of centimetres of its own, over the bars' axis of bins
+  algorithms.forEach((_, panel) => series.push({
+    type: "line", xAxisIndex: algorithms.length + panel, yAxisIndex: panel, symbol: "none", silent: true, tooltip: { show: false },
+    lineStyle: { color: THRESHOLD, width: 2 }, data: [[bins, 0], [bins, full]],
   }));
   const cells = algorithms.map((_, i) => cellOf(i, columns, 290, 230));
   const title = `Distance from map to mesh, ${world}` + (kind === "map" ? "" : ", all returns");
@@ -77,18 +83,18 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
     id: `histogram-${world}${kind === "map" ? "" : "-all-returns"}`, title,
     caption: `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar holds all beyond ${bins} cm (yellow line). ` +
       (kind === "map" ? "The map as the program publishes it." : "Every return moved with the estimated path, made alike for every algorithm."),
-    width: 60 + 290 * columns, height: 70 + 230 * Math.ceil(algorithms.length / columns), overTime: false,
+    width: 60 + 290 * columns, height: heightOf(algorithms.length, columns, 230), overTime: false,
     option: {
       ...base(""),
       title: [{ ...base(title).title }, ...algorithms.map((name, i) => panelTitle(name, cells[i]))],
       tooltip: { trigger: "axis", confine: true, axisPointer: { type: "shadow" } },
       legend: { top: 22, left: 50, data: sensors, textStyle: { fontSize: 11 } },
       grid: cells,
-      xAxis: cells.map((_, i) => ({
+      xAxis: [...cells.map((_, i) => ({
         type: "category", gridIndex: i, data: names, name: "cm", nameGap: 4, nameTextStyle: { fontSize: 10, color: FAINT },
         axisLabel: { fontSize: 10, color: FAINT, interval: (k: number) => k % 5 === 0 || k === bins }, axisTick: { show: false },
-      })),
-      yAxis: cells.map((_, i) => valueAxis(i, i % columns === 0 ? "% of points" : "", { max: Math.ceil(top * 1.05), nameGap: 30 })),
+      })), ...cells.map((_, i) => ({ type: "value", gridIndex: i, min: 0, max: bins + 1, show: false }))],
+      yAxis: cells.map((_, i) => valueAxis(i, i % columns === 0 ? "% of points" : "", { max: full, nameGap: 30 })),
       series,
     },
   };
@@ -106,7 +112,7 @@ function memory(data: ReportData, world: string): Figure | null {
   const title = `Memory that the algorithm holds, ${world}`;
   return {
     id: `memory-${world}`, title, caption: "As the algorithm itself counts it, stacked: map (or tree), scan buffer, backlog of measurements not worked on yet. First seed.",
-    width: 60 + 290 * columns, height: 70 + 210 * Math.ceil(first.length / columns), overTime: true,
+    width: 60 + 290 * columns, height: heightOf(first.length, columns, 210), overTime: true,
     option: {
       ...base(""),
       title: [{ ...base(title).title }, ...first.map((run, i) => panelTitle(`${label(run)}, ${run.sensor}`, cells[i]))],
@@ -135,7 +141,7 @@ function drift(data: ReportData, world: string): Figure | null {
   const title = `Error of the path over time, ${world}`;
   return {
     id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after laying the whole paths over each other by SE(3). First seed.",
-    width: 60 + 560 * columns, height: 70 + 260 * Math.ceil(sensors.length / columns), overTime: true,
+    width: 60 + 560 * columns, height: heightOf(sensors.length, columns, 260), overTime: true,
     option: {
       ...base(""),
       title: [{ ...base(title).title }, ...sensors.map((name, i) => panelTitle(name, cells[i]))],
@@ -250,10 +256,9 @@ function outliers(data: ReportData, world: string): Figure | null {
       ...base(title), legend: { top: 24, left: 50, data: sensors }, tooltip: { trigger: "axis", confine: true },
       grid: { left: 60, right: 20, top: 60, bottom: 44 },
       xAxis: { type: "category", data: algorithms, axisLabel: { fontSize: 10.5, interval: 0, width: 140, overflow: "break" } },
-      yAxis: { ...valueAxis(0, "%", { nameGap: 40 }), type: "log", min: 0.001, max: 100 },
+      yAxis: { ...valueAxis(0, "%", { nameGap: 40 }), type: "log", min: 0.001, max: 100, startValue: 0.001 },
       series: sensors.map((sensor) => ({
-        type: "bar", name: sensor, barMaxWidth: 30, itemStyle: { color: sensorColor(sensor, sensors) }, 
-        markLine: undefined, emphasis: { itemStyle: { color: OUTLIER } },
+        type: "bar", name: sensor, barMaxWidth: 30, itemStyle: { color: sensorColor(sensor, sensors) },
         data: algorithms.map((algorithm) => {
           const same = runs.filter((r) => label(r) === algorithm && r.sensor === sensor);
           if (same.length === 0) return null;

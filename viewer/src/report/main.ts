@@ -72,6 +72,7 @@ function prepareView(world: string) {
     try {
       showView(world, root, header);
     } catch (error) {
+      root.classList.remove("open", "live");  // the pictures come back
       root.querySelector(".message")!.textContent = `The interactive view could not start: ${error}`;
     }
   };
@@ -80,11 +81,10 @@ function prepareView(world: string) {
 }
 
 function showView(world: string, root: HTMLElement, header: SceneHeader) {
-  root.classList.add("open");
+  root.classList.add("open", "live");  // first, so that the view finds its size
   const view = new View(root.querySelector<HTMLElement>(".stage")!, header);
   const state = { ...initialState(header), split: header.clouds.length > 1 };
   const panel = new Panel(view, root, state, { inAddress: false, onTime: (time) => markTime(world, time) });
-  root.classList.add("live");
   view.load(blocksInPage(`block-${world}`), () => panel.showLayers()).then(() => {
     panel.change({ color: panel.state.color });
     marks.view = world;

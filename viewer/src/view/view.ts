@@ -128,7 +128,11 @@ export class View {
 
   private addTrack(track: Track, color: string) {
     this.tracks.push(track);
-    this.addLayer({ name: track.header.name, kind: "path", color, shown: [true, true], object: track.object });
+    // the path of a run stands where its map does
+    const { clouds } = this.header;
+    const ordinal = clouds.findIndex((cloud) => cloud.name === track.header.name);
+    const shown: [boolean, boolean] = ordinal < 0 ? [true, true] : [clouds[ordinal].visible, ordinal === 1 || clouds.length === 1];
+    this.addLayer({ name: track.header.name, kind: "path", color, shown, object: track.object });
     track.setTime(...this.time);
   }
 
