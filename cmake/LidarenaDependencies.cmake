@@ -26,6 +26,8 @@ if(LIDARENA_WITH_EMBREE)
   endforeach()
 endif()
 
+find_package(nanoflann QUIET)  # for benchmarks alone
+
 set(LIDARENA_HAVE_SDF OFF)
 if(LIDARENA_WITH_SDF)
   find_package(sdformat12 QUIET)

@@ -10,8 +10,8 @@ packages=(g++ cmake ninja-build pkg-config ca-certificates
           nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
           liblz4-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev)
 # Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off. Without
-# libbz2 old bags with bz2 chunks are not read.
-optional=(libsdformat-dev libbz2-dev)
+# libbz2 old bags with bz2 chunks are not read; without nanoflann its rows are missing from benchmarks.
+optional=(libsdformat-dev libbz2-dev libnanoflann-dev)
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

@@ -6,19 +6,62 @@
 
 namespace lidarena {
 
+/// The best points so far, sorted; the last entry's distance bounds what is still of interest.
+struct KdTree::Search {
+  Eigen::Vector3f query;
+  std::span<Neighbour> best;
+  std::size_t count = 0;
+  /// Squared distance to the region that is being searched, by axis.
+  std::array<float, 3> away{};
+
+  float bound() const { return best.back().squared_distance; }
+  void offer(const Leaf& leaf);
+  void keep(const Eigen::Vector3f& point, float squared);
+};
+
+void KdTree::Search::keep(const Eigen::Vector3f& point, float squared) {
+  std::size_t place = std::min(count, best.size() - 1);
+  for (; place > 0 && best[place - 1].squared_distance > squared; --place) {
+    best[place] = best[place - 1];
+  }
+  best[place] = {point, squared};
+  count = std::min(count + 1, best.size());
+}
+
+void KdTree::Search::offer(const Leaf& leaf) {
+  std::array<float, kLeafSize> squared;
+  const auto& [x, y, z] = leaf.coordinates;
+  for (std::size_t i = 0; i < kLeafSize; ++i) {  // of all places, used or not: no branch
+    const float dx = x[i] - query.x();
+    const float dy = y[i] - query.y();
+    const float dz = z[i] - query.z();
+    squared[i] = dx * dx + (dy * dy + dz * dz);
+  }
+  for (std::uint32_t i = 0; i < leaf.count; ++i) {
+    if (squared[i] < bound()) keep(leaf.point(i), squared[i]);
+  }
+}
+
 void KdTree::build(std::vector<Eigen::Vector3f> points) {
   clear();
-  nodes_.reserve(points.size());
-  root_ = build(std::span(points));
+  for (const Eigen::Vector3f& point : points) bounds_.extend(point);
+  if (!points.empty()) root_ = build(std::span(points));
 }
 
 void KdTree::clear() {
-  nodes_.clear();
-  free_.clear();
+  splits_.clear();
+  leaves_.clear();
+  free_splits_.clear();
+  free_leaves_.clear();
+  bounds_.setEmpty();
   root_ = kNone;
 }
 
-void KdTree::insert(const Eigen::Vector3f& point) { root_ = insert(root_, point, 0); }
+void KdTree::insert(const Eigen::Vector3f& point) {
+  bounds_.extend(point);
+  if (root_ == kNone) root_ = allocate(leaves_, free_leaves_) | kLeafBit;
+  root_ = insert(root_, point);
+}
 
 bool KdTree::insert_thinned(const Eigen::Vector3f& point, float voxel) {
   const Eigen::Vector3f corner = (point / voxel).array().floor() * voxel;
@@ -47,71 +90,52 @@ bool KdTree::insert_thinned(const Eigen::Vector3f& point, float voxel) {
 }
 
 std::size_t KdTree::remove(const Eigen::AlignedBox3f& box) {
-  std::size_t count = 0;
-  root_ = remove(root_, box, count);
-  return count;
+  const std::size_t before = size();
+  root_ = remove(root_, box, bounds_);
+  return before - size();
 }
 
-KdTree::Index KdTree::allocate(const Eigen::Vector3f& point, std::uint8_t axis) {
-  Node node;
-  node.point = point;
-  node.box = Eigen::AlignedBox3f(point);
-  node.axis = axis;
-  if (free_.empty()) {
-    nodes_.push_back(node);
-    return static_cast<Index>(nodes_.size() - 1);
+std::uint32_t KdTree::size_of(Index node) const {
+  if (node == kNone) return 0;
+  return is_leaf(node) ? leaf(node).count : splits_[node].size;
+}
+
+template <class Node>
+KdTree::Index KdTree::allocate(std::vector<Node>& nodes, std::vector<Index>& free) {
+  if (free.empty()) {
+    nodes.emplace_back();
+    return static_cast<Index>(nodes.size() - 1);
   }
-  const Index index = free_.back();
-  free_.pop_back();
-  nodes_[index] = node;
+  const Index index = free.back();
+  free.pop_back();
+  nodes[index] = Node{};
   return index;
 }
 
-void KdTree::release(Index subtree) {
-  if (subtree == kNone) return;
-  release(nodes_[subtree].left);
-  release(nodes_[subtree].right);
-  free_.push_back(subtree);
-}
-
-/// Brings a node's counts and box in step with its children's.
-void KdTree::pull_up(Index index) {
-  Node& node = nodes_[index];
-  node.size = 1;
-  node.labels = node.removed ? 1 : 0;
-  node.box = node.removed ? Eigen::AlignedBox3f() : Eigen::AlignedBox3f(node.point);
-  for (const Index child : {node.left, node.right}) {
-    if (child == kNone) continue;
-    node.size += nodes_[child].size;
-    node.labels += nodes_[child].labels;
-    node.box.extend(nodes_[child].box);
+void KdTree::release(Index node) {
+  if (node == kNone) return;
+  if (is_leaf(node)) {
+    free_leaves_.push_back(node & ~kLeafBit);
+    return;
   }
+  release(splits_[node].left);
+  release(splits_[node].right);
+  free_splits_.push_back(node);
 }
 
-bool KdTree::leans(Index index) const {
-  const Node& node = nodes_[index];
-  if (node.size <= options_.small) return node.labels == node.size;
-  std::uint32_t larger = 0;
-  for (const Index child : {node.left, node.right}) {
-    if (child != kNone) larger = std::max(larger, nodes_[child].size);
-  }
-  const auto size = static_cast<float>(node.size);
-  return static_cast<float>(larger) > options_.balance * (size - 1.0F) ||
-         static_cast<float>(node.labels) > options_.removed_share * size;
-}
-
-KdTree::Index KdTree::balanced(Index node) { return leans(node) ? rebuilt(node) : node; }
-
-KdTree::Index KdTree::rebuilt(Index node) {
-  scratch_.clear();
-  visit(node, nodes_[node].box, [&](const Eigen::Vector3f& point) { scratch_.push_back(point); });
-  release(node);
-  return build(std::span(scratch_));
+/// Small subtrees cannot be balanced better than to a leaf or two.
+bool KdTree::leans(std::uint32_t larger, std::uint32_t size) const {
+  return size > 4 * kLeafSize &&
+         static_cast<float>(larger) > options_.balance * static_cast<float>(size);
 }
 
 /// Median along the longest side of the points' box, then both halves likewise.
 KdTree::Index KdTree::build(std::span<Eigen::Vector3f> points) {
-  if (points.empty()) return kNone;
+  if (points.size() <= kLeafSize) {
+    const Index index = allocate(leaves_, free_leaves_);
+    for (const Eigen::Vector3f& point : points) leaves_[index].add(point);
+    return index | kLeafBit;
+  }
   Eigen::AlignedBox3f box;
   for (const Eigen::Vector3f& point : points) box.extend(point);
   Eigen::Index axis = 0;
@@ -120,52 +144,108 @@ KdTree::Index KdTree::build(std::span<Eigen::Vector3f> points) {
   std::nth_element(
       points.begin(), points.begin() + static_cast<std::ptrdiff_t>(middle), points.end(),
       [axis](const Eigen::Vector3f& a, const Eigen::Vector3f& b) { return a[axis] < b[axis]; });
-  const Index node = allocate(points[middle], static_cast<std::uint8_t>(axis));
-  const Index left = build(points.first(middle));
-  const Index right = build(points.subspan(middle + 1));
-  nodes_[node].left = left;
-  nodes_[node].right = right;
-  pull_up(node);
+  Split split;
+  split.axis = static_cast<std::int32_t>(axis);
+  split.high = points[middle][axis];
+  split.low = points[0][axis];
+  for (const Eigen::Vector3f& p : points.first(middle)) split.low = std::max(split.low, p[axis]);
+  split.size = split.peak = static_cast<std::uint32_t>(points.size());
+  split.left = build(points.first(middle));
+  split.right = build(points.subspan(middle));
+  const Index index = allocate(splits_, free_splits_);
+  splits_[index] = split;
+  return index;
+}
+
+KdTree::Index KdTree::rebuilt(Index node, const Eigen::Vector3f* added) {
+  scratch_.clear();
+  visit(node, bounds_, [&](const Eigen::Vector3f& point) { scratch_.push_back(point); });
+  if (added != nullptr) scratch_.push_back(*added);
+  release(node);
+  return build(std::span(scratch_));
+}
+
+KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point) {
+  if (is_leaf(node)) {
+    if (leaf(node).count == kLeafSize) return rebuilt(node, &point);
+    leaf(node).add(point);
+    return node;
+  }
+  Split& split = splits_[node];
+  const float x = point[split.axis];
+  const bool left = x - split.low < split.high - x;  // the nearer side grows
+  const Index child = left ? split.left : split.right;
+  // The highest subtree that will lean is rebuilt with the point.
+  if (leans(size_of(child) + 1, split.size + 1)) return rebuilt(node, &point);
+  split.peak = std::max(split.peak, ++split.size);
+  if (left) {
+    split.low = std::max(split.low, x);
+  } else {
+    split.high = std::min(split.high, x);
+  }
+  const Index grown = insert(child, point);
+  (left ? splits_[node].left : splits_[node].right) = grown;
   return node;
 }
 
-KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point, std::uint8_t axis) {
-  if (node == kNone) return allocate(point, axis);
-  const std::uint8_t own = nodes_[node].axis;
-  const bool smaller = point[own] < nodes_[node].point[own];
-  const Index child = insert(smaller ? nodes_[node].left : nodes_[node].right, point,
-                             static_cast<std::uint8_t>((own + 1) % 3));
-  (smaller ? nodes_[node].left : nodes_[node].right) = child;
-  pull_up(node);
-  return balanced(node);
+/// The leaf without its points in the box; nothing if none is left.
+KdTree::Index KdTree::without(Index node, const Eigen::AlignedBox3f& box) {
+  Leaf& points = leaf(node);
+  const Leaf before = points;
+  points.count = 0;
+  for (std::uint32_t i = 0; i < before.count; ++i) {
+    const Eigen::Vector3f point = before.point(i);
+    if (!box.contains(point)) points.add(point);
+  }
+  if (points.count > 0) return node;
+  release(node);
+  return kNone;
 }
 
-KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box, std::size_t& count) {
-  if (node == kNone || !box.intersects(nodes_[node].box)) return node;
-  if (box.contains(nodes_[node].box)) {
-    count += valid(node);
+/// `bounds`: around all points of the subtree.
+KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box,
+                             const Eigen::AlignedBox3f& bounds) {
+  if (node == kNone || !box.intersects(bounds)) return node;
+  if (box.contains(bounds)) {
     release(node);
     return kNone;
   }
-  if (!nodes_[node].removed && box.contains(nodes_[node].point)) {
-    nodes_[node].removed = true;
-    ++count;
+  if (is_leaf(node)) return without(node, box);
+  const Split split = splits_[node];
+  Eigen::AlignedBox3f lower = bounds;
+  Eigen::AlignedBox3f upper = bounds;
+  lower.max()[split.axis] = split.low;
+  upper.min()[split.axis] = split.high;
+  const Index left = remove(split.left, box, lower);
+  const Index right = remove(split.right, box, upper);
+  if (left == kNone || right == kNone) {  // the split has nothing to tell apart
+    free_splits_.push_back(node);
+    return left == kNone ? right : left;
   }
-  const Index left = remove(nodes_[node].left, box, count);
-  const Index right = remove(nodes_[node].right, box, count);
-  nodes_[node].left = left;
-  nodes_[node].right = right;
-  pull_up(node);
-  return balanced(node);
+  Split& changed = splits_[node];
+  changed.left = left;
+  changed.right = right;
+  changed.size = size_of(left) + size_of(right);
+  const bool hollow = static_cast<float>(changed.size) <
+                      (1.0F - options_.removed_share) * static_cast<float>(changed.peak);
+  const std::uint32_t larger = std::max(size_of(left), size_of(right));
+  return hollow || leans(larger, changed.size) ? rebuilt(node, nullptr) : node;
 }
 
 template <class Visit>
-void KdTree::visit(Index index, const Eigen::AlignedBox3f& box, const Visit& visit_point) const {
-  if (index == kNone || !box.intersects(nodes_[index].box)) return;
-  const Node& node = nodes_[index];
-  if (!node.removed && box.contains(node.point)) visit_point(node.point);
-  visit(node.left, box, visit_point);
-  visit(node.right, box, visit_point);
+void KdTree::visit(Index node, const Eigen::AlignedBox3f& box, const Visit& visit_point) const {
+  if (node == kNone) return;
+  if (is_leaf(node)) {
+    const Leaf& points = leaf(node);
+    for (std::uint32_t i = 0; i < points.count; ++i) {
+      const Eigen::Vector3f point = points.point(i);
+      if (box.contains(point)) visit_point(point);
+    }
+    return;
+  }
+  const Split& split = splits_[node];
+  if (box.min()[split.axis] <= split.low) visit(split.left, box, visit_point);
+  if (box.max()[split.axis] >= split.high) visit(split.right, box, visit_point);
 }
 
 std::size_t KdTree::nearest(const Eigen::Vector3f& query, std::span<Neighbour> out,
@@ -173,41 +253,40 @@ std::size_t KdTree::nearest(const Eigen::Vector3f& query, std::span<Neighbour> o
   if (out.empty() || root_ == kNone) return 0;
   const float bound = max_distance * max_distance;
   std::fill(out.begin(), out.end(), Neighbour{Eigen::Vector3f::Zero(), bound});
-  std::size_t count = 0;
-  search(root_, query, out, count);
-  return count;
+  Search state{query, out, 0, {}};
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const float outside =
+        std::max({bounds_.min()[axis] - query[axis], query[axis] - bounds_.max()[axis], 0.0F});
+    state.away[static_cast<std::size_t>(axis)] = outside * outside;
+  }
+  search(root_, state);
+  return state.count;
 }
 
-/// `best` is sorted; its last entry bounds what is still of interest.
-void KdTree::search(Index index, const Eigen::Vector3f& query, std::span<Neighbour> best,
-                    std::size_t& count) const {
-  const Node& node = nodes_[index];
-  if (!node.removed) {
-    const float squared = (node.point - query).squaredNorm();
-    if (squared < best.back().squared_distance) {
-      std::size_t place = std::min(count, best.size() - 1);
-      for (; place > 0 && best[place - 1].squared_distance > squared; --place) {
-        best[place] = best[place - 1];
-      }
-      best[place] = {node.point, squared};
-      count = std::min(count + 1, best.size());
-    }
+/// The nearer side first; the other only if it can hold something better (Arya, Mount, "Algorithms
+/// for fast vector quantization", 1993: distances to regions by axis).
+void KdTree::search(Index node, Search& state) const {
+  if (is_leaf(node)) {
+    state.offer(leaf(node));
+    return;
   }
-  const auto distance = [&](Index child) {
-    return child == kNone ? std::numeric_limits<float>::infinity()
-                          : nodes_[child].box.squaredExteriorDistance(query);
-  };
-  const float left = distance(node.left);
-  const float right = distance(node.right);
-  const bool left_first = left <= right;
-  const float near = left_first ? left : right;
-  const float far = left_first ? right : left;
-  if (near < best.back().squared_distance) {
-    search(left_first ? node.left : node.right, query, best, count);
+  const Split& split = splits_[node];
+  const float x = state.query[split.axis];
+  const float over_low = x - split.low;
+  const float under_high = split.high - x;
+  const bool left_first = over_low < under_high;
+  search(left_first ? split.left : split.right, state);
+
+  const float gap = left_first ? under_high : over_low;
+  float& away = state.away[static_cast<std::size_t>(split.axis)];
+  const float before = away;
+  away = std::max(before, gap * gap);
+  // What rounding may have added to the sum must not hide a point.
+  constexpr float kRounding = 1.0F - 1e-6F;
+  if (kRounding * (state.away[0] + state.away[1] + state.away[2]) < state.bound()) {
+    search(left_first ? split.right : split.left, state);
   }
-  if (far < best.back().squared_distance) {
-    search(left_first ? node.right : node.left, query, best, count);
-  }
+  away = before;
 }
 
 void KdTree::collect(const Eigen::AlignedBox3f& box, std::vector<Eigen::Vector3f>& out) const {
@@ -217,16 +296,19 @@ void KdTree::collect(const Eigen::AlignedBox3f& box, std::vector<Eigen::Vector3f
 std::vector<Eigen::Vector3f> KdTree::points() const {
   std::vector<Eigen::Vector3f> all;
   all.reserve(size());
-  if (root_ != kNone) collect(nodes_[root_].box, all);
+  collect(bounds_, all);
   return all;
 }
 
 std::size_t KdTree::depth(Index node) const {
-  return node == kNone ? 0 : 1 + std::max(depth(nodes_[node].left), depth(nodes_[node].right));
+  if (node == kNone) return 0;
+  if (is_leaf(node)) return 1;
+  return 1 + std::max(depth(splits_[node].left), depth(splits_[node].right));
 }
 
 std::uint64_t KdTree::memory_bytes() const {
-  return nodes_.capacity() * sizeof(Node) + free_.capacity() * sizeof(Index) +
+  return splits_.capacity() * sizeof(Split) + leaves_.capacity() * sizeof(Leaf) +
+         (free_splits_.capacity() + free_leaves_.capacity()) * sizeof(Index) +
          scratch_.capacity() * sizeof(Eigen::Vector3f);
 }
 

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -18,18 +19,17 @@ struct Neighbour {
 };
 
 /// A k-d tree of points (m) that grows, shrinks and stays balanced, after Cai, Xu, Zhang,
-/// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808). A removed point
-/// stays as a label until its subtree is rebuilt; a subtree is rebuilt as soon as it leans or half
-/// of it is labels (scapegoat tree). Unlike there, a subtree that a box covers whole is given back
-/// at once, which costs no more than its insertion did and needs no labels to push down; and
-/// rebuilding is done in place, by the thread that inserts. Depends on the order of the operations
-/// alone. Points must be finite.
+/// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808): it thins while
+/// it inserts, removes boxes, and rebuilds a subtree as soon as that leans or has lost half of its
+/// points (scapegoat tree). Unlike there, points lie in the leaves, up to 16 together, so that a
+/// removal needs no label on a point: what stays behind, until the rebuilding, is a split that
+/// nothing asks for and a leaf with room. Rebuilding is done in place, by the thread that inserts.
+/// Depends on the order of the operations alone. Points must be finite.
 class KdTree {
  public:
   struct Options {
-    float balance = 0.6F;        ///< rebuild when one child has more of a subtree than this share
-    float removed_share = 0.5F;  ///< rebuild when more of a subtree than this is labels
-    std::uint32_t small = 10;    ///< subtrees up to this size are left alone
+    float balance = 0.7F;        ///< rebuild when one child has more of a subtree than this share
+    float removed_share = 0.5F;  ///< rebuild when a subtree has lost more than this share
   };
   KdTree() = default;
   explicit KdTree(const Options& options) : options_(options) {}
@@ -52,46 +52,68 @@ class KdTree {
   void collect(const Eigen::AlignedBox3f& box, std::vector<Eigen::Vector3f>& out) const;
   std::vector<Eigen::Vector3f> points() const;
 
-  std::size_t size() const { return root_ == kNone ? 0 : valid(root_); }
+  std::size_t size() const { return size_of(root_); }
   bool empty() const { return size() == 0; }
+  /// Nodes on the longest way from the root to a leaf, both counted.
   std::size_t depth() const { return depth(root_); }
   std::uint64_t memory_bytes() const;
 
  private:
+  /// Of a split, or of a leaf when kLeafBit is set.
   using Index = std::uint32_t;
   static constexpr Index kNone = std::numeric_limits<Index>::max();
+  static constexpr Index kLeafBit = Index{1} << 31U;
+  static constexpr std::uint32_t kLeafSize = 16;
 
-  struct Node {
-    Eigen::Vector3f point;
-    Eigen::AlignedBox3f box;  ///< around the subtree's points that are not removed
-    Index left = kNone;       ///< smaller along the axis, on which equal ones may lie anywhere
+  struct Split {
+    float low = 0.0F;   ///< no point on the left has a larger coordinate,
+    float high = 0.0F;  ///< no point on the right a smaller one; low <= high
+    Index left = kNone;
     Index right = kNone;
-    std::uint32_t size = 1;    ///< nodes of the subtree
-    std::uint32_t labels = 0;  ///< of these, removed
-    std::uint8_t axis = 0;
-    bool removed = false;
+    std::uint32_t size = 0;  ///< points below
+    std::uint32_t peak = 0;  ///< largest size since it was built
+    std::int32_t axis = 0;
   };
+  struct Leaf {
+    std::array<std::array<float, kLeafSize>, 3> coordinates;  ///< by axis
+    std::uint32_t count = 0;
+    Eigen::Vector3f point(std::uint32_t i) const {
+      return {coordinates[0][i], coordinates[1][i], coordinates[2][i]};
+    }
+    void add(const Eigen::Vector3f& p) {
+      coordinates[0][count] = p.x();
+      coordinates[1][count] = p.y();
+      coordinates[2][count] = p.z();
+      ++count;
+    }
+  };
+  struct Search;
 
-  std::uint32_t valid(Index node) const { return nodes_[node].size - nodes_[node].labels; }
-  Index allocate(const Eigen::Vector3f& point, std::uint8_t axis);
-  void release(Index subtree);
-  void pull_up(Index node);
-  bool leans(Index node) const;
-  Index balanced(Index node);
-  Index rebuilt(Index node);
+  static bool is_leaf(Index node) { return (node & kLeafBit) != 0; }
+  Leaf& leaf(Index node) { return leaves_[node & ~kLeafBit]; }
+  const Leaf& leaf(Index node) const { return leaves_[node & ~kLeafBit]; }
+  std::uint32_t size_of(Index node) const;
+  template <class Node>
+  static Index allocate(std::vector<Node>& nodes, std::vector<Index>& free);
+  void release(Index node);
+  bool leans(std::uint32_t larger, std::uint32_t size) const;
   Index build(std::span<Eigen::Vector3f> points);
-  Index insert(Index node, const Eigen::Vector3f& point, std::uint8_t axis);
-  Index remove(Index node, const Eigen::AlignedBox3f& box, std::size_t& count);
+  Index rebuilt(Index node, const Eigen::Vector3f* added);
+  Index insert(Index node, const Eigen::Vector3f& point);
+  Index remove(Index node, const Eigen::AlignedBox3f& box, const Eigen::AlignedBox3f& bounds);
+  Index without(Index leaf, const Eigen::AlignedBox3f& box);
   template <class Visit>
   void visit(Index node, const Eigen::AlignedBox3f& box, const Visit& visit_point) const;
-  void search(Index node, const Eigen::Vector3f& query, std::span<Neighbour> best,
-              std::size_t& count) const;
+  void search(Index node, Search& query) const;
   std::size_t depth(Index node) const;
 
   Options options_;
-  std::vector<Node> nodes_;
-  std::vector<Index> free_;
+  std::vector<Split> splits_;
+  std::vector<Leaf> leaves_;
+  std::vector<Index> free_splits_;
+  std::vector<Index> free_leaves_;
   std::vector<Eigen::Vector3f> scratch_;  ///< points of a subtree that is rebuilt
+  Eigen::AlignedBox3f bounds_;            ///< around all points that ever were in the tree
   Index root_ = kNone;
 };
 

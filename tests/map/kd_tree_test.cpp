@@ -81,11 +81,12 @@ std::vector<Eigen::Vector3f> sorted(std::vector<Eigen::Vector3f> points) {
   return points;
 }
 
-/// Depth that a tree of `size` nodes can have when no child has more than 0.6 of its parent, plus
-/// what subtrees of ten may add, which are left alone.
-std::size_t allowed_depth(std::size_t nodes) {
-  return static_cast<std::size_t>(std::log(static_cast<double>(nodes) + 1.0) / std::log(1 / 0.6)) +
-         10;
+/// Depth that a tree can have when no child has more than 0.7 of its parent's points, down to
+/// subtrees of 64, which are left alone: at worst a chain that sheds half a leaf of 16 a step.
+std::size_t allowed_depth(std::size_t points) {
+  return static_cast<std::size_t>(std::log(static_cast<double>(points) / 64.0) /
+                                  std::log(1 / 0.7)) +
+         1 + 64 / 8;
 }
 
 void expect_same(const KdTree& tree, const SlowPoints& slow) {
@@ -155,7 +156,7 @@ TEST(KdTree, ABuiltTreeAnswersAsAGrownOne) {
   KdTree built;
   built.build(points);
   EXPECT_EQ(sorted(built.points()), sorted(grown.points()));
-  EXPECT_EQ(built.depth(), 12U) << "3000 < 2^12";
+  EXPECT_EQ(built.depth(), 9U) << "3000 < 16 * 2^8: eight splits and a leaf";
   for (int i = 0; i < 1000; ++i) {
     const Eigen::Vector3f query = random_point(random, 6.0F);
     EXPECT_EQ(squared(built, query, 5), squared(grown, query, 5));
