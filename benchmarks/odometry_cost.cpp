@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What an odometry costs: CPU time of its calls alone (of all threads of the process: reading is
+// done between the calls), memory by part, statuses. Usage:
+//   odometry_cost ALGORITHM PRESET DATASET [--out FILE.tum] [--sensor ID] [--threads N]
+//                 [KEY=VALUE ...]
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <ctime>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/tum.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/odometry/process_memory.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+
+namespace lidarena {
+namespace {
+
+struct Arguments {
+  OdometryRequest odometry;
+  std::string dataset, out, sensor;
+  int threads = 1;
+};
+
+Arguments parsed(const std::vector<std::string>& words) {
+  Arguments a;
+  std::vector<std::string> places;
+  for (std::size_t i = 0; i < words.size(); ++i) {
+    const auto value = [&] { return i + 1 < words.size() ? words[++i] : std::string(); };
+    if (words[i] == "--out") {
+      a.out = value();
+    } else if (words[i] == "--sensor") {
+      a.sensor = value();
+    } else if (words[i] == "--threads") {
+      a.threads = std::stoi(value());
+    } else if (words[i].find('=') != std::string::npos) {
+      a.odometry.overrides.push_back(words[i]);
+    } else {
+      places.push_back(words[i]);
+    }
+  }
+  if (places.size() != 3) {
+    throw InputError("arguments", "three are needed", "ALGORITHM PRESET DATASET");
+  }
+  a.odometry.algorithm = places[0];
+  a.odometry.preset = places[1];
+  a.dataset = places[2];
+  return a;
+}
+
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double percentile(std::vector<double> values, double share) {
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+/// A line now and then: memory over time.
+void print_state(std::size_t scans, const Odometry& odometry) {
+  fmt::print("scan {}: rss {:.1f} MB", scans, 1e-6 * static_cast<double>(resident_bytes()));
+  for (const auto& [part, bytes] : odometry.memory()) {
+    fmt::print(", {} {:.3f}", part, 1e-6 * static_cast<double>(bytes));
+  }
+  fmt::print("\n");
+  std::fflush(stdout);
+}
+
+int measure(const Arguments& a) {
+  const Parallel parallel(a.threads);
+  ReadOptions read;
+  read.sensor = a.sensor;
+  Dataset dataset = open_any_dataset(a.dataset, read, parallel);
+  const LidarInfo* lidar = dataset.rig.find_lidar(a.sensor);
+  if (lidar == nullptr) throw InputError(a.dataset, "has several LiDARs", "choose with --sensor");
+  const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
+  const auto odometry = make_odometry(a.odometry, dataset.rig, lidar->id, parallel).odometry;
+  std::vector<double> scan_ms;
+  double between = 0.0;  // the IMU's share until the next scan
+  std::map<std::string, std::size_t> statuses;
+  std::map<std::string, double> sums;
+  while (const auto event = dataset.events->next()) {
+    const auto* scan = std::get_if<Scan>(&event->data);
+    if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
+    const double start = cpu_seconds();
+    if (scan == nullptr) {
+      odometry->register_imu(std::get<ImuSample>(event->data));
+      between += cpu_seconds() - start;
+      continue;
+    }
+    const ScanResult result = odometry->register_scan(*scan);
+    scan_ms.push_back(1e3 * (between + cpu_seconds() - start));
+    between = 0.0;
+    ++statuses[to_string(result.status)];
+    for (const auto& [name, value] : result.counters) sums[name] += value;
+    if (scan_ms.size() % 600 == 0) print_state(scan_ms.size(), *odometry);
+  }
+  odometry->finish();
+  print_state(scan_ms.size(), *odometry);
+  double total = 0.0;
+  for (const double ms : scan_ms) total += ms;
+  const auto count = static_cast<double>(scan_ms.size());
+  fmt::print("CPU ms a scan: mean {:.2f}, median {:.2f}, P95 {:.2f}, P99 {:.2f}, max {:.2f}\n",
+             total / count, percentile(scan_ms, 0.5), percentile(scan_ms, 0.95),
+             percentile(scan_ms, 0.99), percentile(scan_ms, 1.0));
+  fmt::print("statuses: {}\nmeans:", statuses);
+  for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
+  fmt::print("\n");
+  if (!a.out.empty()) write_tum(a.out, odometry->trajectory(), "");
+  return 0;
+}
+
+}  // namespace
+}  // namespace lidarena
+
+int main(int argc, char** argv) {
+  try {
+    return lidarena::measure(lidarena::parsed({argv + 1, argv + argc}));
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "odometry_cost: {}\n", error.what());
+    return 2;
+  }
+}
