@@ -17,6 +17,7 @@ Config improved(const LidarInfo& lidar) {
   config.point_stride = 1;
   config.min_range_m = std::max(0.3, lidar.min_range_m);
   config.scan_voxel_m = 0.2;
+  config.max_points = lidar.kind == "rosette" ? 8000 : 4000;  // few rosettes give so many
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.noise_model = NoiseModel::kDensity;

@@ -28,6 +28,7 @@ struct Config {
   int point_stride = 3;
   double min_range_m = 0.5;
   double scan_voxel_m = 0.5;
+  int max_points = 100000;
   double map_voxel_m = 0.5;
 
   int max_iterations = 3;
@@ -64,6 +65,9 @@ struct Config {
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("scan_voxel_m", self.scan_voxel_m, "m", "a scan's points are averaged in cells of this edge",
       above(0));
+    v("max_points", self.max_points, "",
+      "of a scan's averages; from more, so many are taken evenly (bounds the time of a scan)",
+      at_least(100));
     v("map_voxel_m", self.map_voxel_m, "m", "the map holds one point in a cell of this edge",
       above(0));
     v("max_iterations", self.max_iterations, "", "of the filter's update", at_least(0));

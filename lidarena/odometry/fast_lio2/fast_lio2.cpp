@@ -39,6 +39,14 @@ std::vector<Eigen::Vector3f> transformed(const Pose& pose,
   return moved;
 }
 
+/// At most `count` of the points, evenly spread over their order.
+std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, std::size_t count) {
+  if (points.size() <= count) return points;
+  for (std::size_t i = 0; i < count; ++i) points[i] = points[i * points.size() / count];
+  points.resize(count);
+  return points;
+}
+
 Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& rotation) {
   return Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
 }
@@ -68,7 +76,8 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   }
 
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
-  const std::vector<Eigen::Vector3f> reduced = voxel_means(points, config_.scan_voxel_m);
+  const std::vector<Eigen::Vector3f> reduced = evenly(
+      voxel_means(points, config_.scan_voxel_m), static_cast<std::size_t>(config_.max_points));
 
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const IteratedUpdate update =
