@@ -87,6 +87,7 @@ int measure(const Arguments& a) {
   double between = 0.0;  // the IMU's share until the next scan
   std::map<std::string, std::size_t> statuses;
   std::map<std::string, double> sums;
+  double least_agreement = 1.0;  // of a scan with its map, where that is told
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);
     if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
@@ -101,6 +102,11 @@ int measure(const Arguments& a) {
     between = 0.0;
     ++statuses[to_string(result.status)];
     for (const auto& [name, value] : result.counters) sums[name] += value;
+    const auto& counters = result.counters;
+    if (counters.contains("near_planes") && counters.at("near_planes") > 0.0) {
+      least_agreement =
+          std::min(least_agreement, counters.at("planes") / counters.at("near_planes"));
+    }
     if (scan_ms.size() % 600 == 0) print_state(scan_ms.size(), *odometry);
   }
   odometry->finish();
@@ -113,7 +119,7 @@ int measure(const Arguments& a) {
              percentile(scan_ms, 0.99), percentile(scan_ms, 1.0));
   fmt::print("statuses: {}\nmeans:", statuses);
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
-  fmt::print("\n");
+  fmt::print("\nleast agreement of a scan with its map: {:.3f}\n", least_agreement);
   if (!a.out.empty()) write_tum(a.out, odometry->trajectory(), "");
   return 0;
 }

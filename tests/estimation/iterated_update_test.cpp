@@ -5,6 +5,9 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/random.hpp"
@@ -175,6 +178,61 @@ TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   EXPECT_EQ(updated.points.count, 0U);
   EXPECT_EQ(updated.belief.state.position, prior.state.position);
   EXPECT_EQ(updated.belief.covariance, prior.covariance);
+}
+
+/// Errors of a second of motion: a state drawn from the prior, an IMU with the noise that the
+/// filter is told, and each tenth of a second 60 points on planes that are known. Returns the
+/// normalised estimation error squared of pose (6) and of the whole state (23) at the end.
+std::pair<double, double> normalised_errors(std::uint64_t seed) {
+  constexpr double kStep = 0.005;
+  constexpr double kSigma = 0.02;
+  const ImuNoise noise{2e-3, 2e-2, 1e-3, 1e-2};
+  SequentialRandom random(seed, 9);
+  Belief belief;
+  belief.covariance = some_covariance(random, 0.03);
+  State::Vector drawn;
+  for (Eigen::Index i = 0; i < drawn.size(); ++i) drawn[i] = random.normal();
+  State truth = plus(belief.state, belief.covariance.llt().matrixL() * drawn);
+  for (int i = 1; i <= 200; ++i) {
+    const double t = kStep * i;
+    const Eigen::Vector3d rate(0.5 * std::sin(5.0 * t), 0.3, std::cos(4.0 * t));
+    const Eigen::Vector3d force(2.0 * std::sin(6.0 * t), 1.0, 9.8 + std::cos(3.0 * t));
+    const double white = 1.0 / std::sqrt(kStep);
+    const Eigen::Vector3d gyro = rate + random_vector(random, noise.gyro_density * white);
+    const Eigen::Vector3d accel = force + random_vector(random, noise.accel_density * white);
+    propagate(truth, rate, force, kStep, Integration::kSecondOrder);
+    truth.gyro_bias += random_vector(random, noise.gyro_walk * std::sqrt(kStep));
+    truth.accel_bias += random_vector(random, noise.accel_walk * std::sqrt(kStep));
+    const State::Matrix f = propagate(belief.state, gyro, accel, kStep, Integration::kSecondOrder);
+    belief.covariance = f * belief.covariance * f.transpose() + step_noise(noise, kStep);
+    if (i % 20 != 0) continue;
+    const auto seen = look_around(truth, random, kSigma);
+    belief = iterated_update(belief, [&](const State& x, bool) { return equations(seen, x); },
+                             {.max_iterations = 5, .tolerance = 1e-9, .variance = kSigma * kSigma})
+                 .belief;
+  }
+  const State::Vector error = minus(truth, belief.state);
+  const Eigen::Matrix<double, 6, 6> pose = belief.covariance.topLeftCorner<6, 6>();
+  return {error.head<6>().dot(pose.ldlt().solve(error.head<6>())),
+          error.dot(belief.covariance.ldlt().solve(error))};
+}
+
+TEST(IteratedUpdate, IsConsistentWhenTheNoiseIsAsItIsTold) {
+  constexpr int kSeeds = 20;
+  double pose = 0.0;
+  double all = 0.0;
+  for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    const auto [of_pose, of_all] = normalised_errors(seed);
+    pose += of_pose / kSeeds;
+    all += of_all / kSeeds;
+  }
+  RecordProperty("nees_pose", std::to_string(pose));
+  RecordProperty("nees_state", std::to_string(all));
+  // 0.5 % and 99.5 % points of chi-square with 120 and 460 degrees of freedom, over 20.
+  EXPECT_GT(pose, 83.85 / kSeeds);
+  EXPECT_LT(pose, 163.65 / kSeeds);
+  EXPECT_GT(all, 385.9 / kSeeds);
+  EXPECT_LT(all, 542.0 / kSeeds);
 }
 
 TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {

@@ -30,7 +30,7 @@ Scan make_scan(const Recording& recording, std::size_t index) {
   Scan scan;
   const double start = static_cast<double>(index) * kScanSeconds;
   scan.stamp = recording.epoch + from_seconds(start);
-  const CounterRandom random(17, static_cast<std::uint32_t>(index));
+  const CounterRandom random(recording.seed, static_cast<std::uint32_t>(index));
   const std::size_t columns = recording.points_per_scan / kRings;
   // golden ratio and its square: any number of scans divides the gaps evenly
   const auto scan_number = static_cast<double>(index);
@@ -67,9 +67,19 @@ ImuSample make_imu(const Recording& recording, std::size_t index) {
   const Pose after = recording.motion(t + h);
   const Eigen::Vector3d acceleration =
       (after.translation() - 2.0 * now.translation() + before.translation()) / (h * h);
+  const auto noise = [&](double density, std::uint32_t stream) {
+    const auto normals = CounterRandom(recording.seed, stream).normals(index);
+    const auto more = CounterRandom(recording.seed, stream + 1).normals(index);
+    return Eigen::Vector3d(density / std::sqrt(kImuSeconds) *
+                           Eigen::Vector3d(normals[0], normals[1], more[0]));
+  };
+  constexpr std::uint32_t kGyroStream = 1'000'000;  // those of the scans are their numbers
+  constexpr std::uint32_t kAccelStream = 2'000'000;
   return {recording.epoch + from_seconds(t),
-          so3::log(before.linear().transpose() * after.linear()) / (2.0 * h),
-          now.linear().transpose() * (acceleration - kGravity)};
+          so3::log(before.linear().transpose() * after.linear()) / (2.0 * h) +
+              noise(recording.gyro_noise_density, kGyroStream),
+          now.linear().transpose() * (acceleration - kGravity) +
+              noise(recording.accel_noise_density, kAccelStream)};
 }
 
 }  // namespace

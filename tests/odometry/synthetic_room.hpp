@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <vector>
 
@@ -31,6 +32,9 @@ struct Recording {
   Time epoch{1'000'000'000};
   std::size_t points_per_scan = 10240;
   bool repeating = true;  ///< false: each scan's beams lie between those of the others
+  std::uint64_t seed = 17;           ///< of the noise
+  double gyro_noise_density = 0.0;   ///< rad/s/sqrt(Hz)
+  double accel_noise_density = 0.0;  ///< m/s^2/sqrt(Hz)
 };
 
 /// A spinning LiDAR of 64 rings, +-35 deg, 10 Hz, named "lidar"; an IMU at 200 Hz, named "imu", at

@@ -17,12 +17,14 @@ Config improved(const LidarInfo& lidar) {
   config.point_stride = 1;
   config.min_range_m = std::max(0.3, lidar.min_range_m);
   config.scan_voxel_m = 0.2;
-  config.max_points = lidar.kind == "rosette" ? 8000 : 4000;  // few rosettes give so many
+  config.max_points = lidar.kind == "spinning" ? 4000 : 8000;  // a rosette hardly gives so many
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.noise_model = NoiseModel::kDensity;
   config.imu_noise_factor = 10.0;
   config.second_order = true;
+  config.tell_clipping = true;
+  config.least_agreement = 0.75;
   config.skip_first_scan = false;
   config.always_scale_accel = false;
   config.gravity = 9.80665;

@@ -47,6 +47,8 @@ struct Config {
   double imu_noise_factor = 1.0;
   bool second_order = false;
   double max_imu_gap_s = 0.05;
+  bool tell_clipping = false;
+  double least_agreement = 0.0;
 
   int init_samples = 10;
   bool skip_first_scan = true;
@@ -94,6 +96,12 @@ struct Config {
     v("second_order", self.second_order, "", "cure: the position takes half of a dt^2");
     v("max_imu_gap_s", self.max_imu_gap_s, "s",
       "over a longer gap the motion is coasted, with a large noise", above(0));
+    v("tell_clipping", self.tell_clipping, "",
+      "cure: over samples at the end of the IMU's range the noise is large");
+    v("least_agreement", self.least_agreement, "",
+      "cure: a scan of whose points near planes fewer than this share lie on them is not "
+      "added to it; fifteen in a row: diverged; 0: never",
+      between(0, 1));
     v("init_samples", self.init_samples, "", "IMU samples that the start is estimated from",
       at_least(2));
     v("skip_first_scan", self.skip_first_scan, "", "the first scan and its IMU samples are unused");

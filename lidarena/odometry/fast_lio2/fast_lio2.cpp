@@ -15,6 +15,7 @@ using State = InertialState;
 
 constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
 constexpr double kNoWay = 100.0;           // m/s: no vehicle of ours flies so fast
+constexpr int kLostScans = 15;             // in a row that contradict the map
 constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
 // While the IMU is silent, the vehicle may do as it likes.
 constexpr ImuNoise kCoasting{0.5, 5.0, 1e-3, 1e-2};
@@ -39,8 +40,9 @@ std::vector<Eigen::Vector3f> transformed(const Pose& pose,
   return moved;
 }
 
-/// At most `count` of the points, evenly spread over their order.
-std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, std::size_t count) {
+/// At most `most` of the points, evenly spread over their order.
+std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
+  const auto count = static_cast<std::size_t>(most);
   if (points.size() <= count) return points;
   for (std::size_t i = 0; i < count; ++i) points[i] = points[i * points.size() / count];
   points.resize(count);
@@ -66,6 +68,7 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
 
 ScanResult FastLio2::register_scan(const Scan& scan) {
   const Time end = end_of_sweep(scan);
+  if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   std::vector<ImuSample> samples;
   const std::vector<ImuInput> inputs = window_.take_until(end, samples);
   if (started_) {
@@ -76,34 +79,26 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   }
 
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
-  const std::vector<Eigen::Vector3f> reduced = evenly(
-      voxel_means(points, config_.scan_voxel_m), static_cast<std::size_t>(config_.max_points));
-
+  const std::vector<Eigen::Vector3f> reduced =
+      evenly(voxel_means(points, config_.scan_voxel_m), config_.max_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const IteratedUpdate update =
       iterated_update(belief_, std::ref(residuals),
                       {config_.max_iterations, config_.convergence, config_.point_variance_m2});
-  const bool has_map = !map_.empty();
   belief_ = update.belief;
   const bool still = config_.zero_velocity &&
                      still_.observe(statistics(samples), belief_.state, config_, accel_scale_);
   if (still) belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
 
-  const Pose world_from_lidar = belief_.state.world_from_lidar();
-  if (!still || still_.scans() <= config_.still_scans_mapped) {
-    add_scan(transformed(world_from_lidar, reduced),
-             has_map ? residuals.matches() : std::vector<Match>{},
-             static_cast<float>(config_.map_voxel_m), map_);
-    map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
-  }
+  const ScanStatus status = status_of(update, residuals);
+  const bool seen_enough = still && still_.scans() > config_.still_scans_mapped;
+  if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
   publish(points);
-  const ScanStatus status = reduced.empty() ? ScanStatus::kTooFewPoints
-                            : has_map       ? status_of(update)
-                                            : ScanStatus::kInitializing;
   return finish_scan(end, status,
                      {{"points", points.size()},
                       {"reduced_points", reduced.size()},
                       {"planes", update.points.count},
+                      {"near_planes", residuals.near_planes()},
                       {"evaluations", update.evaluations},
                       {"map_points", map_.size()},
                       {"still", still ? 1.0 : 0.0}});
@@ -123,6 +118,7 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   belief_ = begin.belief;
   accel_scale_ = begin.accel_scale;
   started_ = true;
+  window_.set_accel_scale(accel_scale_);
   start_samples_ = {};
   return true;
 }
@@ -130,14 +126,12 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
 void FastLio2::predict(const std::vector<ImuInput>& inputs) {
   State& state = belief_.state;
   track_.clear();
-  longest_gap_s_ = 0.0;
   const Integration integration =
       config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
   for (const ImuInput& input : inputs) {
     Eigen::Vector3d accel = accel_scale_ * input.accel;
     if (input.gap) {  // on with the velocity it has
       accel = state.accel_bias - state.rotation.transpose() * state.gravity;
-      longest_gap_s_ = std::max(longest_gap_s_, input.seconds());
     }
     const Eigen::Vector3d acceleration =
         state.rotation * (accel - state.accel_bias) + state.gravity;
@@ -152,7 +146,7 @@ void FastLio2::predict(const std::vector<ImuInput>& inputs) {
 }
 
 ImuNoise FastLio2::noise_over(const ImuInput& input) const {
-  if (input.gap) return kCoasting;
+  if (input.gap || (config_.tell_clipping && input.clipped)) return kCoasting;
   if (config_.noise_model == NoiseModel::kDensity) return noise_;
   // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
   const auto density = [&](double variance) { return std::sqrt(variance * input.seconds()); };
@@ -175,12 +169,28 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
                 parallel_);
 }
 
-ScanStatus FastLio2::status_of(const IteratedUpdate& update) const {
+void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
+                        const PlaneResiduals& residuals) {
+  const Pose world_from_lidar = belief_.state.world_from_lidar();
+  add_scan(transformed(world_from_lidar, points),
+           map_.empty() ? std::vector<Match>{} : residuals.matches(),
+           static_cast<float>(config_.map_voxel_m), map_);
+  map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
+}
+
+ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResiduals& residuals) {
   const State& state = belief_.state;
   if (!state.position.allFinite() || !state.rotation.allFinite() ||
       !(state.velocity.norm() < kNoWay)) {
     return ScanStatus::kDiverged;
   }
+  if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
+  if (map_.empty()) return ScanStatus::kInitializing;
+  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // and stays so
+  const bool contradicts =
+      static_cast<double>(update.points.count) < config_.least_agreement * residuals.near_planes();
+  contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
+  if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
   // The position's block of the sum is that of n n^T.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
@@ -189,14 +199,22 @@ ScanStatus FastLio2::status_of(const IteratedUpdate& update) const {
   return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
+/// What comes out of time order changes nothing.
+ScanResult FastLio2::refused_scan() {
+  ++scans_refused_;
+  return finish_scan(poses_.back().stamp, ScanStatus::kTooFewPoints, {});
+}
+
 ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
                                  std::map<std::string, double> counters) {
   ScanResult result;
   result.estimate = {end, body_pose(belief_.state.world_from_imu())};
   result.status = status;
   if (started_) result.covariance = body_covariance();
-  counters["imu_gap_s"] = longest_gap_s_;
+  counters["imu_gap_s"] = window_.longest_gap_s();
+  counters["imu_clipped"] = static_cast<double>(window_.clipped());
   counters["imu_refused"] = static_cast<double>(window_.refused());
+  counters["scans_refused"] = static_cast<double>(scans_refused_);
   counters["accel_scale"] = accel_scale_;
   result.counters = std::move(counters);
   if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);

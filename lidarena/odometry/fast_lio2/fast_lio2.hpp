@@ -13,6 +13,7 @@
 #include "lidarena/odometry/fast_lio2/imu_window.hpp"
 #include "lidarena/odometry/fast_lio2/initialization.hpp"
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
+#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::fast_lio2 {
@@ -42,7 +43,11 @@ class FastLio2 : public Odometry {
   ImuNoise noise_over(const ImuInput& input) const;
   /// The points that are used, seen from the LiDAR at the scan's end.
   std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
-  ScanStatus status_of(const IteratedUpdate& update) const;
+  /// Adds the points to the map and lets go of what lies far behind.
+  void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
+  /// What is to be said of a scan; counts those in a row that contradict the map.
+  ScanStatus status_of(const IteratedUpdate& update, const PlaneResiduals& residuals);
+  ScanResult refused_scan();
   ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
   Pose body_pose(const Pose& world_from_imu) const;
   Eigen::Matrix<double, 6, 6> body_covariance() const;
@@ -62,7 +67,8 @@ class FastLio2 : public Odometry {
 
   Belief belief_;  ///< at the end of the last scan; world: the IMU's frame at the start
   ImuTrack track_;
-  double longest_gap_s_ = 0.0;  ///< of the IMU, in the last scan
+  int contradicting_scans_ = 0;
+  std::size_t scans_refused_ = 0;
   StillDetector still_;
   KdTree map_;
   MapWindow map_window_;

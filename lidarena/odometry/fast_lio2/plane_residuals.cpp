@@ -2,6 +2,7 @@
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 
 namespace lidarena::fast_lio2 {
@@ -74,6 +75,12 @@ void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
   if (match.found == kNeighbours) {
     match.plane = fit_plane(match.neighbours, config_.plane_fit, config_.plane_thickness_m);
   }
+  match.near_plane = match.plane.has_value();
+}
+
+double PlaneResiduals::near_planes() const {
+  return static_cast<double>(std::count_if(matches_.begin(), matches_.end(),
+                                           [](const Match& match) { return match.near_plane; }));
 }
 
 NormalEquations<kPointDof> PlaneResiduals::operator()(const InertialState& state, bool search) {

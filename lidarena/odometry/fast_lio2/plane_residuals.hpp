@@ -32,6 +32,7 @@ struct Match {
   Neighbours neighbours;  ///< of the last search; the first `found` are valid
   std::size_t found = 0;
   std::optional<Plane> plane;  ///< none: does not count until the next search
+  bool near_plane = false;     ///< the last search found one, whether the point lies on it or not
 };
 
 /// The residual of one point: its distance from the plane and the row of the Jacobian
@@ -52,6 +53,8 @@ class PlaneResiduals {
 
   NormalEquations<kPointDof> operator()(const InertialState& state, bool search);
   const std::vector<Match>& matches() const { return matches_; }
+  /// Points that the last search found a plane for: they can agree with the map or not.
+  double near_planes() const;
 
  private:
   void find(const Eigen::Vector3f& in_world, Match& match) const;

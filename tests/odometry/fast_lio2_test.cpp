@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// FAST-LIO2 as a whole: what data does to it that is not as it should be.
+#include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/base/time.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+using synthetic::Recording;
+
+constexpr double kTracked = 0.1;  // m: lost track shows in metres, the map's cells have 0.2 m
+
+struct Outcome {
+  std::vector<ScanResult> results;
+
+  std::size_t count(ScanStatus status) const {
+    return static_cast<std::size_t>(std::count_if(
+        results.begin(), results.end(), [&](const ScanResult& r) { return r.status == status; }));
+  }
+  double largest(const char* counter) const {
+    double value = 0.0;
+    for (const ScanResult& r : results) value = std::max(value, r.counters.at(counter));
+    return value;
+  }
+  /// Of the last pose, in m, as a motion since the first one.
+  double final_error(const Recording& recording) const {
+    const StampedPose& first = results.front().estimate;
+    const StampedPose& last = results.back().estimate;
+    const Pose moved = first.world_from_body.inverse() * last.world_from_body;
+    return (moved.translation() -
+            synthetic::truth(recording, first.stamp, last.stamp).translation())
+        .norm();
+  }
+};
+
+Config improved(const Recording& recording) {
+  return preset("improved", synthetic::rig_of(recording).lidars.front());
+}
+
+Outcome play(const std::vector<Event>& events, const Recording& recording, const Config& config) {
+  const Rig rig = synthetic::rig_of(recording);
+  FastLio2 odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
+  Outcome outcome;
+  for (const Event& event : events) {
+    if (const auto* scan = std::get_if<Scan>(&event.data)) {
+      outcome.results.push_back(odometry.register_scan(*scan));
+    } else {
+      odometry.register_imu(std::get<ImuSample>(event.data));
+    }
+  }
+  return outcome;
+}
+
+Outcome play(const std::vector<Event>& events, const Recording& recording = {}) {
+  return play(events, recording, improved(recording));
+}
+
+const std::vector<Event>& usual_events() {
+  static const std::vector<Event> events = synthetic::record({});
+  return events;
+}
+
+double seconds_of(const ImuSample& sample) { return to_seconds(sample.stamp - Recording{}.epoch); }
+
+/// The usual events, those IMU samples changed for which `change` says true, the others left out.
+std::vector<Event> with_imu(const std::function<bool(ImuSample&)>& change) {
+  std::vector<Event> events;
+  for (Event event : usual_events()) {
+    auto* sample = std::get_if<ImuSample>(&event.data);
+    if (sample == nullptr || change(*sample)) events.push_back(std::move(event));
+  }
+  return events;
+}
+
+/// A silence while the body moves with some 0.5 m/s and turns.
+Outcome with_silence(double begin, double end) {
+  return play(with_imu([=](const ImuSample& sample) {
+    return seconds_of(sample) < begin || seconds_of(sample) > end;
+  }));
+}
+
+TEST(FastLio2Data, AShortSilenceOfTheImuIsBridgedAndTold) {
+  const Outcome outcome = with_silence(2.5, 2.8);
+  EXPECT_LT(outcome.final_error({}), kTracked);
+  EXPECT_EQ(outcome.count(ScanStatus::kDiverged), 0U);
+  EXPECT_GT(outcome.largest("imu_gap_s"), 0.09);
+}
+
+TEST(FastLio2Data, AnImuThatFallsSilentLeavesALidarOdometryThatSaysSo) {
+  const Outcome outcome = with_silence(2.5, 100.0);
+  EXPECT_LT(outcome.final_error({}), kTracked);
+  EXPECT_GT(outcome.results.back().counters.at("imu_gap_s"), 0.05);
+}
+
+TEST(FastLio2Data, ALostTrackIsNotSilentAndDoesNotSpoilTheMap) {
+  // For half a second there is neither LiDAR nor IMU, and the body is carried 2.5 m away.
+  const Recording recording{.motion =
+                                [](double t) {
+                                  Pose pose = synthetic::flight(t);
+                                  if (t > 2.25) pose.translation() += Eigen::Vector3d(2, -1.5, 0.5);
+                                  return pose;
+                                },
+                            .seconds = 5.0};
+  std::vector<Event> events;
+  for (Event& event : synthetic::record(recording)) {
+    const Time stamp = std::visit([](const auto& data) { return data.stamp; }, event.data);
+    const double t = to_seconds(stamp - recording.epoch);
+    if (t < 2.0 || t > 2.5) events.push_back(std::move(event));
+  }
+  const Outcome outcome = play(events, recording);
+  ASSERT_EQ(outcome.results.size(), 44U);
+  EXPECT_GT(outcome.final_error(recording), 1.0) << "it is lost";
+  for (std::size_t i = 20; i < 44; ++i) {
+    EXPECT_NE(outcome.results[i].status, ScanStatus::kTracked) << i;
+    EXPECT_EQ(outcome.results[i].counters.at("map_points"),
+              outcome.results[19].counters.at("map_points"));
+  }
+  EXPECT_EQ(outcome.results.back().status, ScanStatus::kDiverged) << "after 1.5 seconds";
+}
+
+TEST(FastLio2Data, SamplesFromThePastAndFromFarAheadAreRefusedAndCounted) {
+  std::vector<Event> events;
+  int bad = 0;
+  for (const Event& event : usual_events()) {
+    events.push_back(event);
+    const auto* sample = std::get_if<ImuSample>(&event.data);
+    if (sample == nullptr || ++bad % 50 != 0) continue;
+    ImuSample wrong = *sample;
+    wrong.gyro.setConstant(3.0);
+    wrong.stamp += from_seconds(bad % 100 == 0 ? 3600.0 : -0.5);
+    events.push_back({"imu", wrong});
+  }
+  const Outcome outcome = play(events);
+  EXPECT_LT(outcome.final_error({}), kTracked);
+  EXPECT_NEAR(outcome.results.back().counters.at("imu_refused"), bad / 50, 1.0)
+      << "the last one from far ahead may not have been given away yet";
+  EXPECT_EQ(outcome.count(ScanStatus::kTracked), 39U) << "all but the first";
+}
+
+TEST(FastLio2Data, AScanFromThePastChangesNothing) {
+  std::vector<Event> events;
+  std::optional<Event> old;
+  int index = 0;
+  for (const Event& event : usual_events()) {
+    events.push_back(event);
+    if (!std::holds_alternative<Scan>(event.data)) continue;
+    if (index == 10) old = event;
+    if (++index == 25) events.push_back(*old);
+  }
+  const Outcome outcome = play(events);
+  const ScanResult& refused = outcome.results[25];
+  EXPECT_EQ(refused.status, ScanStatus::kTooFewPoints);
+  EXPECT_EQ(refused.counters.at("scans_refused"), 1.0);
+  EXPECT_EQ(refused.estimate.stamp, outcome.results[24].estimate.stamp);
+  const Outcome usual = play(usual_events());
+  EXPECT_EQ(outcome.results.back().estimate.world_from_body.matrix(),
+            usual.results.back().estimate.world_from_body.matrix());
+}
+
+TEST(FastLio2Data, DroppedScansAreBridgedByTheImu) {
+  std::vector<Event> events;
+  int index = 0;
+  for (const Event& event : usual_events()) {
+    const bool dropped = std::holds_alternative<Scan>(event.data) && ++index > 20 && index <= 23;
+    if (!dropped) events.push_back(event);
+  }
+  const Outcome outcome = play(events);
+  EXPECT_EQ(outcome.results.size(), 37U);
+  EXPECT_LT(outcome.final_error({}), kTracked);
+  EXPECT_EQ(outcome.count(ScanStatus::kTracked), 36U);
+}
+
+TEST(FastLio2Data, AnImuThatStartsLateIsWaitedForAndThenStartsInMotion) {
+  const Outcome outcome =
+      play(with_imu([](const ImuSample& sample) { return seconds_of(sample) > 2.45; }));
+  EXPECT_EQ(outcome.count(ScanStatus::kInitializing), 26U) << "25 without, and the map's first";
+  EXPECT_EQ(outcome.count(ScanStatus::kTracked), 14U);
+  Outcome tracked;
+  tracked.results.assign(outcome.results.begin() + 25, outcome.results.end());
+  EXPECT_LT(tracked.final_error({}), kTracked);
+}
+
+TEST(FastLio2Data, AStartInMotionIsSurvived) {
+  const Recording moving{.motion = [](double t) { return synthetic::flight(t + 2.5); }};
+  EXPECT_LT(play(synthetic::record(moving), moving).final_error(moving), kTracked);
+}
+
+TEST(FastLio2Data, AccelerationsInGAreRecognisedAndSaid) {
+  const Outcome in_g = play(with_imu([](ImuSample& sample) {
+    sample.accel /= 9.80665;
+    return true;
+  }));
+  EXPECT_NEAR(in_g.results.back().counters.at("accel_scale"), 9.80665, 1e-9);
+  EXPECT_LT(in_g.final_error({}), kTracked);
+  EXPECT_EQ(play(usual_events()).results.back().counters.at("accel_scale"), 1.0);
+}
+
+/// Turns up to 3 rad/s to and fro; the gyro ends at 2.2 rad/s.
+Pose fast_turning(double t) {
+  const double u = std::max(0.0, t - 1.0);
+  const double yaw = 0.5 * (1.0 - std::cos(6.0 * u)) * std::min(1.0, u);
+  return make_pose(so3::exp({0.0, 0.0, yaw}), synthetic::flight(0.0).translation());
+}
+
+TEST(FastLio2Data, ASaturatedGyroIsToldAndNotBelieved) {
+  const Recording recording{.motion = fast_turning};
+  std::vector<Event> events = synthetic::record(recording);
+  SequentialRandom random(1, 1);
+  int clipped = 0;
+  for (Event& event : events) {
+    auto* sample = std::get_if<ImuSample>(&event.data);
+    if (sample == nullptr) continue;
+    for (double& rate : sample->gyro) rate += 1e-3 * random.normal();
+    clipped += std::abs(sample->gyro.z()) > 2.2 ? 1 : 0;
+    sample->gyro = sample->gyro.cwiseMin(2.2).cwiseMax(-2.2);
+  }
+  ASSERT_GT(clipped, 50);
+  const Outcome outcome = play(events, recording);
+  EXPECT_GT(outcome.largest("imu_clipped"), 5.0);
+  EXPECT_LT(outcome.final_error(recording), kTracked);
+  EXPECT_EQ(outcome.count(ScanStatus::kDiverged), 0U);
+  EXPECT_EQ(play(usual_events()).largest("imu_clipped"), 0.0);
+}
+
+}  // namespace
+}  // namespace lidarena::fast_lio2
