@@ -213,6 +213,9 @@ TEST(LioSamRegistration, LinesAndPlanesAreFoundWhereThereAreSome) {
   }
   EXPECT_FALSE(fit_plane(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}),
                          PlaneFit::kPrincipal, 0.2));
+  EXPECT_FALSE(fit_plane(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}}),
+                         PlaneFit::kPrincipal, 0.2))
+      << "on a line, as a single sweep leaves them";
 }
 
 /// Surfaces of a room's walls as far as `open` leaves them: bit 0 leaves out those across x, ...

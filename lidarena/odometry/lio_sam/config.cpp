@@ -57,6 +57,7 @@ Config improved(const LidarInfo& lidar) {
   config.search_step_m = 0.01;
   config.plane_fit = PlaneFit::kPrincipal;
   config.plane_thickness_m = 0.06;
+  config.surface_leaf_m = 0.15;
   config.degeneracy = Degeneracy::kShare;
   config.keyframe_distance_m = 1.0;
   config.keyframe_angle_rad = 0.2;

@@ -12,6 +12,7 @@ namespace {
 using Eigen::Vector3d;
 using Columns3 = Eigen::Matrix<double, 3, kNeighbours>;
 
+constexpr double kPlaneRatio = 0.05;        // spread of a plane's narrow side by its wide one
 constexpr float kMaxNeighbour = 1.0F;       // m, the fifth
 constexpr double kLineRatio = 3.0;          // spread along by spread across
 constexpr double kLeastWeight = 0.1;        // of a match that counts
@@ -138,7 +139,10 @@ std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double th
     plane = through_origin(columns);
   } else {
     const Vector3d centre = columns.rowwise().mean();
-    plane.normal = spread_of(columns, centre).eigenvectors().col(0);
+    const auto spread = spread_of(columns, centre);
+    // on a line, as the sweeps of one scan leave them, they hold no plane
+    if (spread.eigenvalues()[1] < kPlaneRatio * spread.eigenvalues()[2]) return std::nullopt;
+    plane.normal = spread.eigenvectors().col(0);
     plane.offset = -plane.normal.dot(centre);
   }
   const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
