@@ -369,6 +369,30 @@ TEST(Mcap, ReadsLz4Frames) {
 TEST(Mcap, TheCheckSumIsCrc32OfIeee) {
   const std::string text = "123456789";  // the usual check value
   EXPECT_EQ(crc32_of(std::as_bytes(std::span(text))), 0xCBF43926U);
+  for (const std::size_t cut : {0UL, 4UL, 9UL}) {
+    const auto bytes = std::as_bytes(std::span(text));
+    EXPECT_EQ(crc32_joined(crc32_of(bytes.first(cut)), crc32_of(bytes.subspan(cut)), 9 - cut),
+              0xCBF43926U);
+  }
+}
+
+TEST_P(McapFiles, AMessageLargerThanAChunkSharesOneWithThoseBeforeIt) {
+  const std::string large(300'000, 'x');
+  const std::vector<Copy> messages{{"/a", 0, Time{1}, Time{1}, "small"},
+                                   {"/a", 1, Time{2}, Time{2}, large},
+                                   {"/a", 2, Time{3}, Time{3}, large},
+                                   {"/a", 3, Time{4}, Time{4}, "small"}};
+  McapWriter out(file_, {.zstd_level = GetParam(), .chunk_bytes = 100'000});
+  const std::uint16_t channel = out.add_channel("/a", 0, "raw");
+  for (const Copy& message : messages) {
+    out.write(channel, message.log_time, message.publish_time,
+              std::as_bytes(std::span(message.data)));
+  }
+  out.close();
+  const Reading reading = read_sample(file_);
+  EXPECT_EQ(reading.error, "");
+  EXPECT_EQ(reading.messages, messages);
+  EXPECT_EQ(out.statistics().chunk_count, 3U);
 }
 
 }  // namespace
