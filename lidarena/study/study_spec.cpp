@@ -171,6 +171,8 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   if (seconds == 0.0 && flight.extension() == ".yaml") {
     seconds = load_config<FlightConfig>(flight).duration_s;
   }
+  constexpr double kUnknown = 120.0;  // once through, or a tour not planned yet
+  if (seconds == 0.0) seconds = kUnknown;
   const double shots =
       seconds * static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
   return {kSecondsOfRun + kSecondsOfShot * shots, kMegabytesOfRun + kMegabytesOfShot * shots};

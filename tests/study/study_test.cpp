@@ -166,6 +166,13 @@ TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
   EXPECT_EQ(datasets.size(), 2U) << "one flight per seed, shared by sensors and algorithms";
 }
 
+TEST(Plan, EveryStudyShippedCanBePlanned) {
+  for (const std::string& name : configs().names("studies")) {
+    const auto spec = load_config<StudySpec>(configs().resolve("studies", name));
+    EXPECT_FALSE(plan(spec, configs()).empty()) << name;
+  }
+}
+
 TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
   const auto error = [](auto change) {
     StudySpec spec = small_spec();
