@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/map/voxel_hash_map.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -72,17 +73,45 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
   }
   cell.points[cell.count++] = point;
   ++size_;
+  if (options_.plane_thinness > 0.0) fit_plane(cell);
+}
+
+void VoxelHashMap::fit_plane(Cell& cell) {
+  constexpr int kLeastPoints = 5;  // fewer lie near some plane by chance
+  if (cell.count < kLeastPoints) return;
+  const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
+  const Eigen::Vector3f mean = points.rowwise().mean();
+  const Eigen::Matrix3Xf centred = points.colwise() - mean;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
+  solver.computeDirect(centred * centred.transpose());
+  const Eigen::Vector3f& variances = solver.eigenvalues();
+  if (!(variances[0] < static_cast<float>(options_.plane_thinness) * variances[1]))
+    return release_plane(cell);
+  if (cell.plane == kNoPlane && free_planes_.empty()) {
+    cell.plane = static_cast<std::uint32_t>(planes_.size());
+    planes_.emplace_back();
+  } else if (cell.plane == kNoPlane) {
+    cell.plane = free_planes_.back();
+    free_planes_.pop_back();
+  }
+  planes_[cell.plane] = {mean, solver.eigenvectors().col(0)};
+}
+
+void VoxelHashMap::release_plane(Cell& cell) {
+  if (cell.plane != kNoPlane) free_planes_.push_back(cell.plane);
+  cell.plane = kNoPlane;
 }
 
 void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
   const auto squared_radius = static_cast<float>(radius * radius);
   for (auto it = cells_.begin(); it != cells_.end();) {
-    const Cell& cell = it->second;
+    Cell& cell = it.value();
     if ((cell.points[0] - center).squaredNorm() < squared_radius) {
       ++it;
       continue;
     }
     blocks_.release(cell.points, cell.level);
+    release_plane(cell);
     size_ -= cell.count;
     it = cells_.erase(it);
   }
@@ -104,7 +133,8 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
   const auto gap = [&](int axis, int step) {
     return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
   };
-  Neighbor best{nullptr, max_distance * max_distance};
+  Neighbor best{nullptr, max_distance * max_distance, nullptr};
+  std::uint32_t plane = kNoPlane;
   for (const auto& [dx, dy, dz] : kSteps) {
     if (gap(0, dx) + gap(1, dy) + gap(2, dz) >= best.squared_distance) continue;
     const auto found = cells_.find(key + voxel_key_step(dx, dy, dz));
@@ -112,9 +142,12 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
     const Cell& cell = found->second;
     for (std::size_t i = 0; i < cell.count; ++i) {
       const float squared_distance = (cell.points[i] - query).squaredNorm();
-      if (squared_distance < best.squared_distance) best = {cell.points + i, squared_distance};
+      if (squared_distance >= best.squared_distance) continue;
+      best = {cell.points + i, squared_distance, nullptr};
+      plane = cell.plane;
     }
   }
+  if (plane != kNoPlane) best.plane = &planes_[plane];
   return best;
 }
 
@@ -216,7 +249,8 @@ std::vector<Eigen::Vector3f> VoxelHashMap::points() const {
 std::size_t VoxelHashMap::memory_bytes() const {
   // robin_map: one array of buckets, each the value plus 8 bytes of bookkeeping
   constexpr std::size_t kBucketBytes = sizeof(std::pair<VoxelKey, Cell>) + 8;
-  return cells_.bucket_count() * kBucketBytes + blocks_.memory_bytes();
+  return cells_.bucket_count() * kBucketBytes + blocks_.memory_bytes() +
+         planes_.capacity() * sizeof(Plane) + free_planes_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace lidarena

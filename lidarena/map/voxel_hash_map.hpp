@@ -23,10 +23,18 @@ class VoxelHashMap {
     int max_points = 20;       ///< of a cell; later ones are refused (1..4096)
     double min_spacing = 0.0;  ///< m; a point nearer to another one of its own cell is refused
     VoxelRounding rounding = VoxelRounding::kFloor;
+    /// Above 0: cells find the plane through their points; variance (m^2) across it at most this
+    /// part of the middle one.
+    double plane_thinness = 0.0;
+  };
+  struct Plane {
+    Eigen::Vector3f mean;    ///< of the cell's points, m
+    Eigen::Vector3f normal;  ///< unit, either way
   };
   struct Neighbor {
     const Eigen::Vector3f* point = nullptr;  ///< in the map; null if there is none
     float squared_distance = 0.0F;           ///< m^2
+    const Plane* plane = nullptr;            ///< of the point's cell; null if it is not flat
     explicit operator bool() const { return point != nullptr; }
   };
 
@@ -56,15 +64,20 @@ class VoxelHashMap {
   std::size_t memory_bytes() const;
 
  private:
+  static constexpr std::uint32_t kNoPlane = 0xFFFFFFFFU;
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
     std::uint8_t level = 0;  ///< of the block, see PointBlocks
+    std::uint32_t plane = kNoPlane;
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {
     return voxel_of(point, inverse_size_, options_.rounding);
   }
+  /// Finds the plane through the cell's points anew.
+  void fit_plane(Cell& cell);
+  void release_plane(Cell& cell);
   void append(Cell& cell, const Eigen::Vector3f& point);
 
   Options options_;
@@ -73,6 +86,8 @@ class VoxelHashMap {
   float squared_spacing_;
   tsl::robin_map<VoxelKey, Cell, VoxelKeyHash> cells_;
   PointBlocks blocks_;
+  std::vector<Plane> planes_;
+  std::vector<std::uint32_t> free_planes_;
   std::size_t size_ = 0;
 };
 

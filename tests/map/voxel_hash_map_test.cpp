@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -156,6 +157,47 @@ TEST(VoxelHashMap, MemoryFollowsTheContentsUpAndReturnsToUseWhenCellsAreDropped)
   }
   // freed blocks are reused level by level; what grows is the lists of them
   EXPECT_LE(map.memory_bytes(), full * 5 / 4);
+}
+
+TEST(VoxelHashMap, FlatCellsKnowTheirPlaneAndOthersNone) {
+  VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096, .plane_thinness = 0.1});
+  const Eigen::Vector3f normal = Eigen::Vector3f(1.0F, 2.0F, -2.0F) / 3.0F;
+  const Eigen::Vector3f along = normal.unitOrthogonal();
+  const Eigen::Vector3f across = normal.cross(along);
+  const Eigen::Vector3f flat(0.5F, 0.5F, 0.5F);
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (const Eigen::Vector3f& p : random_points(40, 0.25)) {
+    const Eigen::Vector3f on_plane = flat + p.x() * along + p.y() * across;
+    map.insert(on_plane);
+    sum += on_plane;
+    map.insert(Eigen::Vector3f(5.5F, 0.5F, 0.5F) + p);  // a ball
+  }
+  const auto found = map.nearest(flat, 1.0F);
+  ASSERT_NE(found.plane, nullptr);
+  EXPECT_NEAR(std::abs(found.plane->normal.dot(normal)), 1.0F, 1e-5F);
+  EXPECT_LT((found.plane->mean - sum / 40.0F).norm(), 1e-5F);
+  const auto in_ball = map.nearest({5.5F, 0.5F, 0.5F}, 1.0F);
+  ASSERT_TRUE(in_ball);
+  EXPECT_EQ(in_ball.plane, nullptr);
+}
+
+TEST(VoxelHashMap, ACellThatLosesItsShapeLosesItsPlaneAndFreedPlanesServeAgain) {
+  VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096, .plane_thinness = 0.05});
+  const auto floor = [&](float x) {
+    for (const Eigen::Vector3f& p : random_points(20, 0.4))
+      map.insert(Eigen::Vector3f(x + 0.5F + p.x(), 0.5F + p.y(), 0.5F));
+  };
+  floor(0.0F);
+  EXPECT_NE(map.nearest({0.5F, 0.5F, 0.5F}, 1.0F).plane, nullptr);
+  for (const Eigen::Vector3f& p : random_points(60, 0.4)) map.insert(p.array() + 0.5F);
+  EXPECT_EQ(map.nearest({0.5F, 0.5F, 0.5F}, 1.0F).plane, nullptr);
+  const std::size_t bytes = map.memory_bytes();
+  for (int i = 1; i < 50; ++i) {
+    map.remove_far({0.0F, 0.0F, -1000.0F}, 1.0);
+    floor(static_cast<float>(i));
+    ASSERT_NE(map.nearest({static_cast<float>(i) + 0.5F, 0.5F, 0.5F}, 1.0F).plane, nullptr);
+  }
+  EXPECT_LE(map.memory_bytes(), bytes + 1024);
 }
 
 TEST(VoxelHashMap, OddInputDoesNoHarm) {

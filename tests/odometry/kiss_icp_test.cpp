@@ -9,6 +9,7 @@
 namespace lidarena::kiss_icp {
 namespace {
 
+using synthetic::Motion;
 using synthetic::Recording;
 
 /// Rests for 1 s, then goes along x, from the third second on at 1.5 m/s.
@@ -88,6 +89,51 @@ TEST(KissIcp, MotionWithinTheScanRunsThroughTheEstimate) {
                   .norm(),
               0.03);
   }
+}
+
+TEST(KissIcp, StartingInMotionTheFirstScanIsMendedByTheSecond) {
+  // 1.5 m/s from the first point on: the first scan is smeared by 15 cm
+  const Motion moving = [](double t) {
+    return make_pose(Eigen::Matrix3d::Identity(), {-3.0 + 1.5 * t, 0.5, 0.0});
+  };
+  const Recording recording{.motion = moving, .seconds = 0.4, .repeating = false};
+  const auto error_at_the_end = [&](bool rebuild) {
+    Config config;
+    config.voxel_size_m = 0.5;
+    config.own_motion = 1.0;
+    config.rebuild_start = rebuild;
+    KissIcp odometry = made(config, recording);
+    for (const Scan& scan : synthetic::scans_of(recording)) odometry.register_scan(scan);
+    const auto poses = odometry.trajectory();
+    const StampedPose& first = poses.poses().front();
+    const StampedPose& last = poses.poses().back();
+    const Pose truth = synthetic::truth(recording, first.stamp, last.stamp);
+    return (last.world_from_body.translation() - truth.translation()).norm();
+  };
+  const double as_measured = error_at_the_end(false);
+  const double mended = error_at_the_end(true);
+  EXPECT_LT(mended, 0.06);
+  EXPECT_LT(mended, as_measured);
+}
+
+TEST(KissIcp, ScansAreCutOnlyAfterTheCalmStartAndWhileSigmaIsLarge) {
+  const Recording recording{.seconds = 1.0};
+  const std::vector<Scan> scans = synthetic::scans_of(recording);
+  const auto poses_within = [&](double slice_above) {
+    Config config;
+    config.slices = 2;
+    config.slice_above_m = slice_above;
+    config.calm_start = 4;
+    config.own_motion = 0.5;
+    KissIcp odometry = made(config, recording);
+    std::vector<std::size_t> counts;
+    for (const Scan& scan : scans) counts.push_back(odometry.register_scan(scan).motion.size());
+    return counts;
+  };
+  const auto cut = poses_within(0.0);
+  EXPECT_EQ(cut[3], 5U) << "whole: five poses";
+  EXPECT_EQ(cut[4], 10U) << "two parts of five each";
+  EXPECT_EQ(poses_within(100.0)[4], 5U) << "sigma is 2 m at most";
 }
 
 TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {

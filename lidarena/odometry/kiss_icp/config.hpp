@@ -22,12 +22,6 @@ enum class ThresholdStart {
   kUntilMoved,  ///< sigma0 alone until 5 minimum motions from the start, then samples alone
 };
 
-/// Which motion a scan is de-skewed with.
-enum class MotionWithin {
-  kPrevious,   ///< the one before, as the public program does
-  kEstimated,  ///< the scan's own: keypoints move with the estimate in each iteration of ICP
-};
-
 /// Lever arm of the adaptive threshold: how far a wrong angle moves points.
 enum class ThresholdLever {
   kMaxRange,   ///< max_range_m
@@ -45,8 +39,9 @@ struct Config {
   ThinningOrder thinning_order = ThinningOrder::kTeschnerPrime;
 
   int slices = 1;
+  double slice_above_m = 0.0;
   bool deskew = true;
-  MotionWithin motion_within = MotionWithin::kPrevious;
+  double own_motion = 0.0;
   bool rebuild_start = false;
   PoseInstant pose_instant = PoseInstant::kScanEnd;
 
@@ -56,6 +51,10 @@ struct Config {
   std::optional<double> threshold_memory;
   ThresholdLever threshold_lever = ThresholdLever::kMaxRange;
 
+  std::optional<double> plane_thinness;
+  double map_thinning = 0.5;
+  double keypoint_thinning = 1.5;
+  int calm_start = 0;
   double kernel_fraction = 1.0;
   bool kernel_in_metres = false;
   int max_iterations = 500;
@@ -88,9 +87,15 @@ struct Config {
     v("slices", self.slices, "",
       "cure above 1: parts that a scan is cut into by time, each registered on its own",
       Limits{1, 100});
+    v("slice_above_m", self.slice_above_m, "m",
+      "scans are cut while sigma is above this: a part of a scan is a weaker hold, and better only "
+      "where motion changes fast",
+      at_least(0));
     v("deskew", self.deskew, "", "undo the motion within the scan, where points carry times");
-    v("motion_within", self.motion_within, "",
-      "de-skew with the motion before (previous), or, cure, with the scan's own (estimated)");
+    v("own_motion", self.own_motion, "",
+      "cure above 0: share of the scan's own motion, which moves keypoints anew in each iteration "
+      "of ICP, in what it is de-skewed with; the rest is the motion before. Near 1 it swings",
+      between(0, 1));
     v("rebuild_start", self.rebuild_start, "",
       "cure: the first scan is de-skewed with the motion that the second shows");
     v("pose_instant", self.pose_instant, "", "instant of the pose: scan_middle or scan_end");
@@ -104,6 +109,18 @@ struct Config {
       at_least(1));
     v("threshold_lever", self.threshold_lever, "",
       "what turns an angle into metres in sigma: max_range or, cure, mean_range of the keypoints");
+    v("plane_thinness", self.plane_thinness, "",
+      "cure: cells whose points vary across a plane by at most this part of their variance along "
+      "it count as that plane, and points are drawn to it along its normal alone; null: no planes",
+      between(0, 1));
+    v("map_thinning", self.map_thinning, "voxel sizes",
+      "edge of the cells of which one point each is offered to the map", above(0));
+    v("calm_start", self.calm_start, "scans",
+      "cure above 0: so many scans are neither cut nor move with their own motion, as the map is "
+      "too thin at first to tell motion from noise",
+      at_least(0));
+    v("keypoint_thinning", self.keypoint_thinning, "voxel sizes",
+      "edge of the cells of which one point each is registered", above(0));
     v("kernel_fraction", self.kernel_fraction, "",
       "scale of the robust kernel as a fraction of sigma", above(0));
     v("kernel_in_metres", self.kernel_in_metres, "",
@@ -138,12 +155,6 @@ template <>
 struct EnumNames<kiss_icp::PoseInstant> {
   static constexpr std::array names{std::pair{"scan_middle", kiss_icp::PoseInstant::kScanMiddle},
                                     std::pair{"scan_end", kiss_icp::PoseInstant::kScanEnd}};
-};
-
-template <>
-struct EnumNames<kiss_icp::MotionWithin> {
-  static constexpr std::array names{std::pair{"previous", kiss_icp::MotionWithin::kPrevious},
-                                    std::pair{"estimated", kiss_icp::MotionWithin::kEstimated}};
 };
 
 template <>

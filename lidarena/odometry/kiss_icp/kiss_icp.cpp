@@ -8,14 +8,12 @@ namespace lidarena::kiss_icp {
 
 namespace {
 
-constexpr double kMapThinning = 0.5;       // of the voxel size: points that go into the map
-constexpr double kKeypointThinning = 1.5;  // of the voxel size: points that are registered
-constexpr int kMotionSteps = 4;            // poses within a scan handed out, besides the first
+constexpr int kMotionSteps = 4;  // poses within a scan handed out, besides the first
 
 VoxelHashMap::Options map_options(const Config& config) {
   const double spacing = config.voxel_size() / std::sqrt(config.max_points_per_voxel);
   return {config.voxel_size(), config.max_points_per_voxel, config.min_spacing ? spacing : 0.0,
-          config.cell_rounding};
+          config.cell_rounding, config.plane_thinness.value_or(0.0)};
 }
 
 std::vector<Eigen::Vector3f> transformed(const Pose& pose,
@@ -61,7 +59,11 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
   if (times.timed) scan_duration_ = times.last - times.first;
   registered_scan_.clear();
   ScanResult result;
-  for (const Scan& slice : sliced(scan, config_.slices)) append(register_slice(slice), result);
+  const bool calm = poses_.size() < static_cast<std::size_t>(config_.calm_start);
+  const bool whole = calm || threshold_.sigma() <= config_.slice_above_m;
+  own_motion_ = calm ? 0.0 : config_.own_motion;
+  for (const Scan& slice : sliced(scan, whole ? 1 : config_.slices))
+    append(register_slice(slice), result);
   poses_.push_back(result.estimate);
   return result;
 }
@@ -73,17 +75,18 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
 
   const double voxel = config_.voxel_size();
   const Thinning thinning{config_.cell_rounding, config_.thinning_order};
-  const TimedPoints map_points = thin(points, kMapThinning * voxel, thinning);
-  const TimedPoints keypoints = thin(map_points, kKeypointThinning * voxel, thinning);
+  const TimedPoints map_points = thin(points, config_.map_thinning * voxel, thinning);
+  const TimedPoints keypoints = thin(map_points, config_.keypoint_thinning * voxel, thinning);
 
   const double sigma = threshold_.sigma();
   const Pose guess = map_from_lidar_ * predicted_motion(times);
-  const Registration found = registered(keypoints, departure(times), guess);
+  const Registration found = registered(keypoints, departure(times, before), guess);
   const Pose& pose = found.map_from_lidar;
   threshold_.observe(guess, pose, mean_range(keypoints.positions));
 
   const ScanStatus status = status_of(found, points.size());
-  const se3::Vector6 twist = points.deskewed() ? before : twist_since(departure(times), pose);
+  const se3::Vector6 twist =
+      points.deskewed() ? before : twist_towards(pose, departure(times, before), own_motion_);
   if (config_.rebuild_start && map_.empty()) first_points_ = map_points;
   map_.insert(transformed(pose, deskewed(map_points, twist, parallel_)));
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
@@ -107,20 +110,21 @@ Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& 
                                  const Pose& guess) {
   const double sigma = threshold_.sigma();
   const auto register_from = [&](const Pose& start) {
-    return register_points(keypoints, map_, departure, start, sigma, config_, parallel_);
+    return register_points(keypoints, map_, departure, start, sigma, own_motion_, config_,
+                           parallel_);
   };
   const Registration found = register_from(guess);
   if (first_points_.size() == 0 || found.matches == 0) return found;
   const TimedPoints first = std::exchange(first_points_, {});
   if (first.deskewed()) return found;
-  const se3::Vector6 twist = twist_since(departure, found.map_from_lidar);
+  const se3::Vector6 twist = twist_towards(found.map_from_lidar, departure, 1.0);
   map_ = VoxelHashMap(map_options(config_));
   map_.insert(transformed(departure.map_from_lidar, deskewed(first, twist, parallel_)));
   return register_from(found.map_from_lidar);
 }
 
-Departure KissIcp::departure(const ScanTimes& times) const {
-  return {map_from_lidar_, instant_ ? to_seconds(times.reference - *instant_) : 0.0};
+Departure KissIcp::departure(const ScanTimes& times, const se3::Vector6& before) const {
+  return {map_from_lidar_, instant_ ? to_seconds(times.reference - *instant_) : 0.0, before};
 }
 
 Pose KissIcp::predicted_motion(const ScanTimes& times) const {

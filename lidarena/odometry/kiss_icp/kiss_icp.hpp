@@ -34,8 +34,8 @@ class KissIcp : public Odometry {
   /// register_points from the predicted pose, the start of the map mended before if it is time.
   Registration registered(const TimedPoints& keypoints, const Departure& departure,
                           const Pose& guess);
-  /// Where the lidar comes from.
-  Departure departure(const ScanTimes& times) const;
+  /// Where the lidar comes from, with the twist `before`.
+  Departure departure(const ScanTimes& times, const se3::Vector6& before) const;
   /// The lidar's motion until now, if it goes on as before.
   Pose predicted_motion(const ScanTimes& times) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
@@ -52,6 +52,7 @@ class KissIcp : public Odometry {
   VoxelHashMap map_;          ///< in the lidar's frame at its first pose
   TimedPoints first_points_;  ///< all that is in the map, until the second scan de-skews it
   AdaptiveThreshold threshold_;
+  double own_motion_ = 0.0;  ///< the configured one, or none while the start is calm
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< lidar's, between the last two scans

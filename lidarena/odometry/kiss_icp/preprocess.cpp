@@ -49,8 +49,7 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
   // The public program divides by the scan's duration and so loses every point of such a scan.
   const bool lost = scan.timed && !times.timed && config.deskew && !config.equal_times_are_no_times;
   if (lost) return {};
-  const bool estimated =
-      times.timed && config.deskew && config.motion_within == MotionWithin::kEstimated;
+  const bool estimated = times.timed && config.deskew && config.own_motion > 0.0;
   const std::vector<Eigen::Vector3f> positions =
       estimated ? lidarena::positions(scan)
                 : deskew(scan, twist_per_second, times.reference, parallel);

@@ -31,25 +31,21 @@ struct PoseShare {
 /// The lidar's way through the scan as the present estimate has it.
 class MovingFrame {
  public:
-  MovingFrame(const Pose& pose, const Departure& departure, const TimedPoints& points)
-      : pose_(pose),
-        departure_(departure),
-        points_(points),
-        motion_(points.deskewed() ? se3::Vector6(se3::Vector6::Zero())
-                                  : twist_since(departure, pose)) {}
+  MovingFrame(const Pose& pose, const se3::Vector6& twist, const TimedPoints& points,
+              double share_per_second)
+      : pose_(pose), points_(points), motion_(twist), share_per_second_(share_per_second) {}
 
   PoseShare at(std::size_t i) const {
     if (points_.deskewed()) return {pose_, 1.0};
     const double seconds = double{points_.seconds[i]};
-    const double share = departure_.seconds > 0.0 ? 1.0 + seconds / departure_.seconds : 1.0;
-    return {pose_ * motion_.at(seconds), share};
+    return {pose_ * motion_.at(seconds), 1.0 + share_per_second_ * seconds};
   }
 
  private:
   const Pose& pose_;
-  const Departure& departure_;
   const TimedPoints& points_;
   ConstantTwist motion_;
+  double share_per_second_;
 };
 
 /// `increment` as a transform of the map frame, its rotation about `center`.
@@ -67,21 +63,26 @@ PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d
   return residual;
 }
 
-se3::Vector6 twist_since(const Departure& departure, const Pose& map_from_lidar) {
-  if (departure.seconds <= 0.0) return se3::Vector6::Zero();
-  return se3::log(departure.map_from_lidar.inverse() * map_from_lidar) / departure.seconds;
+se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
+                           double own_motion) {
+  if (departure.seconds <= 0.0) return departure.twist;
+  const se3::Vector6 own =
+      se3::log(departure.map_from_lidar.inverse() * map_from_lidar) / departure.seconds;
+  return own_motion * own + (1.0 - own_motion) * departure.twist;
 }
 
 Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
-                             const Config& config, const Parallel& parallel) {
+                             double own_motion, const Config& config, const Parallel& parallel) {
   Registration result{guess};
   if (map.empty()) return result;
   const auto radius = static_cast<float>(3.0 * sigma);
   const double kernel = kernel_of(sigma * config.kernel_fraction, config);
+  const double share_per_second = departure.seconds > 0.0 ? own_motion / departure.seconds : 0.0;
   Pose& pose = result.map_from_lidar;
   while (result.iterations < config.max_iterations) {
-    const MovingFrame frame(pose, departure, keypoints);
+    result.twist = twist_towards(pose, departure, own_motion);
+    const MovingFrame frame(pose, result.twist, keypoints, share_per_second);
     const auto add_match = [&](std::size_t i, NormalEquations<6>& equations) {
       const auto [map_from_instant, share] = frame.at(i);
       const Eigen::Vector3d point = map_from_instant * keypoints.positions[i].cast<double>();
@@ -90,6 +91,15 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
       const Eigen::Vector3d center = config.sensor_centred
                                          ? Eigen::Vector3d(map_from_instant.translation())
                                          : Eigen::Vector3d::Zero();
+      if (match.plane != nullptr) {
+        const auto [error, jacobian] =
+            point_to_point(point, match.plane->mean.cast<double>(), center);
+        const Eigen::Vector3d normal = match.plane->normal.cast<double>();
+        const Eigen::Matrix<double, 1, 1> distance(normal.dot(error));
+        equations.add<1>(share * normal.transpose() * jacobian, distance,
+                         kernel_weight(distance.squaredNorm(), kernel));
+        return;
+      }
       const auto [error, jacobian] = point_to_point(point, match.point->cast<double>(), center);
       equations.add<3>(share * jacobian, error, kernel_weight(error.squaredNorm(), kernel));
     };

@@ -21,26 +21,30 @@ struct PointResidual {
 PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d& counterpart,
                              const Eigen::Vector3d& center);
 
-/// The pose before the scan's, from which the lidar came with constant twist.
+/// The pose before the scan's.
 struct Departure {
   Pose map_from_lidar = Pose::Identity();
-  double seconds = 0.0;  ///< from that pose's instant to this one's
+  double seconds = 0.0;                       ///< from that pose's instant to this one's
+  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, of the lidar until then
 };
 
 struct Registration {
   Pose map_from_lidar = Pose::Identity();
   int iterations = 0;
+  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, that keypoints were moved with
   std::size_t matches = 0;  ///< keypoints with a counterpart, in the last iteration
 };
 
 /// Point-to-point ICP of `keypoints` against `map`, from the pose `guess`, with search radius
-/// 3 sigma (paper, section III-D). Keypoints that are not de-skewed yet move with the motion from
-/// `departure` to the estimate, anew in each iteration; an increment moves each by its share.
+/// 3 sigma (paper, section III-D). Keypoints that are not de-skewed yet move with `own_motion`
+/// parts of the motion from `departure` to the estimate, anew in each iteration, and the rest of
+/// that before; an increment moves each by its share.
 Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
-                             const Config& config, const Parallel& parallel);
+                             double own_motion, const Config& config, const Parallel& parallel);
 
-/// Twist (m/s, rad/s) that leads from `departure` to `map_from_lidar`.
-se3::Vector6 twist_since(const Departure& departure, const Pose& map_from_lidar);
+/// Twist within a scan that ends at `map_from_lidar`, see above.
+se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
+                           double own_motion);
 
 }  // namespace lidarena::kiss_icp
