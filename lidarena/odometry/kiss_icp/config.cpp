@@ -25,9 +25,9 @@ Config improved(const LidarInfo& lidar) {
   config.thinning_order = ThinningOrder::kMixed;
   config.max_range_m = lidar.max_range_m;
   config.min_range_m = lidar.min_range_m;
-  config.voxel_size_m = 0.5;
-  config.map_thinning = 0.2;
-  config.keypoint_thinning = 0.8;
+  config.voxel_size_m = 0.8;
+  config.map_thinning = 0.125;
+  config.keypoint_thinning = 0.5;
   config.plane_thinness = 0.2;
   config.slices = 2;
   config.slice_above_m = 0.15;
@@ -37,6 +37,7 @@ Config improved(const LidarInfo& lidar) {
   config.initial_threshold_m = 0.2;
   config.threshold_memory = 10.0;
   config.threshold_lever = ThresholdLever::kMeanRange;
+  config.kernel_in_metres = true;
   config.max_iterations = 20;
   config.convergence = 1e-3;
   config.equal_times_are_no_times = true;
