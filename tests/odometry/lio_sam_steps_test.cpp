@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cmath>
 #include <limits>
 
@@ -242,7 +244,10 @@ FeatureMap walls(int open) {
 
 Features seen(const FeatureMap& map, const Pose& pose) {
   Features features;
-  const std::vector<Eigen::Vector3f> points = map.surfaces.points();
+  std::vector<Eigen::Vector3f> points = map.surfaces.points();
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  });  // not in the tree's order, which is its own affair
   for (std::size_t i = 0; i < points.size(); i += 7)
     features.surfaces.push_back((pose.inverse() * points[i].cast<double>()).cast<float>());
   return features;
