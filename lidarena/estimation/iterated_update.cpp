@@ -54,17 +54,41 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
   return result;
 }
 
-Belief zero_velocity_update(const Belief& prior, double sigma) {
-  const auto velocity_columns = prior.covariance.middleCols<3>(State::kVelocity);
-  const Eigen::Matrix3d innovation =
-      prior.covariance.block<3, 3>(State::kVelocity, State::kVelocity) +
-      sigma * sigma * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix<double, State::kDof, 3> gain =
-      innovation.ldlt().solve(velocity_columns.transpose()).transpose();
-  const State::Vector step = -gain * prior.state.velocity;
-  const State::Matrix covariance = prior.covariance - gain * velocity_columns.transpose();
+namespace {
+
+/// Kalman update by a measurement of N neighbouring parts of the state: `off` is measured minus
+/// believed, in their tangent space.
+template <int N>
+Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<double, N>& off,
+               const Eigen::Vector<double, N>& sigma) {
+  const auto columns = prior.covariance.middleCols<N>(first);
+  Eigen::Matrix<double, N, N> innovation = columns.template middleRows<N>(first);
+  innovation += sigma.cwiseAbs2().asDiagonal();
+  const Eigen::Matrix<double, State::kDof, N> gain =
+      innovation.ldlt().solve(columns.transpose()).transpose();
+  const State::Vector step = gain * off;
+  const State::Matrix covariance = prior.covariance - gain * columns.transpose();
   const State::Matrix to_new = transport(prior.state, step);
   return {plus(prior.state, step), symmetric(to_new * covariance * to_new.transpose())};
+}
+
+}  // namespace
+
+Belief zero_velocity_update(const Belief& prior, double sigma) {
+  return observe<3>(prior, State::kVelocity, -prior.state.velocity,
+                    Eigen::Vector3d::Constant(sigma));
+}
+
+Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
+                   double rotation_sigma) {
+  static_assert(State::kRotation == State::kPosition + 3);
+  State measured = prior.state;
+  measured.position = world_from_imu.translation();
+  measured.rotation = world_from_imu.linear();
+  Eigen::Vector<double, 6> sigma;
+  sigma << Eigen::Vector3d::Constant(position_sigma), Eigen::Vector3d::Constant(rotation_sigma);
+  return observe<6>(prior, State::kPosition,
+                    minus(measured, prior.state).segment<6>(State::kPosition), sigma);
 }
 
 }  // namespace lidarena

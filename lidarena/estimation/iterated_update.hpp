@@ -46,5 +46,8 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
 
 /// Kalman update by "the velocity is zero" with `sigma` m/s on each axis.
 Belief zero_velocity_update(const Belief& prior, double sigma);
+/// Kalman update by "the IMU is at this pose", with sigmas in m and rad on each axis.
+Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
+                   double rotation_sigma);
 
 }  // namespace lidarena

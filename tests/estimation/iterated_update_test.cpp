@@ -256,5 +256,27 @@ TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
   EXPECT_LT(updated.state.velocity.norm(), prior.state.velocity.norm());
 }
 
+TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
+  SequentialRandom random(9, 1);
+  Belief prior;
+  prior.covariance = some_covariance(random, 0.2);
+  prior.state.position = {1.0, 2.0, 3.0};
+  prior.state.rotation = so3::exp({0.1, -0.2, 0.7});
+  constexpr double kShift = 0.03, kTurn = 0.01;
+  State::Vector off = State::Vector::Zero();
+  off.head<6>() << 0.02, -0.01, 0.03, 0.004, -0.002, 0.003;
+  State::Vector weight = State::Vector::Zero();
+  weight.head<3>().setConstant(1.0 / (kShift * kShift));
+  weight.segment<3>(3).setConstant(1.0 / (kTurn * kTurn));
+  const State::Matrix information = prior.covariance.inverse() + State::Matrix(weight.asDiagonal());
+  const State::Vector step = information.inverse() * weight.cwiseProduct(off);
+
+  const Pose measured = plus(prior.state, off).world_from_imu();
+  const Belief updated = pose_update(prior, measured, kShift, kTurn);
+  EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
+  const State::Matrix a = transport(prior.state, step);
+  EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
+}
+
 }  // namespace
 }  // namespace lidarena

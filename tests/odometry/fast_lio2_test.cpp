@@ -90,6 +90,36 @@ Outcome with_silence(double begin, double end) {
   }));
 }
 
+TEST(FastLio2Standing, BeforeItFirstMovesTheBodyIsWhereItBegan) {
+  const Recording standing{.motion = [](double) { return Pose::Identity(); }};
+  const std::vector<Event> events = synthetic::record(standing);
+  const auto farthest = [&](bool hold) {
+    Config config = improved(standing);
+    config.hold_first_pose = hold;
+    const Outcome outcome = play(events, standing, config);
+    double distance = 0.0;
+    for (const ScanResult& r : outcome.results) {
+      distance = std::max(distance, r.estimate.world_from_body.translation().norm());
+    }
+    return distance;
+  };
+  EXPECT_LT(farthest(true), 1e-3);
+  EXPECT_GT(farthest(false), farthest(true));
+}
+
+TEST(FastLio2Standing, TheFirstMotionIsFollowedHoweverSlow) {
+  // It rests for two seconds and then creeps: no IMU feels 2 cm/s.
+  const auto creep = [](double t) {
+    Pose pose = Pose::Identity();
+    const double moving = std::max(0.0, t - 2.0);
+    pose.translation().x() = moving < 0.5 ? 0.02 * moving * moving : 0.02 * (moving - 0.25);
+    return pose;
+  };
+  const Recording creeping{.motion = creep};
+  const Outcome outcome = play(synthetic::record(creeping), creeping);
+  EXPECT_LT(outcome.final_error(creeping), 0.04);  // the 3 cm that tell motion, and noise
+}
+
 TEST(FastLio2Data, AShortSilenceOfTheImuIsBridgedAndTold) {
   const Outcome outcome = with_silence(2.5, 2.8);
   EXPECT_LT(outcome.final_error({}), kTracked);

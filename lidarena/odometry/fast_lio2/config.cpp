@@ -32,6 +32,7 @@ Config improved(const LidarInfo& lidar) {
   config.map_radius_m = 1.5 * lidar.max_range_m;
   config.keep_all_scans = false;
   config.zero_velocity = true;
+  config.hold_first_pose = true;
   return config;
 }
 

@@ -60,6 +60,7 @@ struct Config {
   bool keep_all_scans = true;
   bool zero_velocity = false;
   int still_scans_mapped = 20;
+  bool hold_first_pose = false;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -120,6 +121,9 @@ struct Config {
       "cure: while the IMU shows that the sensor stands, its velocity is zero");
     v("still_scans_mapped", self.still_scans_mapped, "",
       "while it stands, only so many scans go into the map; with zero_velocity", at_least(1));
+    v("hold_first_pose", self.hold_first_pose, "",
+      "cure: until it first moves it is where it began, so that the map begins without drift; with "
+      "zero_velocity");
   }
 };
 

@@ -14,6 +14,8 @@ namespace {
 using State = InertialState;
 
 constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
+constexpr double kStillShiftSigma = 1e-4;  // m, of "it has not moved yet"
+constexpr double kStillTurnSigma = 1e-5;   // rad
 constexpr double kNoWay = 100.0;           // m/s: no vehicle of ours flies so fast
 constexpr int kLostScans = 15;             // in a row that contradict the map
 constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
@@ -88,7 +90,8 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   belief_ = update.belief;
   const bool still = config_.zero_velocity &&
                      still_.observe(statistics(samples), belief_.state, config_, accel_scale_);
-  if (still) belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
+  if (still) stand();
+  has_moved_ = has_moved_ || !still;
 
   const ScanStatus status = status_of(update, residuals);
   const bool seen_enough = still && still_.scans() > config_.still_scans_mapped;
@@ -117,10 +120,17 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
   belief_ = begin.belief;
   accel_scale_ = begin.accel_scale;
+  first_pose_ = belief_.state.world_from_imu();
   started_ = true;
   window_.set_accel_scale(accel_scale_);
   start_samples_ = {};
   return true;
+}
+
+void FastLio2::stand() {
+  belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
+  if (!config_.hold_first_pose || has_moved_) return;
+  belief_ = pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
 }
 
 void FastLio2::predict(const std::vector<ImuInput>& inputs) {

@@ -39,6 +39,8 @@ class FastLio2 : public Odometry {
   /// Takes samples in until they are enough to start from; whether they are now.
   bool start(const std::vector<ImuSample>& samples);
   /// Carries the belief over the inputs and lays down the track to de-skew along.
+  /// The IMU says that the sensor stands.
+  void stand();
   void predict(const std::vector<ImuInput>& inputs);
   ImuNoise noise_over(const ImuInput& input) const;
   /// The points that are used, seen from the LiDAR at the scan's end.
@@ -70,6 +72,8 @@ class FastLio2 : public Odometry {
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
   StillDetector still_;
+  Pose first_pose_ = Pose::Identity();  ///< of the IMU
+  bool has_moved_ = false;
   KdTree map_;
   MapWindow map_window_;
 
