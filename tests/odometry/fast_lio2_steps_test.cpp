@@ -129,7 +129,7 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   for (int i = 0; i < 20; ++i) {
     state.position.x() = 0.004 * i;  // 4 cm/s: no IMU feels it
     state.velocity.x() = 0.04;
-    stood += detector.observe(imu, state, config, 1.0) ? 1 : 0;
+    stood += detector.observe(imu, state, state.position, config, 1.0) ? 1 : 0;
   }
   EXPECT_LT(stood, 19) << "every 3 cm it is found out";
   EXPECT_GT(stood, 10);
@@ -142,9 +142,10 @@ TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   std::vector<ImuSample> samples = standing(1.0, 1e-3);
   StillDetector detector;
-  EXPECT_TRUE(detector.observe(statistics(samples), state, config, 1.0));
+  EXPECT_TRUE(detector.observe(statistics(samples), state, state.position, config, 1.0));
   for (ImuSample& sample : samples) sample.accel.x() += 0.1;
-  EXPECT_FALSE(detector.observe(statistics(samples), state, config, 1.0)) << "0.1 m/s^2";
+  EXPECT_FALSE(detector.observe(statistics(samples), state, state.position, config, 1.0))
+      << "0.1 m/s^2";
 }
 
 // --- Planes ---

@@ -80,6 +80,7 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
         end, scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
   }
 
+  const State predicted = belief_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
       evenly(voxel_means(points, config_.scan_voxel_m), config_.max_points);
@@ -88,8 +89,9 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
       iterated_update(belief_, std::ref(residuals),
                       {config_.max_iterations, config_.convergence, config_.point_variance_m2});
   belief_ = update.belief;
-  const bool still = config_.zero_velocity &&
-                     still_.observe(statistics(samples), belief_.state, config_, accel_scale_);
+  const bool still =
+      config_.zero_velocity &&
+      still_.observe(statistics(samples), predicted, belief_.state.position, config_, accel_scale_);
   if (still) stand();
   has_moved_ = has_moved_ || !still;
 

@@ -75,15 +75,17 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
   return start;
 }
 
-bool StillDetector::observe(const ImuStatistics& imu, const InertialState& state,
-                            const Config& config, double accel_scale) {
-  const Eigen::Vector3d at_rest = state.accel_bias - state.rotation.transpose() * state.gravity;
+bool StillDetector::observe(const ImuStatistics& imu, const InertialState& predicted,
+                            const Eigen::Vector3d& position, const Config& config,
+                            double accel_scale) {
+  const Eigen::Vector3d at_rest =
+      predicted.accel_bias - predicted.rotation.transpose() * predicted.gravity;
   const bool is_still = stands(imu, config, accel_scale) &&
-                        (imu.mean_gyro - state.gyro_bias).norm() < kRestRate &&
+                        (imu.mean_gyro - predicted.gyro_bias).norm() < kRestRate &&
                         (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
-                        state.velocity.norm() < kStillSpeed &&
-                        (scans_ == 0 || (state.position - anchor_).norm() < kStillDrift);
-  if (is_still && scans_ == 0) anchor_ = state.position;
+                        predicted.velocity.norm() < kStillSpeed &&
+                        (scans_ == 0 || (position - anchor_).norm() < kStillDrift);
+  if (is_still && scans_ == 0) anchor_ = position;
   scans_ = is_still ? scans_ + 1 : 0;
   return is_still;
 }

@@ -31,8 +31,10 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
 /// that it adds up to.
 class StillDetector {
  public:
-  bool observe(const ImuStatistics& imu, const InertialState& state, const Config& config,
-               double accel_scale);
+  /// `predicted`: the state before the scan's update, which takes its own error for motion while
+  /// the map is young; `position`: after it, m.
+  bool observe(const ImuStatistics& imu, const InertialState& predicted,
+               const Eigen::Vector3d& position, const Config& config, double accel_scale);
   int scans() const { return scans_; }  ///< that it has stood for
 
  private:
