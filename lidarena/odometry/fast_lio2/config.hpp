@@ -124,7 +124,7 @@ struct Config {
     v("hold_first_pose", self.hold_first_pose, "",
       "cure: while its first still_scans_mapped scans make the map, a sensor that stands is where "
       "it "
-      "began; with zero_velocity");
+      "without drift; with zero_velocity");
   }
 };
 

@@ -131,8 +131,7 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
 
 void FastLio2::stand() {
   belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
-  const bool map_is_young = still_.scans() <= config_.still_scans_mapped;
-  if (!config_.hold_first_pose || has_moved_ || !map_is_young) return;
+  if (!config_.hold_first_pose || has_moved_) return;
   belief_ = pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
 }
 
