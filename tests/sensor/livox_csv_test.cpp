@@ -3,6 +3,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
@@ -17,6 +18,11 @@
 namespace lidarena {
 namespace {
 
+/// Tests of one file may run at the same time, each in a process of its own.
+std::filesystem::path scratch_file(const std::string& name) {
+  return std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "_" + name);
+}
+
 using testing::degrees;
 using ::testing::HasSubstr;
 using testing::radians;
@@ -24,7 +30,7 @@ using testing::radians;
 namespace fs = std::filesystem;
 
 fs::path written(const std::string& text) {
-  const fs::path file = fs::path(::testing::TempDir()) / "pattern_under_test.csv";
+  const fs::path file = scratch_file("pattern_under_test.csv");
   std::ofstream(file) << text;
   return file;
 }
@@ -110,7 +116,7 @@ TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
 
 /// The message with which a sensor of these keys fails to load.
 std::string sensor_failure(const std::string& yaml) {
-  const fs::path file = fs::path(::testing::TempDir()) / "csv_sensor.yaml";
+  const fs::path file = scratch_file("csv_sensor.yaml");
   std::ofstream(file) << "model: livox_csv\n" << yaml;
   try {
     load_sensor(file);

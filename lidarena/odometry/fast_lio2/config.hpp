@@ -122,9 +122,8 @@ struct Config {
     v("still_scans_mapped", self.still_scans_mapped, "",
       "while it stands, only so many scans go into the map; with zero_velocity", at_least(1));
     v("hold_first_pose", self.hold_first_pose, "",
-      "cure: while its first still_scans_mapped scans make the map, a sensor that stands is where "
-      "it "
-      "without drift; with zero_velocity");
+      "cure: until it first moves it is where it began, so that the map begins without drift; with "
+      "zero_velocity");
   }
 };
 
