@@ -48,7 +48,9 @@ std::optional<double> meet(const TriangleMesh& mesh, std::uint32_t triangle, con
   return range;
 }
 
-BruteHit cast_brute(const TriangleMesh& mesh, const Ray& ray) {
+/// Not inlined: where it is, GCC 12 at -O2 and above gives ranges off by 1e-7, but not with
+/// -fno-tree-slp-vectorize.
+[[gnu::noinline]] BruteHit cast_brute(const TriangleMesh& mesh, const Ray& ray) {
   BruteHit hit;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
     const std::optional<double> range = meet(mesh, t, ray);
