@@ -159,22 +159,25 @@ class Problem {
                      "add its pose to `nodes` first");
   }
 
+  // Nodes are looked up before anything is made for the solver, which owns it only once added.
   void add(const PoseGraph::Prior& prior) {
+    double* const blocks[] = {rotation(prior.node), translation(prior.node)};
     auto* error = new ceres::AutoDiffCostFunction<PriorError, 6, 4, 3>(
         new PriorError{prior.world_from_node, root_of_information(prior.covariance)});
-    problem_.AddResidualBlock(error, nullptr, rotation(prior.node), translation(prior.node));
+    problem_.AddResidualBlock(error, nullptr, blocks, 2);
   }
   void add(const PoseGraph::Between& between) {
+    double* const blocks[] = {rotation(between.first), translation(between.first),
+                              rotation(between.second), translation(between.second)};
     auto* error = new ceres::AutoDiffCostFunction<BetweenError, 6, 4, 3, 4, 3>(
         new BetweenError{between.first_from_second, root_of_information(between.covariance)});
-    problem_.AddResidualBlock(error, make_loss(between.loss), rotation(between.first),
-                              translation(between.first), rotation(between.second),
-                              translation(between.second));
+    problem_.AddResidualBlock(error, make_loss(between.loss), blocks, 4);
   }
   void add(const PoseGraph::Position& position) {
+    double* const block = translation(position.node);
     auto* error = new ceres::AutoDiffCostFunction<PositionError, 3, 3>(
         new PositionError{position.position, root_of_information(position.covariance)});
-    problem_.AddResidualBlock(error, make_loss(position.loss), translation(position.node));
+    problem_.AddResidualBlock(error, make_loss(position.loss), block);
   }
 
   std::vector<Parameters> parameters_;

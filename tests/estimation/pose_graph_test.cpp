@@ -197,6 +197,9 @@ TEST(PoseGraph, WhatCannotBeSolvedIsRefused) {
   graph.nodes = {Pose::Identity()};
   graph.betweens.push_back({0, 1, Pose::Identity(), Covariance::Identity()});
   EXPECT_THROW(optimize(graph), InputError) << "no node 1";
+  graph.priors.push_back({1, Pose::Identity(), Covariance::Identity()});
+  EXPECT_THROW(optimize(graph), InputError) << "a prior of no node";
+  graph.priors.clear();
   graph.nodes.push_back(Pose::Identity());
   graph.betweens.front().covariance(2, 2) = 0.0;
   EXPECT_THROW(optimize(graph), InputError) << "singular";
