@@ -13,6 +13,9 @@ find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
+find_package(ZLIB REQUIRED)
+find_package(BZip2 QUIET)  # for reading old bags
 
 # Embree 4 where there is one, else 3 (one .cpp of ours knows the difference), else our own tree.
 set(LIDARENA_EMBREE_MAJOR 0)

@@ -16,11 +16,14 @@ function(lidarena_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;MODULES;PUBLIC;PRIVATE" ${ARGN})
   add_library(lidarena_${name} STATIC ${arg_SOURCES})
   add_library(lidarena::${name} ALIAS lidarena_${name})
-  target_include_directories(lidarena_${name} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
+  set_target_properties(lidarena_${name} PROPERTIES EXPORT_NAME ${name})
+  set_property(GLOBAL APPEND PROPERTY LIDARENA_MODULES ${name})
+  target_include_directories(lidarena_${name}
+    PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(lidarena_${name} PUBLIC cxx_std_20)
   list(TRANSFORM arg_MODULES PREPEND lidarena::)
   target_link_libraries(lidarena_${name} PUBLIC Eigen3::Eigen ${arg_MODULES} ${arg_PUBLIC}
-                                         PRIVATE ${arg_PRIVATE} lidarena_flags)
+                                         PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:lidarena_flags>)
 endfunction()
 
 # lidarena_test(NAME SOURCES a_test.cpp ... [MODULES world ...] [LIBRARIES lib ...])

@@ -1,0 +1,25 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Installs this build below WORK, moves it, and builds and runs the consumer against it: nothing of
+# the source or build tree may be needed, nor the place that was installed to.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK}/first ${WORK}/moved ${WORK}/consumer ${WORK}/empty)
+foreach(component IN ITEMS development program)
+  run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/first --component ${component} --strip)
+endforeach()
+file(RENAME ${WORK}/first ${WORK}/moved)
+run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/consumer -G ${GENERATOR} -DCMAKE_BUILD_TYPE=Debug
+    -DCMAKE_CXX_COMPILER=${COMPILER} -DCMAKE_PREFIX_PATH=${WORK}/moved)
+run(${CMAKE_COMMAND} --build ${WORK}/consumer)
+run(${WORK}/consumer/consumer)
+
+# the installed program finds its configurations from any folder
+file(MAKE_DIRECTORY ${WORK}/empty)
+execute_process(COMMAND ${WORK}/moved/bin/lidarena info livox_mid360 WORKING_DIRECTORY ${WORK}/empty
+                COMMAND_ERROR_IS_FATAL ANY)
+file(GLOB left ${WORK}/empty/*)
+if(left)
+  message(FATAL_ERROR "the program left files where it was called: ${left}")
+endif()
