@@ -30,6 +30,7 @@ set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The Lidarena authors <lidarena@localhost>")
 set(CPACK_PACKAGE_VENDOR "The Lidarena authors")
 set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "${PROJECT_DESCRIPTION}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
@@ -38,14 +39,12 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME lidarena)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "LiDAR simulation, SLAM and scoring in mesh worlds
- Simulates LiDARs on a flying quadcopter in mesh worlds, runs LiDAR(-inertial)
- SLAM on what they see, and scores odometry and map against the very mesh that
- was scanned.")
+set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "Simulates LiDARs on a flying quadcopter in mesh worlds, runs LiDAR(-inertial)
+SLAM on what they see, and scores odometry and map against the very mesh that
+was scanned.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblidarena-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "LiDAR simulation, SLAM and scoring: C++ library
- Headers, static libraries and the files of find_package(lidarena).")
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The C++ library: headers, static libraries and the files of find_package(lidarena).")
 # what the exported targets name; libraries that this build went without are left out
 set(needed libeigen3-dev libtbb-dev libassimp-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev
            robin-map-dev libzstd-dev zlib1g-dev libpng-dev liblz4-dev libceres-dev pkg-config)
@@ -66,7 +65,6 @@ if(TARGET lidarena_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
       "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${lidarena_next_python}), python3-numpy, lidarena (= ${PROJECT_VERSION})")
-  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "LiDAR simulation, SLAM and scoring: Python module
- Worlds, flights, scans, odometries and scores as Python objects and NumPy views.")
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module: worlds, flights, scans, odometries and scores as Python objects and NumPy views.")
 endif()
 include(CPack)

@@ -1,0 +1,28 @@
+# SPDX-License-Identifier: BSD-3-Clause
+# Makes the Debian packages of this build and unpacks them: the program must name what it needs,
+# and must run from the unpacked tree.
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE out
+                  WORKING_DIRECTORY /)  # not below the repository, whose configs/ would be found
+  set(out "${out}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${WORK}/packages ${WORK}/unpacked)
+run(${CPACK} --config ${BUILD}/CPackConfig.cmake -G DEB -B ${WORK}/packages)
+file(GLOB program ${WORK}/packages/lidarena_*.deb)
+file(GLOB development ${WORK}/packages/liblidarena-dev_*.deb)
+run(dpkg-deb --field ${program} Depends)
+foreach(library IN ITEMS libc6 libyaml-cpp libtbb libpng16)
+  if(NOT out MATCHES ${library})
+    message(FATAL_ERROR "the package does not say that it needs ${library}: ${out}")
+  endif()
+endforeach()
+foreach(package IN ITEMS ${program} ${development})
+  run(dpkg-deb --extract ${package} ${WORK}/unpacked)
+endforeach()
+run(${WORK}/unpacked/usr/bin/lidarena info house)
+foreach(file IN ITEMS share/doc/lidarena/copyright include/lidarena/world/world.hpp)
+  if(NOT EXISTS ${WORK}/unpacked/usr/${file})
+    message(FATAL_ERROR "the packages lack ${file}")
+  endif()
+endforeach()
