@@ -10,6 +10,8 @@
 #include <numeric>
 #include <sstream>
 
+#include "lidarena/base/number.hpp"
+
 namespace lidarena {
 
 struct ConfigNode::Impl {
@@ -136,12 +138,11 @@ bool ConfigNode::as_bool() const {
 
 double ConfigNode::as_double() const {
   const std::string value = text();
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(value.data(), value.data() + value.size(), number);
-  if (error != std::errc{} || end != value.data() + value.size() || !std::isfinite(number)) {
+  const auto number = parse_number(value);
+  if (!number || !std::isfinite(*number)) {
     throw InputError(where(), "'" + value + "' is not a finite number");
   }
-  return number;
+  return *number;
 }
 
 std::int64_t ConfigNode::as_integer() const {

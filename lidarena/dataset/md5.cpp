@@ -6,8 +6,10 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <span>
 
 namespace lidarena {
 namespace {
@@ -55,8 +57,8 @@ std::string md5_of(std::string_view text) {
     take_block(padded.data() + at, state);
   }
   std::string digits;
-  for (const unsigned char byte : std::bit_cast<std::array<unsigned char, sizeof state>>(state)) {
-    digits += fmt::format("{:02x}", byte);
+  for (const std::byte byte : std::as_bytes(std::span(state))) {
+    digits += fmt::format("{:02x}", std::to_integer<unsigned>(byte));
   }
   return digits;
 }

@@ -10,6 +10,8 @@
 #include <span>
 #include <utility>
 
+#include "lidarena/sensor/lidar_motion.hpp"
+
 namespace lidarena {
 namespace {
 
@@ -126,7 +128,7 @@ void Lidar::place_rays(Block& block) const {
   block.hits.resize(count * split);
 }
 
-void Lidar::aim(const LidarMotion& motion, Block& block) const {
+void Lidar::aim(const PoseAt& pose_at, Block& block) const {
   const auto shift = static_cast<float>(start_shift(config_));
   const std::size_t split = sub_rays_.size();
   Vector3d position = Vector3d::Zero();
@@ -136,7 +138,7 @@ void Lidar::aim(const LidarMotion& motion, Block& block) const {
   for (std::size_t i = 0; i < block.shots.size(); ++i) {
     const Beam& beam = block.shots[i];
     if (beam.dt_ns != known_dt) {  // shots of one instant share the pose
-      const Pose world_from_lidar = motion.at(beam.dt_ns);
+      const Pose world_from_lidar = pose_at(beam.dt_ns);
       position = world_from_lidar.translation();
       turn = world_from_lidar.linear().cast<float>();
       known_dt = beam.dt_ns;
@@ -158,7 +160,7 @@ void Lidar::aim(const LidarMotion& motion, Block& block) const {
 }
 
 /// What sub-ray `k` of a shot brings back, if anything within the limits.
-std::optional<Echo> Lidar::receive_ray(const TriangleMesh& mesh, std::size_t shot, std::size_t k,
+std::optional<Echo> Lidar::receive_ray(const Surfaces& world, std::size_t shot, std::size_t k,
                                        const Block& block) const {
   const std::size_t place = block.places[shot] + k;
   const Hit& hit = block.hits[place];
@@ -166,17 +168,17 @@ std::optional<Echo> Lidar::receive_ray(const TriangleMesh& mesh, std::size_t sho
   const double range = block.axis_to_origin + static_cast<double>(hit.range);
   if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
   const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
-  const double energy = energy_of_ray_ * backscatter(mesh.material(hit.triangle), cosine);
+  const double energy = energy_of_ray_ * backscatter(world.material(hit.triangle), cosine);
   const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
   return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
 }
 
 /// Fills the shot's echoes from its hits: those detected, in the order in which they are reported.
-void Lidar::receive(const TriangleMesh& mesh, std::size_t shot, Block& block) const {
+void Lidar::receive(const Surfaces& world, std::size_t shot, Block& block) const {
   block.echoes.clear();
   block.parts.clear();
   for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
-    const auto part = receive_ray(mesh, shot, k, block);
+    const auto part = receive_ray(world, shot, k, block);
     if (part) (sub_rays_.size() == 1 ? block.echoes : block.parts).push_back(*part);
   }
   if (!block.parts.empty()) {
@@ -247,56 +249,81 @@ void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block
       .triangle = hit.triangle};
 }
 
-void Lidar::shoot(const World& world, const LidarMotion& motion, Block& block) const {
+void Lidar::shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& block) const {
   place_rays(block);
-  aim(motion, block);
+  aim(world_from_lidar, block);
   world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
              RayOrder::kNeighbours);
   block.count = 0;
-  const TriangleMesh& mesh = world.mesh();
   const bool one_sure_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
     block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
     if (one_sure_echo) {
-      const auto echo = receive_ray(mesh, shot, 0, block);
+      const auto echo = receive_ray(world, shot, 0, block);
       if (echo) report(shot, *echo, 0, block);
       continue;
     }
-    receive(mesh, shot, block);
+    receive(world, shot, block);
     for (std::size_t k = 0; k < block.echoes.size(); ++k) report(shot, block.echoes[k], k, block);
   }
 }
 
-Scan Lidar::measure(const World& world, const Flight& flight, std::uint64_t index,
-                    const Parallel& parallel, std::vector<PointTruth>* truth) const {
-  std::vector<Beam> storage;
-  const std::span<const Beam> beams = table_.beams(index, storage);
-  const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
-                           config_.mode == ScanMode::kRolling);
+/// Replaces `points` (and `truth`) by what the shots bring back.
+void Lidar::shoot_all(const Surfaces& world, const PoseAt& world_from_lidar,
+                      std::span<const Beam> shots, std::uint64_t first_ray,
+                      const Parallel& parallel, std::vector<Point>& points,
+                      std::vector<PointTruth>* truth) const {
   const auto most = static_cast<std::size_t>(config_.returns.count);  // points of a shot
-  Scan scan;
-  scan.stamp = stamp(index);
-  scan.timed = has_times(config_.mode);
-  scan.points.resize(beams.size() * most);
-  if (truth != nullptr) truth->resize(scan.points.size());
+  points.resize(shots.size() * most);
+  if (truth != nullptr) truth->resize(points.size());
 
-  std::vector<std::size_t> counts((beams.size() + shots_per_block_ - 1) / shots_per_block_);
+  std::vector<std::size_t> counts((shots.size() + shots_per_block_ - 1) / shots_per_block_);
   const std::size_t blocks_together = std::max<std::size_t>(1, counts.size() / kShares);
   parallel.for_blocks(counts.size(), blocks_together, [&](std::size_t first, std::size_t last) {
     Block block;
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t begin = i * shots_per_block_;
-      block.shots = beams.subspan(begin, std::min(shots_per_block_, beams.size() - begin));
-      block.first_ray = index * beams.size() + begin;
-      block.points = scan.points.data() + begin * most;
+      block.shots = shots.subspan(begin, std::min(shots_per_block_, shots.size() - begin));
+      block.first_ray = first_ray + begin;
+      block.points = points.data() + begin * most;
       if (truth != nullptr) block.truth = truth->data() + begin * most;
-      shoot(world, motion, block);
+      shoot(world, world_from_lidar, block);
       counts[i] = block.count;
     }
   });
-  close_gaps(scan.points, shots_per_block_ * most, counts);
+  close_gaps(points, shots_per_block_ * most, counts);
   if (truth != nullptr) close_gaps(*truth, shots_per_block_ * most, counts);
+}
+
+Scan Lidar::measure(const Surfaces& world, const Flight& flight, std::uint64_t index,
+                    const Parallel& parallel, std::vector<PointTruth>* truth) const {
+  std::vector<Beam> storage;
+  const std::span<const Beam> shots = beams(index, storage);
+  const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
+                           config_.mode == ScanMode::kRolling);
+  Scan scan = empty_scan(index);
+  shoot_all(
+      world, [&](std::int32_t dt_ns) { return motion.at(dt_ns); }, shots, index * shots.size(),
+      parallel, scan.points, truth);
   return scan;
+}
+
+Scan Lidar::empty_scan(std::uint64_t index) const {
+  Scan scan;
+  scan.stamp = stamp(index);
+  scan.timed = has_times(config_.mode);
+  return scan;
+}
+
+void Lidar::measure_part(const Surfaces& world, const PoseAt& world_from_lidar,
+                         std::span<const Beam> shots, std::uint64_t first_ray,
+                         std::vector<Point>& points, std::vector<PointTruth>* truth) const {
+  std::vector<Point> more;
+  std::vector<PointTruth> more_truth;
+  shoot_all(world, world_from_lidar, shots, first_ray, Parallel(1), more,
+            truth == nullptr ? nullptr : &more_truth);
+  points.insert(points.end(), more.begin(), more.end());
+  if (truth != nullptr) truth->insert(truth->end(), more_truth.begin(), more_truth.end());
 }
 
 }  // namespace lidarena

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,13 +17,15 @@
 #include "lidarena/sensor/beam_table.hpp"
 #include "lidarena/sensor/cast_order.hpp"
 #include "lidarena/sensor/echoes.hpp"
-#include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/sensor/signal_model.hpp"
-#include "lidarena/world/world.hpp"
+#include "lidarena/world/surfaces.hpp"
 
 namespace lidarena {
+
+/// world_from_lidar so many nanoseconds after a scan's stamp.
+using PoseAt = std::function<Pose(std::int32_t dt_ns)>;
 
 /// A LiDAR flown through a world. measure() is const and keyed by (seed, id, ray number), so scans
 /// can be made in any order and on any number of threads with identical bytes.
@@ -41,10 +45,25 @@ class Lidar {
   /// detected ones are chosen and numbered as ReturnConfig says. Then the range gets its noise and
   /// is rounded, and the direction gets its noise. `truth`, if given, receives what every point
   /// really hit, in point order: of a mixed echo, the sub-ray with the strongest signal.
-  Scan measure(const World& world, const Flight& flight, std::uint64_t index,
+  Scan measure(const Surfaces& world, const Flight& flight, std::uint64_t index,
                const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
+  /// What some shots of a scan bring back, appended to `points` (and `truth`): `shots` of its beams
+  /// from number `first_ray` since the sensor's start on. So a scan can be made piece by piece,
+  /// while the world around moves.
+  void measure_part(const Surfaces& world, const PoseAt& world_from_lidar,
+                    std::span<const Beam> shots, std::uint64_t first_ray,
+                    std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
+
+  /// Scan `index` before its first shot.
+  Scan empty_scan(std::uint64_t index) const;
+
   const ScanPattern& pattern() const { return *pattern_; }
+  /// Beams of scan `index`, in `storage` or in a table that the sensor keeps.
+  std::span<const Beam> beams(std::uint64_t index, std::vector<Beam>& storage) const {
+    return table_.beams(index, storage);
+  }
+  const SensorConfig& config() const { return config_; }
   Time stamp(std::uint64_t index) const;
   /// Instant of the last firing of scan `index`, whether or not its points carry times.
   Time last_firing(std::uint64_t index) const;
@@ -52,12 +71,15 @@ class Lidar {
  private:
   struct Block;
   void place_rays(Block& block) const;
-  void aim(const LidarMotion& motion, Block& block) const;
-  std::optional<Echo> receive_ray(const TriangleMesh& mesh, std::size_t shot, std::size_t k,
+  void aim(const PoseAt& world_from_lidar, Block& block) const;
+  std::optional<Echo> receive_ray(const Surfaces& world, std::size_t shot, std::size_t k,
                                   const Block& block) const;
-  void receive(const TriangleMesh& mesh, std::size_t shot, Block& block) const;
+  void receive(const Surfaces& world, std::size_t shot, Block& block) const;
   void report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const;
-  void shoot(const World& world, const LidarMotion& motion, Block& block) const;
+  void shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
+  void shoot_all(const Surfaces& world, const PoseAt& world_from_lidar, std::span<const Beam> shots,
+                 std::uint64_t first_ray, const Parallel& parallel, std::vector<Point>& points,
+                 std::vector<PointTruth>* truth) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   double range_noise(std::uint64_t ray, std::size_t number, Block& block) const;
   double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,

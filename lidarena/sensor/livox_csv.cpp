@@ -2,7 +2,6 @@
 #include "lidarena/sensor/livox_csv.hpp"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <numbers>
@@ -12,6 +11,7 @@
 #include <utility>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/base/number.hpp"
 #include "lidarena/sensor/livox.hpp"
 
 namespace lidarena {
@@ -24,11 +24,7 @@ using Row = std::array<double, 3>;
 std::optional<double> number(std::string_view text) {
   const auto first = text.find_first_not_of(" \t");
   if (first == std::string_view::npos) return std::nullopt;
-  text = text.substr(first, text.find_last_not_of(" \t") - first + 1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-  return value;
+  return parse_number(text.substr(first, text.find_last_not_of(" \t") - first + 1));
 }
 
 /// Three numbers with commas between; nothing for any other line.

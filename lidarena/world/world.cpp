@@ -80,6 +80,10 @@ World& World::operator=(World&&) noexcept = default;
 
 const TriangleMesh& World::mesh() const { return impl_->mesh; }
 
+const Material& World::material(std::uint32_t triangle) const {
+  return impl_->mesh.material(triangle);
+}
+
 void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                  RayOrder order) const {
   constexpr std::size_t kBlock = 64;  // rays; their hits are still at hand when normals are sought

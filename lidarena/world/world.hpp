@@ -9,21 +9,10 @@
 #include <string>
 
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/world/surfaces.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
 namespace lidarena {
-
-/// A half line; `direction` has unit length.
-struct Ray {
-  Eigen::Vector3d origin;
-  Eigen::Vector3f direction;
-};
-
-/// What the caster may expect of neighbouring rays. Each ray's hit is the same up to rounding.
-enum class RayOrder {
-  kAny,
-  kNeighbours  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
-};
 
 /// What finds the triangles. Answers are the same but for rounding: of a ray that meets two
 /// triangles at one range, or an edge, either may be the hit.
@@ -35,15 +24,6 @@ enum class RayCaster {
 /// Those of this build, the default first: Embree may be left out (LIDARENA_WITH_EMBREE).
 std::span<const RayCaster> ray_casters();
 
-/// First surface along a ray.
-struct Hit {
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
-  float range = std::numeric_limits<float>::infinity();  ///< m; infinity when nothing was hit
-  std::uint32_t triangle = kNone;                        ///< index into mesh().triangles
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();      ///< unit, turned towards the ray's origin
-  bool valid() const { return triangle != kNone; }
-};
-
 /// Nearest point of the surface.
 struct ClosestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -54,20 +34,20 @@ struct ClosestPoint {
 
 /// A mesh and the structure that answers questions about it. Move only; all queries are const,
 /// thread safe, and exact up to single precision relative to the mesh's centre.
-class World {
+class World : public Surfaces {
  public:
   /// Takes the mesh over and cleans it (see clean_mesh), so mesh() may have fewer triangles; throws
   /// InputError (place `name`) when it has no faces, Error when the build lacks the ray caster.
   explicit World(TriangleMesh mesh, const std::string& name = "mesh",
                  RayCaster caster = ray_casters().front());
-  ~World();
+  ~World() override;
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
 
-  /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`. Faces are
-  /// seen from both sides.
+  /// Hits name triangles of mesh().
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
-            RayOrder order = RayOrder::kAny) const;
+            RayOrder order = RayOrder::kAny) const override;
+  const Material& material(std::uint32_t triangle) const override;
   /// Nearest surface point of each point within `max_distance` metres, computed in double precision
   /// from the mesh itself; of triangles equally near, the one with the lower index. Points that are
   /// not finite have none. Fast where neighbours in the list are neighbours in space.

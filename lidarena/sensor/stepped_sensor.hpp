@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/trajectory.hpp"
+#include "lidarena/dataset/event.hpp"
+#include "lidarena/sensor/imu.hpp"
+#include "lidarena/sensor/lidar.hpp"
+
+namespace lidarena {
+
+/// A LiDAR, and the IMU inside it, in a world that goes by steps, as physics engines do. Each step
+/// casts the shots that fall into it, each from the body's pose at its own instant (between two
+/// steps linear, which is off by at most a h^2 / 8: 1.3e-6 m at 10 m/s^2 and 1 ms), at the world as
+/// it stands at the step's end. The noise is that of simulate(), shot for shot, for the same id and
+/// seed. Scan k begins at k * period of the simulator's clock, sample k of the IMU at k / rate.
+class SteppedSensor {
+ public:
+  /// The first whole scan at or after `start` is the first. Throws InputError as make_pattern() and
+  /// Lidar do.
+  SteppedSensor(const SensorConfig& config, const std::string& id, std::uint64_t seed, bool noise,
+                Time start);
+
+  /// The body has come to `pose`; `world` is the one of that instant. Appends to `events` what is
+  /// known now, in EventSource's order: IMU samples come a step late (see StepFlight), a scan after
+  /// the samples that span it. Steps that go back in time start the sensor anew.
+  void step(const Surfaces& world, const StampedPose& pose, std::vector<Event>& events);
+
+  const Lidar& lidar() const { return lidar_; }
+  std::uint64_t rays() const { return rays_; }  ///< cast so far
+
+ private:
+  void start_at(Time start);
+  void cast(const Surfaces& world, const StampedPose& pose);
+  void cast_frozen(const Surfaces& world, const PoseAt& world_from_lidar);
+  void finish_scan();
+  void sample(std::vector<Event>& events);
+  void deliver(std::vector<Event>& events);
+
+  std::string id_;
+  std::uint64_t seed_;
+  bool noise_;
+  Lidar lidar_;
+  std::optional<Imu> imu_;
+  std::vector<StampedPose> poses_;  ///< the last three
+  std::uint64_t index_ = 0;         ///< of the scan being made
+  std::size_t next_shot_ = 0;
+  std::vector<Beam> storage_;
+  std::span<const Beam> shots_;  ///< of that scan
+  Scan scan_;
+  std::vector<Scan> waiting_;  ///< for the IMU
+  std::uint64_t rays_ = 0;
+};
+
+}  // namespace lidarena
