@@ -111,6 +111,27 @@ TEST(FastLio2Start, AccelerationsInGAreRecognised) {
   EXPECT_TRUE(start.still);
 }
 
+/// Of a sensor that stands, with what data sheets allow an accelerometer to be off by.
+std::vector<ImuSample> standing_with(const Eigen::Vector3d& accel_bias) {
+  std::vector<ImuSample> samples = standing(1.0, 1e-3);
+  for (ImuSample& sample : samples) sample.accel += accel_bias;
+  return samples;
+}
+
+TEST(FastLio2Start, AnAccelerometersBiasIsNotTakenForMotion) {
+  const Config config = improved_config();
+  for (const double bias : {-0.2, -0.07, 0.07, 0.2}) {
+    const Eigen::Matrix3d tilt = so3::exp({0.1, -0.2, 0.0});
+    const Eigen::Vector3d up = tilt.transpose() * Eigen::Vector3d::UnitZ();
+    const std::vector<ImuSample> samples = standing_with(bias * up);
+    const InertialState state = start_from(samples, Pose::Identity(), config).belief.state;
+    // The mean of 20 samples with 0.01 m/s^2 of noise: 4.5 sigma.
+    EXPECT_LT((state.accel_bias - bias * up).norm(), 0.01);
+    StillDetector detector;
+    EXPECT_TRUE(detector.observe(statistics(samples), state, state.position, config, 1.0));
+  }
+}
+
 TEST(FastLio2Start, ShakingIsNotStanding) {
   const Start start = start_from(standing(1.0, 0.1), Pose::Identity(), improved_config());
   EXPECT_FALSE(start.still);
@@ -198,6 +219,53 @@ TEST(FastLio2Planes, ThickOnesAreRefused) {
   Neighbours same;
   for (Neighbour& point : same) point.point.setZero();
   EXPECT_FALSE(fit_plane(same, PlaneFit::kThroughOrigin, 0.1).has_value()) << "not finite";
+}
+
+/// A cross of arms `length` and `width` in a tilted plane, each point off it by `sigma`.
+Neighbours cross(double length, double width, double sigma, SequentialRandom& random) {
+  const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
+  Neighbours points;
+  const double arms[5][2] = {{0, 0}, {length, 0}, {-length, 0}, {0, width}, {0, -width}};
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Eigen::Vector3d at(arms[i][0], arms[i][1], 5.0 + sigma * random.normal());
+    points[i].point = (turn * at).cast<float>();
+  }
+  return points;
+}
+
+TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
+  SequentialRandom random(12, 1);
+  constexpr double kSigma = 0.01;
+  constexpr double kLength = 0.3;
+  constexpr int kFits = 4000;
+  const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
+  for (const double width : {0.08, 0.15, 0.25}) {
+    // In the direction that is told worst, as far as the farthest point.
+    const Eigen::Vector3d end = turn * Eigen::Vector3d(0.0, kLength, 5.0);
+    double squares = 0.0;
+    for (int i = 0; i < kFits; ++i) {
+      const auto plane =
+          fit_plane(cross(kLength, width, kSigma, random), PlaneFit::kPrincipal, 0.1);
+      ASSERT_TRUE(plane.has_value());
+      squares += std::pow(plane->normal.dot(end) + plane->offset, 2);
+    }
+    const Neighbours exact = cross(kLength, width, 0.0, random);
+    const auto plane = fit_plane(exact, PlaneFit::kPrincipal, 0.1);
+    const double told = plane_variance(exact, *plane, kSigma * kSigma);
+    const double tilt = kSigma * kSigma / (2.0 * width * width);
+    EXPECT_NEAR(told, kSigma * kSigma / 5.0 + tilt * kLength * kLength, 1e-3 * told);
+    // 4000 squares tell a variance to 2.2 %, the fit's second order does the rest.
+    EXPECT_NEAR(squares / kFits, told, 0.1 * told) << "width " << width;
+  }
+}
+
+TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
+  SequentialRandom random(13, 1);
+  const Neighbours line = cross(0.3, 0.0, 0.0, random);
+  const auto plane = fit_plane(line, PlaneFit::kPrincipal, 0.1);
+  ASSERT_TRUE(plane.has_value());
+  EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2, and finite:";
+  EXPECT_LT(plane_variance(line, *plane, 1e-3), 1e3);
 }
 
 TEST(FastLio2Planes, TheJacobianIsTheNumericOne) {

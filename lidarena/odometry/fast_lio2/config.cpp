@@ -20,6 +20,7 @@ Config improved(const LidarInfo& lidar) {
   config.max_points = lidar.kind == "spinning" ? 4000 : 8000;  // a rosette hardly gives so many
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
+  config.plane_uncertainty = true;
   config.noise_model = NoiseModel::kDensity;
   config.imu_noise_factor = 10.0;
   config.second_order = true;

@@ -37,6 +37,7 @@ struct Config {
   double max_neighbour_m = 2.236;
   double plane_thickness_m = 0.1;
   PlaneFit plane_fit = PlaneFit::kThroughOrigin;
+  bool plane_uncertainty = false;
   bool estimate_extrinsics = false;
 
   NoiseModel noise_model = NoiseModel::kPerSample;
@@ -82,6 +83,9 @@ struct Config {
     v("plane_thickness_m", self.plane_thickness_m, "m",
       "distance of each neighbour from their plane, at most", above(0));
     v("plane_fit", self.plane_fit, "", "through_origin or principal (cure)");
+    v("plane_uncertainty", self.plane_uncertainty, "",
+      "cure: a point counts less the less its five neighbours say about their plane's place there, "
+      "which is next to nothing when they lie on a line");
     v("estimate_extrinsics", self.estimate_extrinsics, "",
       "whether the LiDAR's place on the IMU is estimated, too");
     v("noise_model", self.noise_model, "", "per_sample or density (cure)");

@@ -204,10 +204,10 @@ ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResidual
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
-  // The position's block of the sum is that of n n^T.
+  // The position's block of the sum is that of n n^T, each weighted.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
       update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
-  const double weakest = directions.eigenvalues()[0] / static_cast<double>(update.points.count);
+  const double weakest = directions.eigenvalues()[0] / directions.eigenvalues().sum();
   return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 

@@ -69,6 +69,10 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
   State& state = start.belief.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
   if (start.still || config.initial_sigma > 0.0) state.gyro_bias = imu.mean_gyro;
+  if (start.still && !config.always_scale_accel) {  // else the scale takes it
+    const double too_long = start.accel_scale * force - config.gravity;
+    state.accel_bias = too_long * imu.mean_accel.normalized();
+  }
   state.lidar_rotation = imu_from_lidar.linear();
   state.lidar_position = imu_from_lidar.translation();
   start.belief.covariance = covariance_of(config, start.still);

@@ -21,9 +21,10 @@ struct Start {
   bool still = false;
 };
 
-/// Gravity from the mean specific force, gyro bias from the mean rate; the world is the IMU's frame
-/// (FAST-LIO2 supposes a sensor at rest; with `initial_sigma` 0, one that moves is given a velocity
-/// and a gyro bias that are unknown).
+/// Gravity from the mean specific force, gyro bias from the mean rate, at rest also the part of the
+/// accelerometer's bias that lies along gravity, from the mean force's length; the world is the
+/// IMU's frame (FAST-LIO2 supposes a sensor at rest; with `initial_sigma` 0, one that moves is
+/// given a velocity and a gyro bias that are unknown).
 Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
                  const Config& config);
 

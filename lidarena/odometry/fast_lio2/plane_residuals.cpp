@@ -48,6 +48,23 @@ std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double th
   return plane;
 }
 
+double plane_variance(const Neighbours& points, const Plane& plane, double point_variance) {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  for (const Neighbour& p : points) centre += p.point.cast<double>() / kNeighbours;
+  const Eigen::Matrix<double, 3, 2> basis = tangent_basis(plane.normal);
+  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // along the plane
+  double reach = 0.0;
+  for (const Neighbour& p : points) {
+    const Eigen::Vector2d along = basis.transpose() * (p.point.cast<double>() - centre);
+    spread += along * along.transpose();
+    reach = std::max(reach, along.squaredNorm());
+  }
+  const double half = 0.5 * spread.trace();
+  const double width = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
+  const double tilt = point_variance / std::max(width, 1e-3 * point_variance);
+  return point_variance / kNeighbours + tilt * reach;
+}
+
 PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
                              const InertialState& state, bool extrinsics) {
   const Eigen::Vector3d in_imu = state.lidar_rotation * point + state.lidar_position;
@@ -76,6 +93,9 @@ void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
     match.plane = fit_plane(match.neighbours, config_.plane_fit, config_.plane_thickness_m);
   }
   match.near_plane = match.plane.has_value();
+  if (!match.plane || !config_.plane_uncertainty) return;
+  const double own = config_.point_variance_m2;
+  match.weight = own / (own + plane_variance(match.neighbours, *match.plane, own));
 }
 
 double PlaneResiduals::near_planes() const {
@@ -97,7 +117,7 @@ NormalEquations<kPointDof> PlaneResiduals::operator()(const InertialState& state
           match.plane.reset();
           return;
         }
-        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), 1.0);
+        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), match.weight);
       });
 }
 
