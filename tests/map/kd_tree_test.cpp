@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdlib>
 
 #include "lidarena/base/random.hpp"
 
@@ -94,12 +95,19 @@ void expect_same(const KdTree& tree, const SlowPoints& slow) {
   EXPECT_EQ(sorted(tree.points()), sorted(slow.points()));
 }
 
+/// LIDARENA_KD_TREE_OPERATIONS says how many, for a long run of them (2,000,000 take minutes).
+int random_operations() {
+  const char* given = std::getenv("LIDARENA_KD_TREE_OPERATIONS");
+  return given == nullptr ? 120'000 : std::max(2, std::atoi(given));
+}
+
 TEST(KdTree, DoesAsAListDoesUnderRandomOperations) {
+  const int operations = random_operations() / 2;
   for (const float half_side : {0.8F, 4.0F}) {  // many points in a cell, few in a cell
     SequentialRandom random(7, 1);
     KdTree tree;
     SlowPoints slow;
-    for (int i = 0; i < 60'000; ++i) {
+    for (int i = 0; i < operations; ++i) {
       const double choice = random.uniform();
       const Eigen::Vector3f point = random_point(random, half_side);
       if (choice < 0.25) {

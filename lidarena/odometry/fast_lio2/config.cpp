@@ -21,6 +21,7 @@ Config improved(const LidarInfo& lidar) {
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.plane_uncertainty = true;
+  config.point_variance_m2 = 4e-4;  // (2 cm)^2, of the data sheets; the plane's comes on top
   config.noise_model = NoiseModel::kDensity;
   config.imu_noise_factor = 10.0;
   config.second_order = true;

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Whether FAST-LIO2's covariance tells its errors: normalised squared errors (NEES), averaged over
+// seeds of all noise. LIDARENA_NEES_SEEDS says over how many (3; 20 take minutes).
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/base/time.hpp"
+#include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
+#include "tests/odometry/synthetic_room.hpp"
+
+namespace lidarena::fast_lio2 {
+namespace {
+
+using synthetic::Recording;
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+
+int number_of_seeds() {
+  const char* given = std::getenv("LIDARENA_NEES_SEEDS");
+  return given == nullptr ? 3 : std::max(1, std::atoi(given));
+}
+
+/// Normalised squared errors, and the errors' squares; sums over seeds.
+struct Errors {
+  double pose = 0.0, position = 0.0, attitude = 0.0;
+  double metres2 = 0.0, radians2 = 0.0;
+
+  Errors& operator+=(const Errors& e) {
+    pose += e.pose;
+    position += e.position;
+    attitude += e.attitude;
+    metres2 += e.metres2;
+    radians2 += e.radians2;
+    return *this;
+  }
+};
+
+Errors errors_of(const ScanResult& result, const Pose& truth) {
+  const Pose& estimate = result.estimate.world_from_body;
+  Vector6 error;
+  error << truth.translation() - estimate.translation(),
+      so3::log(estimate.linear().transpose() * truth.linear());
+  const Eigen::Matrix<double, 6, 6>& p = *result.covariance;
+  const Eigen::Vector3d position = error.head<3>();
+  const Eigen::Vector3d attitude = error.tail<3>();
+  return {error.dot(p.ldlt().solve(error)),
+          position.dot(p.topLeftCorner<3, 3>().ldlt().solve(position)),
+          attitude.dot(p.bottomRightCorner<3, 3>().ldlt().solve(attitude)), position.squaredNorm(),
+          attitude.squaredNorm()};
+}
+
+/// 5 s of the room: 1 s of rest, then the flight. The noise is a Mid-360's: 2 cm, and the IMU's.
+Recording noisy_flight(int seed) {
+  Recording recording{.seconds = 5.0, .range_noise_m = 0.02, .repeating = false};
+  recording.seed = static_cast<std::uint64_t>(seed);
+  recording.gyro_noise_density = 2.4e-4;
+  recording.accel_noise_density = 1.7e-3;
+  return recording;
+}
+
+constexpr int kEvery = 5;  // scans
+
+/// One for every fifth scan from 1.5 s on.
+std::vector<Errors> errors_over(const Recording& recording, bool plane_uncertainty) {
+  Rig rig = synthetic::rig_of(recording);
+  rig.imus.front().gyro_noise_density = recording.gyro_noise_density;
+  rig.imus.front().accel_noise_density = recording.accel_noise_density;
+  Config config = preset("improved", rig.lidars.front());
+  config.plane_uncertainty = plane_uncertainty;
+  FastLio2 odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
+  std::optional<Time> first;
+  std::vector<Errors> errors;
+  int scans = 0;
+  for (const Event& event : synthetic::record(recording)) {
+    if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
+      odometry.register_imu(*sample);
+      continue;
+    }
+    const ScanResult result = odometry.register_scan(std::get<Scan>(event.data));
+    if (!first) first = result.estimate.stamp;  // at rest
+    if (++scans % kEvery != 0 || scans < 3 * kEvery) continue;
+    errors.push_back(errors_of(result, synthetic::truth(recording, *first, result.estimate.stamp)));
+  }
+  return errors;
+}
+
+/// Means over the seeds, by scan.
+std::vector<Errors> mean_errors(int seeds, bool plane_uncertainty) {
+  std::vector<Errors> sums;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    const std::vector<Errors> errors = errors_over(noisy_flight(seed), plane_uncertainty);
+    sums.resize(errors.size());
+    for (std::size_t i = 0; i < errors.size(); ++i) sums[i] += errors[i];
+  }
+  for (Errors& sum : sums) {
+    for (double* part : {&sum.pose, &sum.position, &sum.attitude, &sum.metres2, &sum.radians2}) {
+      *part /= seeds;
+    }
+  }
+  return sums;
+}
+
+double mean_pose(const std::vector<Errors>& errors) {
+  double sum = 0.0;
+  for (const Errors& e : errors) sum += e.pose / static_cast<double>(errors.size());
+  return sum;
+}
+
+/// Quantile of chi-square with `dof` degrees of freedom at `z` standard deviations of the normal
+/// distribution (Wilson and Hilferty, PNAS 17, 1931; to 1 % for 18 degrees and more).
+double chi_square(double dof, double z) {
+  const double v = 2.0 / (9.0 * dof);
+  return dof * std::pow(1.0 - v + z * std::sqrt(v), 3);
+}
+
+TEST(FastLio2Consistency, TheCovarianceTellsTheErrors) {
+  const int seeds = number_of_seeds();
+  const std::vector<Errors> with = mean_errors(seeds, true);
+  ASSERT_EQ(with.size(), 8U);
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    fmt::print(
+        "{:.1f} s: pose {:.2f} of 6, position {:.2f} of 3, attitude {:.2f} of 3; rms {:.2f} mm, "
+        "{:.3f} mrad\n",
+        0.1 * kEvery * static_cast<double>(i + 3), with[i].pose, with[i].position, with[i].attitude,
+        1e3 * std::sqrt(with[i].metres2), 1e3 * std::sqrt(with[i].radians2));
+  }
+  // 99 % of chi-square, of the seeds alone: instants of one flight are no independent trials.
+  constexpr double kZ = 2.5758;
+  const double mean = mean_pose(with);
+  fmt::print("mean {:.2f}, 99 %: {:.2f} to {:.2f}\n", mean, chi_square(6.0 * seeds, -kZ) / seeds,
+             chi_square(6.0 * seeds, kZ) / seeds);
+  EXPECT_GT(mean, chi_square(6.0 * seeds, -kZ) / seeds);
+  EXPECT_LT(mean, chi_square(6.0 * seeds, kZ) / seeds);
+
+  const double without = mean_pose(mean_errors(seeds, false));
+  fmt::print("without the planes' uncertainty: mean {:.2f}\n", without);
+  EXPECT_GT(without, 1.5 * mean) << "what the option is for";
+}
+
+TEST(FastLio2Consistency, TheQuantilesAreThoseOfTheTables) {
+  EXPECT_NEAR(chi_square(120.0, -2.5758), 83.85, 0.1);
+  EXPECT_NEAR(chi_square(120.0, 2.5758), 163.65, 0.1);
+  EXPECT_NEAR(chi_square(18.0, -2.5758), 6.265, 0.07);
+  EXPECT_NEAR(chi_square(18.0, 2.5758), 37.156, 0.07);
+}
+
+}  // namespace
+}  // namespace lidarena::fast_lio2
