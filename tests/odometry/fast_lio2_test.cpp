@@ -291,5 +291,58 @@ TEST(FastLio2Data, ASaturatedGyroIsToldAndNotBelieved) {
   EXPECT_EQ(play(usual_events()).largest("imu_clipped"), 0.0);
 }
 
+/// Shaken along x by up to 24 m/s^2; the accelerometer ends at 2 g.
+Pose shaking(double t) {
+  const double u = std::clamp(t - 1.0, 0.0, 1.0);
+  const double ramp = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
+  Pose pose = synthetic::flight(0.0);
+  pose.translation().x() += 0.06 * ramp * std::sin(20.0 * (t - 1.0));
+  return pose;
+}
+
+TEST(FastLio2Data, ASaturatedAccelerometerIsToldAndNotBelieved) {
+  constexpr double kRange = 2.0 * 9.80665;
+  const Recording recording{.motion = shaking};
+  std::vector<Event> events = synthetic::record(recording);
+  SequentialRandom random(2, 1);
+  int clipped = 0;
+  for (Event& event : events) {
+    auto* sample = std::get_if<ImuSample>(&event.data);
+    if (sample == nullptr) continue;
+    for (double& force : sample->accel) force += 1e-2 * random.normal();
+    clipped += sample->accel.cwiseAbs().maxCoeff() > kRange ? 1 : 0;
+    sample->accel = sample->accel.cwiseMin(kRange).cwiseMax(-kRange);
+  }
+  ASSERT_GT(clipped, 50);
+  const Outcome outcome = play(events, recording);
+  EXPECT_GT(outcome.largest("imu_clipped"), 2.0);
+  EXPECT_LT(outcome.final_error(recording), kTracked);
+  EXPECT_EQ(outcome.count(ScanStatus::kDiverged), 0U);
+}
+
+TEST(FastLio2Data, AClockThatIsSetBackForGoodChangesNothingAndIsToldAtEachScan) {
+  std::vector<Event> events = usual_events();
+  const Time from = Recording{}.epoch + from_seconds(2.0);
+  for (Event& event : events) {
+    std::visit(
+        [from](auto& data) {
+          if (data.stamp >= from) data.stamp -= from_seconds(1.5);
+        },
+        event.data);
+  }
+  const Outcome outcome = play(events);
+  ASSERT_EQ(outcome.results.size(), 40U);
+  // Scans 20 to 34 say 0.5 to 1.9 s again.
+  for (std::size_t i = 20; i < 35; ++i) {
+    EXPECT_EQ(outcome.results[i].status, ScanStatus::kTooFewPoints) << i;
+    EXPECT_EQ(outcome.results[i].counters.at("scans_refused"), static_cast<double>(i) - 19.0);
+    EXPECT_EQ(outcome.results[i].estimate.world_from_body.matrix(),
+              outcome.results[19].estimate.world_from_body.matrix());
+  }
+  // From 2 s on, stamps are news again, and those of the IMU are still there.
+  EXPECT_EQ(outcome.results.back().counters.at("scans_refused"), 15.0);
+  EXPECT_GT(outcome.results.back().counters.at("imu_refused"), 0.0);
+}
+
 }  // namespace
 }  // namespace lidarena::fast_lio2
