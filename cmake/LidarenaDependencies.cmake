@@ -49,19 +49,21 @@ endif()
 # The small server of `lidarena view`; without it the view is written to a file.
 pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
 
+if(LIDARENA_EMBREE_MAJOR)
+  set(LIDARENA_RAY_CASTER "Embree ${LIDARENA_EMBREE_MAJOR}")
+else()
+  set(LIDARENA_RAY_CASTER "our own tree, slower than Embree")
+endif()
+
 function(lidarena_print_summary)
   message(STATUS "lidarena ${PROJECT_VERSION}: ${CMAKE_BUILD_TYPE}, ${CMAKE_CXX_COMPILER_ID} "
                  "${CMAKE_CXX_COMPILER_VERSION}")
-  if(LIDARENA_EMBREE_MAJOR)
-    set(ray_caster "Embree ${LIDARENA_EMBREE_MAJOR}")
-  else()
-    set(ray_caster "our own tree, slower than Embree")
-  endif()
-  message(STATUS "  ray casting    ${ray_caster} (LIDARENA_WITH_EMBREE; needs Embree 3 or 4)")
+  message(STATUS "  ray casting    ${LIDARENA_RAY_CASTER} (LIDARENA_WITH_EMBREE; needs Embree 3 or 4)")
   message(STATUS "  SDF worlds     ${LIDARENA_HAVE_SDF} (LIDARENA_WITH_SDF; needs sdformat 12)")
   message(STATUS "  viewer         ${LIDARENA_HAVE_VIEWER} (LIDARENA_WITH_VIEWER; needs Node.js 18 and npm ci "
                  "--prefix viewer)")
   message(STATUS "  view server    ${httplib_FOUND} (needs cpp-httplib)")
+  message(STATUS "  Python module  ${LIDARENA_HAVE_PYTHON} (LIDARENA_WITH_PYTHON; needs pybind11 and NumPy)")
   message(STATUS "  tests          ${LIDARENA_BUILD_TESTS} (LIDARENA_BUILD_TESTS)")
   message(STATUS "  benchmarks     ${LIDARENA_BUILD_BENCHMARKS} (LIDARENA_BUILD_BENCHMARKS)")
   message(STATUS "  sanitizers     ${LIDARENA_SANITIZE} (LIDARENA_SANITIZE)")

@@ -22,6 +22,11 @@ install(FILES ${CMAKE_CURRENT_BINARY_DIR}/lidarena-config.cmake
 
 install(TARGETS lidarena RUNTIME COMPONENT program)
 install(DIRECTORY configs DESTINATION ${CMAKE_INSTALL_DATADIR}/lidarena COMPONENT program)
+set(about ${CMAKE_BINARY_DIR}/apps/lidarena/about)
+install(DIRECTORY ${about}/schemas DESTINATION ${CMAKE_INSTALL_DATADIR}/lidarena COMPONENT program)
+install(FILES ${about}/lidarena.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT program)
+install(FILES ${about}/lidarena DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
+        COMPONENT program)
 install(FILES packaging/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program)
 install(FILES README.md CHANGELOG.md CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR}
         COMPONENT program)
@@ -60,11 +65,13 @@ endif()
 list(JOIN needed ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 if(TARGET lidarena_python)
   list(APPEND CPACK_COMPONENTS_ALL python)
+  string(REGEX MATCH "^([0-9]+)\\.([0-9]+)" this_python ${LIDARENA_HAVE_PYTHON})
+  math(EXPR next_minor "${CMAKE_MATCH_2} + 1")
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-lidarena)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS
-      "python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}), python3 (<< ${Python_VERSION_MAJOR}.${lidarena_next_python}), python3-numpy, lidarena (= ${PROJECT_VERSION})")
+      "python3 (>= ${this_python}), python3 (<< ${CMAKE_MATCH_1}.${next_minor}), python3-numpy, lidarena (= ${PROJECT_VERSION})")
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "The Python module: worlds, flights, scans, odometries and scores as Python objects and NumPy views.")
 endif()
 include(CPack)

@@ -12,7 +12,8 @@ packages=(g++ cmake ninja-build pkg-config ca-certificates
           dpkg-dev file)
 # Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off. Without
 # libbz2 old bags with bz2 chunks are not read; without nanoflann its rows are missing from benchmarks.
-optional=(libsdformat-dev libbz2-dev libnanoflann-dev)
+# The Python module needs pybind11 and NumPy.
+optional=(libsdformat-dev libbz2-dev libnanoflann-dev python3-dev pybind11-dev python3-numpy)
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
@@ -23,6 +24,8 @@ command -v node >/dev/null || missing+=(nodejs)
 command -v npm >/dev/null || missing+=(npm)
 if [ "${1:-run}" = test ]; then
   command -v python3 >/dev/null || missing+=(python3)
+  # tests of the Python module and of the schemas, and the documentation's site
+  optional+=(python3-pytest python3-jsonschema python3-yaml mkdocs)
   # ROS 1's own reader of bags; without it the test that needs it is reported as skipped
   optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
 fi

@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <exception>
 
+#include "apps/lidarena/shell_help.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
 
@@ -32,6 +33,14 @@ void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {
 
+/// What tells two builds of one version apart.
+std::string version_text() { return "lidarena " LIDARENA_VERSION "\n" LIDARENA_BUILD_FACTS; }
+
+void add_text(CLI::App& app, const std::string& name, const std::string& what,
+              std::string (*make)(const CLI::App&)) {
+  app.add_subcommand(name, what)->callback([&app, make] { fmt::print("{}", make(app)); });
+}
+
 int parse_and_do(int argc, char** argv) {
   CLI::App app{
       "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
@@ -44,7 +53,7 @@ int parse_and_do(int argc, char** argv) {
       "or in one command, with a page of results at the end:\n"
       "  lidarena study quick --out my_study\n",
       "lidarena"};
-  app.set_version_flag("--version", "lidarena " LIDARENA_VERSION);
+  app.set_version_flag("--version", version_text());
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   Common common;
@@ -58,6 +67,10 @@ int parse_and_do(int argc, char** argv) {
   add_report(app, common, exit_code);
   add_convert(app, common, exit_code);
   add_view(app, common, exit_code);
+  add_schema(app, common, exit_code);
+  add_text(app, "completion", "Completion for bash: source <(lidarena completion)",
+           bash_completion);
+  add_text(app, "man", "The manual page: lidarena man | man -l -", man_page);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -36,6 +36,7 @@ void add_evaluate(CLI::App& app, Common& common, int& exit_code);
 void add_study(CLI::App& app, Common& common, int& exit_code);
 void add_convert(CLI::App& app, Common& common, int& exit_code);
 void add_view(CLI::App& app, Common& common, int& exit_code);
+void add_schema(CLI::App& app, Common& common, int& exit_code);
 void add_report(CLI::App& app, Common& common, int& exit_code);
 
 /// One JSON document on standard output.

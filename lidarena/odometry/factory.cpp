@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/factory.hpp"
 
+#include "lidarena/base/config_schema.hpp"
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
@@ -102,30 +103,49 @@ MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, cons
           to_json(config)};
 }
 
+template <class Maker>
+Json schema(const AlgorithmInfo& info) {
+  return schema_document(info.name + ": " + info.summary, typename Maker::Config{});
+}
+
+template <class Maker>
+Json schema_with_loop(const AlgorithmInfo& info) {
+  return schema_document(info.name + ": " + info.summary, LoopedConfig<typename Maker::Config>{});
+}
+
 struct Algorithm {
   AlgorithmInfo info;
   MadeOdometry (*make)(const OdometryRequest&, const Rig&, const LidarInfo&, const Parallel&);
+  Json (*schema)(const AlgorithmInfo&);
 };
 
 std::vector<Algorithm> algorithms() {
   return {
       {{"kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo et al. 2023)",
         kiss_icp::preset_names(), false},
-       make<Kiss>},
+       make<Kiss>,
+       schema<Kiss>},
       {{"ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach et al. 2022)",
         ct_icp::preset_names(), false},
-       make<Ct>},
+       make<Ct>,
+       schema<Ct>},
       {{"fast_lio2", "LiDAR and IMU: iterated Kalman filter on points and planes (Xu et al. 2022)",
         fast_lio2::preset_names(), true},
-       make<FastLio>},
+       make<FastLio>,
+       schema<FastLio>},
       {{"lio_sam", "LiDAR and IMU: edges and planes, smoothed in a factor graph (Shan et al. 2020)",
         lio_sam::preset_names(), true},
-       make<LioSam>},
-      {{"lio_sam_lc", "LIO-SAM with loop closure", lio_sam::preset_names(), true}, make<LioSamLc>},
+       make<LioSam>,
+       schema<LioSam>},
+      {{"lio_sam_lc", "LIO-SAM with loop closure", lio_sam::preset_names(), true},
+       make<LioSamLc>,
+       schema<LioSamLc>},
       {{"kiss_icp+loop", "KISS-ICP with loop closure around it", kiss_icp::preset_names(), false},
-       make_with_loop<Kiss>},
+       make_with_loop<Kiss>,
+       schema_with_loop<Kiss>},
       {{"fast_lio2+loop", "FAST-LIO2 with loop closure around it", fast_lio2::preset_names(), true},
-       make_with_loop<FastLio>},
+       make_with_loop<FastLio>,
+       schema_with_loop<FastLio>},
   };
 }
 
@@ -151,6 +171,13 @@ std::vector<AlgorithmInfo> list_algorithms() {
   std::vector<AlgorithmInfo> infos;
   for (const Algorithm& algorithm : algorithms()) infos.push_back(algorithm.info);
   return infos;
+}
+
+Json algorithm_schema(const std::string& name) {
+  for (const Algorithm& algorithm : algorithms()) {
+    if (algorithm.info.name == name) return algorithm.schema(algorithm.info);
+  }
+  throw InputError("algorithm", "there is no '" + name + "'");
 }
 
 MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,

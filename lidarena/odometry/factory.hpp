@@ -30,6 +30,10 @@ struct AlgorithmInfo {
 /// The explicit table of algorithms.
 std::vector<AlgorithmInfo> list_algorithms();
 
+/// JSON Schema of the configuration file of the algorithm `name`. Throws InputError when there is
+/// none.
+Json algorithm_schema(const std::string& name);
+
 struct MadeOdometry {
   std::unique_ptr<Odometry> odometry;
   Json config;  ///< the configuration in full, for the manifest

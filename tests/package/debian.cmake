@@ -21,8 +21,18 @@ foreach(package IN ITEMS ${program} ${development})
   run(dpkg-deb --extract ${package} ${WORK}/unpacked)
 endforeach()
 run(${WORK}/unpacked/usr/bin/lidarena info house)
-foreach(file IN ITEMS share/doc/lidarena/copyright include/lidarena/world/world.hpp)
+foreach(file IN ITEMS share/doc/lidarena/copyright include/lidarena/world/world.hpp
+                      share/man/man1/lidarena.1 share/lidarena/schemas/sensor.schema.json
+                      share/bash-completion/completions/lidarena)
   if(NOT EXISTS ${WORK}/unpacked/usr/${file})
     message(FATAL_ERROR "the packages lack ${file}")
   endif()
 endforeach()
+
+# the Python module, where it was built, with the configurations of the program's package
+file(GLOB python ${WORK}/packages/python3-lidarena_*.deb)
+if(python)
+  run(dpkg-deb --extract ${python} ${WORK}/unpacked)
+  run(${CMAKE_COMMAND} -E env PYTHONPATH=${WORK}/unpacked/usr/lib/python3/dist-packages
+      ${PYTHON} -B -c "import lidarena; print(lidarena.load_sensor('livox_mid360').name)")
+endif()

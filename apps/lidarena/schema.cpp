@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <functional>
+#include <map>
+
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/base/config_schema.hpp"
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/flight/flight_config.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/study/study_spec.hpp"
+#include "lidarena/world/world_config.hpp"
+
+namespace lidarena {
+namespace {
+
+/// Every kind of YAML that we read, and each algorithm's.
+std::map<std::string, std::function<Json()>> schemas() {
+  std::map<std::string, std::function<Json()>> all{
+      {"world", [] { return schema_document<WorldConfig>("A world of Lidarena"); }},
+      {"flight", [] { return schema_document<FlightConfig>("A flight of Lidarena"); }},
+      {"sensor", [] { return schema_document<SensorConfig>("A sensor of Lidarena"); }},
+      {"beams", [] { return schema_document<SpinningHead>("The beams of a spinning head"); }},
+      {"study", [] { return schema_document<StudySpec>("A study of Lidarena"); }}};
+  for (const AlgorithmInfo& info : list_algorithms()) {
+    all[info.name] = [name = info.name] { return algorithm_schema(name); };
+  }
+  return all;
+}
+
+Json schema_of(const std::string& kind) {
+  const auto all = schemas();
+  const auto found = all.find(kind);
+  if (found != all.end()) return found->second();
+  std::string known;
+  for (const auto& [name, make] : all) known += (known.empty() ? "" : ", ") + name;
+  throw InputError(kind, "is no kind of file", "known: " + known);
+}
+
+int write_all(const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const auto& [name, make] : schemas()) write_json(folder / (name + ".schema.json"), make());
+  return kDone;
+}
+
+}  // namespace
+
+void add_schema(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand(
+      "schema", "JSON Schema of a kind of YAML, for editors: keys, units, defaults, limits");
+  auto kind = std::make_shared<std::string>();
+  auto out = std::make_shared<std::string>();
+  verb->add_option("kind", *kind, "world, flight, sensor, beams, study, or an algorithm");
+  verb->add_option("--out", *out, "A folder for all of them, as KIND.schema.json");
+  set_verb(
+      *verb, common,
+      [kind, out] {
+        if (kind->empty() == out->empty()) {
+          throw InputError("schema", "needs either a kind or --out FOLDER for all of them");
+        }
+        if (!out->empty()) return write_all(*out);
+        print_json(schema_of(*kind));
+        return kDone;
+      },
+      exit_code);
+}
+
+}  // namespace lidarena

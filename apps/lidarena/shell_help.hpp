@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+namespace lidarena {
+
+/// The program's manual page (troff, section 1), from its own verbs and options.
+std::string man_page(const CLI::App& app);
+
+/// Completion for bash (and for zsh after `bashcompinit`), likewise: verbs, options, the words that
+/// an option allows, and the names of worlds, flights, sensors, algorithms and studies.
+std::string bash_completion(const CLI::App& app);
+
+}  // namespace lidarena

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "lidarena/base/config_json.hpp"
+
+/// Configuration structs as JSON Schema (draft 2020-12), from the same list of fields that reads
+/// them: what an editor needs to complete keys and to mark what read_config() would refuse.
+namespace lidarena {
+
+template <class T>
+Json schema_of_value(const T& value, const Limits& limits);
+
+/// The schema of one struct's map: its keys with units, meanings, defaults and limits; no others.
+template <ConfigStruct C>
+Json schema_of(const C& config = {}) {
+  Json properties = Json::object();
+  C::visit(config, [&](std::string_view name, const auto& member, std::string_view unit,
+                       std::string_view doc, Limits limits = {}) {
+    Json field = schema_of_value(member, limits);
+    std::string text(doc);
+    if (!unit.empty()) text += (text.empty() ? "[" : " [") + std::string(unit) + "]";
+    if (!text.empty()) field["description"] = text;
+    field["default"] = value_to_json(member);
+    properties[std::string(name)] = std::move(field);
+  });
+  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+}
+
+namespace schema {
+
+template <class T>
+struct IsOptional : std::false_type {};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type {};
+template <class T>
+struct IsVector : std::false_type {};
+template <class T>
+struct IsVector<std::vector<T>> : std::true_type {};
+
+inline Json number(const char* type, const Limits& limits) {
+  Json json{{"type", type}};
+  if (std::isfinite(limits.low))
+    json[limits.low_open ? "exclusiveMinimum" : "minimum"] = limits.low;
+  if (std::isfinite(limits.high)) json["maximum"] = limits.high;
+  return json;
+}
+
+inline Json numbers(std::size_t count, const Limits& limits) {
+  return {{"type", "array"},
+          {"items", number("number", limits)},
+          {"minItems", count},
+          {"maxItems", count}};
+}
+
+}  // namespace schema
+
+/// `value` only says the type (and a struct's defaults).
+template <class T>
+Json schema_of_value(const T& value, const Limits& limits) {
+  if constexpr (std::is_enum_v<T>) {
+    Json names = Json::array();
+    for (const auto& [name, candidate] : EnumNames<T>::names) names.push_back(name);
+    return {{"enum", names}};
+  } else if constexpr (schema::IsOptional<T>::value) {
+    return {{"anyOf", {schema_of_value(typename T::value_type{}, limits), {{"type", "null"}}}}};
+  } else if constexpr (schema::IsVector<T>::value) {
+    return {{"type", "array"}, {"items", schema_of_value(typename T::value_type{}, limits)}};
+  } else if constexpr (ConfigStruct<T>) {
+    return schema_of(value);
+  } else if constexpr (std::is_same_v<T, bool>) {
+    return {{"type", "boolean"}};
+  } else if constexpr (std::is_integral_v<T>) {
+    Limits whole = limits;
+    if (std::is_unsigned_v<T> && !(whole.low >= 0.0)) whole.low = 0.0;
+    return schema::number("integer", whole);
+  } else if constexpr (std::is_floating_point_v<T>) {
+    return schema::number("number", limits);
+  } else if constexpr (std::is_same_v<T, Eigen::Vector3d>) {
+    return schema::numbers(3, limits);
+  } else if constexpr (std::is_same_v<T, Pose>) {
+    return schema::numbers(7, {});
+  } else {
+    static_assert(std::is_convertible_v<T, std::string>);
+    return {{"type", "string"}};
+  }
+}
+
+/// As a document of its own.
+template <ConfigStruct C>
+Json schema_document(const std::string& title, const C& config = {}) {
+  Json document{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
+  document.update(schema_of(config));
+  return document;
+}
+
+}  // namespace lidarena

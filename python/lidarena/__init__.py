@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""Lidarena: LiDAR simulation, SLAM and scoring in mesh worlds.
+
+    import lidarena
+
+    world = lidarena.load_world("house")
+    flight = lidarena.make_flight("house", world)
+    sensor = lidarena.load_sensor("livox_mid360")
+    events = lidarena.simulate(world, flight, [sensor], seconds=5)
+    odometry = lidarena.make_odometry(lidarena.make_rig([sensor]), "kiss_icp")
+    result = lidarena.run(odometry, events)
+    print(lidarena.evaluate(result.trajectory, flight.sample(result.trajectory.stamps)))
+
+Times are integer nanoseconds, lengths metres, angles radians, poses 4x4 matrices named
+a_from_b. Arrays are views without copies where the documentation says "a view"; they are read-only
+and keep their owner alive. Long calls release the GIL. What is wrong with an input is an
+InputError (a ValueError) that names place and remedy; messages go to logging.getLogger("lidarena").
+"""
+import os as _os
+import pathlib as _pathlib
+
+import numpy as _numpy
+
+from . import _core
+from ._core import (  # noqa: F401
+    POINT, ConfigFolder, Dataset, DatasetWriter, Error, EventSource, Flight, ImuInfo, ImuSample,
+    InputError, Lidar, LidarInfo, Motion, Odometry, OdometryTraits, Rig, RunResult, Scan,
+    ScanResult, Sensor, Trajectory, World, __version__, evaluate, list_algorithms, load_truth,
+    make_odometry, make_rig, map_error, open_dataset, read_cloud, read_trajectory, replay, run,
+    run_algorithm, score_run, simulate, write_cloud)
+
+
+def _find_configs():
+    """$LIDARENA_CONFIGS, else configs/ in this package, else share/lidarena/configs above it."""
+    here = _pathlib.Path(__file__).parent
+    candidates = [here / "configs", *(up / "share/lidarena/configs" for up in here.parents)]
+    if "LIDARENA_CONFIGS" in _os.environ:
+        candidates.insert(0, _pathlib.Path(_os.environ["LIDARENA_CONFIGS"]))
+    for folder in candidates:
+        if (folder / "worlds").is_dir():
+            return ConfigFolder(folder)
+    raise InputError("lidarena: no folder configs/ beside the package; set LIDARENA_CONFIGS")
+
+
+#: Named worlds, flights, sensors, odometry, studies; assign another ConfigFolder to change it.
+configs = _find_configs()
+
+
+def matrix(pose):
+    """The 4x4 matrix of a pose as files write it: x y z qx qy qz qw."""
+    x, y, z, qx, qy, qz, qw = pose
+    skew = _numpy.array([[0, -qz, qy], [qz, 0, -qx], [-qy, qx, 0]])
+    out = _numpy.eye(4)
+    out[:3, :3] += (2 * qw * skew + 2 * skew @ skew) / (qx * qx + qy * qy + qz * qz + qw * qw)
+    out[:3, 3] = x, y, z
+    return out
+
+
+def load_world(name_or_file, seed=None):
+    """A world of configs/worlds by its name, or any mesh, SDF or YAML file."""
+    return _core.load_world_file(configs.resolve("worlds", str(name_or_file)), seed)
+
+
+def make_flight(name_or_file, world):
+    """A flight of configs/flights by its name, a YAML file, or a TUM trajectory to replay."""
+    return _core.make_flight_file(configs.resolve("flights", str(name_or_file)), world)
+
+
+def load_sensor(name_or_file):
+    """A sensor of configs/sensors by its name, or a YAML file."""
+    return _core.load_sensor_file(configs.resolve("sensors", str(name_or_file)))
+
+
+def simulate_dataset(world, flight, sensors, out, **options):
+    """Flies and writes a dataset folder, as `lidarena simulate` does; names or files.
+
+    Options: seed, seconds, noise, mode, truth, data, format, dialect, threads.
+    """
+    return _core.simulate_dataset_files(
+        configs.resolve("worlds", str(world)), configs.resolve("flights", str(flight)),
+        [configs.resolve("sensors", str(s)) for s in sensors], out, **options)

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/base/error.hpp"
+#include "lidarena/evaluation/evaluate_run.hpp"
+#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/metrics_json.hpp"
+#include "lidarena/study/config_folder.hpp"
+#include "lidarena/study/run_algorithm.hpp"
+#include "python/src/bindings.hpp"
+#include "python/src/simulated_world.hpp"
+
+namespace lidarena::python {
+namespace {
+
+namespace fs = std::filesystem;
+
+py::object evaluate(const Trajectory& estimate, const Trajectory& truth,
+                    const std::optional<Array3f>& map, const SimulatedWorld* world, int threads) {
+  if (map.has_value() != (world != nullptr)) throw InputError("map, world", "need each other");
+  RunFiles run;
+  run.trajectory = run.live = estimate;
+  if (map) {
+    const auto rows = rows_of(*map, "map");
+    run.map.points.assign(rows.begin(), rows.end());
+  }
+  Json metrics;
+  {
+    const py::gil_scoped_release released;
+    PythonLog log;
+    metrics = evaluate_run(run, truth, world == nullptr ? nullptr : &world->world,
+                           Parallel(threads), log);
+  }
+  return to_python(metrics);
+}
+
+py::tuple map_error_of(const Array3f& map, const SimulatedWorld& world,
+                       const std::optional<Eigen::Matrix4d>& mesh_from_map, int threads) {
+  const auto rows = rows_of(map, "map");
+  const Pose pose = mesh_from_map ? pose_of(*mesh_from_map) : Pose::Identity();
+  std::vector<float> distances;
+  MapError error;
+  {
+    const py::gil_scoped_release released;
+    error = map_error(rows, pose, world.world, Parallel(threads), &distances);
+  }
+  const auto [kept, owner] = keep(std::move(distances));
+  return py::make_tuple(to_python(to_json(error)), view_rows(*kept, py::dtype::of<float>(), owner));
+}
+
+py::object run_algorithm_on(const std::string& algorithm, const fs::path& dataset,
+                            const fs::path& out, const std::string& preset,
+                            const std::string& sensor, const std::string& config_file,
+                            const std::vector<std::string>& overrides, int threads) {
+  RunRequest request;
+  request.odometry = {algorithm, preset, config_file, overrides};
+  request.dataset = dataset;
+  request.read.sensor = sensor;
+  Json summary;
+  {
+    const py::gil_scoped_release released;
+    PythonLog log;
+    summary = to_json(run_algorithm(request, out, Parallel(threads), log));
+  }
+  return to_python(summary);
+}
+
+}  // namespace
+
+void bind_evaluation(py::module_& m) {
+  py::class_<ConfigFolder>(m, "ConfigFolder", "Named worlds, flights, sensors, studies.")
+      .def(py::init<fs::path>(), py::arg("root"))
+      .def_property_readonly("root", [](const ConfigFolder& c) { return c.root(); })
+      .def("names", &ConfigFolder::names, py::arg("kind"))
+      .def("resolve", &ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
+  m.def("evaluate", &evaluate, py::arg("estimate"), py::arg("truth"), py::arg("map") = py::none(),
+        py::arg("world") = nullptr, py::arg("threads") = 0,
+        "All metrics of anyone's trajectory, and of its map against a world, as metrics.json.");
+  m.def("map_error", &map_error_of, py::arg("map"), py::arg("world"),
+        py::arg("mesh_from_map") = py::none(), py::arg("threads") = 0,
+        "(figures, distance of each point to the mesh in m, float32, NaN where there is none).");
+  m.def("run_algorithm", &run_algorithm_on, py::arg("algorithm"), py::arg("dataset"),
+        py::arg("out"), py::arg("preset") = "improved", py::arg("sensor") = "",
+        py::arg("config_file") = "", py::arg("overrides") = std::vector<std::string>{},
+        py::arg("threads") = 0, "Runs one algorithm over a dataset and writes a RUN folder.");
+  m.def(
+      "score_run",
+      [](const fs::path& run, int threads) {
+        Json metrics;
+        {
+          const py::gil_scoped_release released;
+          PythonLog log;
+          metrics = score_run(run, Parallel(threads), log);
+        }
+        return to_python(metrics);
+      },
+      py::arg("run"), py::arg("threads") = 0, "Scores a RUN folder against its dataset's truth.");
+}
+
+}  // namespace lidarena::python

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include "lidarena/world/world.hpp"
+#include "lidarena/world/world_model.hpp"
+
+namespace lidarena::python {
+
+/// A world with the routes that its maker knows (the model's mesh is moved into `world`).
+struct SimulatedWorld {
+  explicit SimulatedWorld(WorldModel m)
+      : model(std::move(m)), world(std::move(model.mesh), model.name) {}
+  WorldModel model;
+  World world;
+};
+
+}  // namespace lidarena::python

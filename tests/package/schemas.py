@@ -1,0 +1,66 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Every shipped YAML keeps to its schema, and what the program refuses the schema refuses too.
+
+usage: schemas.py PROGRAM CONFIGS; exits 77 (skipped) without PyYAML and jsonschema.
+"""
+import copy
+import functools
+import json
+import pathlib
+import subprocess
+import sys
+
+try:
+    import jsonschema
+    import yaml
+except ImportError as missing:
+    print(f"skipped: {missing} (python3-yaml, python3-jsonschema)")
+    sys.exit(77)
+
+PROGRAM, CONFIGS = sys.argv[1], pathlib.Path(sys.argv[2])
+
+
+@functools.lru_cache
+def schema(kind):
+    out = subprocess.run([PROGRAM, "schema", kind], check=True, capture_output=True, text=True)
+    document = json.loads(out.stdout)
+    jsonschema.Draft202012Validator.check_schema(document)
+    return jsonschema.Draft202012Validator(document)
+
+
+def kind_of(file):
+    folder = file.parent.name
+    if folder == "odometry":
+        return "ct_icp" if file.stem.startswith("ct_icp") else "kiss_icp"
+    return {"worlds": "world", "flights": "flight", "sensors": "sensor", "studies": "study",
+            "beams": "beams"}[folder]
+
+
+def refused(kind, document, why):
+    assert not schema(kind).is_valid(document), f"{kind}: {why} is not refused"
+
+
+checked = 0
+for file in sorted(CONFIGS.rglob("*.yaml")):
+    document = yaml.safe_load(file.read_text()) or {}
+    for error in schema(kind_of(file)).iter_errors(document):
+        sys.exit(f"{file}: {error.json_path}: {error.message}")
+    wrong = copy.deepcopy(document)
+    wrong["no_such_key"] = 1
+    refused(kind_of(file), wrong, "an unknown key")
+    checked += 1
+assert checked > 25, checked
+
+refused("sensor", {"max_range_m": "far"}, "text for a number")
+refused("sensor", {"mode": "rollin"}, "a word that is none of the allowed")
+refused("sensor", {"rate_hz": 0}, "a value out of range")
+refused("sensor", {"imu": {"rate_hz": -5}}, "a value of a group out of range")
+refused("study", {"seeds": [1, -2]}, "a list's element out of range")
+refused("flight", {"waypoints": [[1, 2]]}, "a point of two numbers")
+
+algorithms = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], check=True,
+                                       capture_output=True, text=True).stdout)
+for algorithm in algorithms:
+    assert schema(algorithm["name"]).schema["properties"], algorithm
+print(f"{checked} files keep to their schemas")
