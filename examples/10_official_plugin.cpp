@@ -2,7 +2,7 @@
 // Figure 3 of Vultaggio et al. 2023 made anew: a Livox Mid-360 on the axis of a cylinder, as the
 // official Gazebo plugin shows it (every range too short by the minimum range, so the wall bulges)
 // and as it is. Prints the radius found in bands of elevation, beside the closed form R - m
-// cos(phi), and draws both clouds in section. usage: example_01_official_plugin [FILE.svg]
+// cos(phi), and draws both clouds in section. usage: example_10_official_plugin [FILE.svg]
 #include <fmt/format.h>
 
 #include <array>

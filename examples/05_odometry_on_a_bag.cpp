@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Run an odometry on your bag. usage: example_05_odometry_on_a_bag [BAG_OR_MCAP [ALGORITHM]]
+// Without a bag (or with a folder), one is made first: 3 s of the House, as a ROS 1 bag.
+#include <cstdio>
+#include <filesystem>
+
+#include "lidarena/dataset/tum.hpp"
+#include "lidarena/flight/make_flight.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/odometry/run.hpp"
+#include "lidarena/sensor/simulate.hpp"
+#include "lidarena/study/config_folder.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/load_world.hpp"
+
+namespace {
+
+using namespace lidarena;
+
+void record(const std::filesystem::path& bag) {
+  LogSink silent;
+  const ConfigFolder configs = ConfigFolder::find(".");
+  WorldModel model = load_world(configs.resolve("worlds", "house"), {}, silent);
+  const World world(std::move(model.mesh), model.name);
+  const auto flight = make_flight(configs.resolve("flights", "house"), model, world, silent);
+  const std::vector sensors{load_sensor(configs.resolve("sensors", "livox_mid360"))};
+  SimulationOptions options;
+  options.duration = std::chrono::seconds(3);
+  const auto events = simulate(world, *flight, sensors, options, Parallel());
+  DatasetWriter writer(bag, make_rig(sensors));
+  while (const auto event = events->next()) writer.write(*event);
+  writer.close();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::filesystem::path bag = argc > 1 ? argv[1] : "out";
+  if (!bag.has_extension()) {
+    std::filesystem::create_directories(bag);
+    bag /= "my.bag";
+    record(bag);
+  }
+  Dataset dataset = open_dataset(bag);
+  for (const std::string& note : dataset.notes) std::printf("note: %s\n", note.c_str());
+  OdometryRequest request;
+  request.algorithm = argc > 2 ? argv[2] : "kiss_icp";
+  const MadeOdometry made = make_odometry(request, dataset.rig, "", Parallel());
+  LogSink silent;
+  const RunResult result = run(*made.odometry, *dataset.events, {}, silent);
+  std::printf("%s: %zu scans, %.2f m, %.1f times real time, a map of %zu points\n",
+              request.algorithm.c_str(), result.summary.scans,
+              result.files.trajectory.path_length(),
+              result.summary.sensor_seconds / result.summary.compute_seconds,
+              result.files.map.points.size());
+  write_tum(bag.replace_extension(".tum"), result.files.trajectory, "world_from_body");
+  return result.summary.scans > 0 && !result.summary.diverged ? 0 : 1;
+}

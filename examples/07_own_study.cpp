@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// A study of your own: two sensors and one algorithm in your own room, every cell in a process of
+// its own; called again, it goes on with what is missing. `lidarena report FOLDER` makes its page.
+// usage: example_07_own_study [FOLDER]
+#include <cstdio>
+#include <fstream>
+
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/study/study.hpp"
+#include "lidarena/world/export_world.hpp"
+#include "lidarena/world/primitives.hpp"
+
+int main(int argc, char** argv) {
+  using namespace lidarena;
+  const std::filesystem::path folder = argc > 1 ? argv[1] : "out/own_study";
+  std::filesystem::create_directories(folder);
+  save_world(folder / "room.ply", box_shape({8.0, 6.0, 3.0}));
+  std::ofstream(folder / "path.yaml") << "kind: waypoints\n"
+                                         "waypoints: [[-2, -1, 0], [0, 1, 0.2], [2, 0, 0]]\n";
+  StudySpec spec;  // or load_config<StudySpec>("my_study.yaml"); the keys are the same
+  spec.title = "Which sensor suits KISS-ICP here?";
+  spec.scenes = {{(folder / "room.ply").string(), (folder / "path.yaml").string(), 3.0}};
+  spec.sensors = {"livox_mid360", "velodyne_vlp16"};
+  spec.algorithms = {"kiss_icp"};
+
+  LogSink silent;
+  const ConfigFolder configs = ConfigFolder::find(".");
+  const StudyOutcome outcome = run_study(spec, configs, folder, {}, silent);
+  for (const PlannedRun& cell : plan(spec, configs)) {
+    const Json metrics = read_json(folder / "runs" / cell.name / "metrics.json");
+    const Json& error = metrics.at("live").at("rpe").at("1s").at("translation");
+    std::printf("%-16s %.2f cm in a second\n", cell.sensor.c_str(),
+                100.0 * error.at("rmse_m").get<double>());
+  }
+  return outcome.runs == 2 && outcome.failed == 0 ? 0 : 1;
+}

@@ -1,0 +1,44 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Score anyone's trajectory and map. usage: 06_evaluate.py [ESTIMATE TRUTH [MAP MESH]]
+
+Trajectories are TUM, KITTI or EuRoC files; the map is PLY or PCD in the estimate's frame. Without
+files, an estimate with a drift of 1 % and its map are made up, so that the figures are known.
+"""
+import sys
+
+import numpy as np
+
+import lidarena
+
+
+def made_up():
+    world = lidarena.load_world("house")
+    flight = lidarena.make_flight("house", world)
+    truth = flight.sample(np.arange(0, flight.duration, 50_000_000))
+    drifted = truth.poses.copy()
+    drifted[:, :3, 3] = truth.positions[0] + 1.01 * (truth.positions - truth.positions[0])
+    corners = np.asarray(world.vertices, np.float32)
+    return lidarena.Trajectory(truth.stamps, drifted), truth, corners, world
+
+
+if len(sys.argv) > 2:
+    estimate, truth = map(lidarena.read_trajectory, sys.argv[1:3])
+    cloud = lidarena.read_cloud(sys.argv[3]) if len(sys.argv) > 4 else None
+    world = lidarena.load_world(sys.argv[4]) if len(sys.argv) > 4 else None
+else:
+    estimate, truth, cloud, world = made_up()
+
+metrics = lidarena.evaluate(estimate, truth)
+for warning in metrics["warnings"]:
+    print("warning:", warning)
+one_metre = metrics["live"]["rpe"]["1m"]["translation"]
+print(f"relative error over 1 m: {100 * one_metre['rmse_m']:.2f} cm RMSE "
+      f"over {one_metre['count']} pieces")
+if cloud is not None:
+    figures, distances = lidarena.map_error(cloud, world)
+    print(f"map: {len(distances)} points, {100 * np.nanmean(distances):.2f} cm from the mesh on "
+          f"average, {figures['outliers_percent']:.1f} % beyond 20 cm")
+if len(sys.argv) < 3:
+    assert 0.002 < one_metre["rmse_m"] < 0.011  # 1 % of at most a metre of chord
+    assert np.nanmax(distances) < 1e-5  # the mesh's own corners
