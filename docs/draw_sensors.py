@@ -1,0 +1,51 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Draws what each sensor looks at, as docs/images/sensor_NAME.png. usage: draw_sensors.py
+
+Azimuth 180 to -180 deg from left to right, elevation 90 to -90 deg from top to bottom, half a degree
+a pixel; above after 0.1 s, below after 1 s; the darker, the more shots.
+"""
+import pathlib
+import struct
+import zlib
+
+import numpy as np
+
+import lidarena
+
+STEP = 0.5  # deg a pixel
+
+
+def panel(lidar, seconds):
+    """Shots in each pixel, as grey values."""
+    scans = max(1, round(seconds * 1e9 / lidar.period))
+    counts = np.zeros((int(180 / STEP), int(360 / STEP)))
+    for index in range(scans):
+        x, y, z = lidar.beams(index)["direction"].astype(float).T
+        column = np.clip((180 - np.degrees(np.arctan2(y, x))) / STEP, 0, counts.shape[1] - 1)
+        row = np.clip((90 - np.degrees(np.arcsin(np.clip(z, -1, 1)))) / STEP, 0, counts.shape[0] - 1)
+        np.add.at(counts, (row.astype(int), column.astype(int)), 1)
+    seen = np.where(counts > 0, 0.25 + 0.75 * np.minimum(1, counts / 8), 0)
+    grey = (255 * (1 - seen)).astype(np.uint8)
+    grey[[0, -1], :], grey[:, [0, -1]] = 160, 160
+    return grey
+
+
+def write_png(file, grey):
+    def chunk(kind, data):
+        return (struct.pack(">I", len(data)) + kind + data +
+                struct.pack(">I", zlib.crc32(kind + data)))
+    rows = b"".join(b"\0" + row.tobytes() for row in grey)
+    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, 0, 0, 0, 0)
+    file.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
+                     chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
+
+
+images = pathlib.Path(__file__).parent / "images"
+for name in lidarena.configs.names("sensors"):
+    if name.endswith(("_paper", "_full")) or "1024x20" in name or "512" in name:
+        continue  # these look where their plain namesakes do
+    lidar = lidarena.Lidar(lidarena.load_sensor(name))
+    picture = np.vstack([panel(lidar, 0.1), panel(lidar, 1.0)])
+    write_png(images / f"sensor_{name}.png", picture)
+    print(name)
