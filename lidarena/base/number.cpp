@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/base/number.hpp"
 
+#include <locale.h>
+#include <stdlib.h>
+
 #include <charconv>
-#include <locale>
-#include <sstream>
 #include <string>
 
 namespace lidarena {
@@ -14,10 +15,13 @@ std::optional<double> parse_number(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
 #else  // GCC 10 reads no floating point numbers there
-  if (text.empty() || text.front() == '+' || text.front() == ' ') return std::nullopt;
-  std::istringstream in{std::string(text)};
-  in.imbue(std::locale::classic());
-  if (!(in >> value) || in.peek() != std::istringstream::traits_type::eof()) return std::nullopt;
+  static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
+  const std::string copy(text);
+  if (copy.empty() || copy.find_first_of(" \t\n+xX") == 0) return std::nullopt;
+  if (copy.find_first_of("xX") != std::string::npos) return std::nullopt;
+  char* end = nullptr;
+  value = strtod_l(copy.c_str(), &end, plain);
+  if (end != copy.c_str() + copy.size()) return std::nullopt;
 #endif
   return value;
 }

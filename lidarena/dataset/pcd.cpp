@@ -58,10 +58,11 @@ const HeaderLine& require(const HeaderLines& lines, std::string_view key, const 
 }
 
 ScalarType type_of(std::string_view kind, std::string_view size, const std::string& place) {
-  using enum ScalarType;
+  using S = ScalarType;
   constexpr std::pair<std::string_view, ScalarType> kTypes[] = {
-      {"I1", kInt8},   {"U1", kUint8}, {"I2", kInt16},  {"U2", kUint16},  {"I4", kInt32},
-      {"U4", kUint32}, {"I8", kInt64}, {"U8", kUint64}, {"F4", kFloat32}, {"F8", kFloat64}};
+      {"I1", S::kInt8},    {"U1", S::kUint8},  {"I2", S::kInt16}, {"U2", S::kUint16},
+      {"I4", S::kInt32},   {"U4", S::kUint32}, {"I8", S::kInt64}, {"U8", S::kUint64},
+      {"F4", S::kFloat32}, {"F8", S::kFloat64}};
   const std::string wanted = std::string(kind) + std::string(size);
   for (const auto& [name, type] : kTypes) {
     if (name == wanted) return type;

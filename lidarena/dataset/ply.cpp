@@ -33,12 +33,14 @@ struct Header {
 };
 
 std::optional<ScalarType> type_named(std::string_view name) {
-  using enum ScalarType;
+  using S = ScalarType;
   constexpr std::pair<std::string_view, ScalarType> kNames[] = {
-      {"char", kInt8},     {"int8", kInt8},       {"uchar", kUint8},    {"uint8", kUint8},
-      {"short", kInt16},   {"int16", kInt16},     {"ushort", kUint16},  {"uint16", kUint16},
-      {"int", kInt32},     {"int32", kInt32},     {"uint", kUint32},    {"uint32", kUint32},
-      {"float", kFloat32}, {"float32", kFloat32}, {"double", kFloat64}, {"float64", kFloat64}};
+      {"char", S::kInt8},      {"int8", S::kInt8},       {"uchar", S::kUint8},
+      {"uint8", S::kUint8},    {"short", S::kInt16},     {"int16", S::kInt16},
+      {"ushort", S::kUint16},  {"uint16", S::kUint16},   {"int", S::kInt32},
+      {"int32", S::kInt32},    {"uint", S::kUint32},     {"uint32", S::kUint32},
+      {"float", S::kFloat32},  {"float32", S::kFloat32}, {"double", S::kFloat64},
+      {"float64", S::kFloat64}};
   for (const auto& [known, type] : kNames) {
     if (known == name) return type;
   }

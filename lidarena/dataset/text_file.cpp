@@ -12,6 +12,7 @@
 #include <system_error>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/base/number.hpp"
 
 namespace lidarena {
 namespace {
@@ -145,10 +146,7 @@ std::vector<std::string_view> split_commas(std::string_view row) {
 
 std::optional<double> parse_double(std::string_view word) {
   if (word.size() > 1 && word.front() == '+' && word[1] != '-') word.remove_prefix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
-  if (error != std::errc{} || end != word.data() + word.size()) return std::nullopt;
-  return value;
+  return parse_number(word);
 }
 
 double finite_number(std::string_view word, const std::string& place) {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/base/number.hpp"
 
 namespace lidarena {
 namespace {
@@ -40,12 +41,9 @@ StampedPose tum_row(const std::string& line, const std::string& place) {
   if (!in || in >> rest) throw InputError(place, "is not a row 't x y z qx qy qz qw'");
   std::optional<Time> time = exact_seconds(stamp);
   if (!time) {  // with an exponent
-    double seconds = 0.0;
-    const auto end = stamp.data() + stamp.size();
-    const auto [ptr, error] = std::from_chars(stamp.data(), end, seconds);
-    if (error != std::errc{} || ptr != end)
-      throw InputError(place, "has no time in its first column");
-    time = from_seconds(seconds);
+    const auto seconds = parse_number(stamp);
+    if (!seconds) throw InputError(place, "has no time in its first column");
+    time = from_seconds(*seconds);
   }
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
   if (!(std::abs(q.norm() - 1.0) < 1e-2)) {

@@ -205,5 +205,7 @@ SensorConfig load_sensor(const std::filesystem::path& file);
 /// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) when the
 /// model has no such mode.
 std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor);
+/// The same; `place` stands in messages.
+std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std::string& place);
 
 }  // namespace lidarena

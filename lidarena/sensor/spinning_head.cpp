@@ -60,19 +60,6 @@ Beam turned(const HeadBeam& row, double head) {
 
 }  // namespace
 
-SpinningHead load_spinning_head(const std::filesystem::path& file) {
-  const ConfigNode node = ConfigNode::load(file);
-  SpinningHead table;
-  read_config(node, table);
-  if (table.beams.empty()) {
-    throw InputError(file.string(), "has no beams", "list them under beams:, one a ring");
-  }
-  for (const ConfigNode& beam : node.find("beams")->items()) {
-    if (!beam.find("elevation_deg")) throw InputError(beam.where(), "has no elevation_deg");
-  }
-  return table;
-}
-
 SpinningHeadPattern::SpinningHeadPattern(const SpinningHead& table, int columns, double rate_hz,
                                          const std::string& name)
     : period_(from_seconds(1.0 / rate_hz)) {

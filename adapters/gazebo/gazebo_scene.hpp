@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <gazebo/physics/PhysicsTypes.hh>
+#include <ignition/math/Pose3.hh>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "adapters/gazebo/plugin_config.hpp"
+#include "lidarena/world/moving_world.hpp"
+
+namespace lidarena::gazebo_plugin {
+
+Pose to_pose(const ignition::math::Pose3d& pose);
+
+/// The shapes of a Gazebo world as a MovingWorld, without a rendering engine: planes, boxes,
+/// spheres, cylinders, and meshes with their scale, sub-mesh and centring. Others (heightmaps,
+/// polylines) are named on Gazebo's console and left out. To be used within the world's update.
+class GazeboScene {
+ public:
+  /// `carrier`: the link that carries the sensor, which does not see it.
+  GazeboScene(::gazebo::physics::WorldPtr world, Geometry geometry,
+              const ::gazebo::physics::Link* carrier);
+
+  /// The world of now when models came or went, or a static one was moved; else nullptr.
+  std::shared_ptr<MovingWorld> rebuilt_if_changed();
+  /// Of the shapes that move, as MovingWorld::move() takes them.
+  std::vector<Pose> poses() const;
+
+ private:
+  struct Standing {
+    const ::gazebo::physics::Model* model;
+    ignition::math::Pose3d pose;  ///< as it was built in
+    bool is_static;
+  };
+  struct Moving {
+    ::gazebo::physics::LinkPtr link;
+    Pose link_from_shape;
+  };
+
+  bool has_changed() const;
+  void add_model(const ::gazebo::physics::ModelPtr& model);
+  void add_collisions(const ::gazebo::physics::LinkPtr& link, bool is_static);
+  void add_visuals(const ::gazebo::physics::LinkPtr& link, bool is_static);
+  void add(const ::gazebo::physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
+           ShapePtr shape, const std::string& name);
+  ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centred,
+                const Eigen::Vector3d& scale);
+
+  ::gazebo::physics::WorldPtr world_;
+  Geometry geometry_;
+  const ::gazebo::physics::Link* carrier_;
+  std::vector<Standing> models_;
+  std::vector<PlacedShape> shapes_;  ///< while building
+  std::vector<Moving> moving_;
+  std::map<std::string, ShapePtr> meshes_;  ///< by file, part and scale
+};
+
+}  // namespace lidarena::gazebo_plugin

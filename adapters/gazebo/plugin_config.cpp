@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "adapters/gazebo/plugin_config.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena::gazebo_plugin {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The folder of sensors: of the environment, or that of the build.
+fs::path sensor_folder() {
+  const char* folder = std::getenv("LIDARENA_SENSORS");
+  return folder != nullptr ? folder : LIDARENA_SENSOR_FOLDER;
+}
+
+SensorConfig named_sensor(const std::string& name, const std::string& place) {
+  if (fs::is_regular_file(name)) return load_sensor(name);
+  const fs::path file = sensor_folder() / (name + ".yaml");
+  if (fs::is_regular_file(file)) return load_sensor(file);
+  throw InputError(place, "there is no sensor '" + name + "' in " + sensor_folder().string(),
+                   "name one of that folder or a file, or set LIDARENA_SENSORS");
+}
+
+/// The sensor whose pattern a table of the maker holds, by the table's name.
+std::string sensor_of_table(const std::string& file) {
+  std::string name = fs::path(file).filename().string();
+  std::transform(name.begin(), name.end(), name.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  constexpr std::array kNames{std::pair{"mid360", "livox_mid360"},
+                              std::pair{"mid40", "livox_mid40"}, std::pair{"mid70", "livox_mid70"},
+                              std::pair{"avia", "livox_avia"}};
+  for (const auto& [part, sensor] : kNames) {
+    if (name.find(part) != std::string::npos) return sensor;
+  }
+  return {};
+}
+
+SensorConfig table_sensor(const PluginConfig& config, const SensorElement& element,
+                          const std::string& place) {
+  const std::string known = sensor_of_table(config.csv_file_name);
+  if (!fs::is_regular_file(config.csv_file_name)) {
+    if (!known.empty()) return named_sensor(known, place);
+    throw InputError(place, "there is no file " + config.csv_file_name,
+                     "give the table's full path, or <sensor> the name of a sensor");
+  }
+  SensorConfig sensor;
+  sensor.name = fs::path(config.csv_file_name).stem().string();
+  sensor.model = LidarModel::kLivoxCsv;
+  sensor.pattern_file = config.csv_file_name;
+  sensor.lines = 4;
+  sensor.rate_hz = element.update_rate > 0.0 ? element.update_rate : sensor.rate_hz;
+  sensor.row_rate_hz = sensor.rate_hz * (config.samples > 0 ? config.samples : 20'000);
+  return sensor;
+}
+
+}  // namespace
+
+SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
+                       const std::string& place) {
+  SensorConfig sensor = config.csv_file_name.empty() ? named_sensor(config.sensor, place)
+                                                     : table_sensor(config, element, place);
+  if (!config.csv_file_name.empty()) {  // the file describes the sensor only here
+    if (element.min_range > 0.0) sensor.min_range_m = element.min_range;
+    if (element.max_range > 0.0) sensor.max_range_m = element.max_range;
+  }
+  std::istringstream assignments(config.set);
+  for (std::string assignment; assignments >> assignment;) set_field(sensor, assignment);
+  if (!config.id.empty()) sensor.name = config.id;
+  if (!config.imu) sensor.imu.reset();
+  sensor.body_from_lidar = element.body_from_sensor;
+  make_pattern(sensor, place);  // the model must have this mode
+  return sensor;
+}
+
+}  // namespace lidarena::gazebo_plugin

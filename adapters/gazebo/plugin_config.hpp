@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+
+namespace lidarena::gazebo_plugin {
+
+/// Which shapes of the world rays are cast at.
+enum class Geometry { kCollision, kVisual };
+
+}  // namespace lidarena::gazebo_plugin
+
+namespace lidarena {
+template <>
+struct EnumNames<gazebo_plugin::Geometry> {
+  static constexpr std::array names{std::pair{"collision", gazebo_plugin::Geometry::kCollision},
+                                    std::pair{"visual", gazebo_plugin::Geometry::kVisual}};
+};
+}  // namespace lidarena
+
+namespace lidarena::gazebo_plugin {
+
+/// The elements inside <plugin>, by their names.
+struct PluginConfig {
+  std::string sensor = "livox_mid360";
+  std::string set;
+  std::string id;
+  std::uint64_t seed = 1;
+  bool noise = true;
+  bool imu = true;
+  Geometry geometry = Geometry::kVisual;
+  int threads = 0;
+  std::string record;
+  double record_seconds = 0.0;
+  bool stop = false;
+  Dialect dialect = Dialect::kSi;
+  bool ros = true;
+  bool gazebo = false;
+  std::string topic;
+  std::string imu_topic;
+  std::string frame;
+  std::string csv_file_name;
+  int samples = 0;
+  int downsample = 1;
+  std::string ros_topic;
+  int publish_pointcloud_type = -1;
+  bool visualize = false;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("sensor", self.sensor, "", "name of a file of configs/sensors, or a path of one");
+    v("set", self.set, "", "key=value pairs of the sensor, spaces between");
+    v("id", self.id, "", "name in topics, recordings and noise; that of `sensor` if empty");
+    v("seed", self.seed, "", "of the noise");
+    v("noise", self.noise, "", "off: exact ranges, perfect IMU");
+    v("imu", self.imu, "", "the IMU inside the sensor, if it has one");
+    v("geometry", self.geometry, "", "shapes that are seen");
+    v("threads", self.threads, "", "0: cast within the world's update; 1: on a thread beside it",
+      between(0, 1));
+    v("record", self.record, "", "folder of a dataset, or a file .bag or .mcap");
+    v("record_seconds", self.record_seconds, "s", "simulated time to record, 0 = till the end",
+      at_least(0));
+    v("stop", self.stop, "", "ends the simulator when the recording is done");
+    v("dialect", self.dialect, "", "si, or the layouts of the sensor's driver");
+    v("ros", self.ros, "", "publish through ROS 1, if the plugin was built with it");
+    v("gazebo", self.gazebo, "", "publish through ignition transport");
+    v("topic", self.topic, "", "of the points; /ID/points if empty");
+    v("imu_topic", self.imu_topic, "", "/ID/imu if empty");
+    v("frame", self.frame, "", "frame_id of the points; ID_lidar if empty");
+    // What the Livox plugins for Gazebo are given, so that their models need another file name
+    // only.
+    v("csv_file_name", self.csv_file_name, "", "Livox's table; its own patterns need no file");
+    v("samples", self.samples, "", "rays a scan, with csv_file_name", at_least(0));
+    v("downsample", self.downsample, "", "1 alone: every row is fired", between(1, 1));
+    v("ros_topic", self.ros_topic, "", "the same as topic");
+    v("publish_pointcloud_type", self.publish_pointcloud_type, "",
+      "0 to 2: a PointCloud2; 3: Livox's CustomMsg", between(-1, 3));
+    v("visualize", self.visualize, "", "accepted, and ignored");
+  }
+};
+
+/// What the surrounding <sensor> and its <ray> say; 0 where they say nothing.
+struct SensorElement {
+  double update_rate = 0.0;
+  double min_range = 0.0, max_range = 0.0;
+  Pose body_from_sensor = Pose::Identity();
+};
+
+/// The sensor that the plugin is to be. Throws InputError (place: the plugin's name) when the
+/// configuration names something that is not there.
+SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
+                       const std::string& place);
+
+}  // namespace lidarena::gazebo_plugin

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "adapters/gazebo/output.hpp"
+#include "lidarena/dataset/dataset.hpp"
+
+namespace lidarena::gazebo_plugin {
+namespace {
+
+class Recorder final : public Output {
+ public:
+  Recorder(const PluginConfig& config, const Rig& rig)
+      : writer_(config.record, rig, {DatasetFormat::kMcap, config.dialect, false}) {}
+  void write(const Event& event) override { writer_.write(event); }
+  void write_truth(const StampedPose& pose) override { writer_.write_truth(pose); }
+  void finish() override { writer_.finish({{"kind", "dataset"}, {"source", "gazebo"}}); }
+
+ private:
+  DatasetWriter writer_;
+};
+
+}  // namespace
+
+std::unique_ptr<Output> make_recorder(const PluginConfig& config, const Rig& rig) {
+  return std::make_unique<Recorder>(config, rig);
+}
+
+std::string points_topic(const PluginConfig& config, const Rig& rig) {
+  if (!config.topic.empty()) return config.topic;
+  return config.ros_topic.empty() ? "/" + rig.lidars.front().id + "/points" : config.ros_topic;
+}
+
+std::string imu_topic(const PluginConfig& config, const Rig& rig) {
+  return config.imu_topic.empty() ? "/" + rig.lidars.front().id + "/imu" : config.imu_topic;
+}
+
+}  // namespace lidarena::gazebo_plugin

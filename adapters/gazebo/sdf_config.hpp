@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <algorithm>
+#include <sdf/sdf.hh>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+
+namespace lidarena::gazebo_plugin {
+
+/// The elements inside a <plugin>, read as a configuration file would be, with its errors: a
+/// misspelt element is named, with the nearest one there is. Elements of other elements (<ray>,
+/// <noise>) are left out.
+template <class Config>
+Config read_sdf_config(const sdf::ElementPtr& plugin, const std::string& place) {
+  std::vector<std::string> truths;  // which SDF makes 0 and 1
+  Config config;
+  Config::visit(config, [&](const char* name, auto& field, auto&&...) {
+    if (std::is_same_v<decltype(field), bool&>) truths.emplace_back(name);
+  });
+  std::string yaml;
+  for (auto element = plugin->GetFirstElement(); element; element = element->GetNextElement("")) {
+    if (element->GetFirstElement() || !element->GetValue()) continue;
+    std::string value = element->GetValue()->GetAsString();
+    if (std::find(truths.begin(), truths.end(), element->GetName()) != truths.end()) {
+      if (value == "1") value = "true";
+      if (value == "0") value = "false";
+    }
+    for (std::size_t at = 0; (at = value.find('\'', at)) != std::string::npos; at += 2) {
+      value.insert(at, 1, '\'');
+    }
+    yaml += element->GetName() + ": '" + value + "'\n";
+  }
+  if (!yaml.empty()) read_config(ConfigNode::parse(yaml, place), config);
+  return config;
+}
+
+}  // namespace lidarena::gazebo_plugin
