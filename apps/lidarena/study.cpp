@@ -77,7 +77,7 @@ int study_verb(const Common& common, const StudyRequest& request) {
   Console console(common.quiet);
   const std::string& out = request.out;
   const StudyOutcome outcome = run_study(spec, configs, out, options, console);
-  const ReportFiles report = write_report(out, console);
+  const ReportFiles report = write_report({out}, out, console);
   if (common.json) {
     print_json({{"study", out},
                 {"runs", outcome.runs},
@@ -91,6 +91,27 @@ int study_verb(const Common& common, const StudyRequest& request) {
                report.page.string());
   }
   return outcome.failed + outcome.diverged > 0 ? kWorkFailed : kDone;
+}
+
+struct ReportRequest {
+  std::vector<std::filesystem::path> folders;
+  std::string out;
+};
+
+int report_verb(const Common& common, const ReportRequest& request) {
+  if (request.out.empty() && request.folders.size() > 1) {
+    throw InputError("report", "where is the report of several folders to go?", "give --out DIR");
+  }
+  Console console(common.quiet);
+  const std::filesystem::path out =
+      request.out.empty() ? request.folders.front() : std::filesystem::path(request.out);
+  const ReportFiles report = write_report(request.folders, out, console);
+  if (common.json) {
+    print_json({{"report", report.page.string()}});
+  } else {
+    fmt::print("{}\nreport: {}\n", report.text_table, report.page.string());
+  }
+  return kDone;
 }
 
 }  // namespace
@@ -118,22 +139,15 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
 }
 
 void add_report(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand("report", "Make the page anew from a study's result files");
-  auto folder = std::make_shared<std::string>();
-  verb->add_option("folder", *folder, "A study's folder, or one RUN folder")->required();
+  auto* verb = app.add_subcommand("report", "Make the page anew from the result files of studies");
+  auto request = std::make_shared<ReportRequest>();
+  verb->add_option(
+          "folders", request->folders,
+          "A study's folder or one RUN folder; several, as from --shard, become one report")
+      ->required();
+  verb->add_option("--out", request->out, "Folder of the report; default: the only folder given");
   set_verb(
-      *verb, common,
-      [&common, folder] {
-        Console console(common.quiet);
-        const ReportFiles report = write_report(*folder, console);
-        if (common.json) {
-          print_json({{"report", report.page.string()}});
-        } else {
-          fmt::print("{}\nreport: {}\n", report.text_table, report.page.string());
-        }
-        return kDone;
-      },
-      exit_code);
+      *verb, common, [&common, request] { return report_verb(common, *request); }, exit_code);
 }
 
 }  // namespace lidarena

@@ -76,7 +76,8 @@ void write_run(const fs::path& folder, const RunFiles& run) {
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot be created: " + error.message());
   // what an earlier run left must not vouch for this one while it is being written
-  for (const char* stale : {"manifest.json", "metrics.json"}) fs::remove(folder / stale, error);
+  for (const char* stale : {"manifest.json", "metrics.json", "resources.json"})
+    fs::remove(folder / stale, error);
   write_tum(folder / "trajectory.tum", run.trajectory, std::string(kFinalHeader));
   write_tum(folder / "live.tum", run.live, std::string(kLiveHeader));
   write_ply(folder / "map.ply", run.map);

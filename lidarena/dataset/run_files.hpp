@@ -29,7 +29,7 @@ struct RunFiles {
   Trajectory trajectory;  ///< after finish()
   Trajectory live;        ///< as known at each scan
   Cloud map;              ///< what the program publishes
-  Cloud reprojected;      ///< all returns with the continuous estimate, first point a 2 cm voxel
+  Cloud reprojected;      ///< scored returns with the continuous estimate, first of a 2 cm voxel
   std::vector<ResourceRow> resources;
   Json manifest;
 };

@@ -16,9 +16,20 @@
 namespace lidarena {
 namespace {
 
+/// More points than these tell no more of a map and take as much longer: evenly left out.
+constexpr std::size_t kMostPoints = 8'000'000;
+
+std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map) {
+  const std::size_t stride = std::max<std::size_t>(1, (map.size() + kMostPoints - 1) / kMostPoints);
+  std::vector<Eigen::Vector3f> sample;
+  sample.reserve(map.size() / stride + 1);
+  for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
+  return sample;
+}
+
 /// A map and what is made of it once for all gauges.
 struct Subject {
-  std::span<const Eigen::Vector3f> map;
+  std::vector<Eigen::Vector3f> map;
   const World& world;
   const Parallel& parallel;
   const SeenSurface* seen;
@@ -28,12 +39,12 @@ struct Subject {
 
   Subject(std::span<const Eigen::Vector3f> points, const World& mesh, const Parallel& workers,
           const SeenSurface* surface, const IdentifiedMap* with_hits)
-      : map(points),
+      : map(sample_of(points)),
         world(mesh),
         parallel(workers),
         seen(surface),
         identified(with_hits),
-        order(morton_order(points, workers)) {
+        order(morton_order(map, workers)) {
     if (seen != nullptr) grid.emplace(completeness_grid(points, workers));
   }
 };

@@ -26,10 +26,10 @@ struct ReturnOrigin {
   std::uint32_t point = 0;  ///< index into the scan
 };
 
-/// A map made alike for every algorithm: all returns, each moved with the pose at its own instant
-/// (linear position, slerp, never across a gap longer than max_bracket()), of which the first in
-/// each voxel stays. Never averaged: centroids hide noise. World frame of the estimate. `origins`,
-/// if given, receives one entry a point of the map.
+/// A map made alike for every algorithm: all returns given, each moved with the pose at its own
+/// instant (linear position, slerp, never across a gap longer than max_bracket()), of which the
+/// first in each voxel stays. Never averaged: centroids hide noise. World frame of the estimate.
+/// `origins`, if given, receives one entry a point of the map.
 Cloud reproject(EventSource& events, const std::string& lidar_id, const Pose& body_from_lidar,
                 const Trajectory& estimate, double voxel_m = 0.02,
                 ReprojectionCounts* counts = nullptr, std::vector<ReturnOrigin>* origins = nullptr);

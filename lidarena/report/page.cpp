@@ -12,6 +12,7 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/tum.hpp"
 #include "lidarena/report/claims.hpp"
+#include "lidarena/report/decision.hpp"
 #include "lidarena/report/gauge.hpp"
 #include "lidarena/report/image.hpp"
 #include "lidarena/report/paper_tables.hpp"
@@ -62,7 +63,7 @@ std::vector<const ResultRow*> shown_rows(const Results& results, const std::stri
   std::set<std::string> seen;
   for (const ResultRow& row : results.rows) {
     if (row.world != world || row.status != "ok") continue;
-    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + row.preset).second) {
+    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + reading_of(row)).second) {
       rows.push_back(&row);
     }
   }
@@ -89,7 +90,7 @@ std::string top_view(const ResultRow& row) {
   Cloud map;
   if (fs::exists(row.folder / "scored.ply")) map = read_cloud(row.folder / "scored.ply");
   TopView view;
-  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, row.preset);
+  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, reading_of(row));
   view.map = &map;
   view.truth = truth ? &*truth : nullptr;
   view.estimate = aligned_positions(row, estimate);
@@ -196,7 +197,7 @@ ReportSection summary_section(const Results& results) {
   const auto ok = std::count_if(results.rows.begin(), results.rows.end(),
                                 [](const ResultRow& r) { return r.status == "ok"; });
   std::string text = fmt::format("{} of {} runs went well.", ok, results.rows.size());
-  for (const std::string& preset : presets_of(results)) {
+  for (const std::string& preset : readings_of(results)) {
     std::size_t holds = 0;
     std::size_t fails = 0;
     for (const Claim& claim : paper_claims(results, preset)) {
@@ -218,13 +219,13 @@ ReportSection summary_section(const Results& results) {
 }  // namespace
 
 std::vector<ReportSection> report_sections(const Results& results) {
-  std::vector<ReportSection> sections{summary_section(results)};
+  std::vector<ReportSection> sections{summary_section(results), decision_section(results)};
   ReportSection claims{"claims", "The paper's findings, judged by these runs", "", "", {}};
-  for (const std::string& preset : presets_of(results)) {
+  for (const std::string& preset : readings_of(results)) {
     claims.tables.push_back(claims_table(paper_claims(results, preset), preset));
   }
   sections.push_back(std::move(claims));
-  for (const std::string& preset : presets_of(results)) {
+  for (const std::string& preset : readings_of(results)) {
     sections.push_back({"paper-" + preset, "The paper's tables from our runs, " + preset, "", "",
                         paper_tables(results, preset)});
   }

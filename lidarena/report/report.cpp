@@ -29,9 +29,13 @@ void write_tables(const std::vector<ReportSection>& sections, const std::filesys
 
 }  // namespace
 
-ReportFiles write_report(const std::filesystem::path& folder, LogSink& log) {
-  const Results results = read_results(folder);
+ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
+                         const std::filesystem::path& folder, LogSink& log) {
+  std::vector<Results> parts;
+  for (const std::filesystem::path& part : folders) parts.push_back(read_results(part));
+  const Results results = merged(std::move(parts));
   log.info("drawing the report");
+  std::filesystem::create_directories(folder);
   ReportFiles files;
   files.page = folder / "report.html";
   files.csv = folder / "results.csv";

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/log.hpp"
 
@@ -14,8 +15,11 @@ struct ReportFiles {
   std::string text_table;      ///< the main figures, for a terminal
 };
 
-/// Makes the page and the table from result files alone: a study's folder (study.json, runs/), or
-/// one RUN folder. Throws InputError when the folder holds no results.
-ReportFiles write_report(const std::filesystem::path& folder, LogSink& log);
+/// Makes the page and the tables from result files alone, into the folder `out`. Each of `folders`
+/// is a study's (study.json, runs/), or a part of one made elsewhere, or one RUN folder; several
+/// become one report. Runs may have lost their clouds: their pictures are left out. Throws
+/// InputError when a folder holds no results.
+ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
+                         const std::filesystem::path& out, LogSink& log);
 
 }  // namespace lidarena

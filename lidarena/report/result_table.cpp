@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numbers>
 
 #include "lidarena/dataset/json_file.hpp"
@@ -129,6 +130,10 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 
 }  // namespace
 
+std::string reading_of(const ResultRow& row) {
+  return row.mode.empty() ? row.preset : row.preset + "-" + row.mode;
+}
+
 double own_memory_mb(const ResourceRow& row) {
   return static_cast<double>(row.map_bytes + row.scan_buffer_bytes + row.backlog_bytes) / 1e6;
 }
@@ -148,6 +153,7 @@ Results read_results(const fs::path& folder) {
       row.algorithm = run.at("algorithm").get<std::string>();
       row.preset = run.at("preset").get<std::string>();
       row.seed = run.at("seed").get<std::uint64_t>();
+      if (run.contains("mode") && run.at("mode").is_string()) row.mode = run.at("mode");
       read_row(row);
       results.rows.push_back(std::move(row));
     }
@@ -166,9 +172,26 @@ Results read_results(const fs::path& folder) {
   return results;
 }
 
+Results merged(std::vector<Results> parts) {
+  Results all;
+  std::map<std::string, std::size_t> places;
+  for (Results& part : parts) {
+    if (all.title.empty()) all.title = part.title;
+    for (ResultRow& row : part.rows) {
+      const auto [place, is_new] = places.emplace(row.name, all.rows.size());
+      if (is_new) {
+        all.rows.push_back(std::move(row));
+      } else if (all.rows[place->second].metrics.is_null() && !row.metrics.is_null()) {
+        all.rows[place->second] = std::move(row);
+      }
+    }
+  }
+  return all;
+}
+
 std::string results_csv(const Results& results) {
   std::string csv =
-      "run,world,flight,sensor,algorithm,preset,seed,status,reason,rpe_cm_per_m,rpe_deg_per_m,"
+      "run,world,flight,sensor,algorithm,preset,mode,seed,status,reason,rpe_cm_per_m,rpe_deg_per_m,"
       "ate_se3_cm,coverage_percent,own_map_points,own_map_rmse_cm,own_map_rmse_inliers_cm,"
       "own_map_outliers_percent,reprojected_points,reprojected_rmse_cm,"
       "reprojected_rmse_inliers_cm,reprojected_outliers_percent,real_time_factor,latency_p95_ms,"
@@ -180,14 +203,14 @@ std::string results_csv(const Results& results) {
                        cell(figure(map, &MapFigures::outliers_percent), "{:.6g}"));
   };
   for (const ResultRow& r : results.rows) {
-    csv += fmt::format("{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.name),
-                       quoted(r.world), quoted(r.flight), quoted(r.sensor), quoted(r.algorithm),
-                       quoted(r.preset), r.seed, quoted(r.status), quoted(r.reason),
-                       cell(r.rpe_cm_per_m, "{:.5f}"), cell(r.rpe_deg_per_m, "{:.5f}"),
-                       cell(r.ate_cm, "{:.4f}"), cell(r.coverage_percent, "{:.3f}"),
-                       map_cells(r.own_map), map_cells(r.reprojected_map),
-                       cell(r.real_time_factor, "{:.2f}"), cell(r.latency_p95_ms, "{:.2f}"),
-                       cell(r.own_memory_mb, "{:.2f}"), cell(r.process_memory_mb, "{:.1f}"));
+    csv += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.name),
+        quoted(r.world), quoted(r.flight), quoted(r.sensor), quoted(r.algorithm), quoted(r.preset),
+        r.mode, r.seed, quoted(r.status), quoted(r.reason), cell(r.rpe_cm_per_m, "{:.5f}"),
+        cell(r.rpe_deg_per_m, "{:.5f}"), cell(r.ate_cm, "{:.4f}"),
+        cell(r.coverage_percent, "{:.3f}"), map_cells(r.own_map), map_cells(r.reprojected_map),
+        cell(r.real_time_factor, "{:.2f}"), cell(r.latency_p95_ms, "{:.2f}"),
+        cell(r.own_memory_mb, "{:.2f}"), cell(r.process_memory_mb, "{:.1f}"));
   }
   return csv;
 }
@@ -201,8 +224,8 @@ std::string results_text(const Results& results) {
       return v ? cell(v, format) : std::string("-");
     };
     text += fmt::format("{:<14}{:<22}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n", r.world,
-                        r.sensor, r.algorithm + ":" + r.preset, shown(r.rpe_cm_per_m, "{:.2f}"),
-                        shown(r.ate_cm, "{:.2f}"),
+                        r.sensor, r.algorithm + ":" + reading_of(r),
+                        shown(r.rpe_cm_per_m, "{:.2f}"), shown(r.ate_cm, "{:.2f}"),
                         shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),
                         shown(figure(r.reprojected_map, &MapFigures::outliers_percent), "{:.3g}"),
                         shown(r.real_time_factor, "{:.1f}"), shown(r.own_memory_mb, "{:.1f}"),

@@ -24,6 +24,7 @@ struct ResultRow {
   std::string name;  ///< folder of the run
   std::filesystem::path folder;
   std::string world, flight, sensor, algorithm, preset;
+  std::string mode;  ///< timing mode of the sensors where the study sets one: "rolling", ...
   std::uint64_t seed = 0;
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;
@@ -36,6 +37,9 @@ struct ResultRow {
   Json simulation;  ///< how its dataset was flown, null if not by us
 };
 
+/// What a run is compared within: its preset, and its timing mode where the study sets one.
+std::string reading_of(const ResultRow& row);
+
 struct Results {
   std::string title;
   std::vector<ResultRow> rows;
@@ -47,6 +51,9 @@ double own_memory_mb(const ResourceRow& row);
 /// Reads a study's folder (study.json names the runs; one that left nothing is a row all the same)
 /// or one RUN folder. Throws InputError when it is neither.
 Results read_results(const std::filesystem::path& folder);
+/// The parts of one study, or several studies, as one: of runs of the same name the first that was
+/// scored counts.
+Results merged(std::vector<Results> parts);
 
 /// One row a run, units in the column names, empty cells for figures that do not exist.
 std::string results_csv(const Results& results);

@@ -30,9 +30,9 @@ std::optional<double> map_rmse_of(const ResultRow& row) {
   return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
 }
 
-StudyCells::StudyCells(const Results& results, std::string preset) {
+StudyCells::StudyCells(const Results& results, const std::string& reading) {
   for (const ResultRow& row : results.rows) {
-    if (preset.empty() || row.preset == preset) rows_.push_back(&row);
+    if (reading.empty() || reading_of(row) == reading) rows_.push_back(&row);
   }
 }
 
@@ -79,13 +79,15 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
   return text;
 }
 
-std::vector<std::string> presets_of(const Results& results) {
-  std::vector<const ResultRow*> rows;
-  for (const ResultRow& row : results.rows) rows.push_back(&row);
-  std::vector<std::string> presets = distinct(rows, &ResultRow::preset);
-  std::stable_partition(presets.begin(), presets.end(),
-                        [](const std::string& preset) { return preset == "original"; });
-  return presets;
+std::vector<std::string> readings_of(const Results& results) {
+  std::vector<std::string> readings;
+  for (const ResultRow& row : results.rows) {
+    const std::string reading = reading_of(row);
+    if (std::ranges::find(readings, reading) == readings.end()) readings.push_back(reading);
+  }
+  std::ranges::stable_partition(
+      readings, [](const std::string& reading) { return reading.starts_with("original"); });
+  return readings;
 }
 
 std::string paper_world(const std::string& world) {

@@ -20,8 +20,8 @@ std::optional<double> map_rmse_of(const ResultRow& row);  ///< cm, of the publis
 /// runs that have them; how many have not, status_text() says.
 class StudyCells {
  public:
-  /// `preset` empty = all. `results` must outlive this.
-  StudyCells(const Results& results, std::string preset);
+  /// Of one reading (see reading_of()); empty = all. `results` must outlive this.
+  StudyCells(const Results& results, const std::string& reading);
 
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;
@@ -38,9 +38,9 @@ class StudyCells {
   std::vector<const ResultRow*> rows_;
 };
 
-/// Presets in the order of their first use, `original` first: it is the one to compare with the
-/// paper.
-std::vector<std::string> presets_of(const Results& results);
+/// Readings in the order of their first use, of the preset `original` first: it is the one to
+/// compare with the paper.
+std::vector<std::string> readings_of(const Results& results);
 
 /// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm
 /// ("Fast LIO2"); empty where the paper has none. Worlds and sensors are told by how their names

@@ -13,7 +13,7 @@ std::string least(const Results& results, const std::string& world, const std::s
                   const RowFigure& of) {
   std::optional<double> best;
   std::string text;
-  for (const std::string& preset : presets_of(results)) {
+  for (const std::string& preset : readings_of(results)) {
     const StudyCells cells(results, preset);
     for (const std::string& algorithm : cells.algorithms()) {
       const auto value = cells.median(world, sensor, algorithm, of);
@@ -46,6 +46,7 @@ std::string simulate_command(const ResultRow& row) {
   }
   if (made.contains("seed")) command += fmt::format(" --seed {}", made.at("seed").dump());
   if (made.contains("seconds")) command += fmt::format(" --seconds {}", made.at("seconds").dump());
+  if (!row.mode.empty()) command += " --mode " + row.mode;
   if (!made.value("noise", true)) command += " --noise off";
   return command + " --no-data --out data";
 }
@@ -83,7 +84,7 @@ ReportTable runs_table(const Results& results, const std::string& world) {
   for (const ResultRow& row : results.rows) {
     if (row.world != world) continue;
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, row.preset, row.seed))};
+        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, reading_of(row), row.seed))};
     if (row.status != "ok") cells.push_back(word(row.status + ": " + row.reason));
     for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
                               map_value(row.own_map, &MapFigures::rmse_cm),

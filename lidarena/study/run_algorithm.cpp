@@ -39,7 +39,7 @@ std::string relative_path(const fs::path& dataset, const fs::path& run) {
 
 Cloud reprojected_map(const RunRequest& request, const std::string& lidar_id,
                       const Trajectory& trajectory, const Parallel& parallel) {
-  Dataset again = open_any_dataset(request.dataset, request.read, parallel);
+  Dataset again = open_scored_returns(request.dataset, request.read, parallel);
   const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
   return reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
 }
@@ -81,16 +81,16 @@ std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar
   try {
     ReadOptions read;
     read.sensor = lidar_id;
-    Dataset again = open_any_dataset(path, read, parallel);
+    Dataset again = open_scored_returns(path, read, parallel);
     const LidarInfo* found = again.rig.find_lidar(lidar_id);
     if (found == nullptr) throw InputError(path.string(), "has no LiDAR named " + lidar_id);
     const LidarInfo lidar = *found;
-    const auto hits = open_scan_truth(path, lidar.id);
+    const auto hits = open_scored_truth(path, lidar.id, parallel);
     if (!hits) {
       return RayTruth{
           observe(*again.events, lidar.id, lidar.body_from_lidar, truth, world, parallel), {}};
     }
-    const auto hits_again = open_scan_truth(path, lidar.id);
+    const auto hits_again = open_scored_truth(path, lidar.id, parallel);
     return RayTruth{observe(*hits, world, parallel),
                     identified_map(std::move(again), lidar, estimate, *hits_again)};
   } catch (const InputError& error) {
@@ -166,7 +166,10 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
     const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);
     write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
   }
-  write_json(folder / "metrics.json", metrics);
+  Json accuracy = metrics;
+  accuracy.erase("resources");  // time and memory differ from run to run: a file of their own
+  write_json(folder / "resources.json", metrics.at("resources"));
+  write_json(folder / "metrics.json", accuracy);
   return metrics;
 }
 

@@ -29,8 +29,9 @@ RunSummary run_algorithm(const RunRequest& request, const std::filesystem::path&
                          const Parallel& parallel, LogSink& log);
 
 /// Scores the RUN folder against the truth and the mesh of the dataset that its manifest names;
-/// writes metrics.json and scored.ply (map points in the mesh's frame with their distance, at most
-/// 400,000 of them, for pictures). Throws InputError when the dataset has no truth.
+/// writes metrics.json, its "resources" apart as resources.json, and scored.ply (map points in the
+/// mesh's frame with their distance, at most 400,000 of them, for pictures). Throws InputError when
+/// the dataset has no truth.
 Json score_run(const std::filesystem::path& run, const Parallel& parallel, LogSink& log);
 
 }  // namespace lidarena

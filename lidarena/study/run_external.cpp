@@ -170,7 +170,7 @@ RunSummary run_external(const ExternalProgram& program, const RunRequest& reques
   files.live = files.trajectory;
   files.map = map_of(output);
   const LidarInfo& lidar = recording.rig.lidars[0];
-  Dataset again = open_any_dataset(request.dataset, request.read, parallel);
+  Dataset again = open_scored_returns(request.dataset, request.read, parallel);
   files.reprojected = reproject(*again.events, lidar.id, lidar.body_from_lidar, files.trajectory);
 
   RunSummary summary;

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <deque>
+
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/tum.hpp"
+#include "lidarena/evaluation/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/sensor/simulate.hpp"
@@ -84,6 +87,20 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"routes", routes}}}};
 }
 
+/// Writes the truth of the scored returns alone.
+class ScoredTruthWriter : public ScanTruthSink {
+ public:
+  explicit ScoredTruthWriter(ScanTruthSink& writer) : writer_(writer) {}
+  void write(const ScanTruth& truth) override {
+    ScanTruth scored = truth;
+    keep_scored(scored.points);
+    writer_.write(scored);
+  }
+
+ private:
+  ScanTruthSink& writer_;
+};
+
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
                   const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
   DatasetWriter writer(out, make_rig(scene.sensors), request.write);
@@ -94,8 +111,12 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
     }
   };
   SimulationOptions options = scene.options;
-  options.truth = request.truth ? &writer : nullptr;
-  const auto events = simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
+  ScoredTruthWriter scored_writer(writer);
+  ScanTruthSink* sink = &writer;
+  if (request.scored_only) sink = &scored_writer;
+  options.truth = request.truth ? sink : nullptr;
+  auto events = simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
+  if (request.scored_only) events = std::make_unique<ScoredEvents>(std::move(events));
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -162,9 +183,34 @@ double path_length(const Scene& scene) {
   return length;
 }
 
-/// A dataset that is a manifest alone, as a source of events.
-Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::string& sensor,
-                     const Parallel& parallel) {
+/// What the LiDAR `sensor` hits, from a flight that is flown for it.
+class FlownTruth : public ScanTruthSource, private ScanTruthSink {
+ public:
+  FlownTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
+      : sensor_(std::move(sensor)) {
+    scene->options.truth = this;
+    events_ = std::make_unique<FlownSource>(std::move(scene), parallel);
+  }
+  std::optional<ScanTruth> next() override {
+    while (waiting_.empty() && events_->next()) {
+    }
+    if (waiting_.empty()) return std::nullopt;
+    ScanTruth first = std::move(waiting_.front());
+    waiting_.pop_front();
+    return first;
+  }
+
+ private:
+  void write(const ScanTruth& truth) override {
+    if (truth.sensor_id == sensor_) waiting_.push_back(truth);
+  }
+
+  std::string sensor_;
+  std::unique_ptr<EventSource> events_;
+  std::deque<ScanTruth> waiting_;
+};
+
+std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& manifest) {
   LogSink silent;  // the flight was described when the dataset was made
   const Json& simulation = manifest.at("simulation");
   WorldModel model;
@@ -181,20 +227,38 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::st
   options.seed = simulation.at("seed").get<std::uint64_t>();
   options.duration = from_seconds(simulation.at("seconds").get<double>());
   options.noise = simulation.at("noise").get<bool>();
+  return make_scene(std::move(model), folder / simulation.at("flight").get<std::string>(),
+                    std::move(sensors), options, silent);
+}
 
+/// The manifest of a dataset that is one alone, to be flown; null for any other.
+Json manifest_to_fly(const fs::path& folder) {
+  const fs::path file = folder / "manifest.json";
+  if (!fs::exists(file) || has_measurements(folder)) return nullptr;
+  Json manifest = read_json(file);
+  return manifest.contains("simulation") ? manifest : nullptr;
+}
+
+/// A dataset that is a manifest alone, as a source of events.
+Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::string& sensor,
+                     const Parallel& parallel) {
+  std::unique_ptr<Scene> scene = scene_of_manifest(folder, manifest);
   Dataset dataset;
   dataset.path = folder;
-  dataset.rig = make_rig(sensors);
+  dataset.rig = make_rig(scene->sensors);
   dataset.manifest = manifest;
   if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor)) {
     dataset.scan_count =
-        static_cast<std::size_t>(to_seconds(options.duration) * lidar->rate_hz + 1e-6);
+        static_cast<std::size_t>(to_seconds(scene->options.duration) * lidar->rate_hz + 1e-6);
   }
-  dataset.events = std::make_unique<FlownSource>(
-      make_scene(std::move(model), folder / simulation.at("flight").get<std::string>(),
-                 std::move(sensors), options, silent),
-      parallel);
+  dataset.events = std::make_unique<FlownSource>(std::move(scene), parallel);
   return dataset;
+}
+
+/// Where the scored returns of a dataset are: in a folder of their own, else in the dataset.
+fs::path scored_place(const fs::path& dataset) {
+  const fs::path folder = dataset / kScoredFolder;
+  return fs::exists(folder / "manifest.json") ? folder : dataset;
 }
 
 }  // namespace
@@ -240,13 +304,36 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
 
 Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
                          const Parallel& parallel) {
-  const fs::path manifest_file = path / "manifest.json";
-  if (fs::exists(manifest_file) && !has_measurements(path)) {
-    const Json manifest = read_json(manifest_file);
-    if (manifest.contains("simulation"))
-      return fly_manifest(path, manifest, options.sensor, parallel);
-  }
-  return open_dataset(path, options);
+  const Json manifest = manifest_to_fly(path);
+  return manifest.is_null() ? open_dataset(path, options)
+                            : fly_manifest(path, manifest, options.sensor, parallel);
+}
+
+void write_scored_returns(const SimulateRequest& request, const fs::path& dataset,
+                          const Parallel& parallel, LogSink& log) {
+  SimulateRequest scored = request;
+  scored.data = scored.truth = scored.scored_only = true;
+  scored.write = {};
+  simulate_dataset(scored, dataset / kScoredFolder, parallel, log);
+}
+
+Dataset open_scored_returns(const fs::path& dataset, const ReadOptions& options,
+                            const Parallel& parallel) {
+  Dataset scored = open_any_dataset(scored_place(dataset), options, parallel);
+  scored.events = std::make_unique<ScoredEvents>(std::move(scored.events));
+  return scored;
+}
+
+std::unique_ptr<ScanTruthSource> open_scored_truth(const fs::path& dataset,
+                                                   const std::string& sensor,
+                                                   const Parallel& parallel) {
+  const fs::path place = scored_place(dataset);
+  const Json manifest = manifest_to_fly(place);
+  std::unique_ptr<ScanTruthSource> truth =
+      manifest.is_null()
+          ? open_scan_truth(place, sensor)
+          : std::make_unique<FlownTruth>(sensor, scene_of_manifest(place, manifest), parallel);
+  return truth ? std::make_unique<ScoredTruth>(std::move(truth)) : nullptr;
 }
 
 }  // namespace lidarena

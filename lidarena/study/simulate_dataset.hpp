@@ -26,6 +26,7 @@ struct SimulateRequest {
   std::optional<ScanMode> mode;  ///< of all sensors; empty = as their files say
   bool data = true;              ///< false: a manifest alone, flown anew whenever it is used
   bool truth = false;            ///< also what each point hit, as /truth/SENSOR/hits
+  bool scored_only = false;      ///< of each scan the returns alone that scoring looks at
   WriteOptions write;            ///< format and dialect of the measurements
 };
 
@@ -48,5 +49,20 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const std::file
 /// the same points as if they had been written.
 Dataset open_any_dataset(const std::filesystem::path& path, const ReadOptions& options,
                          const Parallel& parallel);
+
+/// Folder in a dataset that is a manifest alone: its scored returns and what they hit, written once
+/// so that the flight need not be flown for each score. May be deleted at any time.
+inline constexpr const char* kScoredFolder = "scored";
+void write_scored_returns(const SimulateRequest& request, const std::filesystem::path& dataset,
+                          const Parallel& parallel, LogSink& log);
+
+/// The returns of the dataset that scoring looks at (see scored_returns.hpp), from their own folder
+/// where there is one: the same either way.
+Dataset open_scored_returns(const std::filesystem::path& dataset, const ReadOptions& options,
+                            const Parallel& parallel);
+/// What they hit; null where neither the dataset knows nor the flight can be flown again.
+std::unique_ptr<ScanTruthSource> open_scored_truth(const std::filesystem::path& dataset,
+                                                   const std::string& sensor,
+                                                   const Parallel& parallel);
 
 }  // namespace lidarena

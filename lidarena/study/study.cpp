@@ -134,10 +134,12 @@ void record_failure(const fs::path& run, const PlannedRun& cell, const std::stri
                                      {"failed", reason}});
 }
 
-/// One stage of the study: a flight to be planned, or a cell to be run and scored.
+/// One stage of the study: a flight to be planned, its returns to be written for scoring, or a cell
+/// to be run and scored.
 struct Stage {
   std::string name;
-  const PlannedRun* cell = nullptr;  ///< none: a flight
+  const PlannedRun* cell = nullptr;  ///< none: a flight, or its returns
+  bool for_runs_alone = false;       ///< of no use once all cells are done
   std::string dataset;
   fs::path folder;
   Json key;
@@ -192,7 +194,10 @@ class Runner {
     std::set<std::string> flights;
     for (const PlannedRun& cell : cells) {
       const DatasetPlan planned = dataset_plan(cell, spec_, configs_, program);
-      if (flights.insert(cell.dataset).second) waiting_.push_back(flight_stage(cell, planned));
+      if (flights.insert(cell.dataset).second) {
+        waiting_.push_back(flight_stage(cell, planned));
+        waiting_.push_back(returns_stage(cell, planned));
+      }
       waiting_.push_back(cell_stage(cell, planned));
     }
     for (const Stage& stage : waiting_) weight_of_all_ += stage.weight;
@@ -209,6 +214,20 @@ class Runner {
     stage.work = [request = planned.request, folder = stage.folder](const Parallel& parallel,
                                                                     LogSink& log) {
       simulate_dataset(request, folder, parallel, log);
+    };
+    return stage;
+  }
+
+  Stage returns_stage(const PlannedRun& cell, const DatasetPlan& planned) const {
+    Stage stage;
+    stage.name = "returns " + cell.dataset;
+    stage.dataset = cell.dataset;
+    stage.for_runs_alone = true;
+    stage.folder = out_ / "datasets" / cell.dataset / kScoredFolder;
+    stage.key = planned.key;
+    stage.work = [request = planned.request, dataset = stage.folder.parent_path()](
+                     const Parallel& parallel, LogSink& log) {
+      write_scored_returns(request, dataset, parallel, log);
     };
     return stage;
   }
@@ -250,6 +269,20 @@ class Runner {
     });
   }
 
+  /// Whether a cell of the dataset is waiting that was not done before.
+  bool has_cells_left(const std::string& dataset) const {
+    return std::ranges::any_of(waiting_, [&](const Stage& stage) {
+      return stage.cell != nullptr && stage.dataset == dataset &&
+             !done_before(stage.folder, stage.key);
+    });
+  }
+
+  bool is_worked_at(const std::string& dataset) const {
+    return std::ranges::any_of(slots_, [&](const Slot& slot) {
+      return slot.work != nullptr && slot.stage.dataset == dataset;
+    });
+  }
+
   /// Takes stages from the queue until one has to be worked at.
   void start_next(Slot& slot) {
     while (true) {
@@ -261,6 +294,8 @@ class Runner {
       const Stage& stage = slot.stage;
       if (broken_.contains(stage.dataset)) {
         finish(stage, broken_[stage.dataset]);
+      } else if (stage.for_runs_alone && !has_cells_left(stage.dataset)) {
+        finish(stage, {});
       } else if (done_before(stage.folder, stage.key)) {
         outcome_.reused += stage.cell != nullptr ? 1 : 0;
         weight_of_all_ -= stage.weight;  // tells nothing of how long the others will take
@@ -308,10 +343,18 @@ class Runner {
   void finish(const Stage& stage, const std::string& reason) {
     weight_left_ -= stage.weight;
     if (stage.cell == nullptr) {
-      if (!reason.empty()) broken_[stage.dataset] = "flight: " + reason;
+      if (!reason.empty() && stage.for_runs_alone) {
+        log_.warn(fmt::format("{} failed ({}): flown anew for each score", stage.name, reason));
+        fs::remove_all(stage.folder);
+      } else if (!reason.empty()) {
+        broken_[stage.dataset] = "flight: " + reason;
+      }
       return;
     }
     ++outcome_.runs;
+    if (!is_worked_at(stage.dataset) && !has_cells_left(stage.dataset)) {
+      fs::remove_all(out_ / "datasets" / stage.dataset / kScoredFolder);
+    }
     if (!reason.empty()) {
       record_failure(stage.folder, *stage.cell, reason);
       log_.warn(fmt::format("{} failed: {}", stage.name, reason));

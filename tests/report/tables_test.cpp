@@ -4,6 +4,7 @@
 
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/report/claims.hpp"
+#include "lidarena/report/decision.hpp"
 #include "lidarena/report/page.hpp"
 #include "lidarena/report/paper_tables.hpp"
 #include "lidarena/report/report_data.hpp"
@@ -177,6 +178,75 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
       HasSubstr("lidarena simulate --world cave --flight cave --sensor livox_mid360 --sensor "
                 "ouster_os0_128 --seed 7 --seconds 20.0 --no-data --out data && lidarena run "
                 "ct_icp data --preset original --sensor livox_mid360"));
+}
+
+/// A run that an engineer may choose: how its map lies, and how long a scan takes of 100 ms.
+ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
+                double p95_ms) {
+  ResultRow r = row("mine", sensor, algorithm, 1.0, 0.0);
+  r.preset = "improved";
+  r.reprojected_map = MapFigures{100, map_rmse_cm, 0, 0, 0, 0.5, std::vector<double>(20, 5.0)};
+  r.latency_p95_ms = p95_ms;
+  r.own_memory_mb = 30.0;
+  r.lidar = {{"rate_hz", 10.0}};
+  r.simulation = Json::parse(
+      R"({"sensors":[{"name":"cheap","facts":{"weight_kg":0.265,"price":"below 1000 EUR"}}]})");
+  return r;
+}
+
+TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
+  Results results;
+  results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 3.0, 40.0),
+                  tried("cheap", "lost", 0.5, 10.0), tried("dear", "good", 1.5, 60.0)};
+  results.rows[2].status = "diverged";
+  const std::vector<Candidate> found = candidates(results, "mine");
+  ASSERT_EQ(found.size(), 4U);
+  EXPECT_EQ(found[0].sensor + found[0].algorithm, "deargood");
+  EXPECT_EQ(found[1].sensor + found[1].algorithm, "cheapgood");
+  EXPECT_EQ(found[2].algorithm, "slow");
+  EXPECT_FALSE(found[2].is_in_time());
+  EXPECT_NEAR(found[2].busy, 1.2, 1e-12);
+  EXPECT_EQ(found[3].algorithm, "lost");
+  EXPECT_FALSE(found[3].keeps_track());
+  const ReportSection section = decision_section(results);
+  EXPECT_THAT(section.text, HasSubstr("mine: take the dear with good; its map lies 1.5 cm"));
+  EXPECT_THAT(section.text, HasSubstr("With the cheap (0.265 kg, below 1000 EUR) good does best, "
+                                      "with 2.0 times the error of the map"));
+  EXPECT_EQ(section.tables.at(0).rows.at(3).at(1).text, "lost track in 1 of 1");
+}
+
+TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
+  Results results;
+  results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 1.0, 10.0)};
+  results.rows[1].mode = "frozen";
+  EXPECT_EQ(candidates(results, "mine").size(), 1U);
+  EXPECT_THAT(decision_section(results).text, HasSubstr("nothing of what was tried keeps track"));
+}
+
+TEST(Readings, ModesOfTheSensorsStayApart) {
+  Results results;
+  results.rows = {tried("cheap", "good", 3.0, 40.0), tried("cheap", "good", 9.0, 40.0)};
+  results.rows[0].mode = "rolling";
+  results.rows[1].mode = "official";
+  EXPECT_THAT(readings_of(results),
+              ::testing::ElementsAre("improved-rolling", "improved-official"));
+  const StudyCells cells(results, "improved-official");
+  EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
+  EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
+}
+
+TEST(Results, PartsOfAStudyBecomeOneAndWhatWasScoredCounts) {
+  Results one, other;
+  one.title = "the study";
+  one.rows = {row("cave", "s", "a", 1.0, 0.0), row("cave", "s", "b", 0.0, 0.0)};
+  other.rows = {row("cave", "s", "a", 7.0, 0.0), row("cave", "s", "b", 2.0, 0.0)};
+  one.rows[0].metrics = other.rows[1].metrics = Json::object();
+  one.rows[1].status = "missing";
+  const Results all = merged({one, other});
+  EXPECT_EQ(all.title, "the study");
+  ASSERT_EQ(all.rows.size(), 2U);
+  EXPECT_EQ(all.rows[0].rpe_cm_per_m, 1.0);
+  EXPECT_EQ(all.rows[1].rpe_cm_per_m, 2.0);
 }
 
 TEST(Page, NeedsNoNetworkAndStaysSmallWhateverTheTitle) {

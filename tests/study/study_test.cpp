@@ -21,6 +21,8 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/isolate.hpp"
+#include "lidarena/study/run_algorithm.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
 
 namespace lidarena {
 namespace {
@@ -288,6 +290,23 @@ TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
   const StudyOutcome outcome = run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log);
   EXPECT_EQ(outcome.runs, 1U);
   EXPECT_EQ(outcome.failed, 0U);
+}
+
+TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAfterwards) {
+  const Scratch scratch;
+  LogSink log;
+  ASSERT_EQ(run_study(tiny_spec(), configs(), scratch.path(), {}, log).failed, 0U);
+  const auto only_in = [](const std::filesystem::path& folder) {
+    return std::filesystem::directory_iterator(folder)->path();
+  };
+  EXPECT_FALSE(std::filesystem::exists(only_in(scratch.path() / "datasets") / kScoredFolder));
+  const std::filesystem::path run = only_in(scratch.path() / "runs");
+  const Json with_returns = read_json(run / "metrics.json");
+  EXPECT_FALSE(with_returns.contains("resources")) << "differs from run to run";
+  ASSERT_TRUE(with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
+  const Json scored_again = score_run(run, Parallel(1), log);
+  EXPECT_TRUE(scored_again.contains("resources"));
+  EXPECT_EQ(read_json(run / "metrics.json"), with_returns);
 }
 
 TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/decision.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "lidarena/report/study_cells.hpp"
+
+namespace lidarena {
+namespace {
+
+constexpr double kAlike = 1.1;  // errors this near each other do not decide
+
+std::optional<double> map_rmse(const ResultRow& row) {
+  return row.reprojected_map ? std::optional(row.reprojected_map->rmse_cm) : std::nullopt;
+}
+std::optional<double> outliers(const ResultRow& row) {
+  return row.reprojected_map ? std::optional(row.reprojected_map->outliers_percent) : std::nullopt;
+}
+std::optional<double> busy(const ResultRow& row) {
+  if (!row.latency_p95_ms || !row.lidar.is_object()) return std::nullopt;
+  return *row.latency_p95_ms * 1e-3 * row.lidar.value("rate_hz", 10.0);
+}
+std::optional<double> memory(const ResultRow& row) { return row.own_memory_mb; }
+
+Candidate candidate(const StudyCells& cells, const std::string& world, const std::string& sensor,
+                    const std::string& algorithm) {
+  Candidate c;
+  c.sensor = sensor;
+  c.algorithm = algorithm;
+  for (const ResultRow* row : cells.rows(world, sensor, algorithm)) {
+    ++c.runs;
+    c.good_runs += row->status == "ok" && row->reprojected_map ? 1 : 0;
+    c.reading = reading_of(*row);
+  }
+  const auto median = [&](const RowFigure& figure) {
+    return cells.median(world, sensor, algorithm, figure).value_or(0.0);
+  };
+  c.map_rmse_cm = median(map_rmse);
+  c.outliers_percent = median(outliers);
+  c.drift_cm_per_m = median(rpe_of);
+  c.busy = median(busy);
+  c.memory_mb = median(memory);
+  return c;
+}
+
+/// "fast_lio2", with its preset where that is not the default one.
+std::string name_of(const Candidate& c) {
+  return c.reading == "improved" || c.reading == "improved-rolling"
+             ? c.algorithm
+             : c.algorithm + " (" + c.reading + ")";
+}
+
+std::string figures_of(const Candidate& c) {
+  return fmt::format(
+      "its map lies {} cm (RMS) from the mesh with {} % of its points beyond 20 cm, its path "
+      "drifts "
+      "by {} cm per metre; 95 of 100 scans take less than {:.0f} % of the time between two scans, "
+      "and it holds {} MB",
+      figure(c.map_rmse_cm, 2).text, figure(c.outliers_percent, 2).text,
+      figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy, figure(c.memory_mb, 2).text);
+}
+
+/// Weight, power and price as the sensor's file has them: " (0.265 kg, 6.5 to 14 W, ...)".
+std::string facts_of(const Results& results, const std::string& sensor) {
+  for (const ResultRow& row : results.rows) {
+    if (row.sensor != sensor || !row.simulation.is_object()) continue;
+    for (const Json& made : row.simulation.value("sensors", Json::array())) {
+      if (made.value("name", "") != sensor || !made.contains("facts")) continue;
+      const Json& facts = made.at("facts");
+      std::vector<std::string> words;
+      if (const double kg = facts.value("weight_kg", 0.0); kg > 0.0) {
+        words.push_back(fmt::format("{:g} kg", kg));
+      }
+      if (const double watts = facts.value("power_max_w", 0.0); watts > 0.0) {
+        words.push_back(fmt::format("up to {:g} W", watts));
+      }
+      if (const std::string price = facts.value("price", ""); !price.empty()) {
+        words.push_back(price);
+      }
+      return words.empty() ? "" : fmt::format(" ({})", fmt::join(words, ", "));
+    }
+  }
+  return "";
+}
+
+std::string choice(const Results& results, const std::string& world,
+                   const std::vector<Candidate>& all) {
+  if (all.empty() || !all.front().is_usable()) {
+    return fmt::format("{}: nothing of what was tried keeps track in time. ", world);
+  }
+  const Candidate& best = all.front();
+  std::string text = fmt::format("{}: take the {}{} with {}; {}. ", world, best.sensor,
+                                 facts_of(results, best.sensor), name_of(best), figures_of(best));
+  std::vector<std::string> said{best.sensor};
+  for (const Candidate& c : all) {
+    if (std::ranges::find(said, c.sensor) != said.end()) continue;
+    said.push_back(c.sensor);
+    if (!c.is_usable()) {
+      text += fmt::format("With the {}{} nothing keeps track in time. ", c.sensor,
+                          facts_of(results, c.sensor));
+      continue;
+    }
+    const double ratio = best.map_rmse_cm > 0.0 ? c.map_rmse_cm / best.map_rmse_cm : 1.0;
+    text += fmt::format(
+        "With the {}{} {} does best, {}: {}. ", c.sensor, facts_of(results, c.sensor), name_of(c),
+        ratio < kAlike ? std::string("no worse worth mentioning, so weight and price decide")
+                       : fmt::format("with {:.1f} times the error of the map", ratio),
+        figures_of(c));
+  }
+  return text;
+}
+
+std::string verdict(const Candidate& c) {
+  if (!c.keeps_track()) return fmt::format("lost track in {} of {}", c.runs - c.good_runs, c.runs);
+  return c.is_in_time() ? "usable" : "too slow here";
+}
+
+ReportTable candidates_table(const std::string& world, const std::vector<Candidate>& all) {
+  ReportTable table{
+      "decision-" + world,
+      "All that was tried, " + world,
+      "Usable: keeps track in every run, and 95 of 100 scans take less time than there is "
+      "between two of them. Usable ones first, then by the error of the map.",
+      {"sensor, algorithm", "verdict", "map RMSE, cm", "map > 20 cm, %", "drift, cm per m",
+       "P95, % of the period", "own memory, MB"},
+      {}};
+  for (const Candidate& c : all) {
+    std::vector<TableCell> cells{word(c.sensor + ", " + name_of(c)), word(verdict(c))};
+    for (const double value :
+         {c.map_rmse_cm, c.outliers_percent, c.drift_cm_per_m, 100.0 * c.busy, c.memory_mb}) {
+      cells.push_back(c.good_runs > 0 ? figure(value) : word(""));
+    }
+    table.rows.push_back(std::move(cells));
+  }
+  return table;
+}
+
+}  // namespace
+
+std::vector<Candidate> candidates(const Results& results, const std::string& world) {
+  std::vector<Candidate> all;
+  for (const std::string& reading : readings_of(results)) {
+    const StudyCells cells(results, reading);
+    for (const std::string& sensor : cells.sensors()) {
+      for (const std::string& algorithm : cells.algorithms()) {
+        const auto rows = cells.rows(world, sensor, algorithm);
+        if (rows.empty()) continue;
+        if (const std::string& mode = rows.front()->mode; !mode.empty() && mode != "rolling") {
+          continue;
+        }
+        all.push_back(candidate(cells, world, sensor, algorithm));
+      }
+    }
+  }
+  std::ranges::stable_sort(all, {}, [](const Candidate& c) {
+    return std::tuple(!c.keeps_track(), !c.is_in_time(), c.good_runs == 0, c.map_rmse_cm);
+  });
+  return all;
+}
+
+ReportSection decision_section(const Results& results) {
+  ReportSection section{"decision", "Which LiDAR, which SLAM", "", "", {}};
+  for (const std::string& world : StudyCells(results, "").worlds()) {
+    const std::vector<Candidate> all = candidates(results, world);
+    if (all.empty()) continue;
+    section.text += choice(results, world, all);
+    section.tables.push_back(candidates_table(world, all));
+  }
+  return section;
+}
+
+}  // namespace lidarena
