@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <set>
-#include <thread>
 
 #include "lidarena/dataset/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
@@ -24,15 +22,17 @@
 #include "lidarena/report/top_view.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/report/web_bundle.hpp"
+#include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPoints = 2'500'000;     // of all 3D views together: 8 bytes, 4/3 as text
-constexpr std::size_t kPointsOfRun = 120'000;  // at most
-constexpr std::size_t kTriangles = 400'000;    // of all meshes together: some 18 bytes, 4/3 as text
+constexpr std::size_t kPoints = 2'500'000;      // of all 3D views together: 8 bytes, 4/3 as text
+constexpr std::size_t kPointsOfRun = 120'000;   // at most
+constexpr std::size_t kPointsOfMesh = 200'000;  // of the picture from above
+constexpr std::size_t kTriangles = 400'000;  // of all meshes together: some 18 bytes, 4/3 as text
 constexpr std::size_t kPictureBytes = 12 << 20;  // of the pictures from above
 
 constexpr const char* kStyle = R"css(
@@ -108,6 +108,41 @@ std::string top_views(const Results& results, const std::string& world, std::siz
   return html + "</div>";
 }
 
+/// A world's mesh from above with the flight through it, and the example scans of its dataset, as
+/// far as they are there.
+std::string world_pictures(const Results& results, const std::string& world) {
+  const auto first = std::ranges::find_if(results.rows, [&](const ResultRow& row) {
+    return row.world == world && row.manifest.is_object() && row.manifest.contains("dataset");
+  });
+  if (first == results.rows.end()) return {};
+  const fs::path dataset = first->folder / first->manifest.value("dataset", "");
+  std::string html;
+  const auto add = [&](const std::string& title, const Cloud& cloud, const Trajectory* truth) {
+    TopView view;
+    view.title = title;
+    view.map = &cloud;
+    view.truth = truth;
+    view.width = 420;
+    html += "<figure>" + top_view_svg(view) + "</figure>";
+  };
+  const auto truth = load_truth(dataset);
+  if (const auto mesh = find_world_mesh(dataset)) {
+    Cloud surface;
+    surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
+    add("The world and the flight", surface, truth ? &*truth : nullptr);
+  }
+  std::set<std::string> shown;
+  for (const ResultRow& row : results.rows) {
+    if (row.world != world || !shown.insert(row.sensor).second) continue;
+    for (const auto& [name, title] : {std::pair("_scan.ply", "a scan, each return by its own pose"),
+                                      {"_scan_skewed.ply", "the same by one pose: skewed"}}) {
+      const fs::path file = dataset / (row.sensor + name);
+      if (fs::exists(file)) add(row.sensor + ": " + title, read_cloud(file), nullptr);
+    }
+  }
+  return html.empty() ? html : "<div class='row'>" + html + "</div>";
+}
+
 std::string color_key() {
   std::string stops;
   for (int cm = 0; cm <= 20; cm += 2) {
@@ -163,7 +198,7 @@ std::string section_html(const Results& results, const ReportSection& section, s
   if (section.id == "costs") html += "<div class='figures' id='figures'></div>";
   if (section.world.empty()) return html;
   const std::string id = escaped(section.world);
-  return html +
+  return html + world_pictures(results, section.world) +
          fmt::format(
              "<h3>Maps and paths</h3><div id='view-{0}' class='lidarena-view embedded timed'>"
              "<p class='message'></p><div class='fallback'>{1}{2}</div><div class='stage'></div>"
@@ -171,12 +206,18 @@ std::string section_html(const Results& results, const ReportSection& section, s
              id, color_key(), top_views(results, section.world, kPictureBytes / worlds));
 }
 
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+/// The machines that the runs were made on, and with which version.
+std::string made_on(const Results& results) {
+  std::vector<std::string> machines;
+  for (const ResultRow& row : results.rows) {
+    if (!row.manifest.is_object() || !row.manifest.contains("made_on")) continue;
+    const Json& on = row.manifest.at("made_on");
+    const std::string machine =
+        fmt::format("{}, {} cores, {} GiB, lidarena {}", on.value("processor", ""),
+                    on.value("cores", 0), on.value("memory_gib", 0.0), on.value("lidarena", ""));
+    if (std::ranges::find(machines, machine) == machines.end()) machines.push_back(machine);
   }
-  return "a processor of unknown name";
+  return machines.empty() ? "" : fmt::format("Runs made on: {}. ", fmt::join(machines, "; "));
 }
 
 std::string without_bundle() {
@@ -264,12 +305,10 @@ std::string html_page(const Results& results, const std::vector<ReportSection>& 
       "<meta name='viewport' content='width=device-width,initial-scale=1'>"
       "<link rel='icon' href='data:,'><title>{0}</title>"
       "<style>{1}{2}</style></head><body><main><h1>{0}</h1><nav>{3}</nav>{4}{5}"
-      "<p class='note'>lidarena {6}; this page was made on {7}, {8} threads. Everything on it "
-      "comes "
-      "from the result files beside it.</p></main>\n{9}</body></html>\n",
+      "<p class='note'>{7}This page was made by lidarena {6} from the result files "
+      "alone.</p></main>\n{8}</body></html>\n",
       escaped(results.title), kStyle, web_bundle("report.css"), nav, body,
-      bundled ? "" : without_bundle(), LIDARENA_VERSION, escaped(processor()),
-      std::thread::hardware_concurrency(), scripts);
+      bundled ? "" : without_bundle(), LIDARENA_VERSION, escaped(made_on(results)), scripts);
 }
 
 }  // namespace lidarena

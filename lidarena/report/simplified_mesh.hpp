@@ -10,4 +10,7 @@ namespace lidarena {
 /// approximations for rendering complex scenes", 1993). A mesh that is small enough is unchanged.
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t max_triangles);
 
+/// `count` points on the surface, evenly by area; the same ones each time.
+std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t count);
+
 }  // namespace lidarena

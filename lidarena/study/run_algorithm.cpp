@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/run_algorithm.hpp"
 
+#include <cmath>
+
+#include "lidarena/base/machine.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map_error.hpp"
@@ -113,6 +116,14 @@ Json to_json(const RunSummary& summary) {
           {"diverged", summary.diverged}};
 }
 
+Json made_on() {
+  const Machine machine = this_machine();
+  return {{"processor", machine.processor},
+          {"cores", machine.cores},
+          {"memory_gib", std::round(machine.memory_gib)},
+          {"lidarena", LIDARENA_VERSION}};
+}
+
 RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
                          LogSink& log) {
   Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
@@ -141,6 +152,7 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
                            {"paced", request.paced},
                            {"status", result.summary.diverged ? "diverged" : "ok"},
                            {"reason", result.summary.reason},
+                           {"made_on", made_on()},
                            {"summary", to_json(result.summary)}};
   write_run(out, result.files);
   return result.summary;

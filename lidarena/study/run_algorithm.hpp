@@ -22,6 +22,8 @@ struct RunRequest {
 
 /// A run's summary as its manifest has it.
 Json to_json(const RunSummary& summary);
+/// What a run's times were taken on and with: processor, cores, memory, version of lidarena.
+Json made_on();
 
 /// Runs one algorithm over one dataset and writes the RUN folder `out`, with the re-projected map.
 /// Returns the summary; a diverged run is written too, with its reason in the manifest.

@@ -190,6 +190,7 @@ RunSummary run_external(const ExternalProgram& program, const RunRequest& reques
       {"reason", ""},
       {"processor_seconds", used.processor_s},
       {"peak_mb", used.peak_mb},
+      {"made_on", made_on()},
       {"summary", to_json(summary)}};
   write_run(out, files);
   fs::remove_all(output);

@@ -21,6 +21,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/md5.hpp"
 #include "lidarena/dataset/text_file.hpp"
+#include "lidarena/study/example_scan.hpp"
 #include "lidarena/study/isolate.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/run_external.hpp"
@@ -228,6 +229,7 @@ class Runner {
     stage.work = [request = planned.request, dataset = stage.folder.parent_path()](
                      const Parallel& parallel, LogSink& log) {
       write_scored_returns(request, dataset, parallel, log);
+      write_example_scans(dataset, parallel);
     };
     return stage;
   }

@@ -180,6 +180,25 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
                 "ct_icp data --preset original --sensor livox_mid360"));
 }
 
+TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
+  // Two triangles in the plane z = 2, one of nine times the other's area.
+  TriangleMesh mesh;
+  mesh.vertices = {{0, 0, 2}, {3, 0, 2}, {0, 3, 2}, {10, 0, 2}, {11, 0, 2}, {10, 1, 2}};
+  mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
+  const std::vector<Eigen::Vector3f> points = points_on(mesh, 10'000);
+  ASSERT_NEAR(static_cast<double>(points.size()), 10'000.0, 1.0);
+  std::size_t in_large = 0, in_corner = 0;
+  for (const Eigen::Vector3f& p : points) {
+    EXPECT_FLOAT_EQ(p.z(), 2.0F);
+    const bool large = p.x() < 5.0F;
+    in_large += large ? 1 : 0;
+    in_corner += large && p.x() + p.y() < 1.5F ? 1 : 0;  // a quarter of the large one
+    EXPECT_LE(large ? p.x() + p.y() : p.x() - 10.0F + p.y(), large ? 3.0001F : 1.0001F);
+  }
+  EXPECT_NEAR(static_cast<double>(in_large), 9000.0, 1.0);
+  EXPECT_NEAR(static_cast<double>(in_corner), 2250.0, 50.0);
+}
+
 /// A run that an engineer may choose: how its map lies, and how long a scan takes of 100 ms.
 ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
                 double p95_ms) {

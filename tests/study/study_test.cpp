@@ -13,11 +13,13 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 #include <set>
 #include <thread>
 #include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/isolate.hpp"
@@ -300,10 +302,18 @@ TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAft
     return std::filesystem::directory_iterator(folder)->path();
   };
   EXPECT_FALSE(std::filesystem::exists(only_in(scratch.path() / "datasets") / kScoredFolder));
+  for (const char* picture : {"livox_mid360_scan.ply", "livox_mid360_scan_skewed.ply"}) {
+    const Cloud scan = read_cloud(only_in(scratch.path() / "datasets") / picture);
+    ASSERT_GT(scan.points.size(), 10'000U) << picture;
+    EXPECT_LT(std::accumulate(scan.distance.begin(), scan.distance.end(), 0.0F),
+              0.05F * static_cast<float>(scan.points.size()))
+        << picture << ": noise of 2 cm, and next to no motion yet";
+  }
   const std::filesystem::path run = only_in(scratch.path() / "runs");
   const Json with_returns = read_json(run / "metrics.json");
   EXPECT_FALSE(with_returns.contains("resources")) << "differs from run to run";
-  ASSERT_TRUE(with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
+  ASSERT_TRUE(
+      with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
   const Json scored_again = score_run(run, Parallel(1), log);
   EXPECT_TRUE(scored_again.contains("resources"));
   EXPECT_EQ(read_json(run / "metrics.json"), with_returns);

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/example_scan.hpp"
+
+#include <variant>
+
+#include "lidarena/base/so3.hpp"
+#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/evaluation/lidar_poses.hpp"
+#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/mesh_io.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr Time kLook = std::chrono::minutes(1);
+
+/// How far the body turns while the scan is taken, rad.
+double turn_within(const Scan& scan, const Trajectory& truth) {
+  const auto begin = truth.at(scan.stamp), end = truth.at(end_of(scan));
+  if (!begin || !end) return 0.0;
+  return so3::angle(begin->linear().transpose() * end->linear());
+}
+
+Scan fastest_turning_scan(EventSource& events, const std::string& lidar_id,
+                          const Trajectory& truth) {
+  Scan fastest;
+  double most = -1.0;
+  while (const std::optional<Event> event = events.next()) {
+    const Scan* scan = std::get_if<Scan>(&event->data);
+    if (scan == nullptr || event->sensor_id != lidar_id) continue;
+    if (scan->stamp - truth.begin_time() > kLook) break;
+    if (const double turn = turn_within(*scan, truth); turn > most) {
+      most = turn;
+      fastest = *scan;
+    }
+  }
+  return fastest;
+}
+
+Cloud laid(const Scan& scan, LidarPoses poses, bool skewed) {
+  Cloud cloud;
+  for (const Point& point : scan.points) {
+    const Pose* world_from_lidar = poses.at(skewed ? scan.stamp : time_of(scan, point));
+    if (world_from_lidar == nullptr || !point.position.allFinite()) continue;
+    cloud.points.push_back((*world_from_lidar * point.position.cast<double>()).cast<float>());
+  }
+  return cloud;
+}
+
+}  // namespace
+
+void write_example_scans(const fs::path& dataset, const Parallel& parallel) {
+  const auto truth = load_truth(dataset);
+  const auto mesh = find_world_mesh(dataset);
+  if (!truth || !mesh) throw InputError(dataset.string(), "has no truth or no mesh");
+  const World world(load_mesh(*mesh), mesh->string());
+  const Rig rig = open_scored_returns(dataset, {}, parallel).rig;
+  for (const LidarInfo& lidar : rig.lidars) {
+    ReadOptions read;
+    read.sensor = lidar.id;
+    const Dataset scored = open_scored_returns(dataset, read, parallel);
+    const Scan scan = fastest_turning_scan(*scored.events, lidar.id, *truth);
+    for (const bool skewed : {false, true}) {
+      Cloud cloud = laid(scan, LidarPoses(*truth, lidar.body_from_lidar), skewed);
+      map_error(cloud.points, Pose::Identity(), world, parallel, &cloud.distance);
+      write_ply(dataset / (lidar.id + (skewed ? "_scan_skewed.ply" : "_scan.ply")), cloud);
+    }
+  }
+}
+
+}  // namespace lidarena
