@@ -18,12 +18,16 @@ namespace {
 
 struct FlightPluginConfig {
   std::string trajectory;
+  double thin_s = 0.01;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("trajectory", self.trajectory, "",
       "TUM file (t x y z qx qy qz qw) of the model's frame, sought in GAZEBO_RESOURCE_PATH too; "
       "its first pose is at simulated time 0");
+    v("thin_s", self.thin_s, "s",
+      "poses nearer to the one before are left out: the rounding of dense ones would shake the IMU",
+      at_least(0));
   }
 };
 
@@ -43,7 +47,7 @@ class FlightPlugin : public ::gazebo::ModelPlugin {
           read_sdf_config<FlightPluginConfig>(sdf, "flight plugin of " + model->GetName());
       const std::string found = ::gazebo::common::find_file(config.trajectory);
       const std::string& file = found.empty() ? config.trajectory : found;
-      flight_.emplace(read_recording(file), file);
+      flight_.emplace(thinned(read_recording(file), config.thin_s), file);
     } catch (const Error& error) {
       gzerr << "lidarena: " << error.what() << "; " << model->GetName() << " stays where it is\n";
       return;
