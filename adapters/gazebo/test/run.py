@@ -4,11 +4,14 @@
 Runs where Gazebo is (see .ci/gazebo); prints each finding and exits 1 if one is not as it should be.
 """
 import math
+import os
 import pathlib
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
+import time
 
 import gzserver
 
@@ -90,6 +93,38 @@ def record_without_ros(plugins, models, folder):
     check(all(points > 19000 for _, points in frames), "in a closed room nearly all rays come back")
 
 
+def play_with_ros(bag, folder):
+    """rosbag play publishes a bag of ours, rosbag record takes it: all messages arrive."""
+    tools = pathlib.Path("/usr/lib/rosbag")
+    if not (tools / "play").exists() or not shutil.which("rosmaster"):
+        print("skipped: ROS 1's rosbag play is not here")
+        return
+    import rosbag
+    port = gzserver.free_port()
+    env = dict(os.environ, ROS_MASTER_URI=f"http://127.0.0.1:{port}", ROS_IP="127.0.0.1",
+               ROS_PACKAGE_PATH="/usr/share")
+    quiet = {"env": env, "stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    copy = folder / "played.bag"
+    master = subprocess.Popen(["rosmaster", "--core", "-p", str(port)], **quiet)
+    time.sleep(3)
+    recorder = subprocess.Popen([tools / "record", "-a", "-O", copy], **quiet)
+    time.sleep(3)
+    try:
+        # the recorder needs a while to subscribe to what the player advertises
+        subprocess.run([tools / "play", "--quiet", "--delay=4", bag], timeout=60, check=True,
+                       stdin=subprocess.DEVNULL, **quiet)
+        time.sleep(2)
+    finally:
+        recorder.send_signal(signal.SIGINT)
+        recorder.wait(timeout=30)
+        master.terminate()
+        master.wait(timeout=30)
+    with rosbag.Bag(str(bag)) as ours, rosbag.Bag(str(copy)) as theirs:
+        topic = "/livox_mid360/points"
+        sent, came = ours.get_message_count(topic), theirs.get_message_count(topic)
+    check(sent == came, f"rosbag play publishes our bag: {came} of {sent} scans arrive")
+
+
 def main():
     plugins = sys.argv[1]
     folder = pathlib.Path(tempfile.mkdtemp(prefix="lidarena_gazebo_"))
@@ -98,6 +133,7 @@ def main():
         make_models(models)
         compare_with_the_engine(plugins, models)
         record_without_ros(plugins, models, folder)
+        play_with_ros(folder / "recorded.bag", folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
     print(f"{len(failures)} failures" if failures else "all as promised")
