@@ -90,7 +90,8 @@ def main():
         print("skipped: there is no mkdocs")
         return 77
     program, out = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
-    shutil.rmtree(out, ignore_errors=True)
+    for made in ("pages", "schemas", "site"):
+        shutil.rmtree(out / made, ignore_errors=True)
     pages = out / "pages"
     shutil.copytree(ROOT / "docs", pages, ignore=shutil.ignore_patterns("*.py", "*.txt"))
     (pages / "algorithms").mkdir()
