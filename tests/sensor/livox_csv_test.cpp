@@ -127,8 +127,8 @@ std::string sensor_failure(const std::string& yaml) {
 }
 
 TEST(LivoxCsv, IsASensorsPatternOnceItsRowRateIsTold) {
-  written("0,0,90\n1,90,90\n");
-  const std::string file = "pattern_file: pattern_under_test.csv\n";
+  const fs::path table = written("0,0,90\n1,90,90\n");
+  const std::string file = "pattern_file: " + table.filename().string() + "\n";
   EXPECT_EQ(sensor_failure(file + "row_rate_hz: 1000\nlines: 2\n"), "no failure");
   EXPECT_THAT(sensor_failure(file), HasSubstr("set row_rate_hz"));
   EXPECT_THAT(sensor_failure("row_rate_hz: 1000\n"), HasSubstr("set pattern_file"));
