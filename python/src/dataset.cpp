@@ -74,8 +74,16 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
                      const std::vector<fs::path>& sensors, const fs::path& out, std::uint64_t seed,
                      double seconds, bool noise, const std::string& mode, bool truth, bool data,
                      const std::string& format, const std::string& dialect, int threads) {
-  SimulateRequest request{world, flight, sensors, seed,  seconds,
-                          noise, {},     data,    truth, write_options(format, dialect)};
+  SimulateRequest request;
+  request.world = world;
+  request.flight = flight;
+  request.sensors = sensors;
+  request.seed = seed;
+  request.seconds = seconds;
+  request.noise = noise;
+  request.data = data;
+  request.truth = truth;
+  request.write = write_options(format, dialect);
   if (!mode.empty()) {
     ScanMode read{};
     read_value(ConfigNode::parse(mode, "mode"), read, {});
