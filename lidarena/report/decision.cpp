@@ -41,7 +41,7 @@ Candidate candidate(const StudyCells& cells, const std::string& world, const std
   c.map_rmse_cm = median(map_rmse);
   c.outliers_percent = median(outliers);
   c.drift_cm_per_m = median(rpe_of);
-  c.busy = median(busy);
+  c.busy = cells.median(world, sensor, algorithm, busy);
   c.memory_mb = median(memory);
   return c;
 }
@@ -60,7 +60,7 @@ std::string figures_of(const Candidate& c) {
       "by {} cm per metre; 95 of 100 scans take less than {:.0f} % of the time between two scans, "
       "and it holds {} MB",
       figure(c.map_rmse_cm, 2).text, figure(c.outliers_percent, 2).text,
-      figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy, figure(c.memory_mb, 2).text);
+      figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy.value_or(0.0), figure(c.memory_mb, 2).text);
 }
 
 /// Weight, power and price as the sensor's file has them: " (0.265 kg, 6.5 to 14 W, ...)".
@@ -115,6 +115,7 @@ std::string choice(const Results& results, const std::string& world,
 
 std::string verdict(const Candidate& c) {
   if (!c.keeps_track()) return fmt::format("lost track in {} of {}", c.runs - c.good_runs, c.runs);
+  if (!c.busy) return "time not measured";
   return c.is_in_time() ? "usable" : "too slow here";
 }
 
@@ -129,10 +130,10 @@ ReportTable candidates_table(const std::string& world, const std::vector<Candida
       {}};
   for (const Candidate& c : all) {
     std::vector<TableCell> cells{word(c.sensor + ", " + name_of(c)), word(verdict(c))};
-    for (const double value :
-         {c.map_rmse_cm, c.outliers_percent, c.drift_cm_per_m, 100.0 * c.busy, c.memory_mb}) {
+    for (const double value : {c.map_rmse_cm, c.outliers_percent, c.drift_cm_per_m, c.memory_mb}) {
       cells.push_back(c.good_runs > 0 ? figure(value) : word(""));
     }
+    cells.insert(cells.end() - 1, c.busy ? figure(100.0 * *c.busy) : word(""));
     table.rows.push_back(std::move(cells));
   }
   return table;

@@ -17,11 +17,11 @@ struct Candidate {
   double map_rmse_cm = 0.0;       ///< of all scored returns moved with the estimated path
   double outliers_percent = 0.0;  ///< of these
   double drift_cm_per_m = 0.0;    ///< RPE over 1 m
-  double busy = 0.0;              ///< P95 of the time for a scan, in scan periods
+  std::optional<double> busy;     ///< P95 of the time for a scan, in scan periods, if measured
   double memory_mb = 0.0;         ///< the algorithm's own
 
   bool keeps_track() const { return runs > 0 && good_runs == runs; }
-  bool is_in_time() const { return busy < 1.0; }
+  bool is_in_time() const { return busy && *busy < 1.0; }
   bool is_usable() const { return keeps_track() && is_in_time(); }
 };
 

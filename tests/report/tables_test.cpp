@@ -224,7 +224,7 @@ TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
   EXPECT_EQ(found[1].sensor + found[1].algorithm, "cheapgood");
   EXPECT_EQ(found[2].algorithm, "slow");
   EXPECT_FALSE(found[2].is_in_time());
-  EXPECT_NEAR(found[2].busy, 1.2, 1e-12);
+  EXPECT_NEAR(found[2].busy.value(), 1.2, 1e-12);
   EXPECT_EQ(found[3].algorithm, "lost");
   EXPECT_FALSE(found[3].keeps_track());
   const ReportSection section = decision_section(results);
@@ -232,6 +232,16 @@ TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
   EXPECT_THAT(section.text, HasSubstr("With the cheap (0.265 kg, below 1000 EUR) good does best, "
                                       "with 2.0 times the error of the map"));
   EXPECT_EQ(section.tables.at(0).rows.at(3).at(1).text, "lost track in 1 of 1");
+}
+
+TEST(Decision, WhoseTimeIsNotKnownIsNotCalledUsable) {
+  Results results;
+  results.rows = {tried("cheap", "theirs", 1.0, 10.0), tried("cheap", "good", 3.0, 40.0)};
+  results.rows[0].latency_p95_ms.reset();
+  const std::vector<Candidate> found = candidates(results, "mine");
+  EXPECT_EQ(found[0].algorithm, "good");
+  EXPECT_FALSE(found[1].is_usable());
+  EXPECT_EQ(decision_section(results).tables.at(0).rows.at(1).at(1).text, "time not measured");
 }
 
 TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
