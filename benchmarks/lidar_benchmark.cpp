@@ -32,6 +32,7 @@
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/sensor/lidar.hpp"
+#include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/world.hpp"
 
