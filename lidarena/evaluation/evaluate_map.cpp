@@ -49,9 +49,13 @@ struct Subject {
   }
 };
 
-Json measure(const Subject& subject, const Pose& mesh_from_map) {
-  const std::vector<PointScore> scores =
-      score_points(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel);
+std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map) {
+  return score_points(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel);
+}
+
+/// `scores`: the map's, moved by `mesh_from_map`.
+Json measure(const Subject& subject, std::span<const PointScore> scores,
+             const Pose& mesh_from_map) {
   Json json = to_json(map_error(subject.order, scores, subject.map.size()));
   json["mesh_from_map_m_quaternion"] = value_to_json(mesh_from_map);
   json["per_voxel"] = to_json(voxel_error(subject.order, scores));
@@ -69,19 +73,21 @@ Json measure(const Subject& subject, const Pose& mesh_from_map) {
   return json;
 }
 
-Json measure_vertices(const Subject& subject, const Pose& mesh_from_map) {
-  return to_json(
-      vertex_distance(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel));
+Json measure_vertices(const Subject& subject, std::span<const PointScore> scores,
+                      const Pose& mesh_from_map) {
+  return to_json(vertex_distance(subject.map, subject.order, scores, mesh_from_map, subject.world,
+                                 subject.parallel));
 }
 
 /// The move from the first-pose gauge is the rigid part of the drift.
 Json measure_robust(const Subject& subject, const Pose& start, const Pose& first_pose) {
   const MeshAlignment alignment =
       align_to_mesh(subject.map, start, subject.world, subject.parallel);
-  Json json = alignment.determined() ? measure(subject, alignment.mesh_from_map)
+  const Pose& moved = alignment.mesh_from_map;
+  Json json = alignment.determined() ? measure(subject, score(subject, moved), moved)
                                      : Json{{"refused", alignment.refusal}};
   json["alignment"] = to_json(alignment);
-  const Pose drift = alignment.mesh_from_map * first_pose.inverse();
+  const Pose drift = moved * first_pose.inverse();
   json["alignment"]["turned_from_first_pose_rad"] = so3::angle(drift.linear());
   return json;
 }
@@ -132,8 +138,9 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
     }
     start = alignment.truth_from_estimate;
     if (gauge == Gauge::kFirstPose) first_pose = start;
-    json[to_string(gauge)] = measure(subject, *start);
-    if (gauge == Gauge::kSe3) json["se3"]["point_vertex"] = measure_vertices(subject, *start);
+    const std::vector<PointScore> scores = score(subject, *start);
+    Json& measured = json[to_string(gauge)] = measure(subject, scores, *start);
+    if (gauge == Gauge::kSe3) measured["point_vertex"] = measure_vertices(subject, scores, *start);
   }
   json["robust"] = start && first_pose ? measure_robust(subject, *start, *first_pose)
                                        : Json{{"refused", "there is no pose to start from"}};

@@ -72,8 +72,9 @@ std::vector<Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
 }
 
 VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder& order,
-                               const Pose& mesh_from_map, const World& world,
-                               const Parallel& parallel, double edge, std::uint64_t most) {
+                               std::span<const PointScore> scores, const Pose& mesh_from_map,
+                               const World& world, const Parallel& parallel, double edge,
+                               std::uint64_t most) {
   VertexDistance result;
   result.edge_m = edge;
   result.vertices = count_subdivided(world.mesh(), edge);
@@ -92,9 +93,15 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
   constexpr std::size_t kGrain = 4096;
   parallel.for_each(order.entries.size(), kGrain, [&](std::size_t k) {
     const std::uint32_t index = order.entries[k].index;
+    const double to_surface = scores[k].distance;
+    if (to_surface > VertexDistance::kFarEdges * edge) {
+      distances[index] = to_surface;
+      return;
+    }
     const Vector3d moved = mesh_from_map * map[index].cast<double>();
+    const auto bound = static_cast<float>(to_surface + edge);  // there is one within 0.58 edges
     Neighbour nearest;
-    tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1));
+    tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
     distances[index] = std::sqrt(double{nearest.squared_distance});
   });
   result.error = summarize_distances(distances);

@@ -12,6 +12,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/evaluation/map_error.hpp"
 #include "lidarena/evaluation/morton_order.hpp"
+#include "lidarena/evaluation/point_scores.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -32,17 +33,23 @@ std::vector<Eigen::Vector3f> subdivided_vertices(const TriangleMesh& mesh, doubl
 struct VertexDistance {
   static constexpr double kEdge_m = 0.05;
   static constexpr std::uint64_t kMostVertices = 20'000'000;  ///< about 1.4 GB while it lasts
+  /// A lost map's points lie far outside, where thousands of vertices are almost as near as the
+  /// nearest. From so many edges on (1 m) the distance to the surface stands for that to the vertex:
+  /// short by at most 1/120 edge (0.42 mm), for a vertex is within 0.58 edges of where that meets it.
+  static constexpr double kFarEdges = 20.0;
   double edge_m = kEdge_m;                                    ///< no edge is longer
   std::uint64_t vertices = 0;
   std::string refusal;  ///< empty when `error` holds
   MapError error;
 };
 
-/// Exact nearest vertices (k-d tree) of the points of `order` (of `map`), moved by `mesh_from_map`.
+/// Exact nearest vertices (k-d tree) of the points of `order` (of `map`), moved by `mesh_from_map`;
+/// `scores` are theirs there. Points beyond kFarEdges count with their distance to the surface.
 /// Refused for meshes that need more than `most` vertices. The same bits on any number of threads.
 VertexDistance vertex_distance(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
-                               const Pose& mesh_from_map, const World& world,
-                               const Parallel& parallel, double edge = VertexDistance::kEdge_m,
+                               std::span<const PointScore> scores, const Pose& mesh_from_map,
+                               const World& world, const Parallel& parallel,
+                               double edge = VertexDistance::kEdge_m,
                                std::uint64_t most = VertexDistance::kMostVertices);
 
 }  // namespace lidarena

@@ -23,7 +23,9 @@ const Parallel kTwo(2);
 
 VertexDistance distance_of(const std::vector<Vector3f>& map, const World& world,
                            const Pose& mesh_from_map, double edge) {
-  return vertex_distance(map, morton_order(map, kTwo), mesh_from_map, world, kTwo, edge);
+  const MortonOrder order = morton_order(map, kTwo);
+  const std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwo);
+  return vertex_distance(map, order, scores, mesh_from_map, world, kTwo, edge);
 }
 
 Vector3d random_point(SequentialRandom& random, double half) {
@@ -62,7 +64,7 @@ double slow_distance(const TriangleMesh& mesh, const Vector3d& point, double edg
   return best;
 }
 
-TEST(VertexDistance, IsWhatALookAtAllVerticesFinds) {
+TEST(VertexDistance, IsWhatALookAtAllVerticesFindsOrFarOffWhatTheSurfaceTellsOfThem) {
   const Vector3d far(5000.0, -3000.0, 100.0);
   const World world(soup(11, far));
   const Pose mesh_from_map = make_pose(Eigen::Quaterniond(0.8, 0.0, 0.6, 0.0), far);
@@ -77,11 +79,14 @@ TEST(VertexDistance, IsWhatALookAtAllVerticesFinds) {
           slow_distance(world.mesh(), mesh_from_map * map.back().cast<double>(), edge));
       // one at a time, so that each distance is seen
       const VertexDistance one = distance_of({map.back()}, world, mesh_from_map, edge);
-      ASSERT_NEAR(one.error.distance_m.rmse, expected.back(), 1e-6 + 3e-7 * expected.back());
+      const bool beyond = expected.back() > 20.0 * edge;
+      ASSERT_NEAR(one.error.distance_m.rmse, expected.back(),
+                  beyond ? edge / 120.0 : 1e-6 + 3e-7 * expected.back());
+      ASSERT_LT(one.error.distance_m.rmse, expected.back() + 1e-5);
     }
     const VertexDistance all = distance_of(map, world, mesh_from_map, edge);
     const MapError slow = summarize_distances(expected);
-    EXPECT_NEAR(all.error.distance_m.rmse, slow.distance_m.rmse, 1e-5);
+    EXPECT_NEAR(all.error.distance_m.rmse, slow.distance_m.rmse, edge / 120.0);
     EXPECT_NEAR(all.error.distance_m.median, slow.distance_m.median, 1e-5);
     EXPECT_EQ(all.error.outliers_percent, slow.outliers_percent);
   }
@@ -142,7 +147,8 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
   const World small(meshes::plane(0.9));
   const MortonOrder order = morton_order(map, kTwo);
   const auto with = [&](std::uint64_t most) {
-    return vertex_distance(map, order, Pose::Identity(), small, kTwo, 0.05, most).refusal;
+    const auto scores = score_points(map, order, Pose::Identity(), small, kTwo);
+    return vertex_distance(map, order, scores, Pose::Identity(), small, kTwo, 0.05, most).refusal;
   };
   EXPECT_EQ(with(754), "");
   EXPECT_THAT(with(753), HasSubstr("0.000754 million vertices, more than the 0.000753 million"));
