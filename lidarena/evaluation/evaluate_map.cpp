@@ -16,15 +16,23 @@
 namespace lidarena {
 namespace {
 
-/// More points than these tell no more of a map and take as much longer: evenly left out.
-constexpr std::size_t kMostPoints = 8'000'000;
-
-std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map) {
-  const std::size_t stride = std::max<std::size_t>(1, (map.size() + kMostPoints - 1) / kMostPoints);
+/// At most `most` points of the map: others evenly left out.
+std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std::size_t most) {
+  const std::size_t stride = std::max<std::size_t>(1, (map.size() + most - 1) / most);
   std::vector<Eigen::Vector3f> sample;
   sample.reserve(map.size() / stride + 1);
   for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
   return sample;
+}
+
+/// How many points of a map are scored: more tell no more and take as much longer. A lost map's
+/// searches reach far and take a hundred times as long each, and its figures say only that it is lost.
+std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
+                        const World& world, const Parallel& parallel) {
+  constexpr std::size_t kMost = 2'000'000, kMostOfLost = 200'000, kLook = 10'000;
+  constexpr double kLost_percent = 95.0;  // beyond 20 cm
+  const MapError look = map_error(sample_of(map, kLook), mesh_from_map, world, parallel);
+  return look.outliers_percent > kLost_percent ? kMostOfLost : kMost;
 }
 
 /// A map and what is made of it once for all gauges.
@@ -37,9 +45,9 @@ struct Subject {
   MortonOrder order;
   std::optional<PointGrid> grid;  ///< where completeness is asked for
 
-  Subject(std::span<const Eigen::Vector3f> points, const World& mesh, const Parallel& workers,
-          const SeenSurface* surface, const IdentifiedMap* with_hits)
-      : map(sample_of(points)),
+  Subject(std::span<const Eigen::Vector3f> points, std::size_t most, const World& mesh,
+          const Parallel& workers, const SeenSurface* surface, const IdentifiedMap* with_hits)
+      : map(sample_of(points, most)),
         world(mesh),
         parallel(workers),
         seen(surface),
@@ -127,7 +135,9 @@ SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel
 Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                   const Trajectory& truth, const World& world, const Parallel& parallel,
                   const SeenSurface* seen, const IdentifiedMap* identified) {
-  const Subject subject(map, world, parallel, seen, identified);
+  const Alignment rigid = align(estimate, truth, Gauge::kSe3);
+  const Subject subject(map, most_points(map, rigid.truth_from_estimate, world, parallel), world,
+                        parallel, seen, identified);
   Json json = Json::object();
   std::optional<Pose> first_pose, start;
   for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {

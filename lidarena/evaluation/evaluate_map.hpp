@@ -30,9 +30,10 @@ SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel
 
 /// One map (in the estimate's world frame) against the mesh, by gauge: "first_pose", "se3", and
 /// "robust", which starts from "se3" (from "first_pose" where that is refused). Without `seen` the
-/// signed distance and the completeness are null. Of maps beyond 8 million points an even sample of
-/// at most so many is scored (completeness looks at all). `identified`, if given, is the same map
-/// with its hits, for the identity error. A gauge that cannot be had says why under "refused".
+/// signed distance and the completeness are null. Of maps beyond 2 million points (lost ones:
+/// 200,000) an even sample of at most so many is scored (completeness looks at all). `identified`,
+/// if given, is the same map with its hits, for the identity error. A gauge that cannot be had says
+/// why under "refused".
 Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                   const Trajectory& truth, const World& world, const Parallel& parallel,
                   const SeenSurface* seen = nullptr, const IdentifiedMap* identified = nullptr);

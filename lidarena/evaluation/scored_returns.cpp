@@ -8,14 +8,14 @@ namespace lidarena {
 std::optional<Event> ScoredEvents::next() {
   std::optional<Event> event = source_->next();
   if (event) {
-    if (auto* scan = std::get_if<Scan>(&event->data)) keep_scored(scan->points);
+    if (auto* scan = std::get_if<Scan>(&event->data)) keep_scored(scan->points, most_);
   }
   return event;
 }
 
 std::optional<ScanTruth> ScoredTruth::next() {
   std::optional<ScanTruth> truth = source_->next();
-  if (truth) keep_scored(truth->points);
+  if (truth) keep_scored(truth->points, most_);
   return truth;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <tsl/robin_map.h>
+
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
@@ -12,13 +14,13 @@
 namespace lidarena {
 
 /// Points in the order they came, at most one a voxel: the first point met in a voxel stays, later
-/// ones are refused. Never averages, so noise stays visible. 12 bytes a point and 4 bytes a slot
-/// of an open-addressing table that is at most 5/8 full.
+/// ones are refused. Never averages, so noise stays visible. Which voxels are taken is kept in bits,
+/// 4 x 4 x 4 voxels together in a hash table: neighbours of a scan are neighbours in memory, and a
+/// surface takes some 3 bytes a voxel besides the 12 of its point.
 class PointMap {
  public:
   /// `voxel_size` in m; room for `expected` points is made at once.
-  explicit PointMap(double voxel_size, std::size_t expected = 0,
-                    VoxelRounding rounding = VoxelRounding::kFloor);
+  explicit PointMap(double voxel_size, std::size_t expected = 0);
 
   /// Whether `point` (m) is the first of its voxel; points that are not finite are refused.
   bool insert(const Eigen::Vector3f& point);
@@ -27,26 +29,16 @@ class PointMap {
   std::span<const Eigen::Vector3f> points() const { return points_; }
   /// Hands the points over and leaves the map empty.
   std::vector<Eigen::Vector3f> take();
-  /// Indices of points() in the order of the table: mixed, yet the same for the same input.
-  std::vector<std::uint32_t> shuffled() const;
 
   std::size_t size() const { return points_.size(); }
   std::size_t memory_bytes() const;
 
  private:
-  static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
-
-  VoxelKey key_of(const Eigen::Vector3f& p) const {
-    return voxel_key(voxel_of(p, inverse_size_, rounding_));
-  }
-  /// Slot that holds the point with `key`, or the free slot where it belongs.
-  std::size_t find_slot(VoxelKey key) const;
-  void resize_table(std::size_t slot_count);
+  using Blocks = tsl::robin_map<VoxelKey, std::uint64_t, VoxelKeyHash>;
 
   float inverse_size_;
-  VoxelRounding rounding_;
   std::vector<Eigen::Vector3f> points_;
-  std::vector<std::uint32_t> slots_;  ///< index into points_, or kFree; size is a power of two
+  Blocks blocks_;  ///< which of a block's 64 voxels are taken
 };
 
 }  // namespace lidarena

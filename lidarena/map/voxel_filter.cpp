@@ -5,44 +5,83 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <utility>
 
-#include "lidarena/map/point_map.hpp"
+#include "lidarena/base/error.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena {
 
 namespace {
 
-/// Indices of the first points of each voxel in the order of our own table.
-std::vector<std::uint32_t> in_table_order(std::span<const Eigen::Vector3f> points,
-                                          double voxel_size, VoxelRounding rounding) {
-  PointMap seen(voxel_size, 0, rounding);
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (seen.insert(points[i])) kept.push_back(static_cast<std::uint32_t>(i));
+/// Which of a few points are the first of their voxels: a table of their indices, open addressing,
+/// at most 5/8 full.
+class FirstPoints {
+ public:
+  FirstPoints(std::span<const Eigen::Vector3f> points, double voxel_size, VoxelRounding rounding)
+      : points_(points),
+        inverse_size_(static_cast<float>(1.0 / voxel_size)),
+        rounding_(rounding),
+        slots_(kLeastSlots, kFree) {
+    if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
+    for (std::size_t i = 0; i < points.size(); ++i)
+      if (points[i].allFinite()) offer(static_cast<std::uint32_t>(i));
   }
-  std::vector<std::uint32_t> indices = seen.shuffled();
-  for (std::uint32_t& index : indices) index = kept[index];
-  return indices;
-}
+
+  /// Indices in the order of the points.
+  std::vector<std::uint32_t> take() { return std::move(kept_); }
+  /// Indices in the order of the table: mixed, yet the same for the same input.
+  std::vector<std::uint32_t> in_table_order() const {
+    std::vector<std::uint32_t> indices;
+    indices.reserve(kept_.size());
+    std::copy_if(slots_.begin(), slots_.end(), std::back_inserter(indices),
+                 [](std::uint32_t index) { return index != kFree; });
+    return indices;
+  }
+
+ private:
+  static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
+  static constexpr std::size_t kLeastSlots = 64;
+
+  VoxelKey key_of(std::uint32_t i) const {
+    return voxel_key(voxel_of(points_[i], inverse_size_, rounding_));
+  }
+  /// Slot that holds the point with `key`, or the free slot where it belongs.
+  std::size_t find_slot(VoxelKey key) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = VoxelKeyHash{}(key)&mask;
+    while (slots_[slot] != kFree && key_of(slots_[slot]) != key) slot = (slot + 1) & mask;
+    return slot;
+  }
+  void offer(std::uint32_t i) {
+    const std::size_t slot = find_slot(key_of(i));
+    if (slots_[slot] != kFree) return;
+    slots_[slot] = i;
+    kept_.push_back(i);
+    if (kept_.size() * 8 / 5 + 1 <= slots_.size()) return;
+    slots_.assign(2 * slots_.size(), kFree);
+    for (const std::uint32_t kept : kept_) slots_[find_slot(key_of(kept))] = kept;
+  }
+
+  std::span<const Eigen::Vector3f> points_;
+  float inverse_size_;
+  VoxelRounding rounding_;
+  std::vector<std::uint32_t> kept_;
+  std::vector<std::uint32_t> slots_;  ///< index, or kFree; as many as a power of two
+};
 
 }  // namespace
 
 std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> points,
                                                double voxel_size, VoxelRounding rounding) {
-  PointMap seen(voxel_size, 0, rounding);
-  std::vector<std::uint32_t> kept;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (seen.insert(points[i])) kept.push_back(static_cast<std::uint32_t>(i));
-  }
-  return kept;
+  return FirstPoints(points, voxel_size, rounding).take();
 }
 
 std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> points,
                                            double voxel_size, const Thinning& thinning) {
   if (thinning.order == ThinningOrder::kMixed)
-    return in_table_order(points, voxel_size, thinning.rounding);
+    return FirstPoints(points, voxel_size, thinning.rounding).in_table_order();
   const std::uint32_t y_factor = thinning.order == ThinningOrder::kTeschner ? 19349663U : 19349669U;
   const auto inverse_size = static_cast<float>(1.0 / voxel_size);
   // a table twice as large as its input, slots in a power of two; who comes late stands behind

@@ -77,7 +77,8 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
 }
 
 void VoxelHashMap::fit_plane(Cell& cell) {
-  constexpr int kLeastPoints = 5;  // fewer lie near some plane by chance
+  constexpr int kLeastPoints = 5;          // fewer lie near some plane by chance
+  constexpr float kLineThinness = 0.02F;  // points of a line: so much of their variance across it
   if (cell.count < kLeastPoints) return;
   const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
   const Eigen::Vector3f mean = points.rowwise().mean();
@@ -85,21 +86,22 @@ void VoxelHashMap::fit_plane(Cell& cell) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(centred * centred.transpose());
   const Eigen::Vector3f& variances = solver.eigenvalues();
+  if (variances[1] < kLineThinness * variances[2]) return release_plane(cell, kShapeless);
   if (!(variances[0] < static_cast<float>(options_.plane_thinness) * variances[1]))
-    return release_plane(cell);
-  if (cell.plane == kNoPlane && free_planes_.empty()) {
+    return release_plane(cell, kNoPlane);
+  if (cell.plane >= kShapeless && free_planes_.empty()) {
     cell.plane = static_cast<std::uint32_t>(planes_.size());
     planes_.emplace_back();
-  } else if (cell.plane == kNoPlane) {
+  } else if (cell.plane >= kShapeless) {
     cell.plane = free_planes_.back();
     free_planes_.pop_back();
   }
   planes_[cell.plane] = {mean, solver.eigenvectors().col(0)};
 }
 
-void VoxelHashMap::release_plane(Cell& cell) {
-  if (cell.plane != kNoPlane) free_planes_.push_back(cell.plane);
-  cell.plane = kNoPlane;
+void VoxelHashMap::release_plane(Cell& cell, std::uint32_t instead) {
+  if (cell.plane < kShapeless) free_planes_.push_back(cell.plane);
+  cell.plane = instead;
 }
 
 void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
@@ -111,7 +113,7 @@ void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
       continue;
     }
     blocks_.release(cell.points, cell.level);
-    release_plane(cell);
+    release_plane(cell, kShapeless);
     size_ -= cell.count;
     it = cells_.erase(it);
   }
@@ -133,7 +135,7 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
   const auto gap = [&](int axis, int step) {
     return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
   };
-  Neighbor best{nullptr, max_distance * max_distance, nullptr};
+  Neighbor best{nullptr, max_distance * max_distance};
   std::uint32_t plane = kNoPlane;
   for (const auto& [dx, dy, dz] : kSteps) {
     if (gap(0, dx) + gap(1, dy) + gap(2, dz) >= best.squared_distance) continue;
@@ -143,11 +145,12 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
     for (std::size_t i = 0; i < cell.count; ++i) {
       const float squared_distance = (cell.points[i] - query).squaredNorm();
       if (squared_distance >= best.squared_distance) continue;
-      best = {cell.points + i, squared_distance, nullptr};
+      best = {cell.points + i, squared_distance};
       plane = cell.plane;
     }
   }
-  if (plane != kNoPlane) best.plane = &planes_[plane];
+  best.shapeless = options_.plane_thinness > 0.0 && plane == kShapeless;
+  if (plane < kShapeless) best.plane = &planes_[plane];
   return best;
 }
 

@@ -35,6 +35,9 @@ class VoxelHashMap {
     const Eigen::Vector3f* point = nullptr;  ///< in the map; null if there is none
     float squared_distance = 0.0F;           ///< m^2
     const Plane* plane = nullptr;            ///< of the point's cell; null if it is not flat
+    /// Where planes are looked for: the point's cell has fewer than five points, or they lie on a
+    /// line, so that they tell how the sensor looked there rather than what there is.
+    bool shapeless = false;
     explicit operator bool() const { return point != nullptr; }
   };
 
@@ -65,11 +68,12 @@ class VoxelHashMap {
 
  private:
   static constexpr std::uint32_t kNoPlane = 0xFFFFFFFFU;
+  static constexpr std::uint32_t kShapeless = 0xFFFFFFFEU;  ///< and up: no plane either
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
     std::uint8_t level = 0;  ///< of the block, see PointBlocks
-    std::uint32_t plane = kNoPlane;
+    std::uint32_t plane = kShapeless;  ///< in planes_, or one of the above
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {
@@ -77,7 +81,8 @@ class VoxelHashMap {
   }
   /// Finds the plane through the cell's points anew.
   void fit_plane(Cell& cell);
-  void release_plane(Cell& cell);
+  /// Leaves the cell without a plane: kNoPlane or kShapeless.
+  void release_plane(Cell& cell, std::uint32_t instead);
   void append(Cell& cell, const Eigen::Vector3f& point);
 
   Options options_;

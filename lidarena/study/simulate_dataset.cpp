@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <deque>
 
 #include "lidarena/dataset/json_file.hpp"
@@ -34,6 +35,9 @@ struct Scene {
   Time duration() const {
     return options.duration > Time{0} ? std::min(options.duration, flight->duration())
                                       : flight->duration();
+  }
+  std::size_t scan_count(const LidarInfo& lidar) const {
+    return static_cast<std::size_t>(to_seconds(duration()) * lidar.rate_hz + 1e-6);
   }
 };
 
@@ -90,15 +94,16 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
 /// Writes the truth of the scored returns alone.
 class ScoredTruthWriter : public ScanTruthSink {
  public:
-  explicit ScoredTruthWriter(ScanTruthSink& writer) : writer_(writer) {}
+  ScoredTruthWriter(ScanTruthSink& writer, std::size_t most) : writer_(writer), most_(most) {}
   void write(const ScanTruth& truth) override {
     ScanTruth scored = truth;
-    keep_scored(scored.points);
+    keep_scored(scored.points, most_);
     writer_.write(scored);
   }
 
  private:
   ScanTruthSink& writer_;
+  std::size_t most_;
 };
 
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
@@ -111,12 +116,16 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
     }
   };
   SimulationOptions options = scene.options;
-  ScoredTruthWriter scored_writer(writer);
+  std::size_t scans = 0;
+  for (const LidarInfo& lidar : make_rig(scene.sensors).lidars)
+    scans = std::max(scans, scene.scan_count(lidar));
+  const std::size_t most = scored_returns(scans);
+  ScoredTruthWriter scored_writer(writer, most);
   ScanTruthSink* sink = &writer;
   if (request.scored_only) sink = &scored_writer;
   options.truth = request.truth ? sink : nullptr;
   auto events = simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
-  if (request.scored_only) events = std::make_unique<ScoredEvents>(std::move(events));
+  if (request.scored_only) events = std::make_unique<ScoredEvents>(std::move(events), most);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -247,10 +256,8 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::st
   dataset.path = folder;
   dataset.rig = make_rig(scene->sensors);
   dataset.manifest = manifest;
-  if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor)) {
-    dataset.scan_count =
-        static_cast<std::size_t>(to_seconds(scene->options.duration) * lidar->rate_hz + 1e-6);
-  }
+  if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor))
+    dataset.scan_count = scene->scan_count(*lidar);
   dataset.events = std::make_unique<FlownSource>(std::move(scene), parallel);
   return dataset;
 }
@@ -319,8 +326,11 @@ void write_scored_returns(const SimulateRequest& request, const fs::path& datase
 
 Dataset open_scored_returns(const fs::path& dataset, const ReadOptions& options,
                             const Parallel& parallel) {
-  Dataset scored = open_any_dataset(scored_place(dataset), options, parallel);
-  scored.events = std::make_unique<ScoredEvents>(std::move(scored.events));
+  const fs::path place = scored_place(dataset);
+  Dataset scored = open_any_dataset(place, options, parallel);
+  if (place != dataset) return scored;  // its own folder holds no others
+  const std::size_t most = scored_returns(scored.scan_count.value_or(0));
+  scored.events = std::make_unique<ScoredEvents>(std::move(scored.events), most);
   return scored;
 }
 
@@ -333,7 +343,12 @@ std::unique_ptr<ScanTruthSource> open_scored_truth(const fs::path& dataset,
       manifest.is_null()
           ? open_scan_truth(place, sensor)
           : std::make_unique<FlownTruth>(sensor, scene_of_manifest(place, manifest), parallel);
-  return truth ? std::make_unique<ScoredTruth>(std::move(truth)) : nullptr;
+  if (!truth || place != dataset) return truth;
+  ReadOptions options;
+  options.sensor = sensor;
+  const Dataset same = open_any_dataset(dataset, options, parallel);
+  return std::make_unique<ScoredTruth>(std::move(truth),
+                                       scored_returns(same.scan_count.value_or(0)));
 }
 
 }  // namespace lidarena

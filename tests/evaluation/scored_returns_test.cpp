@@ -21,25 +21,32 @@ Scan scan_of(std::size_t points) {
 
 TEST(ScoredReturns, ASparseScanStaysAsItIs) {
   std::vector<int> points(kScoredReturns, 7);
-  keep_scored(points);
+  keep_scored(points, kScoredReturns);
   EXPECT_EQ(points.size(), kScoredReturns);
-  EXPECT_EQ(scoring_stride(0), 1U);
+  EXPECT_EQ(scoring_stride(0, kScoredReturns), 1U);
 }
 
 TEST(ScoredReturns, NeverMoreThanTheLimitAndNeverFarFewer) {
   for (std::size_t n = kScoredReturns + 1; n < 50 * kScoredReturns; n += 997) {
     std::vector<int> points(n);
-    keep_scored(points);
+    keep_scored(points, kScoredReturns);
     EXPECT_LE(points.size(), kScoredReturns) << n;
     EXPECT_GE(points.size(), kScoredReturns / 3) << n;  // of 20,001 every third: strides are odd
   }
+}
+
+TEST(ScoredReturns, ALongRecordingGivesFewerOfEachScan) {
+  EXPECT_EQ(scored_returns(0), 20'000U);    // how many scans there are is not known
+  EXPECT_EQ(scored_returns(200), 20'000U);  // 20 s at 10 Hz
+  EXPECT_EQ(scored_returns(3000), 3'333U);
+  EXPECT_EQ(scored_returns(100'000'000), 1U);
 }
 
 TEST(ScoredReturns, EveryRowOfASpinningSensorIsLookedAt) {
   for (const std::size_t columns : {512U, 1024U, 2048U}) {
     std::vector<std::size_t> points(columns * 128);
     for (std::size_t i = 0; i < points.size(); ++i) points[i] = i % 128;  // column after column
-    keep_scored(points);
+    keep_scored(points, kScoredReturns);
     EXPECT_EQ(std::set<std::size_t>(points.begin(), points.end()).size(), 128U) << columns;
   }
 }
@@ -57,8 +64,9 @@ TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
   }
   truths->scans.push_back(truth);
 
-  ScoredEvents scored(std::make_unique<ScoredEvents>(std::move(events)));
-  ScoredTruth hits(std::make_unique<ScoredTruth>(std::move(truths)));
+  constexpr std::size_t kMost = 20'000;
+  ScoredEvents scored(std::make_unique<ScoredEvents>(std::move(events), kMost), kMost);
+  ScoredTruth hits(std::make_unique<ScoredTruth>(std::move(truths), kMost), kMost);
   EXPECT_TRUE(std::holds_alternative<ImuSample>(scored.next()->data));
   const Scan scan = std::get<Scan>(scored.next()->data);
   const ScanTruth hit = *hits.next();

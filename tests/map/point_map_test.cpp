@@ -82,12 +82,13 @@ TEST(PointMap, RefusesPointsThatAreNotFiniteAndBearsFarOnes) {
   EXPECT_EQ(map.size(), 1U);
 }
 
-TEST(PointMap, TakesSome30BytesAVoxelHoweverManyPointsFallIntoIt) {
+TEST(PointMap, TakesSome20BytesAVoxelHoweverManyPointsFallIntoIt) {
   PointMap map(0.5);
   const Points points = random_points(20000, 6.0);
   for (int repeat = 0; repeat < 10; ++repeat) map.insert(points);
-  // 12 B a point, in a vector up to twice as large; 4 B a slot, table 5/16 to 5/8 full
-  EXPECT_LE(map.memory_bytes(), map.size() * (2 * 12 + 4 * 16 / 5 + 1));
+  // 12 B a point, in a vector up to twice as large; 24 B for up to 64 voxels in a table at least
+  // a quarter full
+  EXPECT_LE(map.memory_bytes(), map.size() * (2 * 12 + 4 * 24 / 16));
   const std::size_t voxels = map.size();
   EXPECT_EQ(map.take().size(), voxels);
   EXPECT_EQ(map.size(), 0U);

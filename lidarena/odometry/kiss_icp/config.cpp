@@ -25,10 +25,11 @@ Config improved(const LidarInfo& lidar) {
   config.thinning_order = ThinningOrder::kMixed;
   config.max_range_m = lidar.max_range_m;
   config.min_range_m = lidar.min_range_m;
-  config.voxel_size_m = 0.8;
-  config.map_thinning = 0.125;
-  config.keypoint_thinning = 0.5;
+  config.voxel_size_m = 0.4;
+  config.map_thinning = 0.25;
+  config.keypoint_thinning = 1.0;
   config.plane_thinness = 0.2;
+  config.shapeless_weight = 1e-4;
   config.slices = 2;
   config.slice_above_m = 0.15;
   config.own_motion = 0.75;

@@ -52,6 +52,7 @@ struct Config {
   ThresholdLever threshold_lever = ThresholdLever::kMaxRange;
 
   std::optional<double> plane_thinness;
+  double shapeless_weight = 1.0;
   double map_thinning = 0.5;
   double keypoint_thinning = 1.5;
   int calm_start = 0;
@@ -112,6 +113,11 @@ struct Config {
     v("plane_thinness", self.plane_thinness, "",
       "cure: cells whose points vary across a plane by at most this part of their variance along "
       "it count as that plane, and points are drawn to it along its normal alone; null: no planes",
+      between(0, 1));
+    v("shapeless_weight", self.shapeless_weight, "",
+      "cure below 1, where cells know planes: weight of matches in cells of fewer than 5 points or "
+      "of a line of them; such points are the pattern's, and where that repeats they hold the "
+      "sensor where it was",
       between(0, 1));
     v("map_thinning", self.map_thinning, "voxel sizes",
       "edge of the cells of which one point each is offered to the map", above(0));

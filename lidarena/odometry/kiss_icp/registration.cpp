@@ -101,7 +101,9 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
         return;
       }
       const auto [error, jacobian] = point_to_point(point, match.point->cast<double>(), center);
-      equations.add<3>(share * jacobian, error, kernel_weight(error.squaredNorm(), kernel));
+      const double weight = match.shapeless ? config.shapeless_weight : 1.0;
+      equations.add<3>(share * jacobian, error,
+                       weight * kernel_weight(error.squaredNorm(), kernel));
     };
     const auto equations = accumulate_normal_equations<6>(parallel, keypoints.size(), add_match);
     const Eigen::Vector3d center =
