@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <numbers>
 
@@ -216,20 +217,32 @@ std::string results_csv(const Results& results) {
 }
 
 std::string results_text(const Results& results) {
-  std::string text = fmt::format("{:<14}{:<22}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n",
-                                 "world", "sensor", "algorithm", "RPE cm/m", "ATE cm",
-                                 "map RMSE cm", "outliers %", "x real", "own MB", "status");
+  constexpr std::size_t kColumns = 10, kNames = 3;  // names stand left, figures right
+  using Line = std::array<std::string, kColumns>;
+  std::vector<Line> lines{{"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm",
+                           "outliers %", "x real", "own MB", "status"}};
   for (const ResultRow& r : results.rows) {
     const auto shown = [](const std::optional<double>& v, const char* format) {
       return v ? cell(v, format) : std::string("-");
     };
-    text += fmt::format("{:<14}{:<22}{:<20}{:>10}{:>8}{:>13}{:>12}{:>8}{:>8}  {}\n", r.world,
-                        r.sensor, r.algorithm + ":" + reading_of(r),
-                        shown(r.rpe_cm_per_m, "{:.2f}"), shown(r.ate_cm, "{:.2f}"),
-                        shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),
-                        shown(figure(r.reprojected_map, &MapFigures::outliers_percent), "{:.3g}"),
-                        shown(r.real_time_factor, "{:.1f}"), shown(r.own_memory_mb, "{:.1f}"),
-                        r.reason.empty() ? r.status : r.status + ": " + r.reason);
+    lines.push_back({r.world, r.sensor, r.algorithm + ":" + reading_of(r),
+                     shown(r.rpe_cm_per_m, "{:.2f}"), shown(r.ate_cm, "{:.2f}"),
+                     shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),
+                     shown(figure(r.reprojected_map, &MapFigures::outliers_percent), "{:.3g}"),
+                     shown(r.real_time_factor, "{:.1f}"), shown(r.own_memory_mb, "{:.1f}"),
+                     r.reason.empty() ? r.status : r.status + ": " + r.reason});
+  }
+  std::array<std::size_t, kColumns> widths{};
+  for (const Line& line : lines) {
+    for (std::size_t c = 0; c < kColumns; ++c) widths[c] = std::max(widths[c], line[c].size());
+  }
+  std::string text;
+  for (const Line& line : lines) {
+    for (std::size_t c = 0; c + 1 < kColumns; ++c) {
+      text += c < kNames ? fmt::format("{:<{}}  ", line[c], widths[c])
+                         : fmt::format("{:>{}}  ", line[c], widths[c]);
+    }
+    text += line.back() + "\n";
   }
   return text;
 }

@@ -181,6 +181,34 @@ TEST(VoxelHashMap, FlatCellsKnowTheirPlaneAndOthersNone) {
   EXPECT_EQ(in_ball.plane, nullptr);
 }
 
+TEST(VoxelHashMap, CellsOfFewPointsOrOfALineHaveNoShape) {
+  VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096, .plane_thinness = 0.2});
+  const auto shapeless = [&](float x) {
+    const auto found = map.nearest({x + 0.5F, 0.5F, 0.5F}, 1.0F);
+    EXPECT_TRUE(found);
+    return found.shapeless;
+  };
+  const auto points = random_points(20, 0.3);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const Eigen::Vector3f& p = points[i];
+    const Eigen::Vector3f middle(0.5F, 0.5F, 0.5F);
+    if (i < 4) map.insert(middle + p);  // few
+    map.insert(middle + Eigen::Vector3f(3.0F + p.x(), 0.1F * p.y(), 0.1F * p.z()));  // a line
+    map.insert(middle + Eigen::Vector3f(6.0F + p.x(), p.y(), 0.1F * p.z()));         // a plane
+    map.insert(middle + Eigen::Vector3f(9.0F, 0.0F, 0.0F) + p);                      // a ball
+  }
+  EXPECT_TRUE(shapeless(0.0F));
+  EXPECT_TRUE(shapeless(3.0F));
+  EXPECT_FALSE(shapeless(6.0F));
+  EXPECT_FALSE(shapeless(9.0F));
+  map.insert(random_points(20, 0.4).front().array() + 0.5F);
+  map.insert(Eigen::Vector3f(0.1F, 0.9F, 0.2F));
+  EXPECT_FALSE(shapeless(0.0F)) << "six points have one";
+  VoxelHashMap without({.voxel_size = 1.0});
+  without.insert(Eigen::Vector3f(0.5F, 0.5F, 0.5F));
+  EXPECT_FALSE(without.nearest({0.5F, 0.5F, 0.5F}, 1.0F).shapeless) << "nobody asked";
+}
+
 TEST(VoxelHashMap, ACellThatLosesItsShapeLosesItsPlaneAndFreedPlanesServeAgain) {
   VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096, .plane_thinness = 0.05});
   const auto floor = [&](float x) {

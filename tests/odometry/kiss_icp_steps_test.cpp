@@ -228,6 +228,79 @@ TEST(Registration, PlanesAverageTheNoiseOfTheirCells) {
   EXPECT_LT(found.iterations, 10);
 }
 
+TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
+  // Corner of three walls, each known well; and one point a cell of a pattern that went along with
+  // the sensor, 5 cm along each axis, so that it pulls everything back.
+  std::vector<Eigen::Vector3f> walls, pattern, seen;
+  for (int i = 0; i < 60; ++i) {
+    for (int k = 0; k < 60; ++k) {
+      const float a = 0.05F + 0.1F * static_cast<float>(i), b = 0.05F + 0.1F * static_cast<float>(k);
+      for (const Eigen::Vector3f& p : {Eigen::Vector3f(0.05F, a, b), Eigen::Vector3f(a, 0.05F, b),
+                                       Eigen::Vector3f(a, b, 0.05F)}) {
+        walls.push_back(p);
+        if ((i + k) % 5 == 0) seen.push_back(p);
+      }
+    }
+  }
+  for (int i = 0; i < 1000; ++i) {
+    const Eigen::Vector3f there(10.25F + 0.5F * static_cast<float>(i % 10),
+                                10.25F + 0.5F * static_cast<float>(i / 10 % 10),
+                                10.25F + 0.5F * static_cast<float>(i / 100));
+    pattern.push_back(there);
+    seen.emplace_back(there.array() - 0.05F);
+  }
+  VoxelHashMap corner({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
+  corner.insert(walls);
+  corner.insert(pattern);
+  VoxelHashMap alone({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
+  alone.insert(pattern);
+  Config config;
+  config.sensor_centred = true;
+  config.convergence = 1e-7;
+  const auto shift_in = [&](const VoxelHashMap& map, double weight) -> double {
+    config.shapeless_weight = weight;
+    return register_still(seen, map, Pose::Identity(), 0.5, config)
+        .map_from_lidar.translation()
+        .norm();
+  };
+  EXPECT_GT(shift_in(corner, 1.0), 0.01);
+  EXPECT_LT(shift_in(corner, 1e-4), 1e-4);
+  // where there is nothing else they decide as ever, to what the stopping rule leaves
+  EXPECT_NEAR(shift_in(alone, 1.0), 0.05 * std::sqrt(3.0), 1e-5);
+  EXPECT_NEAR(shift_in(alone, 1e-4), 0.05 * std::sqrt(3.0), 1e-5);
+}
+
+TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
+  // Each point of the map is seen three times where it is and once 5 cm off: by symmetry nothing
+  // turns, and the shift x solves 3 w(x) x + w(x - d) (x - d) = 0, w(r) = (k / (k + r^2))^2.
+  constexpr double kOff = 0.05, kSigma = 0.1, kFraction = 0.5;
+  std::vector<Eigen::Vector3f> points, seen;
+  for (int i = 0; i < 216; ++i) {
+    points.emplace_back(static_cast<float>(i % 6) - 2.5F, static_cast<float>(i / 6 % 6) - 2.5F,
+                        static_cast<float>(i / 36) - 2.5F);
+    for (int copy = 0; copy < 3; ++copy) seen.push_back(points.back());
+    seen.emplace_back(points.back() - Eigen::Vector3f(static_cast<float>(kOff), 0.0F, 0.0F));
+  }
+  for (const bool in_metres : {false, true}) {
+    const double scale = kSigma * kFraction;
+    const double k = in_metres ? scale * scale : scale;
+    const auto slope = [&](double x) {
+      const auto pull = [&](double r) { return r * std::pow(k / (k + r * r), 2.0); };
+      return 3.0 * pull(x) + pull(x - kOff);
+    };
+    double low = 0.0, high = 0.25 * kOff;  // without a kernel it would be a quarter
+    for (int i = 0; i < 60; ++i) (slope(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
+    Config config;
+    config.sensor_centred = true;
+    config.convergence = 1e-9;
+    config.kernel_fraction = kFraction;
+    config.kernel_in_metres = in_metres;
+    const auto found = register_still(seen, map_of(points), Pose::Identity(), kSigma, config);
+    EXPECT_NEAR(found.map_from_lidar.translation().x(), low, 1e-7) << in_metres;
+    EXPECT_LT(found.map_from_lidar.translation().tail<2>().norm(), 1e-7);
+  }
+}
+
 TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
   const auto points = look_around(synthetic::flight(0.0), 2000, 0.0, 0.0);
   const VoxelHashMap map = map_of(points);

@@ -136,6 +136,48 @@ TEST(KissIcp, ScansAreCutOnlyAfterTheCalmStartAndWhileSigmaIsLarge) {
   EXPECT_EQ(poses_within(100.0)[4], 5U) << "sigma is 2 m at most";
 }
 
+TEST(KissIcp, APatternThatRepeatsHoldsTheSensorUnlessItsLinesAreLeftOut) {
+  // Straight on without turning, each beam on the same wall in the same direction in every scan: the
+  // rings match themselves best where the sensor was.
+  Recording recording = along_the_straight();
+  recording.repeating = true;
+  const auto error_with = [&](double weight) {
+    Config config = preset("improved", synthetic::rig_of(recording).lidars.front());
+    config.shapeless_weight = weight;
+    KissIcp odometry = made(config, recording);
+    for (const Scan& scan : synthetic::scans_of(recording)) odometry.register_scan(scan);
+    const auto poses = odometry.trajectory();
+    const StampedPose& first = poses.poses().front();
+    const StampedPose& last = poses.poses().back();
+    const Pose truth = synthetic::truth(recording, first.stamp, last.stamp);
+    return (last.world_from_body.translation() - truth.translation()).norm();
+  };
+  EXPECT_GT(error_with(1.0), 1.0) << "of 2 m";
+  EXPECT_LT(error_with(1e-4), 0.05);
+}
+
+TEST(KissIcp, OfAScanOnePointACellIsRegisteredAndOneASmallerCellIsKept) {
+  // A lattice of 10 cm on a wall of 4 x 4 m: cells of 20 cm leave 20 x 20 for the map, of which
+  // cells of 40 cm leave 10 x 10.
+  Scan scan;
+  scan.timed = false;
+  for (int i = 0; i < 1600; ++i) {
+    Point& point = scan.points.emplace_back();
+    point.position = {3.05F, 0.05F + 0.1F * static_cast<float>(i % 40),
+                      0.05F + 0.1F * static_cast<float>(i / 40)};
+  }
+  Config config;
+  config.voxel_size_m = 0.8;
+  config.map_thinning = 0.25;
+  config.keypoint_thinning = 0.5;
+  config.min_spacing = false;
+  KissIcp odometry = made(config, {});
+  const ScanResult result = odometry.register_scan(scan);
+  EXPECT_EQ(result.counters.at("points"), 1600U);
+  EXPECT_EQ(result.counters.at("map_points"), 400U);
+  EXPECT_EQ(result.counters.at("keypoints"), 100U);
+}
+
 TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {
   const Recording recording = along_the_straight();
   KissIcp odometry = made({}, recording);
