@@ -84,8 +84,9 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
       relative_pose_error(truth_at_estimates(estimate, truth), truth).translation_m.rmse;
   if (floor > kHighFloor * rpe && floor > kSmallFloor_m) {
     warnings.push_back(
-        fmt::format("of the {:.2f} cm of RPE per metre, {:.2f} cm are interpolation between the "
-                    "estimates, which a perfect one would show, too: give poses more often",
+        fmt::format("of the {:.2f} cm of RPE per metre with interpolated ends, {:.2f} cm are "
+                    "interpolation between the estimates, which a perfect one would show, too: "
+                    "look at the one between poses, or give poses more often",
                     100.0 * rpe, 100.0 * floor));
   }
   const std::string quaternions = suspect_quaternion_order(estimate, truth);
@@ -149,8 +150,10 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
     const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
     json["rpe"][fmt::format("{}m", length)] =
         with_floor(rpe, relative_pose_error(perfect, truth, length, length));
-    if (length == 1.0) over_time["rpe_1m"] = errors_over_time(rpe.segments, truth.begin_time());
   }
+  const RelativePoseError at_poses = relative_pose_error_at_poses(estimate, truth);
+  json["rpe"]["1m_at_poses"] = to_json(at_poses);
+  over_time["rpe_1m"] = errors_over_time(at_poses.segments, truth.begin_time());
   json["rpe"]["1s"] = with_floor(relative_pose_error_over_time(estimate, truth),
                                  relative_pose_error_over_time(perfect, truth));
   for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3, Gauge::kPosYaw}) {

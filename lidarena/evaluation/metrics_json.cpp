@@ -44,6 +44,9 @@ std::string definition_id(const RelativePoseError& rpe) {
   const char* unit = by_path ? "m" : "s";
   const std::string spacing =
       rpe.step == segment ? "disjoint" : fmt::format("every{}{}", rpe.step, unit);
+  if (rpe.at_poses)
+    return fmt::format("rpe_{0}m_at_poses[ref-arc,{0}m,{1},nearest-poses,gap1.5]", segment,
+                       spacing);
   return fmt::format("rpe_{0}{1}[{2},{0}{1},{3},interp,gap1.5]", segment, unit,
                      by_path ? "ref-arc" : "time", spacing);
 }

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "lidarena/base/error.hpp"
@@ -48,9 +50,21 @@ std::optional<Pose> motion_over(const Trajectory& trajectory, TimeSpan piece, Ti
   return a->inverse() * *b;
 }
 
-/// E = (Q_a^-1 Q_b)^-1 (P_a^-1 P_b) of each piece (paper eq. 1), and their statistics.
+/// Stamp of the estimate's pose nearest to an instant within its span.
+Time nearest_stamp(const Trajectory& estimate, Time t) {
+  const auto poses = estimate.poses();
+  const auto after = std::lower_bound(poses.begin(), poses.end(), t,
+                                      [](const StampedPose& p, Time x) { return p.stamp < x; });
+  if (after == poses.begin()) return after->stamp;
+  const Time before = std::prev(after)->stamp;
+  return after == poses.end() || t - before <= after->stamp - t ? before : after->stamp;
+}
+
+/// E = (Q_a^-1 Q_b)^-1 (P_a^-1 P_b) of each piece (paper eq. 1), times its `factor`, and their
+/// statistics.
 RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
-                        const std::vector<TimeSpan>& pieces) {
+                        const std::vector<TimeSpan>& pieces,
+                        const std::function<double(const TimeSpan&)>& factor = nullptr) {
   const Time estimate_bracket = max_bracket(estimate);
   const Time truth_bracket = max_bracket(truth);
   RelativePoseError rpe;
@@ -61,8 +75,9 @@ RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
     const std::optional<Pose> p = motion_over(estimate, piece, estimate_bracket);
     if (!q || !p) continue;
     const Pose error = q->inverse() * *p;
-    translations.push_back(error.translation().norm());
-    rotations.push_back(so3::angle(error.linear()));
+    const double by = factor ? factor(piece) : 1.0;
+    translations.push_back(by * error.translation().norm());
+    rotations.push_back(by * so3::angle(error.linear()));
     rpe.segments.push_back({piece.begin, piece.end, translations.back(), rotations.back()});
   }
   rpe.used = rpe.segments.size();
@@ -88,6 +103,30 @@ RelativePoseError relative_pose_error(const Trajectory& estimate, const Trajecto
   RelativePoseError rpe = score(estimate, truth, pieces_of_path(arc, segment_m, step_m));
   rpe.segment_m = segment_m;
   rpe.step = step_m;
+  return rpe;
+}
+
+RelativePoseError relative_pose_error_at_poses(const Trajectory& estimate, const Trajectory& truth,
+                                               double segment_m) {
+  require_positive(segment_m, "segment_m");
+  const ArcLength arc(truth, common_span(estimate, truth));
+  const std::vector<TimeSpan> exact = pieces_of_path(arc, segment_m, segment_m);
+  const Time bracket = max_bracket(estimate);
+  std::vector<TimeSpan> pieces;
+  for (const TimeSpan& piece : exact) {
+    if (!pose_between(estimate, piece.begin, bracket) ||
+        !pose_between(estimate, piece.end, bracket))
+      continue;
+    const TimeSpan moved{nearest_stamp(estimate, piece.begin), nearest_stamp(estimate, piece.end)};
+    if (moved.begin < moved.end) pieces.push_back(moved);
+  }
+  RelativePoseError rpe = score(estimate, truth, pieces, [&](const TimeSpan& piece) {
+    return segment_m / (arc.at(piece.end) - arc.at(piece.begin));
+  });
+  rpe.total = exact.size();
+  rpe.segment_m = segment_m;
+  rpe.step = segment_m;
+  rpe.at_poses = true;
   return rpe;
 }
 

@@ -26,6 +26,7 @@ struct RelativePoseError {
   double segment_m = 0.0;  ///< length of reference path of a piece, or
   double segment_s = 0.0;  ///< its duration; the other is zero
   double step = 0.0;       ///< between starts of pieces, in the same unit
+  bool at_poses = false;   ///< pieces run from pose to pose of the estimate
   std::size_t used = 0;    ///< pieces scored
   std::size_t total = 0;   ///< pieces that the common time span has
   Summary translation_m;
@@ -41,6 +42,12 @@ inline constexpr std::array kLadder_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
 /// Throws InputError when a length is not positive.
 RelativePoseError relative_pose_error(const Trajectory& estimate, const Trajectory& truth,
                                       double segment_m = 1.0, double step_m = 1.0);
+
+/// The same with each end moved to the nearest pose of the estimate, of which nothing is
+/// interpolated then; errors are per `segment_m` of the path between those. A piece that shrinks to
+/// a pose is dropped. What a perfect estimate has of it is rounding.
+RelativePoseError relative_pose_error_at_poses(const Trajectory& estimate, const Trajectory& truth,
+                                               double segment_m = 1.0);
 
 /// Error per `segment_s` of time, which hovering counts in, too.
 RelativePoseError relative_pose_error_over_time(const Trajectory& estimate, const Trajectory& truth,

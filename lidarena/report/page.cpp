@@ -226,8 +226,9 @@ std::string without_bundle() {
 }
 
 constexpr const char* kReading =
-    "RPE: the true path is cut into metres; for each, the motion that the algorithm found is set "
-    "against the true one; root mean square over all metres. ATE: distance between the two paths "
+    "RPE: the true path is cut into metres, from one estimated pose to another; for each, the "
+    "motion that the algorithm found is set against the true one; root mean square over all. ATE: "
+    "distance between the two paths "
     "after laying one over the other. Map: point-to-mesh distance to the very mesh that was "
     "scanned. "
     "Figures come from the final trajectory; metrics.json in each run's folder holds the live one, "

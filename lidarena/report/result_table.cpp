@@ -106,8 +106,8 @@ void read_row(ResultRow& row) {
   row.metrics = read_json(row.folder / "metrics.json");
   row.status = row.metrics.value("status", "ok");
   row.reason = row.metrics.value("reason", "");
-  row.rpe_cm_per_m = number(row.metrics, "/final/rpe/1m/translation/rmse_m", 100.0);
-  row.rpe_deg_per_m = number(row.metrics, "/final/rpe/1m/rotation/rmse_rad", kDegrees);
+  row.rpe_cm_per_m = number(row.metrics, "/final/rpe/1m_at_poses/translation/rmse_m", 100.0);
+  row.rpe_deg_per_m = number(row.metrics, "/final/rpe/1m_at_poses/rotation/rmse_rad", kDegrees);
   row.ate_cm = number(row.metrics, "/final/ate/se3/translation/rmse_m", 100.0);
   row.coverage_percent = number(row.metrics, "/final/association/coverage", 100.0);
   row.own_map = map_figures(row.metrics, "own");

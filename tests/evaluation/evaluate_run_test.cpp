@@ -66,6 +66,7 @@ TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
   EXPECT_EQ(m["final"]["rpe"]["1m"]["used"], m["final"]["rpe"]["1m"]["total"]);
   // what linear interpolation at 10 Hz leaves: a T^2 / 8 = 1.6 mm at each end
   EXPECT_LT(m["final"]["rpe"]["1m"]["translation"]["rmse_m"], 0.0033);
+  EXPECT_LT(m["final"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"], 1e-9);
   const Json& rpe = m["final"]["rpe"]["1m"];
   EXPECT_NEAR(rpe["floor"]["translation_rmse_m"], rpe["translation"]["rmse_m"], 1e-12);
   EXPECT_NEAR(rpe["floor"]["rotation_rmse_rad"], rpe["rotation"]["rmse_rad"], 1e-12);
@@ -89,6 +90,8 @@ TEST_F(EvaluateRun, LiveAndFinalTrajectoriesAreScoredEach) {
 TEST_F(EvaluateRun, EveryMetricNamesItsDefinition) {
   const Json m = evaluate();
   EXPECT_EQ(m["final"]["rpe"]["1m"]["definition"], "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]");
+  EXPECT_EQ(m["final"]["rpe"]["1m_at_poses"]["definition"],
+            "rpe_1m_at_poses[ref-arc,1m,disjoint,nearest-poses,gap1.5]");
   EXPECT_EQ(m["final"]["rpe"]["1s"]["definition"], "rpe_1s[time,1s,disjoint,interp,gap1.5]");
   EXPECT_EQ(m["final"]["ate"]["se3"]["definition"], "ate_se3[est-stamps,ref-interp,gap1.5]");
   EXPECT_EQ(m["final"]["kitti"]["definition"],

@@ -30,11 +30,12 @@ ScoredRun run_of(const std::string& name, const std::string& algorithm, const st
                                {"truth_rate_hz", 1000.0}, {"time_offset_s", nullptr}};
   m["final"]["association"]["lever_arm"] = {{"position_m", {0.25, -0.1, nullptr}},
                                             {"rotation_vector_rad", {0.0, 0.0, 0.1}}};
-  m["final"]["rpe"]["1m"] = {{"definition", "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]"},
-                             {"used", 38},
-                             {"total", 45},
-                             {"translation", {{"rmse_m", cm / 100}, {"count", 38}}},
-                             {"rotation", {{"rmse_rad", 0.01}}}};
+  m["final"]["rpe"]["1m_at_poses"] = {
+      {"definition", "rpe_1m_at_poses[ref-arc,1m,disjoint,nearest-poses,gap1.5]"},
+      {"used", 38},
+      {"total", 45},
+      {"translation", {{"rmse_m", cm / 100}, {"count", 38}}},
+      {"rotation", {{"rmse_rad", 0.01}}}};
   m["final"]["ate"]["se3"] = {{"refused", "the flight is a line"}, {"translation", nullptr}};
   m["final"]["kitti"] = {{"refused", "the common path is 45 m, no piece of 100 m fits"}};
   m["live"] = m["final"];
@@ -108,7 +109,7 @@ TEST(MetricsText, AFigureThatMeansLittleSaysSo) {
 
 TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
   ScoredRun run = run_of("run_a", "x:y", "house", 1.25);
-  run.metrics["live"]["rpe"]["1m"]["translation"]["rmse_m"] = 0.03;
+  run.metrics["live"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"] = 0.03;
   run.metrics["live"]["association"]["coverage"] = 0.5;
   const std::string text = metrics_text(run);
   const std::string live = text.substr(text.find("RPE per metre, live"));
@@ -143,8 +144,8 @@ TEST(MetricsCsv, HasARowAFigureAndARowForARunWithout) {
       std::vector{run_of("a,b", "x:y", "house", 1.25), diverged("bad", "x:y", "house")}));
   ASSERT_GE(lines.size(), 4U);
   EXPECT_EQ(lines[1],
-            "\"a,b\",x:y,house,1,ok,,87.100,rpe_1m_translation,"
-            "\"rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]\",1.25,cm,38,45");
+            "\"a,b\",x:y,house,1,ok,,87.100,rpe_1m_at_poses_translation,"
+            "\"rpe_1m_at_poses[ref-arc,1m,disjoint,nearest-poses,gap1.5]\",1.25,cm,38,45");
   EXPECT_EQ(lines.back(), "bad,x:y,house,1,diverged,\"900 m from the truth, 50 % & more\",,,,,,,");
   for (const std::string& line : lines) {
     bool inside = false;
@@ -247,15 +248,15 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
                           : run_of("b" + flight, "second", flight, 1.5 + i));
   }
   const Json json = statistics_json(runs);
-  const Json& first = json["algorithms"]["first"]["rpe_1m_translation"];
+  const Json& first = json["algorithms"]["first"]["rpe_1m_at_poses_translation"];
   EXPECT_NEAR(first["median"], 3.5, 1e-9);
   EXPECT_EQ(first["flights"], 4);
   EXPECT_FALSE(first["median_95"].is_null());
-  const Json& second = json["algorithms"]["second"]["rpe_1m_translation"];
+  const Json& second = json["algorithms"]["second"]["rpe_1m_at_poses_translation"];
   EXPECT_EQ(second["runs"], 4);
   EXPECT_EQ(second["values"], 3);
   EXPECT_EQ(second["failures"][0], "flight3 1: diverged: 900 m from the truth, 50 % & more");
-  const Json& paired = json["paired"]["figures"]["rpe_1m_translation"];
+  const Json& paired = json["paired"]["figures"]["rpe_1m_at_poses_translation"];
   EXPECT_EQ(paired["pairs"], 3);
   EXPECT_NEAR(paired["median_difference"], -0.5, 1e-9);
   EXPECT_NEAR(paired["wilcoxon_p"], 0.25, 1e-12);

@@ -43,6 +43,48 @@ TEST(RelativePoseError, OfASlowlySampledCopyIsTheInterpolationError) {
   EXPECT_GT(rpe.translation_m.max, 0.0);
 }
 
+TEST(RelativePoseError, BetweenPosesASlowlySampledCopyHasNone) {
+  const Trajectory truth = sample(tour, 1ms, 30s);
+  for (const Time period : {Time(100ms), Time(300ms), Time(700ms)}) {
+    const RelativePoseError rpe = relative_pose_error_at_poses(sample(tour, period, 30s), truth);
+    EXPECT_GT(rpe.used, 10U);
+    EXPECT_LT(rpe.translation_m.max, 1e-9) << period.count();
+    EXPECT_LT(rpe.rotation_rad.max, 1e-9) << period.count();
+  }
+}
+
+TEST(RelativePoseError, BetweenPosesOnePercentOfScaleIsOneCentimetrePerMetre) {
+  const Trajectory truth = sample(line, 10ms, 20s);
+  const auto scaled = [](double t) { return level({1.01 * t, 0, 0}); };
+  for (const Time period : {Time(100ms), Time(300ms), Time(800ms)}) {
+    const RelativePoseError rpe = relative_pose_error_at_poses(sample(scaled, period, 20s), truth);
+    EXPECT_NEAR(rpe.translation_m.max, 0.01, kRounding);
+    EXPECT_NEAR(rpe.translation_m.mean, 0.01, kRounding);
+    for (const SegmentError& piece : rpe.segments) {
+      EXPECT_EQ(piece.begin % period, Time{0});
+      EXPECT_EQ(piece.end % period, Time{0});
+    }
+  }
+}
+
+TEST(RelativePoseError, BetweenPosesTooSeldomForAMetreThePiecesAreLonger) {
+  // At 1 m/s a pose every 3 s: of three pieces one has ends that come to different poses.
+  const Trajectory truth = sample(line, 10ms, 30s);
+  const RelativePoseError rpe = relative_pose_error_at_poses(sample(line, 3s, 30s), truth);
+  EXPECT_EQ(rpe.total, 30U);
+  EXPECT_EQ(rpe.used, 10U);
+  for (const SegmentError& piece : rpe.segments) EXPECT_EQ(piece.end - piece.begin, Time(3s));
+}
+
+TEST(RelativePoseError, BetweenPosesNothingIsTakenAcrossAGap) {
+  const Trajectory truth = sample(line, 10ms, 20s);
+  const Trajectory estimate = with_gap(sample(line, 100ms, 20s), 5500ms, 8250ms);
+  const RelativePoseError rpe = relative_pose_error_at_poses(estimate, truth);
+  EXPECT_EQ(rpe.total, 20U);
+  EXPECT_EQ(rpe.used, 16U);  // those that begin or end in metres 5.5 to 8.25 are out
+  EXPECT_LT(rpe.translation_m.max, kRounding);
+}
+
 TEST(RelativePoseError, OnePercentOfScaleIsOneCentimetrePerMetre) {
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory estimate = sample([](double t) { return level({1.01 * t, 0, 0}); }, 100ms, 20s);

@@ -340,7 +340,7 @@ TEST(LioSamStart, AccelerationsInUnitsOfGAreScaled) {
 
 TEST(LioSamKeyframes, ComeWithDistanceTurnAndInTheProgramsLivoxModeWithTime) {
   Config config;
-  const Keyframe last{from_seconds(10.0), Pose::Identity(), {}};
+  const Keyframe last{from_seconds(10.0), Pose::Identity(), {}, 0};
   const auto moved = [](double x, double yaw) {
     return make_pose(so3::exp({0, 0, yaw}), {x, 0, 0});
   };
@@ -361,9 +361,54 @@ TEST(LioSamKeyframes, TheSubmapTakesTheNearTheOldestOfEachCellAndTheRecent) {
   const std::vector<std::pair<double, double>> time_and_x{{0, 0.5},  {20, 1.5}, {40, 2.5},
                                                           {60, 9.0}, {95, 3.0}, {96, 3.5}};
   for (const auto& [t, x] : time_and_x)
-    keyframes.push_back({from_seconds(t), make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}), {}});
+    keyframes.push_back(
+        {from_seconds(t), make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}), {}, 0});
   EXPECT_EQ(surrounding(keyframes, {3.5, 0, 0}, from_seconds(100.0), config),
             (std::vector<std::uint32_t>{0, 2, 4, 5}));
+}
+
+TEST(LioSamKeyframes, TheSubmapFollowsAsIfMadeAnew) {
+  const Config config;
+  SequentialRandom random(4);
+  const auto seen = [&] {
+    Features features;
+    for (int i = 0; i < 400; ++i) {
+      const auto coordinate = [&] { return static_cast<float>(random.uniform(-3.0, 3.0)); };
+      const float x = coordinate(), y = coordinate(), z = coordinate();
+      (i < 40 ? features.edges : features.surfaces).emplace_back(x, y, z);
+    }
+    return features;
+  };
+  std::vector<Keyframe> keyframes;
+  for (int i = 0; i < 8; ++i) {
+    const Pose pose = make_pose(so3::exp({0.0, 0.1 * i, 0.3 * i}), {0.5 * i, 0.1, -0.2});
+    keyframes.push_back({from_seconds(i), pose, seen(), 0});
+  }
+  const auto sorted = [](std::vector<Eigen::Vector3f> points) {
+    std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
+      return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+    });
+    return points;
+  };
+  Submap follows(config);
+  const auto expect_as_anew = [&](const std::vector<std::uint32_t>& chosen) {
+    follows.select(keyframes, chosen);
+    Submap anew(config);
+    anew.select(keyframes, chosen);
+    EXPECT_EQ(sorted(follows.map().edges.points()), sorted(anew.map().edges.points()));
+    EXPECT_EQ(sorted(follows.map().surfaces.points()), sorted(anew.map().surfaces.points()));
+  };
+  expect_as_anew({0, 1, 2, 3});
+  expect_as_anew({1, 3, 4, 7});
+  keyframes[3].features = seen();  // renewed
+  ++keyframes[3].revision;
+  expect_as_anew({1, 3, 4, 7});
+  for (Keyframe& keyframe : keyframes) {  // moved by a loop
+    keyframe.world_from_lidar.translation().x() += 0.37;
+    ++keyframe.revision;
+  }
+  expect_as_anew({1, 3, 4, 7});
+  expect_as_anew({0, 1, 2, 3, 4, 5, 6, 7});
 }
 
 // --- Whole ---

@@ -85,7 +85,7 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
   const std::string files = "--trajectory good.tum --trajectory bad_one.tum --truth truth.tum";
   const Outcome csv = call("--csv " + files);
   EXPECT_EQ(csv.exit_code, 1);  // one of them diverged
-  EXPECT_THAT(csv.out, AllOf(HasSubstr("good.tum,,,,ok,,100.000,rpe_1m_translation,"),
+  EXPECT_THAT(csv.out, AllOf(HasSubstr("good.tum,,,,ok,,100.000,rpe_1m_at_poses_translation,"),
                              HasSubstr("bad_one.tum,,,,diverged,")));
   EXPECT_THAT(call("--markdown " + files).out,
               AllOf(HasSubstr("| good.tum | 100 |"), HasSubstr("| bad_one.tum | - | - |")));
@@ -93,7 +93,7 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
               AllOf(HasSubstr("\\toprule"), HasSubstr("bad\\_one.tum & \\multicolumn")));
   const json document = json::parse(call("--json " + files).out);
   EXPECT_EQ(document["runs"].size(), 2U);
-  const json& spread = document["statistics"]["algorithms"][""]["rpe_1m_translation"];
+  const json& spread = document["statistics"]["algorithms"][""]["rpe_1m_at_poses_translation"];
   EXPECT_EQ(spread["runs"], 2);
   EXPECT_EQ(spread["failures"].size(), 1U);
   EXPECT_THAT(call(files).out, HasSubstr("without: "));

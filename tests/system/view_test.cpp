@@ -148,7 +148,7 @@ void write_study(const fs::path& folder) {
     std::ofstream(run / "manifest.json") << nlohmann::json{
         {"kind", "run"}, {"summary", {{"sensor_seconds", 2.0}, {"compute_seconds", 1.0}}}};
     const nlohmann::json curve{{"t_s", {0.0, 1.0, 2.0}}, {"translation_m", {0.0, 0.01, 0.02}}};
-    const nlohmann::json final{{"rpe", {{"1m", {{"translation", {{"rmse_m", 0.012}}}}}}},
+    const nlohmann::json final{{"rpe", {{"1m_at_poses", {{"translation", {{"rmse_m", 0.012}}}}}}},
                                {"errors_over_time", {{"ate_se3", curve}}}};
     std::ofstream(run / "metrics.json") << nlohmann::json{{"status", "ok"}, {"final", final}};
     std::ofstream(run / "resources.csv")

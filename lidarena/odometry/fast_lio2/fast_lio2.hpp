@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <deque>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -82,7 +83,7 @@ class FastLio2 : public Odometry {
   std::vector<Eigen::Vector3f> registered_scan_;
   /// What the program's buffer holds of a point.
   using ArchivedPoint = std::array<float, 12>;
-  std::vector<ArchivedPoint> archive_;
+  std::deque<ArchivedPoint> archive_;  ///< a vector's growth would copy gigabytes within a scan
 };
 
 }  // namespace lidarena::fast_lio2

@@ -15,6 +15,14 @@ void append(std::vector<Eigen::Vector3f>& all, const std::vector<Eigen::Vector3f
   for (const Eigen::Vector3f& p : points) all.push_back(moved * p);
 }
 
+/// Its features, in the world.
+Features placed(const Keyframe& keyframe) {
+  Features in_world;
+  append(in_world.edges, keyframe.features.edges, keyframe.world_from_lidar);
+  append(in_world.surfaces, keyframe.features.surfaces, keyframe.world_from_lidar);
+  return in_world;
+}
+
 }  // namespace
 
 bool is_keyframe(const Keyframe& last, Time stamp, const Pose& world_from_lidar,
@@ -62,23 +70,42 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
   return chosen;
 }
 
-void Submap::select(const std::vector<Keyframe>& keyframes, std::vector<std::uint32_t> chosen,
-                    std::uint64_t revision, const Config& config) {
-  if (chosen == chosen_ && revision == revision_) return;
-  chosen_ = std::move(chosen);
-  revision_ = revision;
-  Features all;
-  for (const std::uint32_t i : chosen_) {
-    append(all.edges, keyframes[i].features.edges, keyframes[i].world_from_lidar);
-    append(all.surfaces, keyframes[i].features.surfaces, keyframes[i].world_from_lidar);
+void Submap::select(const std::vector<Keyframe>& keyframes,
+                    const std::vector<std::uint32_t>& chosen) {
+  bool changed = false;
+  for (auto part = parts_.begin(); part != parts_.end();) {
+    const auto& [i, held] = *part;
+    if (held.revision == keyframes[i].revision &&
+        std::binary_search(chosen.begin(), chosen.end(), i)) {
+      ++part;
+      continue;
+    }
+    edges_.remove(held.placed.edges);
+    surfaces_.remove(held.placed.surfaces);
+    part = parts_.erase(part);
+    changed = true;
   }
-  all = thinned(all, config);
-  map_.edges.build(std::move(all.edges));
-  map_.surfaces.build(std::move(all.surfaces));
+  for (const std::uint32_t i : chosen) {
+    const auto [part, is_new] = parts_.try_emplace(i);
+    if (!is_new) continue;
+    part->second = {keyframes[i].revision, placed(keyframes[i])};
+    edges_.add(part->second.placed.edges);
+    surfaces_.add(part->second.placed.surfaces);
+    changed = true;
+  }
+  if (!changed) return;
+  map_.edges.build(edges_.means());
+  map_.surfaces.build(surfaces_.means());
 }
 
 std::uint64_t Submap::memory_bytes() const {
-  return map_.edges.memory_bytes() + map_.surfaces.memory_bytes();
+  std::uint64_t bytes = map_.edges.memory_bytes() + map_.surfaces.memory_bytes() +
+                        edges_.memory_bytes() + surfaces_.memory_bytes();
+  for (const auto& [keyframe, part] : parts_) {
+    bytes += sizeof(Part) + sizeof(Eigen::Vector3f) *
+                                (part.placed.edges.capacity() + part.placed.surfaces.capacity());
+  }
+  return bytes;
 }
 
 }  // namespace lidarena::lio_sam

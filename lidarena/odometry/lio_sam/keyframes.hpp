@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <vector>
 
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/time.hpp"
+#include "lidarena/map/voxel_sums.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
 #include "lidarena/odometry/lio_sam/features.hpp"
 #include "lidarena/odometry/lio_sam/registration.hpp"
@@ -16,7 +18,8 @@ namespace lidarena::lio_sam {
 struct Keyframe {
   Time stamp{0};
   Pose world_from_lidar = Pose::Identity();
-  Features features;  ///< thinned, LiDAR frame
+  Features features;           ///< thinned, LiDAR frame
+  std::uint32_t revision = 0;  ///< how often it has been moved or renewed
 };
 
 /// Whether a scan at `stamp` and `world_from_lidar` should be one, given the last one.
@@ -45,20 +48,29 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
                                        const Eigen::Vector3d& position, Time now,
                                        const Config& config);
 
-/// The features of some keyframes in one map, rebuilt when others are asked for.
+/// The features of some keyframes in one map. When others are asked for, it pays for those that
+/// come and go, and for the search tree.
 class Submap {
  public:
-  /// `revision` grows whenever keyframes have been moved or renewed.
-  void select(const std::vector<Keyframe>& keyframes, std::vector<std::uint32_t> chosen,
-              std::uint64_t revision, const Config& config);
+  explicit Submap(const Config& config)
+      : edges_(config.edge_leaf_m), surfaces_(config.surface_leaf_m) {}
+  /// `chosen`: indices of `keyframes`, in order.
+  void select(const std::vector<Keyframe>& keyframes, const std::vector<std::uint32_t>& chosen);
   const FeatureMap& map() const { return map_; }
   std::size_t size() const { return map_.edges.size() + map_.surfaces.size(); }
   std::uint64_t memory_bytes() const;
 
  private:
+  /// What a keyframe brought in.
+  struct Part {
+    std::uint32_t revision = 0;
+    Features placed;  ///< world frame
+  };
+
+  std::map<std::uint32_t, Part> parts_;  ///< by keyframe
+  VoxelSums edges_;
+  VoxelSums surfaces_;
   FeatureMap map_;
-  std::vector<std::uint32_t> chosen_;
-  std::uint64_t revision_ = 0;
 };
 
 }  // namespace lidarena::lio_sam

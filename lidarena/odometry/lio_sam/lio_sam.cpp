@@ -49,6 +49,7 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       imu_(config.max_imu_gap_s),
       sweep_(from_seconds(1.0 / lidar.rate_hz)),
       pending_(ImuBias{}, noise_),
+      submap_(config),
       closer_(config.loop, parallel_) {}
 
 ScanResult LioSam::register_scan(const Scan& scan) {
@@ -170,7 +171,7 @@ Registration LioSam::match(const Features& features, const Pose& guess, Time sta
                       features.surfaces.size() >= static_cast<std::size_t>(config_.min_surfaces);
   if (keyframes_.empty() || !enough) return none;
   const Eigen::Vector3d here = keyframes_.back().world_from_lidar.translation();
-  submap_.select(keyframes_, surrounding(keyframes_, here, stamp, config_), revision_, config_);
+  submap_.select(keyframes_, surrounding(keyframes_, here, stamp, config_));
   return register_features(features, submap_.map(), guess, config_, parallel_);
 }
 
@@ -237,17 +238,18 @@ void LioSam::keep(Time stamp, Pose& world_from_lidar, Features features) {
                          : keyframes_.back().world_from_lidar.inverse() * world_from_lidar;
   poses_.add_anchor(stamp, previous_from_this);
   merger_.begin(features);
-  keyframes_.push_back({stamp, world_from_lidar, std::move(features)});
+  keyframes_.push_back({stamp, world_from_lidar, std::move(features), 0});
   if (!config_.loop_closure) return;
   const bool moved = closer_.add(stamp, previous_from_this, [this](std::size_t keyframe) {
     return std::span<const Eigen::Vector3f>(keyframes_[keyframe].features.surfaces);
   });
   if (!moved) return;
-  for (std::size_t i = 0; i < keyframes_.size(); ++i)
+  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
     keyframes_[i].world_from_lidar = closer_.poses()[i];
+    ++keyframes_[i].revision;
+  }
   world_from_lidar = keyframes_.back().world_from_lidar;
   world_from_lidar_ = world_from_lidar;  // what was just registered
-  ++revision_;
 }
 
 bool LioSam::merge(Time stamp, const Pose& world_from_lidar, const Features& features) {
@@ -259,7 +261,7 @@ bool LioSam::merge(Time stamp, const Pose& world_from_lidar, const Features& fea
           : merger_.add(features, last.world_from_lidar.inverse() * world_from_lidar, config_);
   if (renew) {
     last.features = merger_.merged(config_);
-    ++revision_;
+    ++last.revision;
   }
   return !due;
 }

@@ -98,8 +98,7 @@ class LioSam : public Odometry {
   std::optional<Time> last_mapped_;
 
   std::vector<Keyframe> keyframes_;
-  KeyframeMerger merger_;       ///< of the last one
-  std::uint64_t revision_ = 0;  ///< how often keyframes have been moved or renewed
+  KeyframeMerger merger_;  ///< of the last one
   Submap submap_;
   AnchoredTrajectory poses_;  ///< of the LiDAR
   LoopCloser closer_;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What each loop does to the map: LIO-SAM without and with loop closure side by side over a
+// dataset; after each scan that brought a loop, and at the end, both maps' error against the mesh
+// (SE(3) gauge on the flight so far, at most 200,000 points). Usage:
+//   loop_effect PRESET DATASET [KEY=VALUE ...]
+#include <fmt/format.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/error.hpp"
+#include "lidarena/evaluation/alignment.hpp"
+#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/world/mesh_io.hpp"
+
+namespace lidarena {
+namespace {
+
+MapError error_of(const Odometry& odometry, const Trajectory& truth, const World& world,
+                  const Parallel& parallel) {
+  constexpr std::size_t kMost = 200'000;
+  const std::vector<Eigen::Vector3f> map = odometry.map();
+  std::vector<Eigen::Vector3f> sample;
+  const std::size_t stride = map.size() / kMost + 1;
+  for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
+  const Alignment alignment = align(odometry.trajectory(), truth, Gauge::kSe3);
+  return map_error(sample, alignment.truth_from_estimate, world, parallel);
+}
+
+struct Contest {
+  std::unique_ptr<Odometry> without, with;
+  const Trajectory& truth;
+  const World& world;
+  const Parallel& parallel;
+
+  void print(Time stamp, double loops, double tried) const {
+    const MapError a = error_of(*without, truth, world, parallel);
+    const MapError b = error_of(*with, truth, world, parallel);
+    fmt::print("| {:.1f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
+               to_seconds(stamp - truth.begin_time()), loops, tried, 100.0 * a.distance_m.rmse,
+               a.outliers_percent, 100.0 * b.distance_m.rmse, b.outliers_percent);
+    std::fflush(stdout);
+  }
+};
+
+int show(const std::string& preset, const std::string& path, std::vector<std::string> overrides) {
+  const Parallel parallel(0);
+  Dataset dataset = open_any_dataset(path, {}, parallel);
+  const std::optional<Trajectory> truth = load_truth(path);
+  if (!truth) throw InputError(path, "carries no truth", "give a simulated dataset");
+  const World world(load_mesh(path + "/world.ply"));
+  const LidarInfo* lidar = dataset.rig.find_lidar("");
+  const auto made = [&](const char* algorithm) {
+    return make_odometry({algorithm, preset, "", overrides}, dataset.rig, lidar->id, parallel)
+        .odometry;
+  };
+  const Contest contest{made("lio_sam"), made("lio_sam_lc"), *truth, world, parallel};
+  fmt::print(
+      "| s | loops | tried | RMSE cm | > 20 cm % | with loops: RMSE cm | > 20 cm % |\n"
+      "|---|---|---|---|---|---|---|\n");
+  double loops = 0.0, tried = 0.0;
+  Time last{0};
+  while (const auto event = dataset.events->next()) {
+    if (const auto* sample = std::get_if<ImuSample>(&event->data)) {
+      contest.without->register_imu(*sample);
+      contest.with->register_imu(*sample);
+      continue;
+    }
+    const auto* scan = std::get_if<Scan>(&event->data);
+    if (scan == nullptr || event->sensor_id != lidar->id) continue;
+    contest.without->register_scan(*scan);
+    const ScanResult result = contest.with->register_scan(*scan);
+    last = scan->stamp;
+    if (!result.counters.contains("loops")) continue;
+    tried = result.counters.at("loops_tried");
+    if (result.counters.at("loops") <= loops) continue;
+    loops = result.counters.at("loops");
+    contest.print(last, loops, tried);
+  }
+  contest.without->finish();
+  contest.with->finish();
+  contest.print(last, loops, tried);
+  return 0;
+}
+
+}  // namespace
+}  // namespace lidarena
+
+int main(int argc, char** argv) {
+  try {
+    if (argc < 3) throw lidarena::InputError("arguments", "two are needed", "PRESET DATASET");
+    return lidarena::show(argv[1], argv[2], {argv + 3, argv + argc});
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "loop_effect: {}\n", error.what());
+    return 2;
+  }
+}

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <tsl/robin_map.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "lidarena/map/voxel_key.hpp"
+
+namespace lidarena {
+
+/// Means of the points in each cell of a grid, where points come and go: a map that follows a
+/// sensor pays for what changes and not for all of it. Coordinates are summed in whole micrometres,
+/// so what is removed leaves nothing behind. Points that are not finite are left out.
+class VoxelSums {
+ public:
+  /// `voxel_size`: edge of a cell (m).
+  explicit VoxelSums(double voxel_size);
+
+  void add(std::span<const Eigen::Vector3f> points);
+  /// Takes away points that were added, with the very same coordinates.
+  void remove(std::span<const Eigen::Vector3f> points);
+
+  /// One point a cell that is not empty, in an order that depends on what was done alone.
+  std::vector<Eigen::Vector3f> means() const;
+
+  std::size_t size() const { return cells_.size(); }
+  std::uint64_t memory_bytes() const;
+
+ private:
+  struct Cell {
+    VoxelKey key = 0;
+    Eigen::Matrix<std::int64_t, 3, 1> sum_um = Eigen::Matrix<std::int64_t, 3, 1>::Zero();
+    std::int64_t count = 0;
+  };
+  VoxelKey key_of(const Eigen::Vector3f& point) const;
+
+  float inverse_size_;
+  std::vector<Cell> cells_;
+  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< in `cells_`
+};
+
+}  // namespace lidarena
