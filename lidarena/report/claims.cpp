@@ -267,7 +267,8 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
            "less than half the outliers (paper: 10.68 to 3.68 and 21.78 to 0.17 %)",
            {},
            {},
-           "where the map without it is good already there is nothing to cure"}),
+           "a map that is good without it has little to cure, and what bends between two loops "
+           "stays bent"}),
       judge.loop_closure_worsens({"Loop closure worsens the House with the Mid-360",
                                   "more outliers with it (paper: 2.28 to 4.24 %)",
                                   {},

@@ -244,6 +244,18 @@ TEST(Decision, WhoseTimeIsNotKnownIsNotCalledUsable) {
   EXPECT_EQ(decision_section(results).tables.at(0).rows.at(1).at(1).text, "time not measured");
 }
 
+TEST(Decision, AMapThatLiesElsewhereIsALostTrack) {
+  Results results;
+  results.rows = {tried("cheap", "wild", 900.0, 10.0), tried("cheap", "good", 3.0, 40.0)};
+  results.rows[0].reprojected_map->outliers_percent = 99.0;
+  const std::vector<Candidate> found = candidates(results, "mine");
+  EXPECT_EQ(found[0].algorithm, "good");
+  EXPECT_FALSE(found[1].keeps_track());
+  const ReportTable table = decision_section(results).tables.at(0);
+  EXPECT_EQ(table.rows.at(1).at(1).text, "lost track in 1 of 1");
+  EXPECT_EQ(table.rows.at(1).at(2).text, "900");
+}
+
 TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
   Results results;
   results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 1.0, 10.0)};
