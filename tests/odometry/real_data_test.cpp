@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// KISS-ICP on recorded sweeps, where the shared data is at hand.
+// The LiDAR-only methods on recorded sweeps, where the shared data is at hand.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -15,11 +15,23 @@ namespace {
 
 const std::filesystem::path kLidarData = std::filesystem::path(LIDARENA_SHARED_DATA) / "lidar";
 
-std::unique_ptr<Odometry> kiss_icp(const std::string& preset) {
-  Rig rig;
-  rig.lidars.emplace_back();
-  return make_odometry({"kiss_icp", preset, "", {}}, rig, "", Parallel(2)).odometry;
-}
+struct Case {
+  const char* algorithm;
+  const char* preset;
+};
+
+class OnRealData : public ::testing::TestWithParam<Case> {
+ protected:
+  static std::unique_ptr<Odometry> make() {
+    Rig rig;
+    rig.lidars.emplace_back();
+    return make_odometry({GetParam().algorithm, GetParam().preset, "", {}}, rig, "", Parallel(2))
+        .odometry;
+  }
+  /// Motion from the first scan to the second, as a pose of the second in the first.
+  static Pose motion_between(const std::vector<Eigen::Vector3f>& first,
+                             const std::vector<Eigen::Vector3f>& second);
+};
 
 Scan untimed(const std::vector<Eigen::Vector3f>& positions, int index) {
   Scan scan;
@@ -29,21 +41,20 @@ Scan untimed(const std::vector<Eigen::Vector3f>& positions, int index) {
   return scan;
 }
 
-/// Motion from the first scan to the second, as a pose of the second in the first.
-Pose motion_between(const std::vector<Eigen::Vector3f>& first,
-                    const std::vector<Eigen::Vector3f>& second) {
-  const auto odometry = kiss_icp("head");
+Pose OnRealData::motion_between(const std::vector<Eigen::Vector3f>& first,
+                                const std::vector<Eigen::Vector3f>& second) {
+  const auto odometry = make();
   odometry->register_scan(untimed(first, 0));
   return odometry->register_scan(untimed(second, 1)).estimate.world_from_body;
 }
 
 double degrees(const Pose& pose) { return so3::angle(pose.linear()) * 57.29578; }
 
-TEST(KissIcpOnRealData, FollowsACarAlongAStreet) {
+TEST_P(OnRealData, FollowsACarAlongAStreet) {
   const auto folder = kLidarData / "kitti_drive";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: 15 sweeps of kitti_drive";
   Dataset dataset = open_dataset(folder);
-  const auto odometry = kiss_icp("head");
+  const auto odometry = make();
   while (const auto event = dataset.events->next())
     odometry->register_scan(std::get<Scan>(event->data));
   const Trajectory trajectory = odometry->trajectory();
@@ -61,7 +72,7 @@ TEST(KissIcpOnRealData, FollowsACarAlongAStreet) {
   }
 }
 
-TEST(KissIcpOnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
+TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
   const auto folder = kLidarData / "small_gicp_pair";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of small_gicp_pair";
   Pose target_from_source = Pose::Identity();
@@ -79,7 +90,7 @@ TEST(KissIcpOnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
   EXPECT_LT(degrees(error), 0.3);
 }
 
-TEST(KissIcpOnRealData, ThereAndBackAgainIsNoMotion) {
+TEST_P(OnRealData, ThereAndBackAgainIsNoMotion) {
   const auto folder = kLidarData / "gtsam_points" / "kitti_00";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of kitti_00";
   ReadOptions options;
@@ -97,6 +108,13 @@ TEST(KissIcpOnRealData, ThereAndBackAgainIsNoMotion) {
   EXPECT_LT((there * back).translation().norm(), 0.05);
   EXPECT_LT(degrees(there * back), 0.2);
 }
+
+INSTANTIATE_TEST_SUITE_P(LidarOnly, OnRealData,
+                         ::testing::Values(Case{"kiss_icp", "head"}, Case{"kiss_icp", "improved"},
+                                           Case{"ct_icp", "improved"}),
+                         [](const auto& tried) {
+                           return std::string(tried.param.algorithm) + "_" + tried.param.preset;
+                         });
 
 }  // namespace
 }  // namespace lidarena
