@@ -77,17 +77,20 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
         describe(turned(around(index, n, 0, cloud), graph_.nodes.back().linear()),
                  config_.appearance_range_m));
   }
-  if (index % static_cast<std::size_t>(config_.keyframes_per_search) != 0) return false;
+  if (due_.empty() && index % static_cast<std::size_t>(config_.keyframes_per_search) == 0)
+    due_ = candidates(ways_to_last());
+  return !due_.empty() && try_next(cloud);
+}
 
-  const std::vector<double> ways = ways_to_last();
-  for (const Candidate& candidate : candidates(ways)) {
-    records_.push_back(verify(candidate, ways[candidate.keyframe], cloud));
-    if (records_.back().verdict != LoopVerdict::kAccepted) continue;
-    const std::vector<LoopRecord> loops = believed();
-    if (!loops.empty()) close(loops);
-    return !loops.empty();
-  }
-  return false;
+bool LoopCloser::try_next(const KeyframeCloud& cloud) {
+  const Candidate candidate = due_.front();
+  due_.erase(due_.begin());
+  records_.push_back(verify(candidate, cloud));
+  if (records_.back().verdict != LoopVerdict::kAccepted) return false;
+  due_.clear();
+  const std::vector<LoopRecord> loops = believed();
+  if (!loops.empty()) close(loops);
+  return !loops.empty();
 }
 
 bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& ways) const {
@@ -113,7 +116,7 @@ void LoopCloser::add_nearest(const std::vector<double>& ways, std::vector<Candid
     best = i;
   }
   if (best < graph_.nodes.size())
-    found.push_back({best, false, graph_.nodes[best].inverse() * here});
+    found.push_back({best, last(), ways[best], false, graph_.nodes[best].inverse() * here});
 }
 
 void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const {
@@ -135,7 +138,8 @@ void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidat
     const Eigen::Matrix3d rotation =
         graph_.nodes[i].linear().transpose() * level * graph_.nodes.back().linear();
     alike.push_back(
-        {resemblance.distance, {i, true, make_pose(rotation, Eigen::Vector3d::Zero().eval())}});
+        {resemblance.distance,
+         {i, last(), ways[i], true, make_pose(rotation, Eigen::Vector3d::Zero().eval())}});
   }
   std::stable_sort(alike.begin(), alike.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
@@ -165,15 +169,14 @@ bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
          config_.drift_gate * (kLeastShift + config_.drift_per_metre * loop.way);
 }
 
-LoopRecord LoopCloser::verify(const Candidate& candidate, double way,
-                              const KeyframeCloud& cloud) const {
+LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
   const auto source_size = static_cast<std::size_t>(config_.source_keyframes);
   const auto target_size = static_cast<std::size_t>(config_.target_keyframes);
   LoopRecord loop;
   loop.first = candidate.keyframe;
-  loop.second = graph_.nodes.size() - 1;
+  loop.second = candidate.seen_from;
   loop.by_appearance = candidate.by_appearance;
-  loop.way = way;
+  loop.way = candidate.way;
   loop.first_from_second = candidate.guess;
   if (candidate.by_appearance && is_out_of_reach(loop)) {
     loop.verdict = LoopVerdict::kBeyondDrift;

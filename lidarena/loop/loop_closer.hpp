@@ -51,7 +51,8 @@ using KeyframeCloud = std::function<std::span<const Eigen::Vector3f>(std::size_t
 /// Finds places that a path of keyframes comes back to and bends the path so that they meet:
 /// candidates by distance (LIO-SAM, section III-C.4) and by looks, verification by ICP and by what
 /// the odometry can have drifted, then a pose graph. Knows nothing of how the path was estimated.
-/// Searches are triggered by the number of keyframes, so the same input gives the same bits.
+/// Searches are triggered by the number of keyframes, so the same input gives the same bits; what
+/// one finds is tried one by one, as keyframes come.
 class LoopCloser {
  public:
   LoopCloser(const LoopConfig& config, Parallel parallel)
@@ -70,16 +71,21 @@ class LoopCloser {
  private:
   struct Candidate {
     std::size_t keyframe = 0;
+    std::size_t seen_from = 0;  ///< the keyframe that was new
+    double way = 0.0;           ///< m of measured motion between the two
     bool by_appearance = false;
     Pose guess = Pose::Identity();  ///< candidate from new keyframe
   };
+  std::size_t last() const { return graph_.nodes.size() - 1; }
+  /// The next candidate: one a keyframe, so that none of them takes long.
+  bool try_next(const KeyframeCloud& cloud);
   std::vector<Candidate> candidates(const std::vector<double>& ways) const;
   void add_nearest(const std::vector<double>& ways, std::vector<Candidate>& found) const;
   void add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const;
   bool may_close(std::size_t keyframe, const std::vector<double>& ways) const;
   std::vector<Eigen::Vector3f> around(std::size_t keyframe, std::size_t before, std::size_t after,
                                       const KeyframeCloud& cloud) const;
-  LoopRecord verify(const Candidate& candidate, double way, const KeyframeCloud& cloud) const;
+  LoopRecord verify(const Candidate& candidate, const KeyframeCloud& cloud) const;
   /// Whether the two places lie further apart than drift can have brought them.
   bool is_out_of_reach(const LoopRecord& loop) const;
   LoopVerdict judge(const IcpResult& icp, const LoopRecord& loop) const;
@@ -96,6 +102,7 @@ class LoopCloser {
   std::vector<double> steps_;  ///< m, from the keyframe before
   std::vector<PlaceDescriptor> descriptors_;
   PoseGraph graph_;
+  std::vector<Candidate> due_;  ///< of the last search, not tried yet
   std::vector<LoopRecord> records_;
   std::vector<LoopRecord> waiting_;
   std::vector<LoopRecord> accepted_;

@@ -57,6 +57,11 @@ void VoxelSums::remove(std::span<const Eigen::Vector3f> points) {
   }
 }
 
+void VoxelSums::clear() {
+  cells_.clear();
+  places_.clear();
+}
+
 std::vector<Eigen::Vector3f> VoxelSums::means() const {
   std::vector<Eigen::Vector3f> means;
   means.reserve(cells_.size());

@@ -24,6 +24,8 @@ class VoxelSums {
   /// Takes away points that were added, with the very same coordinates.
   void remove(std::span<const Eigen::Vector3f> points);
 
+  void clear();
+
   /// One point a cell that is not empty, in an order that depends on what was done alone.
   std::vector<Eigen::Vector3f> means() const;
 

@@ -75,7 +75,8 @@ TEST(LoopCloser, ComingBackCuresTheDrift) {
   for (const LoopRecord& loop : closer.records()) {
     if (loop.verdict != LoopVerdict::kAccepted) continue;
     const Pose truth = trip.truth[loop.first].inverse() * trip.truth[loop.second];
-    EXPECT_LT((truth.inverse() * loop.first_from_second).translation().norm(), 0.05);
+    // the old place is laid out by the odometry, too: over 8 keyframes on a side, 1 cm each
+    EXPECT_LT((truth.inverse() * loop.first_from_second).translation().norm(), 0.08);
   }
 }
 

@@ -58,6 +58,12 @@ TEST(VoxelSums, WhatComesAndGoesLeavesNothingBehind) {
     for (std::size_t i = oldest; i <= newest; ++i) anew.add(parts[i]);
     EXPECT_EQ(sorted(sums.means()), sorted(anew.means())) << newest;
   }
+  VoxelSums cleared = sums;
+  cleared.clear();
+  cleared.add(parts[oldest]);
+  VoxelSums anew(0.2);
+  anew.add(parts[oldest]);
+  EXPECT_EQ(cleared.means(), anew.means());
   while (oldest < parts.size()) sums.remove(parts[oldest++]);
   EXPECT_EQ(sums.size(), 0U);
   EXPECT_TRUE(sums.means().empty());

@@ -409,6 +409,7 @@ TEST(LioSamKeyframes, TheSubmapFollowsAsIfMadeAnew) {
   }
   expect_as_anew({1, 3, 4, 7});
   expect_as_anew({0, 1, 2, 3, 4, 5, 6, 7});
+  expect_as_anew({});
 }
 
 // --- Whole ---

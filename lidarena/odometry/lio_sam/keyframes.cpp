@@ -72,14 +72,23 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
 
 void Submap::select(const std::vector<Keyframe>& keyframes,
                     const std::vector<std::uint32_t>& chosen) {
+  const auto stays = [&](const auto& part) {
+    return part.second.revision == keyframes[part.first].revision &&
+           std::binary_search(chosen.begin(), chosen.end(), part.first);
+  };
   bool changed = false;
+  if (std::none_of(parts_.begin(), parts_.end(), stays)) {  // a loop has moved them all
+    changed = !parts_.empty();
+    parts_.clear();
+    edges_.clear();
+    surfaces_.clear();
+  }
   for (auto part = parts_.begin(); part != parts_.end();) {
-    const auto& [i, held] = *part;
-    if (held.revision == keyframes[i].revision &&
-        std::binary_search(chosen.begin(), chosen.end(), i)) {
+    if (stays(*part)) {
       ++part;
       continue;
     }
+    const Part& held = part->second;
     edges_.remove(held.placed.edges);
     surfaces_.remove(held.placed.surfaces);
     part = parts_.erase(part);
