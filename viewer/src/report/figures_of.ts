@@ -71,7 +71,7 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
       itemStyle: { color, opacity: 0.55 }, data: shares.map((v) => Number(v.toPrecision(4))),
     });
   }));
-  const full = Math.ceil((top * 1.02) / 10) * 10;
+  const full = Math.min(100, Math.ceil((top * 1.02) / 20) * 20);
   // the threshold stands on an axis of centimetres of its own, over the bars' axis of bins
   algorithms.forEach((_, panel) => series.push({
     type: "line", xAxisIndex: algorithms.length + panel, yAxisIndex: panel, symbol: "none", silent: true, tooltip: { show: false },
@@ -206,11 +206,11 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
   const title = `Error against ${id === "pareto-cpu" ? "computing time" : "memory"}`;
   return {
     id, title, caption: `Every run of every world: colour the algorithm, shape the sensor. Lower left is better; the grey steps join the runs that no other beats in both.`,
-    width: 560, height: 400, overTime: false,
+    width: 560, height: 360 + 23 * Math.ceil(algorithms.length / 3), overTime: false,
     option: {
       ...base(title), legend: { top: 24, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
       tooltip: { confine: true, formatter: (p: { data: { name: string; value: number[] } }) => `${p.data.name}<br>${p.data.value.map((v) => Number(v.toPrecision(3))).join(", ")}` },
-      grid: { left: 60, right: 24, top: 76, bottom: 48 },
+      grid: { left: 60, right: 24, top: 50 + 23 * Math.ceil(algorithms.length / 3), bottom: 48 },
       xAxis: { ...valueAxis(0, axis, { nameGap: 26 }), type: "log" },
       yAxis: { ...valueAxis(0, "RPE, cm per m", { nameGap: 36 }), type: "log" },
       series: [

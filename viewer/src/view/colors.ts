@@ -16,6 +16,7 @@ export const TRUTH = "#4b5563";
 /** One colour a run, the same in every chart and view; told apart also when colours look alike. */
 export const RUN_COLORS = [
   "#2b6cb0", "#c2410c", "#4d7c0f", "#7c3aed", "#0f766e", "#be185d", "#a16207", "#334155",
+  "#0891b2", "#f59e0b", "#65a30d", "#94a3b8",
 ];
 
 export function rampOf(name: string): Rgb[] {
