@@ -298,8 +298,8 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
 }
 
 std::uint64_t LoopCloser::memory_bytes() const {
-  return stamps_.capacity() * sizeof(Time) + steps_.capacity() * sizeof(double) +
-         descriptors_.capacity() * sizeof(PlaceDescriptor) +
+  return due_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
+         steps_.capacity() * sizeof(double) + descriptors_.capacity() * sizeof(PlaceDescriptor) +
          graph_.nodes.capacity() * sizeof(Pose) +
          graph_.betweens.capacity() * sizeof(PoseGraph::Between) +
          (records_.capacity() + waiting_.capacity() + accepted_.capacity()) * sizeof(LoopRecord);
