@@ -108,16 +108,17 @@ std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, doubl
   return thinned;
 }
 
-std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points,
-                                         double voxel_size) {
-  const auto inverse_size = static_cast<float>(1.0 / voxel_size);
+std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
+                                         GridAxes axes) {
+  const Eigen::Matrix3f cells_from_points = (grid_turn(axes) / voxel_size).cast<float>();
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
   std::vector<Eigen::Vector3f> sums;
   std::vector<std::uint32_t> counts;
   for (const Eigen::Vector3f& point : points) {
     if (!point.allFinite()) continue;
     const auto next = static_cast<std::uint32_t>(sums.size());
-    const auto [cell, is_new] = cells.try_emplace(voxel_key(voxel_of(point, inverse_size)), next);
+    const auto [cell, is_new] =
+        cells.try_emplace(voxel_key(voxel_of(cells_from_points * point, 1.0F)), next);
     if (is_new) {
       sums.emplace_back(Eigen::Vector3f::Zero());
       counts.push_back(0);

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena {
@@ -41,7 +42,7 @@ std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, doubl
 
 /// Mean of the points of each voxel, in the order in which the voxels are first met. Points that
 /// are not finite are left out. For estimators alone: a mean hides noise.
-std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points,
-                                         double voxel_size);
+std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
+                                         GridAxes axes = GridAxes::kParallel);
 
 }  // namespace lidarena

@@ -19,12 +19,13 @@ Eigen::Matrix<std::int64_t, 3, 1> in_micrometres(const Eigen::Vector3f& point) {
 
 }  // namespace
 
-VoxelSums::VoxelSums(double voxel_size) : inverse_size_(static_cast<float>(1.0 / voxel_size)) {
+VoxelSums::VoxelSums(double voxel_size, GridAxes axes)
+    : cells_from_points_((grid_turn(axes) / voxel_size).cast<float>()) {
   if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
 }
 
 VoxelKey VoxelSums::key_of(const Eigen::Vector3f& point) const {
-  return voxel_key(voxel_of(point, inverse_size_));
+  return voxel_key(voxel_of(cells_from_points_ * point, 1.0F));
 }
 
 void VoxelSums::add(std::span<const Eigen::Vector3f> points) {

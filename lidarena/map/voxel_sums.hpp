@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena {
@@ -18,7 +19,7 @@ namespace lidarena {
 class VoxelSums {
  public:
   /// `voxel_size`: edge of a cell (m).
-  explicit VoxelSums(double voxel_size);
+  explicit VoxelSums(double voxel_size, GridAxes axes = GridAxes::kParallel);
 
   void add(std::span<const Eigen::Vector3f> points);
   /// Takes away points that were added, with the very same coordinates.
@@ -40,7 +41,7 @@ class VoxelSums {
   };
   VoxelKey key_of(const Eigen::Vector3f& point) const;
 
-  float inverse_size_;
+  Eigen::Matrix3f cells_from_points_;
   std::vector<Cell> cells_;
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< in `cells_`
 };

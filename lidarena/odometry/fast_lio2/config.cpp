@@ -16,8 +16,10 @@ Config improved(const LidarInfo& lidar) {
   Config config;
   config.point_stride = 1;
   config.min_range_m = std::max(0.3, lidar.min_range_m);
+  config.deskew_first_instant = true;
   config.scan_voxel_m = 0.2;
-  config.max_points = lidar.kind == "spinning" ? 4000 : 8000;  // a rosette hardly gives so many
+  config.grid_axes = GridAxes::kAskew;
+  config.max_points = 4000;
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.plane_uncertainty = true;

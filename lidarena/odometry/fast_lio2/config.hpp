@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/map/grid_axes.hpp"
 
 namespace lidarena::fast_lio2 {
 
@@ -27,7 +28,9 @@ enum class NoiseModel {
 struct Config {
   int point_stride = 3;
   double min_range_m = 0.5;
+  bool deskew_first_instant = false;
   double scan_voxel_m = 0.5;
+  GridAxes grid_axes = GridAxes::kParallel;
   int max_points = 100000;
   double map_voxel_m = 0.5;
 
@@ -67,8 +70,14 @@ struct Config {
   static void visit(Self& self, V&& v) {
     v("point_stride", self.point_stride, "", "of this many points, one is used", at_least(1));
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
+    v("deskew_first_instant", self.deskew_first_instant, "",
+      "cure: points of the scan's first instant are brought to its end like all others; a spinning "
+      "sensor fires a whole column then");
     v("scan_voxel_m", self.scan_voxel_m, "m", "a scan's points are averaged in cells of this edge",
       above(0));
+    v("grid_axes", self.grid_axes, "",
+      "of the scan's cells in the LiDAR's frame and the map's in the world: parallel or askew "
+      "(cure: walls are not parallel to them)");
     v("max_points", self.max_points, "",
       "of a scan's averages; from more, so many are taken evenly (bounds the time of a scan)",
       at_least(100));

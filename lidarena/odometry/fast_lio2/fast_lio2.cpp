@@ -61,6 +61,9 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
                    Parallel parallel)
     : config_(config),
       body_from_imu_(imu.body_from_imu),
+      map_from_start_(grid_turn(config.grid_axes)),
+      world_from_map_(body_from_imu_ * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
+                                                 Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
       noise_(densities_of(imu, config.imu_noise_factor)),
       parallel_(std::move(parallel)),
@@ -83,7 +86,7 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   const State predicted = belief_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(voxel_means(points, config_.scan_voxel_m), config_.max_points);
+      evenly(voxel_means(points, config_.scan_voxel_m, config_.grid_axes), config_.max_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const IteratedUpdate update =
       iterated_update(belief_, std::ref(residuals),
@@ -121,6 +124,8 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   if (start_samples_.size() < static_cast<std::size_t>(config_.init_samples)) return false;
   const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
   belief_ = begin.belief;
+  belief_.state.rotation = map_from_start_ * belief_.state.rotation;
+  belief_.state.gravity = map_from_start_ * belief_.state.gravity;
   accel_scale_ = begin.accel_scale;
   first_pose_ = belief_.state.world_from_imu();
   started_ = true;
@@ -177,8 +182,12 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
     const float squared = scan.points[i].position.squaredNorm();
     if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
   }
-  return deskew(used, track_, belief_.state.imu_from_lidar(), belief_.state.world_from_imu(),
-                parallel_);
+  std::vector<Eigen::Vector3f> at_end = deskew(used, track_, belief_.state.imu_from_lidar(),
+                                               belief_.state.world_from_imu(), parallel_);
+  for (std::size_t i = 0; !config_.deskew_first_instant && i < at_end.size(); ++i) {
+    if (used.points[i].dt_ns == 0) at_end[i] = used.points[i].position;
+  }
+  return at_end;
 }
 
 void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
@@ -233,29 +242,29 @@ ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
   return result;
 }
 
-Pose FastLio2::body_pose(const Pose& world_from_imu) const {
-  return body_from_imu_ * world_from_imu * body_from_imu_.inverse();
+Pose FastLio2::body_pose(const Pose& map_from_imu) const {
+  return world_from_map_ * map_from_imu * body_from_imu_.inverse();
 }
 
 Eigen::Matrix<double, 6, 6> FastLio2::body_covariance() const {
   const State& state = belief_.state;
   const Pose imu_from_body = body_from_imu_.inverse();
   Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
-  by_state.topLeftCorner<3, 3>() = body_from_imu_.linear();
+  by_state.topLeftCorner<3, 3>() = world_from_map_.linear();
   by_state.topRightCorner<3, 3>() =
-      -body_from_imu_.linear() * state.rotation * so3::hat(imu_from_body.translation());
+      -world_from_map_.linear() * state.rotation * so3::hat(imu_from_body.translation());
   by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
   return by_state * belief_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
 }
 
 void FastLio2::publish(std::span<const Eigen::Vector3f> points) {
-  registered_scan_ = transformed(body_from_imu_ * belief_.state.world_from_lidar(), points);
+  registered_scan_ = transformed(world_from_map_ * belief_.state.world_from_lidar(), points);
   if (!config_.keep_all_scans) return;
   for (const Eigen::Vector3f& p : registered_scan_) archive_.push_back({p.x(), p.y(), p.z()});
 }
 
 std::vector<Eigen::Vector3f> FastLio2::map() const {
-  return transformed(body_from_imu_, map_.points());
+  return transformed(world_from_map_, map_.points());
 }
 
 std::map<std::string, std::uint64_t> FastLio2::memory() const {

@@ -39,9 +39,9 @@ class FastLio2 : public Odometry {
   Time end_of_sweep(const Scan& scan);
   /// Takes samples in until they are enough to start from; whether they are now.
   bool start(const std::vector<ImuSample>& samples);
-  /// Carries the belief over the inputs and lays down the track to de-skew along.
   /// The IMU says that the sensor stands.
   void stand();
+  /// Carries the belief over the inputs and lays down the track to de-skew along.
   void predict(const std::vector<ImuInput>& inputs);
   ImuNoise noise_over(const ImuInput& input) const;
   /// The points that are used, seen from the LiDAR at the scan's end.
@@ -52,12 +52,14 @@ class FastLio2 : public Odometry {
   ScanStatus status_of(const IteratedUpdate& update, const PlaneResiduals& residuals);
   ScanResult refused_scan();
   ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
-  Pose body_pose(const Pose& world_from_imu) const;
+  Pose body_pose(const Pose& map_from_imu) const;
   Eigen::Matrix<double, 6, 6> body_covariance() const;
   void publish(std::span<const Eigen::Vector3f> points);
 
   Config config_;
   Pose body_from_imu_;
+  Eigen::Matrix3d map_from_start_;  ///< the map's frame: the IMU's at the start, turned
+  Pose world_from_map_;
   Pose imu_from_lidar_;
   ImuNoise noise_;
   Parallel parallel_;
@@ -68,7 +70,7 @@ class FastLio2 : public Odometry {
   bool started_ = false;
   double accel_scale_ = 1.0;
 
-  Belief belief_;  ///< at the end of the last scan; world: the IMU's frame at the start
+  Belief belief_;  ///< at the end of the last scan, in the map's frame
   ImuTrack track_;
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;

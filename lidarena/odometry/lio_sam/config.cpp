@@ -58,6 +58,7 @@ Config improved(const LidarInfo& lidar) {
   config.plane_fit = PlaneFit::kPrincipal;
   config.plane_thickness_m = 0.06;
   config.surface_leaf_m = 0.15;
+  config.grid_axes = GridAxes::kAskew;
   config.degeneracy = Degeneracy::kShare;
   config.keyframe_distance_m = 1.0;
   config.keyframe_angle_rad = 0.2;
@@ -71,7 +72,8 @@ Config improved(const LidarInfo& lidar) {
   config.imu_noise_factor = 10.0;
   config.turn_sigma_rad = 1e-3;
   config.shift_sigma_m = 5e-3;
-  config.point_sigma_m = 0.05;
+  config.point_sigma_m = 0.1;
+  config.fused_pose = true;
   config.loop = careful_loops();
   return config;
 }

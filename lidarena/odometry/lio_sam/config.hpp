@@ -9,6 +9,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/loop/config.hpp"
+#include "lidarena/map/grid_axes.hpp"
 
 namespace lidarena::lio_sam {
 
@@ -50,6 +51,7 @@ struct Config {
   double grazing_share = 0.02;
   double edge_leaf_m = 0.1;
   double surface_leaf_m = 0.2;
+  GridAxes grid_axes = GridAxes::kParallel;
 
   int min_edges = 10;
   int min_surfaces = 100;
@@ -81,6 +83,7 @@ struct Config {
   double turn_sigma_rad = 0.05;
   double shift_sigma_m = 0.1;
   double point_sigma_m = 0.0;
+  bool fused_pose = false;
 
   bool loop_closure = false;
   LoopConfig loop;
@@ -108,6 +111,9 @@ struct Config {
       above(0));
     v("edge_leaf_m", self.edge_leaf_m, "m", "edges are averaged in cells of this edge", above(0));
     v("surface_leaf_m", self.surface_leaf_m, "m", "surface points likewise", above(0));
+    v("grid_axes", self.grid_axes, "",
+      "of those cells: parallel to the LiDAR's frame and the world, or askew (cure: walls are not "
+      "parallel to them)");
     v("min_edges", self.min_edges, "", "a scan with fewer is not registered", at_least(0));
     v("min_surfaces", self.min_surfaces, "", "likewise", at_least(0));
     v("max_iterations", self.max_iterations, "", "of Gauss-Newton", at_least(1));
@@ -156,6 +162,8 @@ struct Config {
       "of a point's distance: what the points leave open is left to the IMU (cure); 0: the two "
       "sigmas above are all, 1 rad and 1 m when a direction is degenerate",
       at_least(0));
+    v("fused_pose", self.fused_pose, "",
+      "cure: a scan's pose is the smoother's, of points and IMU together; else the points' alone");
     v("loop_closure", self.loop_closure, "", "whether loops are looked for");
     v("loop", self.loop, "", "how they are found, judged and used");
   }

@@ -125,8 +125,8 @@ Features extract_features(const RangeImage& image, const Config& config, const P
 }
 
 Features thinned(const Features& features, const Config& config) {
-  return {voxel_means(features.edges, config.edge_leaf_m),
-          voxel_means(features.surfaces, config.surface_leaf_m)};
+  return {voxel_means(features.edges, config.edge_leaf_m, config.grid_axes),
+          voxel_means(features.surfaces, config.surface_leaf_m, config.grid_axes)};
 }
 
 }  // namespace lidarena::lio_sam

@@ -82,7 +82,10 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_im
   Pose world_from_body = Pose::Identity();
   if (config.level_start) {
     world_from_body.linear() = upright(body_from_imu.linear() * imu.accel);
-    if (start.still) inertial.state.bias.gyro = imu.gyro;
+    if (start.still) {
+      inertial.state.bias.gyro = imu.gyro;
+      inertial.state.bias.accel = (force - config.gravity) * imu.accel.normalized();
+    }
     inertial.covariance = covariance_of(start.still);
     inertial.gravity_sigma = start.still ? config.gravity_sigma_rad : kMovingTilt;
   } else {

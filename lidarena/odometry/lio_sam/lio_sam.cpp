@@ -66,7 +66,7 @@ ScanResult LioSam::register_scan(const Scan& scan) {
   const Features raw = extract_features(image, config_, parallel_);
   Features features = thinned(raw, config_);
 
-  const Registration found = match(features, prediction.world_from_lidar, scan.stamp);
+  Registration found = match(features, prediction.world_from_lidar, scan.stamp);
   const ScanStatus status = status_of(found, features);
   const bool matched = status == ScanStatus::kTracked || status == ScanStatus::kDegenerate;
   const bool first = keyframes_.empty() && status == ScanStatus::kInitializing;
@@ -184,13 +184,17 @@ ScanStatus LioSam::status_of(const Registration& found, const Features& features
   return found.degenerate_directions > 0 ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
-void LioSam::fuse(const Registration& found) {
-  odom_from_lidar_ =
-      orthonormalized(odom_from_lidar_ * world_from_lidar_.inverse() * found.map_from_lidar);
-  world_from_lidar_ = found.map_from_lidar;
+void LioSam::fuse(Registration& found) {
+  const Pose odom_from_world = odom_from_lidar_ * world_from_lidar_.inverse();
+  odom_from_lidar_ = orthonormalized(odom_from_world * found.map_from_lidar);
   const Pose odom_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   smoother_.add(pending_, {odom_from_imu, information_of(found, odom_from_imu)});
   restart_if_failed();
+  if (config_.fused_pose) {
+    odom_from_lidar_ = smoother_.latest().world_from_imu * imu_from_lidar_;
+    found.map_from_lidar = orthonormalized(odom_from_world.inverse() * odom_from_lidar_);
+  }
+  world_from_lidar_ = found.map_from_lidar;
   pending_ = nothing_yet();
 }
 

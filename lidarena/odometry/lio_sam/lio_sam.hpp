@@ -60,8 +60,8 @@ class LioSam : public Odometry {
   std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
   Registration match(const Features& features, const Pose& guess, Time stamp);
   ScanStatus status_of(const Registration& found, const Features& features) const;
-  /// Takes the registered pose over and tells the smoother.
-  void fuse(const Registration& found);
+  /// Tells the smoother of the registered pose and takes it over, or what the smoother makes of it.
+  void fuse(Registration& found);
   PoseMeasurement::Information information_of(const Registration& found,
                                               const Pose& odom_from_imu) const;
   void restart_if_failed();
