@@ -137,6 +137,8 @@ class Problem {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.num_threads = 1;
     options.max_num_iterations = max_iterations;
+    // Nearly Gauss-Newton: a long chain bends so softly that the usual damping would hold it fast.
+    options.initial_trust_region_radius = 1e12;
     options.function_tolerance = 1e-10;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;

@@ -32,7 +32,8 @@ std::vector<std::string> ConfigFolder::names(const std::string& kind) const {
 }
 
 fs::path ConfigFolder::resolve(const std::string& kind, const std::string& name_or_path) const {
-  if (fs::exists(name_or_path)) return name_or_path;
+  // a folder that happens to have the name of a world is none
+  if (fs::exists(name_or_path) && !fs::is_directory(name_or_path)) return name_or_path;
   const fs::path file = root_ / kind / (name_or_path + ".yaml");
   if (fs::exists(file)) return file;
   const std::vector<std::string> known = names(kind);

@@ -146,6 +146,19 @@ TEST(ConfigFolder, NamesResolveAndAMisspeltOneIsCorrected) {
   EXPECT_THROW(ConfigFolder::find("/"), InputError);
 }
 
+TEST(ConfigFolder, AFolderThatHappensToBeCalledLikeAWorldDoesNotHideIt) {
+  namespace fs = std::filesystem;
+  const fs::path here = fs::current_path();
+  const fs::path folder = fs::path(testing::TempDir()) / "lidarena_names";
+  fs::create_directories(folder / "cave");
+  const ConfigFolder known = configs();
+  fs::current_path(folder);
+  const fs::path found = known.resolve("worlds", "cave");
+  fs::current_path(here);
+  fs::remove_all(folder);
+  EXPECT_EQ(found.filename(), "cave.yaml");
+}
+
 StudySpec small_spec() {
   StudySpec spec;
   spec.scenes = {{"house", "house", 5.0}};

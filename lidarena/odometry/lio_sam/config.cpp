@@ -64,8 +64,8 @@ Config improved(const LidarInfo& lidar) {
   config.keyframe_angle_rad = 0.2;
   config.keyframe_age_s = 0.0;
   config.scans_per_keyframe = 16;
-  config.submap_radius_m = 30.0;
-  config.submap_density_m = 1.0;
+  config.submap_radius_m = 20.0;
+  config.submap_density_m = 2.0;
   config.level_start = true;
   config.gravity = 9.80665;
   config.gravity_sigma_rad = 0.02;

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// KISS-ICP alone, one scan after the other straight from a sequence of synthetic rooms (scans.txt,
+// scans/%06d.bin with x y z t in doubles), as little around it as around the public program when
+// its cost was counted. Under `valgrind --tool=callgrind` two runs that differ in their number of
+// scans give the instructions of one; prints the process's peak memory. Usage:
+//   kiss_icp_alone FOLDER SCANS [PRESET]
+#include <sys/resource.h>
+
+#include <cstdio>
+#include <fstream>
+#include <string>
+
+#include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
+
+namespace lidarena {
+namespace {
+
+Scan scan_of(const std::string& file, double begin_s) {
+  constexpr std::size_t kColumns = 4;
+  std::ifstream in(file, std::ios::binary | std::ios::ate);
+  std::vector<double> values(static_cast<std::size_t>(in.tellg()) / sizeof(double));
+  in.seekg(0);
+  in.read(reinterpret_cast<char*>(values.data()),
+          static_cast<std::streamsize>(values.size() * sizeof(double)));
+  Scan scan;
+  scan.stamp = from_seconds(begin_s);
+  for (std::size_t i = 0; i + kColumns <= values.size(); i += kColumns) {
+    Point point;
+    point.position = Eigen::Vector3d(values[i], values[i + 1], values[i + 2]).cast<float>();
+    point.dt_ns = static_cast<std::int32_t>((from_seconds(values[i + 3]) - scan.stamp).count());
+    scan.points.push_back(point);
+  }
+  return scan;
+}
+
+int run(const std::string& folder, int scans, const std::string& preset) {
+  const LidarInfo lidar;
+  kiss_icp::KissIcp odometry(kiss_icp::preset(preset, lidar), lidar, Parallel(1));
+  std::ifstream index(folder + "/scans.txt");
+  double begin_s = 0.0, end_s = 0.0;
+  int number = 0, done = 0;
+  for (; done < scans && index >> number >> begin_s >> end_s; ++done) {
+    char name[32];
+    std::snprintf(name, sizeof(name), "/scans/%06d.bin", number);
+    odometry.register_scan(scan_of(folder + name, begin_s));
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const Eigen::Vector3d end = odometry.trajectory().poses().back().world_from_body.translation();
+  std::printf("%d scans, at %.3f %.3f %.3f m, peak %.1f MiB\n", done, end.x(), end.y(), end.z(),
+              static_cast<double>(usage.ru_maxrss) / 1024.0);
+  return 0;
+}
+
+}  // namespace
+}  // namespace lidarena
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fprintf(stderr, "kiss_icp_alone FOLDER SCANS [PRESET]\n");
+    return 2;
+  }
+  return lidarena::run(argv[1], std::stoi(argv[2]), argc > 3 ? argv[3] : "improved");
+}
