@@ -8,7 +8,9 @@ namespace {
 
 Config original(const LidarInfo& lidar) {
   Config config;
-  config.point_stride = lidar.kind == "rosette" ? 3 : 4;
+  const bool livox = lidar.kind == "rosette";
+  config.point_stride = livox ? 3 : 4;
+  config.deskew_first_instant = livox;  // whose first point, alone at its instant, is not taken
   return config;
 }
 
