@@ -324,6 +324,14 @@ TEST(LioSamStart, FeelsHowTheBodyLeansAndHowTheImuIsMounted) {
   EXPECT_EQ(start.accel_scale, 1.0);
 }
 
+TEST(LioSamStart, WhatTheForceAtRestIsTooLongByIsTheAccelerometersBias) {
+  const Config config = preset("improved", spinning());
+  const Vector3d up = Vector3d(0.1, -0.05, 1.0).normalized();
+  const Start start =
+      start_from(resting((config.gravity + 0.07) * up, Vector3d::Zero()), Pose::Identity(), config);
+  EXPECT_LT((start.inertial.state.bias.accel - 0.07 * up).norm(), 1e-12);
+}
+
 TEST(LioSamStart, TheProgramTakesTheBodyToBeLevel) {
   const Start start = start_from(resting({1.0, 0.0, 9.7}, Vector3d::Zero()), Pose::Identity(),
                                  preset("original", spinning()));
@@ -434,6 +442,39 @@ TEST(LioSam, StandingStillNothingGrowsUnlessTheProgramsLivoxModeIsAskedFor) {
   };
   EXPECT_EQ(keyframes_after("improved", 0.0), 1.0);
   EXPECT_GE(keyframes_after("original", 1.0), 3.0);
+}
+
+/// Root of the mean square error (m) of the motion from each scan to the next.
+double step_error(const synthetic::Recording& recording, const Config& config) {
+  const Rig rig = synthetic::rig_of(recording);
+  LioSam odometry(config, rig.lidars[0], rig.imus[0], Parallel(1));
+  std::vector<StampedPose> poses;
+  for (const Event& event : synthetic::record(recording)) {
+    if (const auto* scan = std::get_if<Scan>(&event.data)) {
+      poses.push_back(odometry.register_scan(*scan).estimate);
+    } else {
+      odometry.register_imu(std::get<ImuSample>(event.data));
+    }
+  }
+  double sum = 0.0;
+  for (std::size_t i = 1; i < poses.size(); ++i) {
+    const Pose step = poses[i - 1].world_from_body.inverse() * poses[i].world_from_body;
+    const Pose truth = synthetic::truth(recording, poses[i - 1].stamp, poses[i].stamp);
+    sum += (step.translation() - truth.translation()).squaredNorm();
+  }
+  return std::sqrt(sum / static_cast<double>(poses.size() - 1));
+}
+
+TEST(LioSam, PointsAndImuTogetherAreSmootherThanPointsAlone) {
+  synthetic::Recording sparse{.range_noise_m = 0.03, .points_per_scan = 2048, .repeating = false};
+  sparse.gyro_noise_density = 2.4e-4;
+  sparse.accel_noise_density = 1.7e-3;
+  Config config = preset("improved", synthetic::rig_of(sparse).lidars[0]);
+  ASSERT_TRUE(config.fused_pose);
+  const double together = step_error(sparse, config);
+  config.fused_pose = false;
+  const double alone = step_error(sparse, config);
+  EXPECT_LT(together, 0.5 * alone) << together << " m and " << alone << " m";
 }
 
 TEST(LioSam, WithoutImuEveryScanSaysSo) {
