@@ -10,6 +10,7 @@
 #include <fstream>
 #include <string>
 
+#include "lidarena/base/error.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
 
 namespace lidarena {
@@ -18,6 +19,7 @@ namespace {
 Scan scan_of(const std::string& file, double begin_s) {
   constexpr std::size_t kColumns = 4;
   std::ifstream in(file, std::ios::binary | std::ios::ate);
+  if (!in) throw InputError(file, "cannot be opened", "give a sequence with scans.txt and scans/");
   std::vector<double> values(static_cast<std::size_t>(in.tellg()) / sizeof(double));
   in.seekg(0);
   in.read(reinterpret_cast<char*>(values.data()),
@@ -44,6 +46,7 @@ int run(const std::string& folder, int scans, const std::string& preset) {
     std::snprintf(name, sizeof(name), "/scans/%06d.bin", number);
     odometry.register_scan(scan_of(folder + name, begin_s));
   }
+  if (done == 0) throw InputError(folder + "/scans.txt", "names no scan", "check the folder");
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const Eigen::Vector3d end = odometry.trajectory().poses().back().world_from_body.translation();
@@ -60,5 +63,10 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "kiss_icp_alone FOLDER SCANS [PRESET]\n");
     return 2;
   }
-  return lidarena::run(argv[1], std::stoi(argv[2]), argc > 3 ? argv[3] : "improved");
+  try {
+    return lidarena::run(argv[1], std::stoi(argv[2]), argc > 3 ? argv[3] : "improved");
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "kiss_icp_alone: %s\n", error.what());
+    return 2;
+  }
 }
