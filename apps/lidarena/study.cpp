@@ -50,15 +50,17 @@ StudySpec spec_of_one_place(const StudyRequest& request) {
 
 void print_plan(const StudySpec& spec, const std::vector<PlannedRun>& cells,
                 const ConfigFolder& configs) {
-  CellEstimate sum;
+  double seconds = 0.0;
+  double disk_mb = 0.0;
   for (const PlannedRun& cell : cells) {
     const CellEstimate one = estimate(cell, configs);
-    fmt::print("{:70} {:>8} {:6.0f} MB\n", cell.name, clock_text(one.seconds), one.disk_mb);
-    sum.seconds += one.seconds;
-    sum.disk_mb += one.disk_mb;
+    const double mb = one.record_mb + (spec.keep_maps ? one.maps_mb : 0.0);
+    fmt::print("{:70} {:>8} {:6.0f} MB\n", cell.name, clock_text(one.seconds), mb);
+    seconds += one.seconds;
+    disk_mb += mb;
   }
   fmt::print("{}: {} runs, about {} and {:.1f} GB on the disk (two cores, one job)\n", spec.title,
-             cells.size(), clock_text(sum.seconds), 1e-3 * sum.disk_mb);
+             cells.size(), clock_text(seconds), 1e-3 * disk_mb);
 }
 
 int study_verb(const Common& common, const StudyRequest& request) {
@@ -71,7 +73,7 @@ int study_verb(const Common& common, const StudyRequest& request) {
   options.jobs = request.jobs;
   options.shard = parse_shard(request.shard);
   if (request.dry) {
-    print_plan(spec, cells_of(plan(spec, configs), options.shard), configs);
+    print_plan(spec, cells_of(plan(spec, configs), options.shard, configs), configs);
     return kDone;
   }
   Console console(common.quiet);

@@ -92,6 +92,10 @@ RunFiles read_run(const fs::path& folder) {
     throw InputError(folder.string(), "is not a finished run: it has no manifest.json",
                      "run the algorithm again");
   }
+  if (!fs::exists(folder / "map.ply")) {
+    throw InputError(folder.string(), "keeps no maps: its study has 'keep_maps: false'",
+                     "its figures are in metrics.json; for the maps run it again");
+  }
   RunFiles run;
   run.manifest = read_json(manifest);
   run.trajectory = read_tum(folder / "trajectory.tum", EmptyTrajectory::kAllowed);

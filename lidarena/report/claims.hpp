@@ -14,7 +14,7 @@ struct Claim {
   std::string text;                   ///< what the paper found
   std::string rule;                   ///< what is asked of our figures, and the paper's own
   std::vector<std::string> evidence;  ///< our figures
-  std::optional<bool> holds;          ///< empty: our runs do not say
+  std::optional<bool> holds;          ///< empty: our runs do not say, for the reasons in `evidence`
   std::string guess;                  ///< why ours may differ; shown where it does
 };
 

@@ -11,8 +11,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kAlike = 1.1;             // errors this near each other do not decide
-constexpr double kLostMap_percent = 50.0;  // of its points beyond 20 cm: the track was lost
+constexpr double kAlike = 1.1;  // errors this near each other do not decide
 
 std::optional<double> map_rmse(const ResultRow& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->rmse_cm) : std::nullopt;

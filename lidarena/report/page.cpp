@@ -19,6 +19,7 @@
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/svg.hpp"
+#include "lidarena/report/timing.hpp"
 #include "lidarena/report/top_view.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/report/web_bundle.hpp"
@@ -225,6 +226,13 @@ std::string without_bundle() {
          "results.csv and the folder tables hold all figures.</p>";
 }
 
+constexpr const char* kTiming =
+    "The same flights, scanned in several ways. rolling: every shot from the pose at its own "
+    "instant, as a sensor scans. frozen: all shots of a scan from the pose at its stamp, stamped "
+    "as "
+    "if the sensor had moved. frozen_unstamped: the same, without times of points. official: as "
+    "frozen_unstamped, and every range too short by the sensor's least one, as the makers' plugin "
+    "has it. What differs between the columns is the simulator's doing, not the method's.";
 constexpr const char* kReading =
     "RPE: the true path is cut into metres, from one estimated pose to another; for each, the "
     "motion that the algorithm found is set against the true one; root mean square over all. ATE: "
@@ -270,6 +278,9 @@ std::vector<ReportSection> report_sections(const Results& results) {
   for (const std::string& preset : readings_of(results)) {
     sections.push_back({"paper-" + preset, "The paper's tables from our runs, " + preset, "", "",
                         paper_tables(results, preset)});
+  }
+  if (std::vector<ReportTable> tables = timing_tables(results); !tables.empty()) {
+    sections.push_back({"timing", "What the simulator's timing does", kTiming, "", tables});
   }
   for (const std::string& world : worlds_of(results)) {
     sections.push_back({"world-" + world, world, "", world, {runs_table(results, world)}});

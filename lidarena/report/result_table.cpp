@@ -131,8 +131,10 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 
 }  // namespace
 
-std::string reading_of(const ResultRow& row) {
-  return row.mode.empty() ? row.preset : row.preset + "-" + row.mode;
+std::string reading_of(const ResultRow& row) { return reading_of(row.preset, row.mode); }
+
+std::string reading_of(const std::string& preset, const std::string& mode) {
+  return mode.empty() ? preset : preset + "-" + mode;
 }
 
 double own_memory_mb(const ResourceRow& row) {

@@ -39,6 +39,7 @@ struct ResultRow {
 
 /// What a run is compared within: its preset, and its timing mode where the study sets one.
 std::string reading_of(const ResultRow& row);
+std::string reading_of(const std::string& preset, const std::string& mode);
 
 struct Results {
   std::string title;

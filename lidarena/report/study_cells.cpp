@@ -41,6 +41,8 @@ std::vector<std::string> StudyCells::sensors() const { return distinct(rows_, &R
 std::vector<std::string> StudyCells::algorithms() const {
   return distinct(rows_, &ResultRow::algorithm);
 }
+std::vector<std::string> StudyCells::presets() const { return distinct(rows_, &ResultRow::preset); }
+std::vector<std::string> StudyCells::modes() const { return distinct(rows_, &ResultRow::mode); }
 
 std::vector<const ResultRow*> StudyCells::rows(const std::string& world, const std::string& sensor,
                                                const std::string& algorithm) const {

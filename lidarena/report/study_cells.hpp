@@ -10,6 +10,9 @@
 
 namespace lidarena {
 
+/// Of a map's points, beyond 20 cm: the track was lost.
+constexpr double kLostMap_percent = 50.0;
+
 using RowFigure = std::function<std::optional<double>(const ResultRow&)>;
 
 std::optional<double> rpe_of(const ResultRow& row);       ///< cm per m
@@ -26,6 +29,8 @@ class StudyCells {
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;
   std::vector<std::string> algorithms() const;
+  std::vector<std::string> presets() const;
+  std::vector<std::string> modes() const;
   std::vector<const ResultRow*> rows(const std::string& world, const std::string& sensor,
                                      const std::string& algorithm) const;
   std::optional<double> median(const std::string& world, const std::string& sensor,

@@ -137,7 +137,9 @@ ReportTable claims_table(const std::vector<Claim>& claims, const std::string& pr
     std::string evidence;
     for (const std::string& line : claim.evidence)
       evidence += (evidence.empty() ? "" : "; ") + line;
-    const char* verdict = !claim.holds ? "not measured" : *claim.holds ? "holds" : "does not hold";
+    const char* verdict = claim.holds              ? *claim.holds ? "holds" : "does not hold"
+                          : claim.evidence.empty() ? "not measured"
+                                                   : "cannot be judged";
     if (claim.holds == false && !claim.guess.empty()) evidence += ". A guess why: " + claim.guess;
     table.rows.push_back({word(claim.text), word(verdict), word(claim.rule), word(evidence)});
   }

@@ -17,7 +17,7 @@ ReportTable runs_table(const Results& results, const std::string& world);
 ReportTable failures_table(const Results& results);
 /// The commands that make each run again, from the dataset on.
 ReportTable commands_table(const Results& results);
-/// Claims with their figures and "holds here", "does not hold here" or "not measured".
+/// Claims with their figures and "holds", "does not hold", "cannot be judged" or "not measured".
 ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);
 
 }  // namespace lidarena

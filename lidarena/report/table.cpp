@@ -31,7 +31,19 @@ std::string csv_quoted(const std::string& text) {
   return out + "\"";
 }
 
-std::string html_cell(const TableCell& cell, bool first) {
+/// Whether a column is read, not compared: it names the rows, or has words and no figure.
+bool holds_words(const ReportTable& table, std::size_t column) {
+  if (column == 0) return true;
+  bool words = false;
+  for (const auto& row : table.rows) {
+    if (column >= row.size()) continue;
+    if (row[column].value) return false;
+    words = words || !row[column].text.empty();
+  }
+  return words;
+}
+
+std::string html_cell(const TableCell& cell, bool left) {
   std::string text = escaped(cell.text);
   if (text.empty()) text = "&ndash;";
   if (cell.best_in_row) text = "<u>" + text + "</u>";
@@ -39,7 +51,7 @@ std::string html_cell(const TableCell& cell, bool first) {
   if (!cell.paper.empty()) {
     text += " <span class='paper'>(" + escaped(cell.paper) + ")</span>";
   }
-  return fmt::format("<td{}>{}</td>", first || !cell.value ? " class='l'" : "", text);
+  return fmt::format("<td{}>{}</td>", left ? " class='l'" : "", text);
 }
 
 std::string markdown_cell(const TableCell& cell) {
@@ -114,14 +126,13 @@ std::string table_html(const ReportTable& table) {
       fmt::format("<div class='scroll'><table id='{}'><caption>{}</caption><thead><tr>",
                   escaped(table.id), escaped(table.title));
   for (std::size_t i = 0; i < table.head.size(); ++i) {
-    const bool words = i == 0 || (!table.rows.empty() && i < table.rows[0].size() &&
-                                  !table.rows[0][i].value && !table.rows[0][i].text.empty());
-    html += fmt::format("<th{}>{}</th>", words ? " class='l'" : "", escaped(table.head[i]));
+    const char* left = holds_words(table, i) ? " class='l'" : "";
+    html += fmt::format("<th{}>{}</th>", left, escaped(table.head[i]));
   }
   html += "</tr></thead><tbody>";
   for (const auto& row : table.rows) {
     html += "<tr>";
-    for (std::size_t i = 0; i < row.size(); ++i) html += html_cell(row[i], i == 0);
+    for (std::size_t i = 0; i < row.size(); ++i) html += html_cell(row[i], holds_words(table, i));
     html += "</tr>";
   }
   html += "</tbody></table></div>";
@@ -154,7 +165,9 @@ std::string table_markdown(const ReportTable& table) {
   std::string text = "**" + table.title + "**\n\n|";
   for (const std::string& head : table.head) text += fmt::format(" {} |", head);
   text += "\n|";
-  for (std::size_t i = 0; i < table.head.size(); ++i) text += i == 0 ? "---|" : "---:|";
+  for (std::size_t i = 0; i < table.head.size(); ++i) {
+    text += holds_words(table, i) ? "---|" : "---:|";
+  }
   for (const auto& row : table.rows) {
     text += "\n|";
     for (const TableCell& cell : row) text += fmt::format(" {} |", markdown_cell(cell));
@@ -163,8 +176,9 @@ std::string table_markdown(const ReportTable& table) {
 }
 
 std::string table_latex(const ReportTable& table) {
-  std::string text = "\\begin{table}\n\\centering\n\\begin{tabular}{l" +
-                     std::string(table.head.size() - 1, 'r') + "}\n\\toprule\n";
+  std::string text = "\\begin{table}\n\\centering\n\\begin{tabular}{";
+  for (std::size_t i = 0; i < table.head.size(); ++i) text += holds_words(table, i) ? 'l' : 'r';
+  text += "}\n\\toprule\n";
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     text += (i > 0 ? " & " : "") + latex_escaped(table.head[i]);
   }

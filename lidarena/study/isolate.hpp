@@ -50,6 +50,7 @@ class IsolatedWork {
   std::string reason_;
   double busy_s_ = 0.0;  ///< processor time when it was last seen to advance
   Clock::time_point last_busy_ = begin_;
+  Clock::time_point last_look_ = begin_;
 };
 
 /// Does the work and waits for its end.

@@ -185,4 +185,8 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
   return metrics;
 }
 
+void remove_maps(const fs::path& run) {
+  for (const char* map : {"map.ply", "reprojected.ply", "scored.ply"}) fs::remove(run / map);
+}
+
 }  // namespace lidarena

@@ -36,4 +36,7 @@ RunSummary run_algorithm(const RunRequest& request, const std::filesystem::path&
 /// the dataset has no truth.
 Json score_run(const std::filesystem::path& run, const Parallel& parallel, LogSink& log);
 
+/// Leaves of a scored RUN folder its record: trajectories, figures, manifest; the maps go.
+void remove_maps(const std::filesystem::path& run);
+
 }  // namespace lidarena

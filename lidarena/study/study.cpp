@@ -244,6 +244,7 @@ class Runner {
     stage.weight = estimate(cell, configs_).seconds;
     const ExternalProgram* external = find_external(spec_, cell.algorithm);
     if (external != nullptr) stage.key["external"] = to_json(*external);
+    if (!spec_.keep_maps) stage.key["keep_maps"] = false;
     stage.work = [this, &cell, external, folder = stage.folder](const Parallel& parallel,
                                                                 LogSink& log) {
       RunRequest request;
@@ -257,6 +258,7 @@ class Runner {
         run_algorithm(request, folder, parallel, log);
       }
       score_run(folder, parallel, log);
+      if (!spec_.keep_maps) remove_maps(folder);
     };
     return stage;
   }
@@ -391,7 +393,7 @@ class Runner {
 
 StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const fs::path& out,
                        const StudyOptions& options, LogSink& log) {
-  const std::vector<PlannedRun> cells = cells_of(plan(spec, configs), options.shard);
+  const std::vector<PlannedRun> cells = cells_of(plan(spec, configs), options.shard, configs);
   fs::create_directories(out);
   const FolderLock lock(out);
   write_json(out / "study.json",

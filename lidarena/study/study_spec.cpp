@@ -151,21 +151,11 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard) {
-  std::vector<PlannedRun> part;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (static_cast<int>(i % static_cast<std::size_t>(shard.of)) == shard.part - 1) {
-      part.push_back(cells[i]);
-    }
-  }
-  return part;
-}
-
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   // Measured over flights of 20, 60 and 300 s: methods differ by some 3 times in the middle one.
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
-  constexpr double kMegabytesOfRun = 20.0, kMegabytesOfFlightSecond = 1.0;
-  constexpr double kMegabytesOfShot = 1e-6;
+  constexpr double kMegabytesOfRun = 20.0;
+  constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
   const auto pattern = make_pattern(load_sensor(configs.resolve("sensors", cell.sensor)));
   double seconds = cell.seconds;
   const fs::path flight = configs.resolve("flights", cell.flight);
@@ -177,7 +167,23 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   const double shots =
       seconds * static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
   return {kSecondsOfRun + kSecondsOfFlightSecond * seconds + kSecondsOfShot * shots,
-          kMegabytesOfRun + kMegabytesOfFlightSecond * seconds + kMegabytesOfShot * shots};
+          kMegabytesOfRun, kMapMegabytesOfFlightSecond * seconds + kMapMegabytesOfShot * shots};
+}
+
+std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
+                                 const ConfigFolder& configs) {
+  std::vector<double> middles;  // of each cell, in seconds since the study's begin
+  double end = 0.0;
+  for (const PlannedRun& cell : cells) {
+    const double seconds = estimate(cell, configs).seconds;
+    middles.push_back(end + 0.5 * seconds);
+    end += seconds;
+  }
+  std::vector<PlannedRun> part;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (1 + static_cast<int>(middles[i] / end * shard.of) == shard.part) part.push_back(cells[i]);
+  }
+  return part;
 }
 
 }  // namespace lidarena

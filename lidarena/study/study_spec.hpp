@@ -78,6 +78,7 @@ struct StudySpec {
   std::vector<ScanMode> modes;  ///< of all sensors; none = as their files say
   std::vector<ExternalProgram> external;
   RunLimits limits;
+  bool keep_maps = true;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -89,6 +90,7 @@ struct StudySpec {
     v("modes", self.modes, "", "timing modes of the sensors; none = as their files say");
     v("external", self.external, "", "programs of others that run by a command line");
     v("limits", self.limits, "", "what one run may use");
+    v("keep_maps", self.keep_maps, "", "off: a run's maps go once they are scored, figures stay");
   }
 };
 
@@ -123,20 +125,24 @@ const ExternalProgram* find_external(const StudySpec& spec, const std::string& n
 /// names that do not exist, before any work starts.
 std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs);
 
-/// Part K of N of a plan, 1 <= K <= N: every N-th cell, so that parts take about equally long.
+/// Part K of N of a plan, 1 <= K <= N.
 struct Shard {
   int part = 1;
   int of = 1;
 };
 /// From "K/N"; throws InputError otherwise.
 Shard parse_shard(const std::string& text);
-std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard);
-
 /// What a cell is expected to take, from the length of its flight and its sensor's shots.
 struct CellEstimate {
   double seconds = 0.0;  ///< of two processor cores, as seen once; algorithms differ by times three
-  double disk_mb = 0.0;
+  double record_mb = 0.0;  ///< trajectories, figures, its share of the flight
+  double maps_mb = 0.0;    ///< on top, where they are kept
 };
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
+
+/// The cells of a part: neighbours, so that few flights are flown by two parts, and as many as are
+/// expected to take an N-th of the time.
+std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
+                                 const ConfigFolder& configs);
 
 }  // namespace lidarena

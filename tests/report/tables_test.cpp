@@ -10,6 +10,7 @@
 #include "lidarena/report/report_data.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
+#include "lidarena/report/timing.hpp"
 #include "tests/dataset/temporary_folder.hpp"
 
 namespace lidarena {
@@ -111,6 +112,34 @@ TEST(Claims, OneContraryFigureOverthrowsAClaimAndMissingRunsLeaveItOpen) {
   EXPECT_FALSE(paper_claims(results, "original").at(0).holds) << "alone, it beats nobody";
 }
 
+TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
+  Results results = results_of_the_paper();
+  for (ResultRow& r : results.rows) {
+    if (r.world == "cave" && r.algorithm == "kiss_icp") r.own_map->outliers_percent = 99.0;
+    if (r.world == "cave" && r.algorithm == "lio_sam") r.own_map->outliers_percent = 0.0;
+    if (r.world == "cave" && r.algorithm == "ct_icp") {
+      r.status = "diverged";
+      r.rpe_cm_per_m.reset();
+      r.own_map.reset();
+    }
+  }
+  const auto claims = paper_claims(results, "original");
+  const auto about = [&](const char* words) {
+    return *std::ranges::find_if(
+        claims, [&](const Claim& c) { return c.text.find(words) != std::string::npos; });
+  };
+  const Claim lost = about("KISS-ICP's Cave map");
+  EXPECT_FALSE(lost.holds);
+  EXPECT_THAT(lost.evidence, testing::ElementsAre(HasSubstr("lost with either sensor")));
+  const Claim cure = about("cures the Cave");
+  EXPECT_FALSE(cure.holds);
+  EXPECT_THAT(cure.evidence, testing::Each(HasSubstr("nothing to cure")));
+  const Claim diverged = about("ten times the outliers");
+  EXPECT_FALSE(diverged.holds);
+  EXPECT_THAT(diverged.evidence, testing::Each(HasSubstr("ct_icp diverged")));
+  EXPECT_THAT(table_markdown(claims_table(claims, "original")), HasSubstr("cannot be judged"));
+}
+
 TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
   const auto verdict = [](const std::function<double(int)>& megabytes) {
     const TemporaryFolder folder;
@@ -128,6 +157,24 @@ TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
   };
   EXPECT_EQ(verdict([](int s) { return 2.0 * s; }), true);
   EXPECT_EQ(verdict([](int s) { return s < 5 ? 10.0 * s : 50.0; }), false);
+}
+
+TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
+  Results results;
+  for (const auto& [mode, rpe] : {std::pair{"rolling", 1.0}, {"frozen", 5.0}}) {
+    results.rows.push_back(row("cave", "livox_mid360", "ct_icp", rpe, 2.0 * rpe));
+    results.rows.back().mode = mode;
+  }
+  results.rows.push_back(row("cave", "livox_mid360", "kiss_icp", 9.0, 9.0));  // of no mode
+  const std::vector<ReportTable> tables = timing_tables(results);
+  ASSERT_EQ(tables.size(), 3U);
+  const ReportTable& drift = table_called(tables, "modes-drift-cave-original");
+  EXPECT_THAT(drift.head, testing::ElementsAre("sensor, algorithm", "rolling", "frozen"));
+  ASSERT_EQ(drift.rows.size(), 1U);
+  EXPECT_EQ(drift.rows[0][1].value, 1.0);
+  EXPECT_EQ(drift.rows[0][2].value, 5.0);
+  EXPECT_EQ(table_called(tables, "modes-outliers-cave-original").rows[0][2].value, 10.0);
+  EXPECT_TRUE(timing_tables(results_of_the_paper()).empty());
 }
 
 TEST(StudyCells, ACellIsTheMedianOfWhatWentWellAndSaysWhatDidNot) {

@@ -21,6 +21,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/isolate.hpp"
 #include "lidarena/study/run_algorithm.hpp"
@@ -233,13 +234,19 @@ TEST(Plan, ModesMakeDatasetsOfTheirOwnAndExternalProgramsAreCells) {
 
 TEST(Plan, ShardsShareTheCellsAmongThem) {
   const std::vector<PlannedRun> cells = plan(small_spec(), configs());
-  std::set<std::string> names;
+  double all = 0.0;
+  for (const PlannedRun& cell : cells) all += estimate(cell, configs()).seconds;
+  std::vector<std::string> names;
   for (const char* shard : {"1/3", "2/3", "3/3"}) {
-    const auto part = cells_of(cells, parse_shard(shard));
-    EXPECT_GE(part.size(), 2U);
-    for (const PlannedRun& cell : part) EXPECT_TRUE(names.insert(cell.name).second);
+    double seconds = 0.0;
+    for (const PlannedRun& cell : cells_of(cells, parse_shard(shard), configs())) {
+      names.push_back(cell.name);
+      seconds += estimate(cell, configs()).seconds;
+    }
+    EXPECT_NEAR(seconds, all / 3.0, estimate(cells[2], configs()).seconds) << "within a long cell";
   }
-  EXPECT_EQ(names.size(), cells.size());
+  ASSERT_EQ(names.size(), cells.size());
+  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(names[i], cells[i].name);
   for (const char* wrong : {"", "1", "0/3", "4/3", "1/0", "-1/3", "1/3x", "a/b"}) {
     EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
   }
@@ -253,7 +260,7 @@ TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
   ASSERT_EQ(cells[2].sensor, "ouster_os0_128");
   EXPECT_GT(estimate(cells[2], configs()).seconds, mid360.seconds);
   EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
-  EXPECT_GT(estimate(longer, configs()).disk_mb, mid360.disk_mb);
+  EXPECT_GT(estimate(longer, configs()).maps_mb, mid360.maps_mb);
   longer.seconds = 0.0;  // the whole flight, a minute
   EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
 }
@@ -330,6 +337,30 @@ TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAft
   const Json scored_again = score_run(run, Parallel(1), log);
   EXPECT_TRUE(scored_again.contains("resources"));
   EXPECT_EQ(read_json(run / "metrics.json"), with_returns);
+}
+
+TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
+  const Scratch scratch;
+  LogSink log;
+  StudySpec spec = tiny_spec();
+  const auto metrics_of = [&](const char* study) {
+    const std::filesystem::path out = scratch.path() / study;
+    EXPECT_EQ(run_study(spec, configs(), out, {}, log).failed, 0U);
+    return read_json(out / "runs/house-house-s1-livox_mid360-kiss_icp-improved/metrics.json");
+  };
+  const Json kept = metrics_of("kept");
+  spec.keep_maps = false;
+  EXPECT_EQ(metrics_of("not_kept"), kept);
+  const std::filesystem::path run =
+      scratch.path() / "not_kept/runs/house-house-s1-livox_mid360-kiss_icp-improved";
+  for (const auto& entry : std::filesystem::directory_iterator(run)) {
+    EXPECT_NE(entry.path().extension(), ".ply") << entry.path();
+  }
+  EXPECT_THROW(read_run(run), InputError);
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 1U);
+  spec.keep_maps = true;
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 0U)
+      << "the maps are wanted now";
 }
 
 TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {

@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Brings docs/results up to a study's report.
+
+usage: renew_results.py STUDY [--as PREFIX]
+
+Each file that docs/results/tables, docs/results/figures and docs/results itself already hold is taken
+anew from the report in STUDY; to take one more, make an empty file of its name first. With --as only
+those called PREFIX-... are (a study beside the main one), and its results.csv stays behind. Then the
+tables in docs/results/index.md are renewed: what stands between the lines `<!-- tables/NAME.md -->` and
+`<!-- end -->` becomes that table, in the names that people use.
+"""
+import argparse
+import pathlib
+import re
+import shutil
+import sys
+
+RESULTS = pathlib.Path(__file__).resolve().parent / "results"
+NAMES = {
+    "livox_mid360_paper": "Mid-360",
+    "livox_mid360": "Mid-360",
+    "ouster_os0_128_paper": "OS0-128",
+    "ouster_os0_128": "OS0-128",
+    "ct_icp": "CT-ICP",
+    "kiss_icp": "KISS-ICP",
+    "lio_sam_lc": "LIO-SAM lc",
+    "lio_sam": "LIO-SAM",
+    "fast_lio2": "FAST-LIO2",
+}
+BESIDE = ("brisk-", "timing-")  # studies whose tables stand beside the main one's
+MARK = re.compile(r"(<!-- tables/(\S+)\.md -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def take(source, target, prefix):
+    """Renews the files of `target` that are the prefix's; returns the names that `source` lacks."""
+    missing = []
+    for old in sorted(target.iterdir()):
+        if not old.is_file() or not old.name.startswith(prefix):
+            continue
+        new = source / old.name.removeprefix(prefix)
+        if new.exists():
+            shutil.copyfile(new, old)
+        elif prefix or not old.name.startswith(BESIDE):
+            missing.append(old.name)
+    return missing
+
+
+def table_of(markdown):
+    """The rows alone, without title and note, in people's names."""
+    rows = "".join(line + "\n" for line in markdown.splitlines() if line.startswith("|"))
+    return re.sub(r"\b(%s)\b" % "|".join(NAMES), lambda name: NAMES[name[1]], rows)
+
+
+def with_tables(page):
+    """`page` with each marked table as its file has it now."""
+    def renewed(found):
+        table = table_of((RESULTS / "tables" / (found[2] + ".md")).read_text())
+        return f"{found[1]}\n{table}\n{found[3]}"
+    return MARK.sub(renewed, page)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("study", type=pathlib.Path)
+    parser.add_argument("--as", dest="prefix", metavar="PREFIX")
+    arguments = parser.parse_args()
+    prefix = arguments.prefix + "-" if arguments.prefix else ""
+    if not (arguments.study / "tables").is_dir():
+        sys.exit(f"{arguments.study} holds no report: lidarena report {arguments.study}")
+    missing = take(arguments.study / "tables", RESULTS / "tables", prefix)
+    if not prefix:
+        missing += take(arguments.study / "figures", RESULTS / "figures", prefix)
+        shutil.copyfile(arguments.study / "results.csv", RESULTS / "results.csv")
+    index = RESULTS / "index.md"
+    index.write_text(with_tables(index.read_text()))
+    if missing:
+        sys.exit("not in this report, left as they were: " + ", ".join(missing))
+
+
+if __name__ == "__main__":
+    main()
