@@ -6,12 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "lidarena/dataset/cloud.hpp"
-#include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/tum.hpp"
 #include "lidarena/report/claims.hpp"
 #include "lidarena/report/decision.hpp"
-#include "lidarena/report/gauge.hpp"
 #include "lidarena/report/image.hpp"
 #include "lidarena/report/paper_tables.hpp"
 #include "lidarena/report/scene_blocks.hpp"
@@ -20,21 +16,17 @@
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/svg.hpp"
 #include "lidarena/report/timing.hpp"
-#include "lidarena/report/top_view.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/report/web_bundle.hpp"
-#include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPoints = 2'500'000;      // of all 3D views together: 8 bytes, 4/3 as text
-constexpr std::size_t kPointsOfRun = 120'000;   // at most
-constexpr std::size_t kPointsOfMesh = 200'000;  // of the picture from above
-constexpr std::size_t kTriangles = 400'000;  // of all meshes together: some 18 bytes, 4/3 as text
-constexpr std::size_t kPictureBytes = 12 << 20;  // of the pictures from above
+constexpr std::size_t kPoints = 2'500'000;     // of all 3D views together: 8 bytes, 4/3 as text
+constexpr std::size_t kPointsOfRun = 120'000;  // at most
+constexpr std::size_t kTriangles = 400'000;    // of all meshes together: some 18 bytes, 4/3 as text
 
 constexpr const char* kStyle = R"css(
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2430;background:#f6f7f9;margin:0}
@@ -58,90 +50,16 @@ main>h2{break-after:avoid}figure,tr{break-inside:avoid}table,.note,figcaption{fo
 .scroll,figure{overflow:visible}th,td{padding:2px 4px}}
 )css";
 
-/// The first seed of each sensor, algorithm and preset of a world that went well.
-std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world) {
-  std::vector<const ResultRow*> rows;
-  std::set<std::string> seen;
-  for (const ResultRow& row : results.rows) {
-    if (row.world != world || row.status != "ok") continue;
-    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + reading_of(row)).second) {
-      rows.push_back(&row);
-    }
-  }
-  return rows;
-}
-
 std::vector<std::string> worlds_of(const Results& results) {
   return StudyCells(results, "").worlds();
 }
 
-/// Positions of the estimate in the mesh's frame, by the gauge of its metrics.
-std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Trajectory& estimate) {
-  const Pose gauge = truth_from_estimate(row.metrics).value_or(Pose::Identity());
-  std::vector<Eigen::Vector3d> positions;
-  for (const StampedPose& p : estimate.poses()) {
-    positions.push_back(gauge * p.world_from_body.translation());
-  }
-  return positions;
-}
-
-std::string top_view(const ResultRow& row) {
-  const auto truth = load_truth(row.folder / row.manifest.value("dataset", ""));
-  const Trajectory estimate = read_tum(row.folder / "trajectory.tum");
-  Cloud map;
-  if (fs::exists(row.folder / "scored.ply")) map = read_cloud(row.folder / "scored.ply");
-  TopView view;
-  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, reading_of(row));
-  view.map = &map;
-  view.truth = truth ? &*truth : nullptr;
-  view.estimate = aligned_positions(row, estimate);
-  view.width = 560;
-  return "<figure>" + top_view_svg(view) + "</figure>";
-}
-
-/// Pictures of a world's maps, as far as the budget of bytes goes.
-std::string top_views(const Results& results, const std::string& world, std::size_t budget) {
+/// Pictures beside each other.
+std::string figures(const std::vector<Picture>& pictures) {
+  if (pictures.empty()) return {};
   std::string html = "<div class='row'>";
-  for (const ResultRow* row : shown_rows(results, world)) {
-    if (html.size() > budget) break;
-    if (fs::exists(row->folder / "trajectory.tum")) html += top_view(*row);
-  }
+  for (const Picture& picture : pictures) html += "<figure>" + picture.svg + "</figure>";
   return html + "</div>";
-}
-
-/// A world's mesh from above with the flight through it, and the example scans of its dataset, as
-/// far as they are there.
-std::string world_pictures(const Results& results, const std::string& world) {
-  const auto first = std::ranges::find_if(results.rows, [&](const ResultRow& row) {
-    return row.world == world && row.manifest.is_object() && row.manifest.contains("dataset");
-  });
-  if (first == results.rows.end()) return {};
-  const fs::path dataset = first->folder / first->manifest.value("dataset", "");
-  std::string html;
-  const auto add = [&](const std::string& title, const Cloud& cloud, const Trajectory* truth) {
-    TopView view;
-    view.title = title;
-    view.map = &cloud;
-    view.truth = truth;
-    view.width = 420;
-    html += "<figure>" + top_view_svg(view) + "</figure>";
-  };
-  const auto truth = load_truth(dataset);
-  if (const auto mesh = find_world_mesh(dataset)) {
-    Cloud surface;
-    surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
-    add("The world and the flight", surface, truth ? &*truth : nullptr);
-  }
-  std::set<std::string> shown;
-  for (const ResultRow& row : results.rows) {
-    if (row.world != world || !shown.insert(row.sensor).second) continue;
-    for (const auto& [name, title] : {std::pair("_scan.ply", "a scan, each return by its own pose"),
-                                      {"_scan_skewed.ply", "the same by one pose: skewed"}}) {
-      const fs::path file = dataset / (row.sensor + name);
-      if (fs::exists(file)) add(row.sensor + ": " + title, read_cloud(file), nullptr);
-    }
-  }
-  return html.empty() ? html : "<div class='row'>" + html + "</div>";
 }
 
 std::string color_key() {
@@ -185,7 +103,7 @@ std::string world_view(const Results& results, const std::string& world, std::si
   return html;
 }
 
-std::string section_html(const Results& results, const ReportSection& section, std::size_t worlds) {
+std::string section_html(const ReportSection& section, const std::vector<WorldPictures>& pictures) {
   std::string html =
       fmt::format("<h2 id='{}'>{}</h2>", escaped(section.id), escaped(section.title));
   if (!section.text.empty()) html += "<p>" + escaped(section.text) + "</p>";
@@ -199,12 +117,14 @@ std::string section_html(const Results& results, const ReportSection& section, s
   if (section.id == "costs") html += "<div class='figures' id='figures'></div>";
   if (section.world.empty()) return html;
   const std::string id = escaped(section.world);
-  return html + world_pictures(results, section.world) +
+  const auto of_world = std::ranges::find(pictures, section.world, &WorldPictures::world);
+  if (of_world == pictures.end()) return html;
+  return html + figures(of_world->place) +
          fmt::format(
              "<h3>Maps and paths</h3><div id='view-{0}' class='lidarena-view embedded timed'>"
              "<p class='message'></p><div class='fallback'>{1}{2}</div><div class='stage'></div>"
              "<div class='progress'></div></div><div class='figures' id='figures-{0}'></div>",
-             id, color_key(), top_views(results, section.world, kPictureBytes / worlds));
+             id, color_key(), figures(of_world->maps));
 }
 
 /// The machines that the runs were made on, and with which version.
@@ -291,14 +211,15 @@ std::vector<ReportSection> report_sections(const Results& results) {
 }
 
 std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
-                      const Json& data, const Parallel& parallel, LogSink& log) {
+                      const std::vector<WorldPictures>& pictures, const Json& data,
+                      const Parallel& parallel, LogSink& log) {
   const std::vector<std::string> worlds = worlds_of(results);
   std::size_t runs = 0;
   for (const std::string& world : worlds) runs += shown_rows(results, world).size();
   std::string body;
   std::string nav;
   for (const ReportSection& section : sections) {
-    body += section_html(results, section, worlds.size());
+    body += section_html(section, pictures);
     nav += fmt::format("<a href='#{}'>{}</a>", escaped(section.id), escaped(section.title));
   }
   const bool bundled = has_viewer();

@@ -7,6 +7,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/report/pictures.hpp"
 #include "lidarena/report/result_table.hpp"
 #include "lidarena/report/table.hpp"
 
@@ -26,9 +27,11 @@ struct ReportSection {
 std::vector<ReportSection> report_sections(const Results& results);
 
 /// The report as one HTML file that needs nothing else and no network; at most 60 MB whatever the
-/// study. `data` is what the charts are drawn from (see report_data()). Where the build has no
-/// viewer it is a plain page: tables and pictures.
+/// study. `pictures` are those of all worlds (see draw_pictures()), `data` is what the charts are
+/// drawn from (see report_data()). Where the build has no viewer it is a plain page: tables and
+/// pictures.
 std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
-                      const Json& data, const Parallel& parallel, LogSink& log);
+                      const std::vector<WorldPictures>& pictures, const Json& data,
+                      const Parallel& parallel, LogSink& log);
 
 }  // namespace lidarena

@@ -5,6 +5,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/report/page.hpp"
+#include "lidarena/report/pictures.hpp"
 #include "lidarena/report/report_data.hpp"
 #include "lidarena/report/result_table.hpp"
 #include "lidarena/report/svg_figures.hpp"
@@ -27,6 +28,18 @@ void write_tables(const std::vector<ReportSection>& sections, const std::filesys
   }
 }
 
+/// Pictures from above, each as a file of its own.
+void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesystem::path& folder) {
+  std::filesystem::create_directories(folder);
+  for (const WorldPictures& world : worlds) {
+    for (const auto& pictures : {world.place, world.maps}) {
+      for (const Picture& picture : pictures) {
+        write_text_file(folder / (picture.id + ".svg"), picture.svg);
+      }
+    }
+  }
+}
+
 }  // namespace
 
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
@@ -40,6 +53,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   files.page = folder / "report.html";
   files.csv = folder / "results.csv";
   const std::vector<ReportSection> sections = report_sections(results);
+  const std::vector<WorldPictures> pictures = draw_pictures(results);
   const Json data = report_data(results);
   write_text_file(files.csv, results_csv(results));
   write_tables(sections, folder / "tables");
@@ -49,7 +63,8 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
                  ? "figures are left out: this build has no viewer"
                  : "SVG files of the figures are left out: they need Node.js; the page has them");
   }
-  write_text_file(files.page, html_page(results, sections, data, Parallel(), log));
+  write_pictures(pictures, folder / "figures");
+  write_text_file(files.page, html_page(results, sections, pictures, data, Parallel(), log));
   files.text_table = results_text(results);
   return files;
 }

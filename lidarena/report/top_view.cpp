@@ -147,13 +147,16 @@ std::string scale_bar(const View& view) {
 
 std::string top_view_svg(const TopView& view) {
   const Eigen::AlignedBox2d box = framed(view);
-  std::string svg;
   if (box.isEmpty()) {
-    return fmt::format("<p class='none'>{}: no map and no path to draw</p>", escaped(view.title));
+    return fmt::format(
+        "<svg xmlns='http://www.w3.org/2000/svg' width='{0}' height='{1}'><text x='8' y='15' "
+        "class='h'>{2}: no map and no path to draw</text></svg>",
+        view.width, kTitleHeight, escaped(view.title));
   }
   const View pixels = fit(box, view.width);
-  svg = fmt::format(
-      "<svg viewBox='0 0 {0} {1}' width='{0}' height='{1}' role='img' aria-label='{2}'>"
+  std::string svg = fmt::format(
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0} {1}' width='{0}' height='{1}' "
+      "font-family='system-ui,sans-serif' font-size='12' role='img' aria-label='{2}'>"
       "<text x='8' y='15' class='h'>{2}</text><g transform='translate(0 {3})'>",
       pixels.width, pixels.height + kTitleHeight, escaped(view.title), kTitleHeight);
   if (view.map != nullptr && !view.map->points.empty()) {

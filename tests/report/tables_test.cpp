@@ -341,8 +341,8 @@ TEST(Page, NeedsNoNetworkAndStaysSmallWhateverTheTitle) {
   Results results = results_of_the_paper();
   results.title = "</title><script>alert(1)</script>";
   LogSink log;
-  const std::string page =
-      html_page(results, report_sections(results), report_data(results), Parallel(1), log);
+  const std::string page = html_page(results, report_sections(results), draw_pictures(results),
+                                     report_data(results), Parallel(1), log);
   EXPECT_THAT(page, Not(HasSubstr("<script>alert")));
   for (const char* reach : {"src='http", "src=\"http", "href='http", "href=\"http", "@import"}) {
     EXPECT_THAT(page, Not(HasSubstr(reach)));

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/report/pictures.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/tum.hpp"
+#include "lidarena/report/gauge.hpp"
+#include "lidarena/report/scene_files.hpp"
+#include "lidarena/report/simplified_mesh.hpp"
+#include "lidarena/report/study_cells.hpp"
+#include "lidarena/report/top_view.hpp"
+#include "lidarena/world/mesh_io.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPointsOfMesh = 200'000;
+constexpr std::size_t kMapBytes = 12 << 20;  // of all maps together
+constexpr int kPlaceWidth = 420;
+constexpr int kMapWidth = 560;
+
+/// Positions of the estimate in the mesh's frame, by the gauge of its metrics.
+std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Trajectory& estimate) {
+  const Pose gauge = truth_from_estimate(row.metrics).value_or(Pose::Identity());
+  std::vector<Eigen::Vector3d> positions;
+  for (const StampedPose& p : estimate.poses()) {
+    positions.push_back(gauge * p.world_from_body.translation());
+  }
+  return positions;
+}
+
+Picture map_picture(const ResultRow& row) {
+  const auto truth = load_truth(row.folder / row.manifest.value("dataset", ""));
+  const Trajectory estimate = read_tum(row.folder / "trajectory.tum");
+  Cloud map;
+  if (fs::exists(row.folder / "scored.ply")) map = read_cloud(row.folder / "scored.ply");
+  TopView view;
+  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, reading_of(row));
+  view.map = &map;
+  view.truth = truth ? &*truth : nullptr;
+  view.estimate = aligned_positions(row, estimate);
+  view.width = kMapWidth;
+  return {fmt::format("map-{}-{}-{}-{}", row.world, row.sensor, row.algorithm, reading_of(row)),
+          top_view_svg(view)};
+}
+
+std::vector<Picture> map_pictures(const Results& results, const std::string& world,
+                                  std::size_t budget) {
+  std::vector<Picture> pictures;
+  std::size_t bytes = 0;
+  for (const ResultRow* row : shown_rows(results, world)) {
+    if (bytes > budget || !fs::exists(row->folder / "trajectory.tum")) continue;
+    pictures.push_back(map_picture(*row));
+    bytes += pictures.back().svg.size();
+  }
+  return pictures;
+}
+
+Picture place_picture(const std::string& id, const std::string& title, const Cloud& cloud,
+                      const Trajectory* truth) {
+  TopView view;
+  view.title = title;
+  view.map = &cloud;
+  view.truth = truth;
+  view.width = kPlaceWidth;
+  return {id, top_view_svg(view)};
+}
+
+std::vector<Picture> place_pictures(const Results& results, const std::string& world) {
+  std::vector<Picture> pictures;
+  const auto first = std::ranges::find_if(results.rows, [&](const ResultRow& row) {
+    return row.world == world && row.manifest.is_object() && row.manifest.contains("dataset");
+  });
+  if (first == results.rows.end()) return pictures;
+  const fs::path dataset = first->folder / first->manifest.value("dataset", "");
+  const auto truth = load_truth(dataset);
+  if (const auto mesh = find_world_mesh(dataset)) {
+    Cloud surface;
+    surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
+    pictures.push_back(place_picture("world-" + world, "The world and the flight", surface,
+                                     truth ? &*truth : nullptr));
+  }
+  struct Scan {
+    const char* id;
+    const char* file;
+    const char* title;
+  };
+  std::set<std::string> sensors;
+  for (const ResultRow& row : results.rows) {
+    if (row.world != world || !sensors.insert(row.sensor).second) continue;
+    for (const Scan& scan : {Scan{"scan", "_scan.ply", "a scan, each return by its own pose"},
+                             Scan{"skewed", "_scan_skewed.ply", "the same by one pose: skewed"}}) {
+      const fs::path file = dataset / (row.sensor + scan.file);
+      if (!fs::exists(file)) continue;
+      pictures.push_back(place_picture(fmt::format("{}-{}-{}", scan.id, world, row.sensor),
+                                       row.sensor + ": " + scan.title, read_cloud(file), nullptr));
+    }
+  }
+  return pictures;
+}
+
+}  // namespace
+
+std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world) {
+  std::vector<const ResultRow*> rows;
+  std::set<std::string> seen;
+  for (const ResultRow& row : results.rows) {
+    if (row.world != world || row.status != "ok") continue;
+    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + reading_of(row)).second) {
+      rows.push_back(&row);
+    }
+  }
+  return rows;
+}
+
+std::vector<WorldPictures> draw_pictures(const Results& results) {
+  std::vector<WorldPictures> pictures;
+  const std::vector<std::string> worlds = StudyCells(results, "").worlds();
+  for (const std::string& world : worlds) {
+    pictures.push_back({world, place_pictures(results, world),
+                        map_pictures(results, world, kMapBytes / worlds.size())});
+  }
+  return pictures;
+}
+
+}  // namespace lidarena
