@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 
 namespace lidarena::fast_lio2 {
 namespace {
@@ -22,26 +21,6 @@ bool stuck(const Eigen::Vector3d& before, const Eigen::Vector3d& now, double ran
 bool is_clipped(const ImuSample& before, const ImuSample& sample, double accel_scale) {
   return stuck(before.gyro, sample.gyro, kSmallestGyroRange) ||
          stuck(before.accel, sample.accel, kSmallestAccelRange / accel_scale);
-}
-
-ImuStatistics statistics(const std::vector<ImuSample>& samples) {
-  ImuStatistics s;
-  s.count = samples.size();
-  if (samples.empty()) return s;
-  const auto n = static_cast<double>(s.count);
-  for (const ImuSample& sample : samples) {
-    s.mean_gyro += sample.gyro / n;
-    s.mean_accel += sample.accel / n;
-  }
-  double gyro = 0.0;
-  double accel = 0.0;
-  for (const ImuSample& sample : samples) {
-    gyro += (sample.gyro - s.mean_gyro).squaredNorm();
-    accel += (sample.accel - s.mean_accel).squaredNorm();
-  }
-  s.gyro_sigma = std::sqrt(gyro / (3.0 * n));
-  s.accel_sigma = std::sqrt(accel / (3.0 * n));
-  return s;
 }
 
 bool ImuWindow::add(const ImuSample& sample) {

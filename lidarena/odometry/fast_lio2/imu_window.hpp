@@ -27,16 +27,6 @@ struct ImuInput {
 /// the samples to m/s^2.
 bool is_clipped(const ImuSample& before, const ImuSample& sample, double accel_scale);
 
-/// Mean and spread of some samples.
-struct ImuStatistics {
-  std::size_t count = 0;
-  Eigen::Vector3d mean_gyro = Eigen::Vector3d::Zero();
-  Eigen::Vector3d mean_accel = Eigen::Vector3d::Zero();
-  double gyro_sigma = 0.0;   ///< rad/s, root of the mean square over three axes
-  double accel_sigma = 0.0;  ///< m/s^2
-};
-ImuStatistics statistics(const std::vector<ImuSample>& samples);
-
 /// IMU samples that wait for the scan they span.
 class ImuWindow {
  public:

@@ -8,14 +8,8 @@ namespace {
 
 using State = InertialState;
 
-// A quiet vehicle: ten times the white noise of a cheap IMU at 200 Hz.
-constexpr double kStillGyroSigma = 0.02;  // rad/s
-constexpr double kStillAccelSigma = 0.2;  // m/s^2
-constexpr double kStillRate = 0.05;       // rad/s: 3 deg/s of first bias
-constexpr double kStillForce = 0.3;       // m/s^2 of bias, off gravity's length
-constexpr double kAccelInG = 3.0;         // means below this are in units of g
-constexpr double kStillDrift = 0.03;      // m
-constexpr double kStillSpeed = 0.05;      // m/s
+constexpr double kStillDrift = 0.03;  // m
+constexpr double kStillSpeed = 0.05;  // m/s
 // Of a scan's means, off what the state expects to feel at rest: a start is told by its first push.
 constexpr double kRestRate = 0.005;  // rad/s
 constexpr double kRestForce = 0.05;  // m/s^2
@@ -49,30 +43,18 @@ State::Matrix covariance_of(const Config& config, bool still) {
 
 }  // namespace
 
-bool stands(const ImuStatistics& imu, const Config& config, double accel_scale) {
-  return imu.count > 2 && imu.gyro_sigma < kStillGyroSigma &&
-         accel_scale * imu.accel_sigma < kStillAccelSigma && imu.mean_gyro.norm() < kStillRate &&
-         std::abs(accel_scale * imu.mean_accel.norm() - config.gravity) < kStillForce;
-}
-
 Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
                  const Config& config) {
   const ImuStatistics imu = statistics(samples);
-  const double force = imu.mean_accel.norm();
   Start start;
-  if (config.always_scale_accel) {
-    start.accel_scale = config.gravity / force;
-  } else if (force < kAccelInG) {
-    start.accel_scale = config.gravity;
-  }
-  start.still = stands(imu, config, start.accel_scale);
+  start.accel_scale = config.always_scale_accel ? config.gravity / imu.mean_accel.norm()
+                                                : accel_scale_of(imu, config.gravity);
+  start.still = stands(imu, config.gravity, start.accel_scale);
   State& state = start.belief.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
   if (start.still || config.initial_sigma > 0.0) state.gyro_bias = imu.mean_gyro;
-  if (start.still && !config.always_scale_accel) {  // else the scale takes it
-    const double too_long = start.accel_scale * force - config.gravity;
-    state.accel_bias = too_long * imu.mean_accel.normalized();
-  }
+  if (start.still && !config.always_scale_accel)  // else the scale takes it
+    state.accel_bias = accel_bias_along(imu, config.gravity, start.accel_scale);
   state.lidar_rotation = imu_from_lidar.linear();
   state.lidar_position = imu_from_lidar.translation();
   start.belief.covariance = covariance_of(config, start.still);
@@ -84,7 +66,7 @@ bool StillDetector::observe(const ImuStatistics& imu, const InertialState& predi
                             double accel_scale) {
   const Eigen::Vector3d at_rest =
       predicted.accel_bias - predicted.rotation.transpose() * predicted.gravity;
-  const bool is_still = stands(imu, config, accel_scale) &&
+  const bool is_still = stands(imu, config.gravity, accel_scale) &&
                         (imu.mean_gyro - predicted.gyro_bias).norm() < kRestRate &&
                         (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
                         predicted.velocity.norm() < kStillSpeed &&

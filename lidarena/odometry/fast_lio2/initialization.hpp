@@ -4,15 +4,11 @@
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
+#include "lidarena/estimation/imu_at_rest.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
-#include "lidarena/odometry/fast_lio2/imu_window.hpp"
 
 namespace lidarena::fast_lio2 {
-
-/// Whether the samples show a sensor that stands: no spread beyond a quiet vehicle's, no turning
-/// beyond a gyro's first bias, and gravity alone (`accel_scale` brings the samples to m/s^2).
-bool stands(const ImuStatistics& imu, const Config& config, double accel_scale);
 
 /// What the start says.
 struct Start {
