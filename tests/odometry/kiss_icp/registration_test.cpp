@@ -1,32 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of KISS-ICP, each on its own.
+#include "lidarena/odometry/kiss_icp/registration.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/se3.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/odometry/kiss_icp/adaptive_threshold.hpp"
-#include "lidarena/odometry/kiss_icp/preprocess.hpp"
-#include "lidarena/odometry/kiss_icp/registration.hpp"
+#include "tests/odometry/kiss_icp/motions.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
 namespace lidarena::kiss_icp {
 namespace {
 
 using se3::Vector6;
-
-Vector6 vector6(double a, double b, double c, double d, double e, double f) {
-  Vector6 v;
-  v << a, b, c, d, e, f;
-  return v;
-}
-
-Pose pose_of(double x, double y, double z, double rx, double ry, double rz) {
-  return make_pose(so3::exp({rx, ry, rz}), {x, y, z});
-}
 
 /// `count` directions evenly over the sphere (a Fibonacci lattice, turned by `phase`) as points on
 /// the walls of the synthetic room seen from `room_from_lidar`, with normal noise of range.
@@ -234,7 +222,8 @@ TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
   std::vector<Eigen::Vector3f> walls, pattern, seen;
   for (int i = 0; i < 60; ++i) {
     for (int k = 0; k < 60; ++k) {
-      const float a = 0.05F + 0.1F * static_cast<float>(i), b = 0.05F + 0.1F * static_cast<float>(k);
+      const float a = 0.05F + 0.1F * static_cast<float>(i),
+                  b = 0.05F + 0.1F * static_cast<float>(k);
       for (const Eigen::Vector3f& p : {Eigen::Vector3f(0.05F, a, b), Eigen::Vector3f(a, 0.05F, b),
                                        Eigen::Vector3f(a, b, 0.05F)}) {
         walls.push_back(p);
@@ -289,7 +278,8 @@ TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
       return 3.0 * pull(x) + pull(x - kOff);
     };
     double low = 0.0, high = 0.25 * kOff;  // without a kernel it would be a quarter
-    for (int i = 0; i < 60; ++i) (slope(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
+    for (int i = 0; i < 60; ++i)
+      (slope(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
     Config config;
     config.sensor_centred = true;
     config.convergence = 1e-9;
@@ -313,189 +303,6 @@ TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
       register_points({points, all_at_it}, map, departure, shift, 0.5, 1.0, config, Parallel(1));
   const auto still = register_still(points, map, shift, 0.5, config);
   EXPECT_LT((moving.map_from_lidar.matrix() - still.map_from_lidar.matrix()).norm(), 1e-12);
-}
-
-TEST(AdaptiveThreshold, DisplacementIsHowFarAPointAtTheRangeMoves) {
-  // turned about z, the farthest-moved point at 50 m is any one on the x-y circle
-  const Pose turned = pose_of(0, 0, 0, 0, 0, 0.3);
-  const Eigen::Vector3d point(30.0, 40.0, 0.0);
-  EXPECT_NEAR(displacement(turned, 50.0), (turned * point - point).norm(), 1e-12);
-  EXPECT_NEAR(displacement(pose_of(3, 0, 4, 0, 0, 0), 50.0), 5.0, 1e-12);
-}
-
-TEST(AdaptiveThreshold, SigmaIsTheRootMeanSquareOfTheFirstGuessAndLargeErrors) {
-  Config config;
-  config.initial_threshold_m = 2.0;
-  AdaptiveThreshold threshold(config);
-  EXPECT_EQ(threshold.sigma(), 2.0);
-  threshold.observe(Pose::Identity(), pose_of(0.09, 0, 0, 0, 0, 0), 7.0);
-  EXPECT_EQ(threshold.sigma(), 2.0) << "below the minimum motion of 0.1 m";
-  threshold.observe(Pose::Identity(), pose_of(0.5, 0, 0, 0, 0, 0), 7.0);
-  threshold.observe(pose_of(0, 7, 0, 0, 0, 1), pose_of(0, 8, 0, 0, 0, 1), 7.0);
-  EXPECT_NEAR(threshold.sigma(), std::sqrt((4.0 + 0.25 + 1.0) / 3.0), 1e-12);
-}
-
-TEST(AdaptiveThreshold, In2023TheFirstGuessHoldsForHalfAMetreAndThenDropsOut) {
-  Config config;
-  config.threshold_start = ThresholdStart::kUntilMoved;
-  AdaptiveThreshold threshold(config);
-  threshold.observe(Pose::Identity(), pose_of(0.3, 0, 0, 0, 0, 0), 7.0);
-  EXPECT_EQ(threshold.sigma(), 2.0) << "0.3 m from the start";
-  threshold.observe(pose_of(0.3, 0, 0, 0, 0, 0), pose_of(0.7, 0, 0, 0, 0, 0), 7.0);
-  EXPECT_NEAR(threshold.sigma(), std::sqrt((0.09 + 0.16) / 2.0), 1e-12);
-}
-
-TEST(AdaptiveThreshold, WithAMemoryItForgetsLargeErrorsAndSeesSmallOnes) {
-  Config config;
-  config.initial_threshold_m = 2.0;
-  config.threshold_memory = 10.0;
-  AdaptiveThreshold threshold(config);
-  const Pose small = pose_of(0.02, 0, 0, 0, 0, 0);
-  double squares = 4.0, weights = 1.0;
-  for (int i = 1; i <= 60; ++i) {
-    threshold.observe(Pose::Identity(), small, 7.0);
-    squares = squares * std::exp(-0.1) + 0.01;  // errors below 0.1 m count as 0.1 m
-    weights = weights * std::exp(-0.1) + 1.0;
-    ASSERT_NEAR(threshold.sigma(), std::sqrt(squares / weights), 1e-12) << i;
-  }
-  EXPECT_LT(threshold.sigma(), 0.11) << "2 m are forgotten";
-  threshold.observe(Pose::Identity(), pose_of(1.0, 0, 0, 0, 0, 0), 7.0);
-  EXPECT_GT(threshold.sigma(), 0.3) << "and 1 m counts a tenth at once";
-}
-
-TEST(AdaptiveThreshold, TheLeverIsTheMaximumRangeOrTheMeanRangeOfTheScan) {
-  const Pose turned = pose_of(0, 0, 0, 0, 0, 0.1);
-  Config config;
-  config.initial_threshold_m = 1e-9;
-  config.max_range_m = 40.0;
-  for (const auto& [lever, range] :
-       {std::pair{ThresholdLever::kMaxRange, 40.0}, std::pair{ThresholdLever::kMeanRange, 5.0}}) {
-    config.threshold_lever = lever;
-    AdaptiveThreshold threshold(config);
-    threshold.observe(Pose::Identity(), turned, 5.0);
-    EXPECT_NEAR(threshold.sigma(), displacement(turned, range) / std::sqrt(2.0), 1e-9);
-  }
-}
-
-Scan scan_of(std::initializer_list<Eigen::Vector3f> positions, std::int32_t step_ns) {
-  Scan scan;
-  scan.stamp = Time{1000};
-  for (const auto& position : positions) {
-    Point point;
-    point.position = position;
-    point.dt_ns = step_ns * static_cast<std::int32_t>(scan.points.size());
-    scan.points.push_back(point);
-  }
-  return scan;
-}
-
-TEST(Preprocess, TheRangeGateIsOpenAtBothEndsAndRefusesWhatIsNotFinite) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
-  constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  Config config;
-  config.min_range_m = 1.0;
-  config.max_range_m = 10.0;
-  const Scan scan = scan_of({{1, 0, 0},
-                             {1.01F, 0, 0},
-                             {0, 9.99F, 0},
-                             {0, 0, 10},
-                             {0, 0, 0},
-                             {kNan, 2, 2},
-                             {kInfinite, 0, 0}},
-                            100);
-  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
-  const auto kept = preprocess(scan, times, Vector6::Zero(), config, Parallel(1));
-  ASSERT_EQ(kept.size(), 2U);
-  EXPECT_EQ(kept.positions[0], Eigen::Vector3f(1.01F, 0, 0));
-  EXPECT_EQ(kept.positions[1], Eigen::Vector3f(0, 9.99F, 0));
-  EXPECT_TRUE(kept.deskewed());
-}
-
-TEST(Preprocess, APoseBelongsToTheLastPointOrTheMiddleOfTheScan) {
-  Scan scan = scan_of({{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 300);
-  std::swap(scan.points[0], scan.points[2]);  // not in order of time
-  EXPECT_EQ(times_of(scan, Time{5}, PoseInstant::kScanEnd).reference, Time{1600});
-  EXPECT_EQ(times_of(scan, Time{5}, PoseInstant::kScanMiddle).reference, Time{1300});
-  EXPECT_TRUE(times_of(scan, Time{5}, PoseInstant::kScanEnd).timed);
-  scan.points.clear();
-  EXPECT_EQ(times_of(scan, Time{500}, PoseInstant::kScanEnd).reference, Time{1500});
-  EXPECT_FALSE(times_of(scan, Time{500}, PoseInstant::kScanEnd).timed);
-}
-
-TEST(Preprocess, EqualTimesLoseTheScanInTheOriginalAndMeanNoTimesWhenCured) {
-  const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}}, 0);
-  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
-  Config config;
-  const Pose motion = pose_of(0.1, 0, 0, 0, 0, 0.1);
-  const Vector6 twist = twist_within(times, motion, 0.1, config);
-  EXPECT_EQ(twist, Vector6::Zero());
-  EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 0U);
-  config.equal_times_are_no_times = true;
-  EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 2U);
-}
-
-TEST(Preprocess, MotionFillsTheScanInTheOriginalAndTheTimeItTookWhenCured) {
-  const Scan scan = scan_of({{2, 0, 0}, {2, 0, 0}}, 50'000'000);  // a scan of 0.05 s
-  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
-  const Vector6 moved = vector6(0.2, 0, 0, 0, 0, 0.1);  // in 0.1 s
-  Config config;
-  EXPECT_LT((twist_within(times, se3::exp(moved), 0.1, config) - moved / 0.05).norm(), 1e-12);
-  config.motion_per_second = true;
-  EXPECT_LT((twist_within(times, se3::exp(moved), 0.1, config) - moved / 0.1).norm(), 1e-12);
-  config.deskew = false;
-  EXPECT_EQ(twist_within(times, se3::exp(moved), 0.1, config), Vector6::Zero());
-}
-
-TEST(Preprocess, PointsWhoseMotionIsToBeEstimatedStayAtTheirInstantsUntilItIsKnown) {
-  const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, 50'000'000);
-  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
-  Config config;
-  config.own_motion = 1.0;
-  const Vector6 wrong = vector6(9, 9, 9, 9, 9, 9);
-  const TimedPoints points = preprocess(scan, times, wrong, config, Parallel(1));
-  ASSERT_EQ(points.seconds, (std::vector<float>{-0.1F, -0.05F, 0.0F}));
-  EXPECT_EQ(points.positions[1], scan.points[1].position);
-  // 1 m/s along x: what was seen 0.1 s ago is 0.1 m nearer now
-  const auto still = deskewed(points, vector6(1, 0, 0, 0, 0, 0), Parallel(1));
-  EXPECT_NEAR(still[0].x(), 1.9F, 1e-6F);
-  EXPECT_NEAR(still[1].x(), 2.95F, 1e-6F);
-  EXPECT_NEAR(still[2].x(), 4.0F, 1e-6F);
-}
-
-TEST(Preprocess, ThinningTakesTheTimesAlong) {
-  const TimedPoints points{{{0.1F, 0, 0}, {0.2F, 0, 0}, {5.1F, 0, 0}}, {-3.0F, -2.0F, -1.0F}};
-  const TimedPoints thinned = thin(points, 1.0, {});
-  ASSERT_EQ(thinned.size(), 2U);
-  for (std::size_t i = 0; i < 2; ++i)
-    EXPECT_EQ(thinned.seconds[i], thinned.positions[i].x() < 1.0F ? -3.0F : -1.0F);
-}
-
-TEST(Preprocess, SlicesAreThePartsOfTheScanInOrderOfTime) {
-  Scan scan;
-  scan.stamp = Time{5000};
-  for (const std::int32_t dt : {900, 0, 100, 399, 400, 450, 1000})  // none in 600 ... 799
-    scan.points.emplace_back().dt_ns = dt;
-  const auto slices = sliced(scan, 5);
-  std::vector<std::vector<std::int32_t>> times;
-  for (const Scan& slice : slices) {
-    EXPECT_EQ(slice.stamp, scan.stamp);
-    EXPECT_TRUE(slice.timed);
-    times.emplace_back();
-    for (const Point& point : slice.points) times.back().push_back(point.dt_ns);
-  }
-  EXPECT_EQ(times,
-            (std::vector<std::vector<std::int32_t>>{{0, 100}, {399, 400}, {450}, {900, 1000}}))
-      << "1000 ns in five: 201 ns each, so that the last point is in";
-}
-
-TEST(Preprocess, AScanWithoutTimesOrPointsIsOneSlice) {
-  Scan scan = scan_of({{1, 0, 0}, {2, 0, 0}}, 0);
-  EXPECT_EQ(sliced(scan, 4).size(), 1U);
-  scan.points[1].dt_ns = 1000;
-  scan.timed = false;
-  EXPECT_EQ(sliced(scan, 4).size(), 1U);
-  scan.points.clear();
-  EXPECT_EQ(sliced(scan, 4).size(), 1U);
 }
 
 }  // namespace
