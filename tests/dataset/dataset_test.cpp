@@ -12,7 +12,7 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -311,16 +311,16 @@ TEST(ForeignMcap, AnotherTopicCanBeNamed) {
 TEST(ForeignMcap, AFolderOfRosbag2IsOpenedByItsFile) {
   const TemporaryFolder folder;
   write_foreign(folder.path() / "bag_0.mcap", sample::events(3, 50));
-  std::ofstream(folder.path() / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
+  folder.write("metadata.yaml", "rosbag2_bagfile_information: {}\n");
   EXPECT_EQ(open_dataset(folder.path()).scan_count, 3U);
 }
 
 TEST(ForeignMcap, BagsInOtherStoragesSayHowToConvertThem) {
   const TemporaryFolder folder;
-  std::ofstream(folder.path() / "metadata.yaml") << "rosbag2_bagfile_information: {}\n";
+  folder.write("metadata.yaml", "rosbag2_bagfile_information: {}\n");
   const auto open = [](const fs::path& path) { return [path] { open_dataset(path); }; };
   EXPECT_THAT(input_error(open(folder.path())), HasSubstr("ros2 bag convert"));
-  EXPECT_THAT(input_error(open(write_file(folder.path() / "a.db3", "SQLite format 3"))),
+  EXPECT_THAT(input_error(open(folder.write("a.db3", "SQLite format 3"))),
               HasSubstr("ros2 bag convert"));
 }
 

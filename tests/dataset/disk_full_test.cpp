@@ -14,7 +14,7 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {

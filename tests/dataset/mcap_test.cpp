@@ -10,7 +10,7 @@
 #include "lidarena/dataset/mcap_reader.hpp"
 #include "lidarena/dataset/mcap_writer.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -281,7 +281,7 @@ TEST(Mcap, AnEmptyFileIsWhole) {
 
 TEST(Mcap, OtherFilesAreRefused) {
   const TemporaryFolder folder;
-  write_file(folder.path() / "a.mcap", "#ROSBAG V2.0\n and so on");
+  folder.write("a.mcap", "#ROSBAG V2.0\n and so on");
   EXPECT_THAT(read_sample(folder.path() / "a.mcap").error, HasSubstr("is not an MCAP file"));
   EXPECT_THAT(read_sample(folder.path() / "missing.mcap").error, HasSubstr("cannot be opened"));
 }

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {

@@ -12,7 +12,7 @@
 #include "lidarena/dataset/ply.hpp"
 #include "lidarena/dataset/point_table.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -25,7 +25,7 @@ constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 class PointFile : public testing::Test {
  protected:
   std::filesystem::path put(const char* name, std::string_view bytes) const {
-    return write_file(folder_.path() / name, bytes);
+    return folder_.write(name, bytes);
   }
   std::string error_of(const char* name, std::string_view bytes) const {
     return input_error([&] { read_cloud(put(name, bytes)); });

@@ -3,13 +3,11 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <fstream>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -21,13 +19,6 @@ using ::testing::HasSubstr;
 
 class RecordedTrajectory : public ::testing::TestWithParam<const char*> {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("lidarena_poses_" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    file_ = folder_ / (std::string("poses") + GetParam());
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   std::unique_ptr<RecordingWriter> create() const {
     RecordingOptions options;
     options.format = *recording_format_of(file_);
@@ -60,7 +51,8 @@ class RecordedTrajectory : public ::testing::TestWithParam<const char*> {
     return {};
   }
 
-  fs::path folder_, file_;
+  TemporaryFolder folder_;
+  fs::path file_ = folder_.path() / (std::string("poses") + GetParam());
 };
 
 TEST_P(RecordedTrajectory, OdometryIsReadWithItsFrames) {
@@ -129,15 +121,10 @@ INSTANTIATE_TEST_SUITE_P(Formats, RecordedTrajectory, ::testing::Values(".mcap",
 
 class FramesOfText : public ::testing::Test {
  protected:
-  void SetUp() override {
-    file_ = fs::temp_directory_path() / ("lidarena_frames_" + std::to_string(getpid()) + ".tum");
-  }
-  void TearDown() override { fs::remove(file_); }
   FramedTrajectory read(const std::string& text) const {
-    std::ofstream(file_) << text;
-    return read_framed_trajectory(file_);
+    return read_framed_trajectory(folder_.write("poses.tum", text));
   }
-  fs::path file_;
+  TemporaryFolder folder_;
 };
 
 TEST_F(FramesOfText, AreNamedByACommentBeforeTheFirstRow) {

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -34,7 +34,7 @@ class Room : public testing::Test {
     put("gt.tum", "1000.0 1 2 3 0 0 0 1\n1000.2 2 2 3 0 0 0.6 0.8\n");
   }
   std::filesystem::path put(const std::string& name, std::string_view bytes) const {
-    return write_file(folder_.path() / name, bytes);
+    return folder_.write(name, bytes);
   }
   const std::filesystem::path& path() const { return folder_.path(); }
   std::string error_with(const std::string& name, std::string_view bytes) const {

@@ -9,7 +9,7 @@
 
 #include "lidarena/dataset/sweep_file.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -47,7 +47,7 @@ PointTable table_of(std::vector<std::string> names, const std::vector<std::vecto
 class Sweeps : public testing::Test {
  protected:
   std::filesystem::path put(const std::string& name, std::string_view bytes) const {
-    return write_file(folder_.path() / name, bytes);
+    return folder_.write(name, bytes);
   }
   void put_untimed(const std::string& name, float x) const { put(name, packed(x, 0.0F, 0.0F)); }
   std::string open_error(const ReadOptions& options = {}) const {

@@ -12,7 +12,7 @@
 #include "lidarena/dataset/trajectory_io.hpp"
 #include "lidarena/dataset/tum.hpp"
 #include "tests/dataset/file_helpers.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -23,7 +23,7 @@ using testing::HasSubstr;
 class TrajectoryFile : public testing::Test {
  protected:
   std::filesystem::path put(std::string_view text, const char* name = "t.tum") const {
-    return write_file(folder_.path() / name, text);
+    return folder_.write(name, text);
   }
   std::string tum_error(std::string_view text) const {
     return input_error([&] { read_tum(put(text)); });

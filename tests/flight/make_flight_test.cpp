@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/so3.hpp"
@@ -13,6 +12,7 @@
 #include "tests/flight/flight_conformance.hpp"
 #include "tests/flight/flight_scenes.hpp"
 #include "tests/flight/tour_scenes.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -23,38 +23,30 @@ using testing::HasSubstr;
 class MakeFlight : public testing::Test {
  protected:
   void SetUp() override {
-    const auto* info = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::temp_directory_path() / (std::string("lidarena_") + info->name());
-    std::filesystem::create_directories(folder_);
     model_.name = "walls";
     model_.mesh = scenes::wall_with_door();
     model_.routes = {{{-2, 0, 1}, {2, 0, 1}}, {{-2, 0, 1}, {-2, 2, 1}, {2, 2, 1}}};
   }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
   std::unique_ptr<Flight> make(const std::filesystem::path& file) const {
     LogSink log;
     return make_flight(file, model_, World(TriangleMesh(model_.mesh)), log);
   }
   std::string error_of(const std::string& name, const std::string& text) const {
     try {
-      make(write(name, text));
+      make(folder_.write(name, text));
     } catch (const InputError& e) {
       return e.what();
     }
     return "no error";
   }
 
-  std::filesystem::path folder_;
+  TemporaryFolder folder_;
   WorldModel model_;
 };
 
 TEST_F(MakeFlight, WaypointsAndStyleComeFromTheFile) {
-  const auto flight = make(write("a.yaml", R"(
+  const auto flight = make(folder_.write("a.yaml", R"(
 kind: waypoints
 waypoints: [[-2, 0, 1], [2, 0, 1.5]]
 style: gentle
@@ -70,7 +62,7 @@ duration_s: 9
 }
 
 TEST_F(MakeFlight, ARouteIsTheWorldsOwn) {
-  const auto flight = make(write("a.yaml", "kind: route\n"));
+  const auto flight = make(folder_.write("a.yaml", "kind: route\n"));
   const Eigen::Vector3d end = flight->pose_at(flight->duration()).translation();
   EXPECT_NEAR((end - Eigen::Vector3d(2, 0, 1)).norm(), 0.0, 1e-12);
   EXPECT_THAT(error_of("b.yaml", "kind: route\nroute: 2\n"),
@@ -94,13 +86,13 @@ TEST_F(MakeFlight, ReplaysATumFileWithNanosecondsIntact) {
       "\n"
       "1700000000.5 0 0 1 0 0 0.479425538604203 0.877582561890373\n"
       "1.700000001e+09 2 0 1 0 0 0.8414709848078965 0.5403023058681398\n";
-  const auto bare = make(write("recorded.tum", tum));
+  const auto bare = make(folder_.write("recorded.tum", tum));
   EXPECT_EQ(bare->duration(), Time{999'999'999});
   const Pose second = bare->pose_at(Time{250'000'002});
   EXPECT_NEAR(second.translation().x(), -1.0, 1e-12);
-  const auto placed = make(
-      write("replay.yaml",
-            "kind: replay\nreplay: recorded.tum\nworld_from_recording: [0, 0, 0.5, 0, 0, 0, 1]\n"));
+  const auto placed = make(folder_.write(
+      "replay.yaml",
+      "kind: replay\nreplay: recorded.tum\nworld_from_recording: [0, 0, 0.5, 0, 0, 0, 1]\n"));
   EXPECT_NEAR(placed->pose_at(Time{0}).translation().z(), 1.5, 1e-12);
   const Pose end = placed->pose_at(placed->duration());
   EXPECT_NEAR((end.linear() - so3::exp(2.0 * Eigen::Vector3d::UnitZ())).norm(), 0.0, 1e-12);
@@ -136,9 +128,10 @@ TEST_F(MakeFlight, BadConfigurationsAreNamedByFileLineAndKey) {
 
 TEST_F(MakeFlight, DynamicsAreOffByDefaultAndTakenFromTheFile) {
   const std::string path = "kind: route\n";
-  const auto ideal = make(write("a.yaml", path));
-  const auto flown = make(write("b.yaml", path + "dynamics: {}\n"));
-  const auto heavy = make(write("c.yaml", path + "dynamics: {mass_kg: 2, motor_lag_s: 0.05}\n"));
+  const auto ideal = make(folder_.write("a.yaml", path));
+  const auto flown = make(folder_.write("b.yaml", path + "dynamics: {}\n"));
+  const auto heavy =
+      make(folder_.write("c.yaml", path + "dynamics: {mass_kg: 2, motor_lag_s: 0.05}\n"));
   const auto apart = [&](const Flight& a, const Flight& b) {
     const Time middle = a.duration() / 2;
     return (a.pose_at(middle).translation() - b.pose_at(middle).translation()).norm();
@@ -154,7 +147,7 @@ TEST_F(MakeFlight, DynamicsAreOffByDefaultAndTakenFromTheFile) {
 
 TEST_F(MakeFlight, ClearanceHoldsForThePathAsFlownNotAsPlanned) {
   const std::string path = "kind: route\n";
-  make(write("a.yaml", path));  // the reference passes the door in its middle
+  make(folder_.write("a.yaml", path));  // the reference passes the door in its middle
   EXPECT_THAT(error_of("a.yaml", path + "dynamics: {gusts: {wind: [0, 5, 0]}}\n"),
               HasSubstr("m of a surface"));
 }
@@ -165,7 +158,7 @@ TEST_F(MakeFlight, AnAutomaticTourIsPlannedInTheWorldAndTold) {
     std::string all;
   } told;
   model_.mesh = scenes::two_rooms();
-  const auto flight = make_flight(write("a.yaml", R"(
+  const auto flight = make_flight(folder_.write("a.yaml", R"(
 kind: auto
 clearance_m: 0.4
 corner_m: 0.1

@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "lidarena/base/error.hpp"
 #include "tests/odometry/synthetic_room.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -30,6 +30,7 @@ std::string refusal(const OdometryRequest& request, const std::string& lidar = "
 }
 
 TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesItAgain) {
+  const TemporaryFolder folder;
   for (const AlgorithmInfo& info : list_algorithms()) {
     EXPECT_FALSE(info.summary.empty());
     EXPECT_THAT(info.presets, testing::IsSupersetOf({"original", "improved"}));
@@ -37,24 +38,21 @@ TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesIt
       const MadeOdometry made = make({info.name, preset, "", {}});
       ASSERT_NE(made.odometry, nullptr);
       EXPECT_EQ(made.odometry->traits().needs_imu, info.needs_imu);
-      const auto file = std::filesystem::path(testing::TempDir()) / (info.name + preset + ".yaml");
-      std::ofstream(file) << made.config.dump(2);
+      const auto file = folder.write(preset + ".yaml", made.config.dump(2));
       EXPECT_EQ(make({info.name, "improved", file.string(), {}}).config, made.config);
-      std::filesystem::remove(file);
     }
   }
 }
 
 TEST(OdometryFactory, OverridesWinOverTheFileAndTheFileOverThePreset) {
-  const auto file = std::filesystem::path(testing::TempDir()) / "kiss.yaml";
-  std::ofstream(file) << "voxel_size_m: 0.4\nmax_iterations: 7\n";
+  const TemporaryFolder folder;
+  const auto file = folder.write("kiss.yaml", "voxel_size_m: 0.4\nmax_iterations: 7\n");
   const Json config =
       make({"kiss_icp", "head", file.string(), {"max_iterations=9", "deskew=false"}}).config;
   EXPECT_EQ(config.at("voxel_size_m"), 0.4);
   EXPECT_EQ(config.at("max_iterations"), 9);
   EXPECT_EQ(config.at("deskew"), false);
   EXPECT_EQ(config.at("max_range_m"), 100.0);
-  std::filesystem::remove(file);
 }
 
 TEST(OdometryFactory, RefusalsNameTheNearestWord) {

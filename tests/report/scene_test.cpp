@@ -11,7 +11,7 @@
 #include "lidarena/report/scene_blocks.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/view_page.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {

@@ -11,7 +11,7 @@
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/timing.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {

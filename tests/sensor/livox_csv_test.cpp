@@ -3,25 +3,20 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <cstdio>
-#include <fstream>
+#include <filesystem>
 #include <string>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/sensor/livox.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "tests/sensor/flights.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
-
-/// Tests of one file may run at the same time, each in a process of its own.
-std::filesystem::path scratch_file(const std::string& name) {
-  return std::filesystem::path(::testing::TempDir()) / (std::to_string(getpid()) + "_" + name);
-}
 
 using testing::degrees;
 using ::testing::HasSubstr;
@@ -29,10 +24,14 @@ using testing::radians;
 
 namespace fs = std::filesystem;
 
+/// A folder for the process.
+const TemporaryFolder& scratch() {
+  static const TemporaryFolder folder;
+  return folder;
+}
+
 fs::path written(const std::string& text) {
-  const fs::path file = scratch_file("pattern_under_test.csv");
-  std::ofstream(file) << text;
-  return file;
+  return scratch().write("pattern_under_test.csv", text);
 }
 
 /// The first rows of our own Mid-360 as the maker prints its table, angles with four decimals.
@@ -116,10 +115,8 @@ TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
 
 /// The message with which a sensor of these keys fails to load.
 std::string sensor_failure(const std::string& yaml) {
-  const fs::path file = scratch_file("csv_sensor.yaml");
-  std::ofstream(file) << "model: livox_csv\n" << yaml;
   try {
-    load_sensor(file);
+    load_sensor(scratch().write("csv_sensor.yaml", "model: livox_csv\n" + yaml));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -4,10 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <fstream>
+#include <filesystem>
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -20,10 +21,9 @@ const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
 
 /// The message with which loading `yaml` fails.
 std::string failure(const std::string& yaml) {
-  const fs::path file = fs::path(::testing::TempDir()) / "sensor_under_test.yaml";
-  std::ofstream(file) << yaml;
+  const TemporaryFolder folder;
   try {
-    load_sensor(file);
+    load_sensor(folder.write("sensor_under_test.yaml", yaml));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -5,12 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <fstream>
+#include <filesystem>
 #include <numbers>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "tests/sensor/flights.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -95,13 +96,11 @@ TEST(SpinningHead, TurnsEitherWayFromWhereItStarts) {
 
 /// The message with which a sensor with this table and these further lines fails to load.
 std::string failure(const std::string& table, const std::string& sensor = "columns: 100\n") {
-  const fs::path folder = ::testing::TempDir();
-  std::ofstream(folder / "table_under_test.yaml") << table;
-  std::ofstream(folder / "table_sensor.yaml")
-      << "model: beam_table\npattern_file: table_under_test.yaml\n"
-      << sensor;
+  const TemporaryFolder folder;
+  folder.write("table_under_test.yaml", table);
   try {
-    load_sensor(folder / "table_sensor.yaml");
+    load_sensor(folder.write("table_sensor.yaml",
+                             "model: beam_table\npattern_file: table_under_test.yaml\n" + sensor));
   } catch (const InputError& error) {
     return error.what();
   }

@@ -6,6 +6,7 @@
 #include <fstream>
 
 #include "lidarena/dataset/json_file.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -15,14 +16,13 @@ namespace fs = std::filesystem;
 const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs";
 
 TEST(SimulateDataset, TakesASensorsOwnTableAlongSoThatItCanBeFlownElsewhere) {
-  const fs::path folder = fs::path(::testing::TempDir()) / "simulate_dataset_test";
-  fs::remove_all(folder);
-  fs::create_directories(folder);
+  const TemporaryFolder temporary;
+  const fs::path& folder = temporary.path();
   std::ofstream table(folder / "table.csv");
   for (int i = 0; i < 500; ++i) table << i << ',' << i % 360 << ',' << 60 + i % 60 << '\n';
   table.close();
-  std::ofstream(folder / "sensor.yaml")
-      << "model: livox_csv\npattern_file: table.csv\nrow_rate_hz: 5000\nlines: 4\n";
+  temporary.write("sensor.yaml",
+                  "model: livox_csv\npattern_file: table.csv\nrow_rate_hz: 5000\nlines: 4\n");
 
   SimulateRequest request;
   request.world = kConfigs / "worlds/house.yaml";

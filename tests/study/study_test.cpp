@@ -26,6 +26,7 @@
 #include "lidarena/study/isolate.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -150,13 +151,12 @@ TEST(ConfigFolder, NamesResolveAndAMisspeltOneIsCorrected) {
 TEST(ConfigFolder, AFolderThatHappensToBeCalledLikeAWorldDoesNotHideIt) {
   namespace fs = std::filesystem;
   const fs::path here = fs::current_path();
-  const fs::path folder = fs::path(testing::TempDir()) / "lidarena_names";
-  fs::create_directories(folder / "cave");
+  const TemporaryFolder folder;
+  fs::create_directory(folder.path() / "cave");
   const ConfigFolder known = configs();
-  fs::current_path(folder);
+  fs::current_path(folder.path());
   const fs::path found = known.resolve("worlds", "cave");
   fs::current_path(here);
-  fs::remove_all(folder);
   EXPECT_EQ(found.filename(), "cave.yaml");
 }
 
@@ -265,20 +265,6 @@ TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
   EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
 }
 
-/// A folder that goes away.
-class Scratch {
- public:
-  Scratch() {
-    std::string name = (std::filesystem::temp_directory_path() / "lidarena_study_XXXXXX").string();
-    path_ = ::mkdtemp(name.data());
-  }
-  ~Scratch() { std::filesystem::remove_all(path_); }
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
-
 StudySpec tiny_spec() {
   StudySpec spec;
   spec.scenes = {{"house", "house", 0.5}};
@@ -288,7 +274,7 @@ StudySpec tiny_spec() {
 }
 
 TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   LogSink log;
   // The other study holds the folder while an external program waits for us.
   StudySpec waiting = tiny_spec();
@@ -315,7 +301,7 @@ TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
 }
 
 TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAfterwards) {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   LogSink log;
   ASSERT_EQ(run_study(tiny_spec(), configs(), scratch.path(), {}, log).failed, 0U);
   const auto only_in = [](const std::filesystem::path& folder) {
@@ -340,7 +326,7 @@ TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAft
 }
 
 TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   LogSink log;
   StudySpec spec = tiny_spec();
   const auto metrics_of = [&](const char* study) {
@@ -364,7 +350,7 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
 }
 
 TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
-  const Scratch scratch;
+  const TemporaryFolder scratch;
   LogSink log;
   // Three programs: one that stands still, one that leaves nothing, one that fails.
   const std::string still =

@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <cstdlib>
@@ -11,6 +10,8 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+
+#include "tests/temporary_folder.hpp"
 
 /// What tests of the program share: calling it in a folder of their own, and a room to fly through.
 namespace lidarena::testing {
@@ -35,21 +36,13 @@ inline bool same(const fs::path& a, const fs::path& b) { return content(a) == co
 /// Each test has a folder, gone when it ends.
 class Cli : public ::testing::Test {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::temp_directory_path() /
-              ("lidarena_cli_" + std::to_string(getpid()) + "_" + info->name());
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   /// Calls the program in the test's folder.
   Outcome call(const std::string& arguments) const {
-    const std::string command = "cd " + folder_.string() + " && " + LIDARENA_BINARY + " " +
+    const std::string command = "cd " + folder_.path().string() + " && " + LIDARENA_BINARY + " " +
                                 arguments + " >out 2>err </dev/null";
     const int status = std::system(command.c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(folder_ / "out"),
-            content(folder_ / "err")};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(path("out")),
+            content(path("err"))};
   }
   /// Bad input: exit code 2 and one line of error.
   std::string refusal(const std::string& arguments) const {
@@ -67,12 +60,11 @@ class Cli : public ::testing::Test {
     return last;
   }
   std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return (folder_ / name).string();
+    return folder_.write(name, text).string();
   }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+  std::string path(const std::string& name) const { return (folder_.path() / name).string(); }
 
-  fs::path folder_;
+  TemporaryFolder folder_;
 };
 
 /// A closed room of 12 x 8 x 4 m around the origin's first octant, with two pillars, as OBJ.

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
@@ -100,7 +99,6 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
 }
 
 TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
-  fs::create_directories(folder_ / "crashed");
   write("crashed/manifest.json",
         R"({"kind": "run", "algorithm": "x", "preset": "y", "sensor": "z",
             "dataset": "nowhere", "failed": "killed by SIGSEGV"})");
@@ -132,7 +130,7 @@ TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
   EXPECT_EQ(call("--lever body_from_lidar=0.5,0,0,0,0,0,1" + files).exit_code, 0);
   EXPECT_THAT(refusal("--lever 0.5,0,0" + files), HasSubstr("--lever"));
   // unnamed, it is seen and warned of, and scored as it is
-  write("silent.tum", content(folder_ / "lidar.tum").substr(17));
+  write("silent.tum", content(path("lidar.tum")).substr(17));
   const Outcome warned = call("--trajectory silent.tum --truth truth.tum");
   EXPECT_THAT(warned.out, HasSubstr("another frame of the body, 0.5 m away"));
 }

@@ -6,6 +6,7 @@
 #include <png.h>
 #include <signal.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
 #include <chrono>
 #include <nlohmann/json.hpp>
@@ -51,7 +52,6 @@ struct Picture {
 class ViewInBrowser : public Cli {
  protected:
   void SetUp() override {
-    Cli::SetUp();
     if (std::system("command -v chromium >/dev/null") != 0) {
       GTEST_SKIP() << "skipped: no chromium to look at the page with";
     }
@@ -66,7 +66,7 @@ class ViewInBrowser : public Cli {
   std::string browse(const std::string& task, const std::string& state,
                      const std::string& gl = "--use-gl=angle --use-angle=swiftshader") {
     const std::string command =
-        "cd " + folder_.string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
+        "cd " + folder_.path().string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
         " --enable-unsafe-swiftshader --ignore-gpu-blocklist --hide-scrollbars --window-size=" +
         std::to_string(kWidth) + "," + std::to_string(kHeight) +
         " --virtual-time-budget=20000 --enable-logging=stderr " + task + " 'file://" +
@@ -233,7 +233,7 @@ class Server {
 TEST_F(Cli, TheServerOfTheViewGivesThePageAndItsBlocksAndNothingElse) {
   const std::string floor = write("floor.ply", floor_ply());
   write("secret.txt", "not to be seen");
-  const Server server(folder_, "view --json " + floor);
+  const Server server(folder_.path(), "view --json " + floor);
   const std::string refused = content(path("served_err"));
   if (refused.find("has no") != std::string::npos) GTEST_SKIP() << "skipped: " << refused;
   ASSERT_GT(server.port(), 0) << refused;

@@ -6,13 +6,12 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/load_world.hpp"
 #include "lidarena/world/primitives.hpp"
-#include "tests/world/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::TemporaryFolder;
 
 /// A box and a sphere far enough apart that a mixed-up index shows in the area.
 TriangleMesh two_bodies() {

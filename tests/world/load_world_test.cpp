@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "lidarena/world/world_config.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/world/complaints.hpp"
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
-#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -22,7 +23,7 @@ class LoadWorld : public ::testing::Test {
     const auto file = folder_.write(name, text);
     return testing::input_error_of([&] { load_world(file, {}, log_); });
   }
-  testing::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   LogSink log_;
 };
 

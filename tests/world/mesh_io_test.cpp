@@ -5,9 +5,10 @@
 #include <gtest/gtest.h>
 
 #include "lidarena/world/ply.hpp"
+#include "tests/temporary_folder.hpp"
+#include "tests/world/complaints.hpp"
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
-#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -28,7 +29,7 @@ void PrintTo(const FormatCase& c, std::ostream* out) { *out << c.file; }
 class MeshFormats : public ::testing::TestWithParam<FormatCase> {};
 
 TEST_P(MeshFormats, ABoxHasItsSurfaceVolumeAndPlaceWithZUp) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const TriangleMesh mesh = load_mesh(folder.write(GetParam().file, GetParam().text));
   EXPECT_EQ(mesh.triangles.size(), 12U);
   EXPECT_EQ(mesh.vertices.size(), 8U);
@@ -51,7 +52,7 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFormats,
                                            FormatCase{"box.gltf", testing::box_gltf()}));
 
 TEST(MeshIo, CoordinatesStandAsTheyAreWhenZIsSaidToBeUp) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("box.dae", testing::box_dae("Y_UP", 0.01));
   // The file holds y up: 1 m along x, 3 m along y, 2 m along -z; the unit still counts.
   const TriangleMesh mesh = load_mesh(file, UpAxis::kZ);
@@ -60,7 +61,7 @@ TEST(MeshIo, CoordinatesStandAsTheyAreWhenZIsSaidToBeUp) {
 }
 
 TEST(MeshIo, YUpIsTurnedWhateverTheFileSays) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   for (const auto& [name, text] : {std::pair<std::string, std::string>{"a.obj", testing::box_obj()},
                                    {"a.ply", testing::box_ply()},
                                    {"a.dae", testing::box_dae("Z_UP", 1.0)}}) {
@@ -72,7 +73,7 @@ TEST(MeshIo, YUpIsTurnedWhateverTheFileSays) {
 }
 
 TEST(MeshIo, NodeTransformsPlaceEveryInstance) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("two.dae", testing::two_boxes_dae());
   const TriangleMesh mesh = load_mesh(file);
   EXPECT_EQ(mesh.triangles.size(), 24U);
@@ -86,20 +87,20 @@ TEST(MeshIo, NodeTransformsPlaceEveryInstance) {
 }
 
 TEST(MeshIo, PointsAndLinesAreLeftOut) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.write("mixed.obj", testing::box_obj() + "l 1 2\np 3\n");
   EXPECT_EQ(load_mesh(file).triangles.size(), 12U);
 }
 
 TEST(MeshIo, DegenerateTrianglesStayInUntilTheMeshIsCleaned) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   TriangleMesh mesh = load_mesh(folder.write("a.obj", testing::box_obj() + "f 1 1 2\n"));
   EXPECT_EQ(mesh.triangles.size(), 13U);
   EXPECT_EQ(clean_mesh(mesh, "a"), 1U);
 }
 
 TEST(MeshIo, OneClearErrorForEachThingThatCanBeWrong) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto error_of = [](const std::filesystem::path& file) {
     return input_error_of([&] { load_mesh(file); });
   };
@@ -121,7 +122,7 @@ TEST(MeshIo, OneClearErrorForEachThingThatCanBeWrong) {
 }
 
 TEST(MeshIo, RefusesMapCoordinatesThatSinglePrecisionWouldRuin) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::string far =
       "v 500000.1 5400000.2 300\nv 500001.1 5400000.2 300\n"
       "v 500000.1 5400001.2 300\nf 1 2 3\n";

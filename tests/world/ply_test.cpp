@@ -8,8 +8,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "tests/temporary_folder.hpp"
+#include "tests/world/complaints.hpp"
 #include "tests/world/shapes.hpp"
-#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -24,7 +25,7 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 TEST(Ply, WhatIsSavedIsReadBackToTheLastBitEvenInMapCoordinates) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "soup.ply";
   TriangleMesh soup;
   soup.append(testing::triangle_soup(300, 5.0, 1), Pose(Eigen::Translation3d(5e5, 5.4e6, 300)));
@@ -36,7 +37,7 @@ TEST(Ply, WhatIsSavedIsReadBackToTheLastBitEvenInMapCoordinates) {
 }
 
 TEST(Ply, MaterialsAreKept) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "boxes.ply";
   TriangleMesh boxes = testing::box_mesh({0, 0, 0}, {1, 2, 3});
   TriangleMesh screen = testing::box_mesh({2, 0, 0}, {3, 1, 1});
@@ -51,7 +52,7 @@ TEST(Ply, MaterialsAreKept) {
 }
 
 TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto face = [](const std::string& comment) {
     return "ply\nformat ascii 1.0\n" + comment +
            "element vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -71,7 +72,7 @@ TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
 
 // Read here by the letter of the format, apart from read_ply().
 TEST(Ply, TheSavedBytesAreWhatTheHeaderAnnounces) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "box.ply";
   const TriangleMesh box = testing::box_mesh({0, 0, 0}, {1, 2, 3});
   save_ply(file, box);
@@ -88,7 +89,7 @@ TEST(Ply, TheSavedBytesAreWhatTheHeaderAnnounces) {
 }
 
 TEST(Ply, BigEndianFilesOfFloatsAreRead) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   std::string text =
       "ply\nformat binary_big_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar ushort vertex_indices\nend_header\n";
@@ -107,7 +108,7 @@ TEST(Ply, BigEndianFilesOfFloatsAreRead) {
 }
 
 TEST(Ply, AStumpIsRefusedWhereverItWasCut) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   save_ply(folder.path() / "box.ply", testing::box_mesh({0, 0, 0}, {1, 1, 1}));
   const std::string bytes = bytes_of(folder.path() / "box.ply");
   for (std::size_t size = 0; size < bytes.size(); ++size) {
@@ -117,7 +118,7 @@ TEST(Ply, AStumpIsRefusedWhereverItWasCut) {
 }
 
 TEST(Ply, EachThingThatCanBeWrongIsNamed) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
       "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
@@ -137,7 +138,7 @@ TEST(Ply, EachThingThatCanBeWrongIsNamed) {
 }
 
 TEST(Ply, NothingIsLeftBehindWhereItCannotBeWritten) {
-  const testing::TemporaryFolder folder;
+  const TemporaryFolder folder;
   const auto file = folder.path() / "no_such_folder" / "box.ply";
   EXPECT_THROW(save_ply(file, testing::box_mesh({0, 0, 0}, {1, 1, 1})), Error);
   EXPECT_FALSE(std::filesystem::exists(file.parent_path()));

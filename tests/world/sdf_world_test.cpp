@@ -7,9 +7,10 @@
 
 #include <cstdlib>
 
+#include "tests/temporary_folder.hpp"
+#include "tests/world/complaints.hpp"
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
-#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {
@@ -67,7 +68,7 @@ class SdfWorld : public ::testing::Test {
     folder_.write("models/" + name + "/model.sdf", model_with(content));
   }
 
-  testing::TemporaryFolder folder_;
+  TemporaryFolder folder_;
   testing::RecordingLog log_;
 };
 

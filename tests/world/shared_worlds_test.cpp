@@ -9,7 +9,7 @@
 #include <map>
 
 #include "lidarena/world/load_world.hpp"
-#include "tests/world/temporary_folder.hpp"
+#include "tests/world/complaints.hpp"
 
 namespace lidarena {
 namespace {

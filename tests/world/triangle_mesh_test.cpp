@@ -9,8 +9,8 @@
 #include <numbers>
 
 #include "lidarena/base/error.hpp"
+#include "tests/world/complaints.hpp"
 #include "tests/world/shapes.hpp"
-#include "tests/world/temporary_folder.hpp"
 
 namespace lidarena {
 namespace {

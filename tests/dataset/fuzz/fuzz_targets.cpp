@@ -21,7 +21,7 @@
 #include "lidarena/dataset/trajectory_io.hpp"
 #include "lidarena/dataset/tum.hpp"
 #include "tests/dataset/sample_events.hpp"
-#include "tests/dataset/temporary_folder.hpp"
+#include "tests/temporary_folder.hpp"
 
 namespace lidarena::fuzz {
 namespace {
