@@ -169,6 +169,7 @@ ReportSection decision_section(const Results& results) {
   for (const std::string& world : StudyCells(results, "").worlds()) {
     const std::vector<Candidate> all = candidates(results, world);
     if (all.empty()) continue;
+    if (!section.text.empty()) section.text += '\n';
     section.text += choice(results, world, all);
     section.tables.push_back(candidates_table(world, all));
   }

@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <sstream>
 
 #include "lidarena/report/claims.hpp"
 #include "lidarena/report/decision.hpp"
@@ -24,9 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPoints = 2'500'000;     // of all 3D views together: 8 bytes, 4/3 as text
-constexpr std::size_t kPointsOfRun = 120'000;  // at most
-constexpr std::size_t kTriangles = 400'000;    // of all meshes together: some 18 bytes, 4/3 as text
+constexpr std::size_t kPoints = 2'500'000;       // of all 3D views together: 8 bytes, 4/3 as text
+constexpr std::size_t kPointsOfRun = 120'000;    // at most
+constexpr std::size_t kPictureBytes = 12 << 20;  // of all maps from above, seldom reached
+constexpr std::size_t kTriangles = 400'000;  // of all meshes together: some 18 bytes, 4/3 as text
 
 constexpr const char* kStyle = R"css(
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2430;background:#f6f7f9;margin:0}
@@ -54,11 +55,14 @@ std::vector<std::string> worlds_of(const Results& results) {
   return StudyCells(results, "").worlds();
 }
 
-/// Pictures beside each other.
-std::string figures(const std::vector<Picture>& pictures) {
+/// Pictures beside each other, as far as the budget of bytes goes.
+std::string figures(const std::vector<Picture>& pictures, std::size_t budget) {
   if (pictures.empty()) return {};
   std::string html = "<div class='row'>";
-  for (const Picture& picture : pictures) html += "<figure>" + picture.svg + "</figure>";
+  for (const Picture& picture : pictures) {
+    if (html.size() + picture.svg.size() > budget) break;
+    html += "<figure>" + picture.svg + "</figure>";
+  }
   return html + "</div>";
 }
 
@@ -106,7 +110,8 @@ std::string world_view(const Results& results, const std::string& world, std::si
 std::string section_html(const ReportSection& section, const std::vector<WorldPictures>& pictures) {
   std::string html =
       fmt::format("<h2 id='{}'>{}</h2>", escaped(section.id), escaped(section.title));
-  if (!section.text.empty()) html += "<p>" + escaped(section.text) + "</p>";
+  std::istringstream paragraphs(section.text);
+  for (std::string text; std::getline(paragraphs, text);) html += "<p>" + escaped(text) + "</p>";
   for (std::size_t i = 0; i < section.tables.size(); ++i) {
     ReportTable table = section.tables[i];
     const bool said_again =
@@ -119,12 +124,13 @@ std::string section_html(const ReportSection& section, const std::vector<WorldPi
   const std::string id = escaped(section.world);
   const auto of_world = std::ranges::find(pictures, section.world, &WorldPictures::world);
   if (of_world == pictures.end()) return html;
-  return html + figures(of_world->place) +
+  const std::size_t budget = kPictureBytes / pictures.size();
+  return html + figures(of_world->place, budget) +
          fmt::format(
              "<h3>Maps and paths</h3><div id='view-{0}' class='lidarena-view embedded timed'>"
              "<p class='message'></p><div class='fallback'>{1}{2}</div><div class='stage'></div>"
              "<div class='progress'></div></div><div class='figures' id='figures-{0}'></div>",
-             id, color_key(), figures(of_world->maps));
+             id, color_key(), figures(of_world->maps, budget));
 }
 
 /// The machines that the runs were made on, and with which version.

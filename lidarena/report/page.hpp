@@ -17,7 +17,7 @@ namespace lidarena {
 struct ReportSection {
   std::string id;
   std::string title;
-  std::string text;   ///< a paragraph before the tables; may be empty
+  std::string text;   ///< before the tables, a line a paragraph; may be empty
   std::string world;  ///< where set, the world's pictures, 3D view and charts follow
   std::vector<ReportTable> tables;
 };

@@ -22,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kPointsOfMesh = 200'000;
-constexpr std::size_t kMapBytes = 12 << 20;  // of all maps together
 constexpr int kPlaceWidth = 420;
 constexpr int kMapWidth = 560;
 
@@ -51,24 +50,31 @@ Picture map_picture(const ResultRow& row) {
           top_view_svg(view)};
 }
 
-std::vector<Picture> map_pictures(const Results& results, const std::string& world,
-                                  std::size_t budget) {
+std::vector<Picture> map_pictures(const Results& results, const std::string& world) {
   std::vector<Picture> pictures;
-  std::size_t bytes = 0;
   for (const ResultRow* row : shown_rows(results, world)) {
-    if (bytes > budget || !fs::exists(row->folder / "trajectory.tum")) continue;
-    pictures.push_back(map_picture(*row));
-    bytes += pictures.back().svg.size();
+    if (fs::exists(row->folder / "trajectory.tum")) pictures.push_back(map_picture(*row));
   }
   return pictures;
 }
 
+/// The true path of a dataset; none where it is not known.
+std::vector<Eigen::Vector3d> positions_of(const fs::path& dataset) {
+  std::vector<Eigen::Vector3d> positions;
+  const auto truth = load_truth(dataset);
+  if (!truth) return positions;
+  for (const StampedPose& p : truth->poses()) {
+    positions.push_back(p.world_from_body.translation());
+  }
+  return positions;
+}
+
 Picture place_picture(const std::string& id, const std::string& title, const Cloud& cloud,
-                      const Trajectory* truth) {
+                      std::vector<Eigen::Vector3d> path = {}) {
   TopView view;
   view.title = title;
   view.map = &cloud;
-  view.truth = truth;
+  view.estimate = std::move(path);
   view.width = kPlaceWidth;
   return {id, top_view_svg(view)};
 }
@@ -80,12 +86,11 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
   });
   if (first == results.rows.end()) return pictures;
   const fs::path dataset = first->folder / first->manifest.value("dataset", "");
-  const auto truth = load_truth(dataset);
   if (const auto mesh = find_world_mesh(dataset)) {
     Cloud surface;
     surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
-    pictures.push_back(place_picture("world-" + world, "The world and the flight", surface,
-                                     truth ? &*truth : nullptr));
+    pictures.push_back(place_picture("world-" + world, world + ", and the flight through it",
+                                     surface, positions_of(dataset)));
   }
   struct Scan {
     const char* id;
@@ -100,7 +105,7 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
       const fs::path file = dataset / (row.sensor + scan.file);
       if (!fs::exists(file)) continue;
       pictures.push_back(place_picture(fmt::format("{}-{}-{}", scan.id, world, row.sensor),
-                                       row.sensor + ": " + scan.title, read_cloud(file), nullptr));
+                                       row.sensor + ": " + scan.title, read_cloud(file)));
     }
   }
   return pictures;
@@ -122,10 +127,8 @@ std::vector<const ResultRow*> shown_rows(const Results& results, const std::stri
 
 std::vector<WorldPictures> draw_pictures(const Results& results) {
   std::vector<WorldPictures> pictures;
-  const std::vector<std::string> worlds = StudyCells(results, "").worlds();
-  for (const std::string& world : worlds) {
-    pictures.push_back({world, place_pictures(results, world),
-                        map_pictures(results, world, kMapBytes / worlds.size())});
+  for (const std::string& world : StudyCells(results, "").worlds()) {
+    pictures.push_back({world, place_pictures(results, world), map_pictures(results, world)});
   }
   return pictures;
 }

@@ -24,7 +24,7 @@ struct WorldPictures {
 /// The first seed of each sensor, algorithm and reading of a world that went well.
 std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world);
 
-/// Of every world what its folders still hold; maps as far as a budget of bytes goes.
+/// Of every world what its folders still hold.
 std::vector<WorldPictures> draw_pictures(const Results& results);
 
 }  // namespace lidarena

@@ -85,15 +85,15 @@ ReportTable runs_table(const Results& results, const std::string& world) {
     if (row.world != world) continue;
     std::vector<TableCell> cells{
         word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, reading_of(row), row.seed))};
-    if (row.status != "ok") cells.push_back(word(row.status + ": " + row.reason));
     for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
                               map_value(row.own_map, &MapFigures::rmse_cm),
                               map_value(row.own_map, &MapFigures::outliers_percent),
                               map_value(row.reprojected_map, &MapFigures::rmse_cm),
                               map_value(row.reprojected_map, &MapFigures::outliers_percent),
                               row.real_time_factor, row.latency_p95_ms, row.own_memory_mb}) {
-      if (cells.size() < table.head.size()) cells.push_back(figure(value));
+      cells.push_back(figure(value));
     }
+    if (row.status != "ok") cells[1] = word(row.status + ": " + row.reason);
     table.rows.push_back(std::move(cells));
   }
   return table;

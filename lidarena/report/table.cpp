@@ -43,7 +43,7 @@ bool holds_words(const ReportTable& table, std::size_t column) {
   return words;
 }
 
-std::string html_cell(const TableCell& cell, bool left) {
+std::string html_cell(const TableCell& cell, bool words) {
   std::string text = escaped(cell.text);
   if (text.empty()) text = "&ndash;";
   if (cell.best_in_row) text = "<u>" + text + "</u>";
@@ -51,6 +51,7 @@ std::string html_cell(const TableCell& cell, bool left) {
   if (!cell.paper.empty()) {
     text += " <span class='paper'>(" + escaped(cell.paper) + ")</span>";
   }
+  const bool left = words || (!cell.value && !cell.text.empty());  // a state among figures
   return fmt::format("<td{}>{}</td>", left ? " class='l'" : "", text);
 }
 

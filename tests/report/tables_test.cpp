@@ -213,13 +213,16 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   Results results = results_of_the_paper();
   results.rows[2].status = "diverged";
   results.rows[2].reason = "estimate left the world";
+  results.rows[2].own_memory_mb = 12.5;
   results.rows[0].simulation = Json::parse(
       R"({"seed":7,"seconds":20.0,"sensors":[{"name":"livox_mid360"},{"name":"ouster_os0_128"}]})");
   const ReportTable failures = failures_table(results);
   ASSERT_EQ(failures.rows.size(), 1U);
   EXPECT_EQ(failures.rows[0][2].text, "estimate left the world");
-  EXPECT_THAT(table_html(runs_table(results, "cave")),
-              HasSubstr("diverged: estimate left the world"));
+  const ReportTable runs = runs_table(results, "cave");
+  ASSERT_EQ(runs.rows.at(2).size(), runs.head.size());
+  EXPECT_EQ(runs.rows[2][1].text, "diverged: estimate left the world");
+  EXPECT_EQ(runs.rows[2].back().value, 12.5) << "the state takes the drift's place, no other's";
   EXPECT_THAT(
       commands_table(results).rows.at(0).at(1).text,
       HasSubstr("lidarena simulate --world cave --flight cave --sensor livox_mid360 --sensor "

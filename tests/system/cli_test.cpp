@@ -126,7 +126,7 @@ TEST_F(Cli, FromAMeshToAScoredMap) {
        {"src='http", "src=\"http", "href='http", "href=\"http", "<script src"}) {
     EXPECT_THAT(page, Not(HasSubstr(reach))) << "the page needs no network";
   }
-  for (const char* picture : {"world-room", "map-room-livox_mid360-kiss_icp-improved"}) {
+  for (const char* picture : {"world-data", "map-data-livox_mid360-kiss_icp-improved"}) {
     const std::string svg = content(fs::path(run) / "figures" / (std::string(picture) + ".svg"));
     EXPECT_THAT(svg, AllOf(HasSubstr("<svg xmlns="), HasSubstr("data:image/png;base64,")))
         << picture;

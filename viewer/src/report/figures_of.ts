@@ -119,7 +119,7 @@ function memory(data: ReportData, world: string): Figure | null {
       tooltip: { trigger: "axis", confine: true },
       legend: { top: 22, left: 50, data: parts.map(([, name]) => name), textStyle: { fontSize: 11 } },
       grid: cells,
-      xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0), showMaxLabel: true } })),
+      xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0), showMaxLabel: true, hideOverlap: true } })),
       yAxis: cells.map((_, i) => valueAxis(i, i % columns === 0 ? "MB" : "", { nameGap: 34, min: 0 })),
       series: first.flatMap((run, i) => parts.map(([key, name, color]) => ({
         type: "line", name, stack: `s${i}`, xAxisIndex: i, yAxisIndex: i, symbol: "none", lineStyle: { width: 1, color },
@@ -130,18 +130,21 @@ function memory(data: ReportData, world: string): Figure | null {
   };
 }
 
-/** Error of the path over time, a panel a sensor, a line an algorithm. */
+const LEAST_ERROR_CM = 0.1; // where the logarithmic scale begins
+
+/** Error of the path over time, a panel a sensor, a line an algorithm; logarithmic, so that a lost one hides no other. */
 function drift(data: ReportData, world: string): Figure | null {
   const first = firstSeed(data.runs.filter((run) => run.world === world && run.error));
   if (first.length === 0) return null;
   const sensors = distinct(first, (run) => run.sensor);
   const algorithms = distinct(first, label);
   const columns = Math.min(sensors.length, 2);
-  const cells = sensors.map((_, i) => cellOf(i, columns, 560, 260));
+  const legend = 18 * (Math.ceil(algorithms.length / 7) - 1); // px of its further rows
+  const cells = sensors.map((_, i) => cellOf(i, columns, 560, 260)).map((cell) => ({ ...cell, top: cell.top + legend }));
   const title = `Error of the path over time, ${world}`;
   return {
-    id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after laying the whole paths over each other by SE(3). First seed.",
-    width: 60 + 560 * columns, height: heightOf(sensors.length, columns, 260), overTime: true,
+    id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after laying the whole paths over each other by SE(3), on a logarithmic scale. First seed.",
+    width: 60 + 560 * columns, height: heightOf(sensors.length, columns, 260) + legend, overTime: true,
     option: {
       ...base(""),
       title: [{ ...base(title).title }, ...sensors.map((name, i) => panelTitle(name, cells[i]))],
@@ -149,11 +152,11 @@ function drift(data: ReportData, world: string): Figure | null {
       legend: { top: 22, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
       grid: cells,
       xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0) } })),
-      yAxis: cells.map((_, i) => valueAxis(i, "cm", { nameGap: 34, min: 0 })),
+      yAxis: cells.map((_, i) => valueAxis(i, "cm", { type: "log", nameGap: 34, min: LEAST_ERROR_CM })),
       series: first.map((run) => ({
         type: "line", name: label(run), xAxisIndex: sensors.indexOf(run.sensor), yAxisIndex: sensors.indexOf(run.sensor), symbol: "none",
         lineStyle: { width: 1.3 }, color: RUN_COLORS[algorithms.indexOf(label(run)) % RUN_COLORS.length],
-        data: run.error!.t_s.map((t, k) => [t, run.error!.cm[k]]),
+        data: run.error!.t_s.map((t, k) => [t, Math.max(run.error!.cm[k], LEAST_ERROR_CM)]),
       })),
     },
   };
