@@ -16,6 +16,9 @@ namespace {
 constexpr int kMaxHeight = 900;
 constexpr int kTitleHeight = 24;
 constexpr double kMargin = 0.03;  // share of the picture left free on each side
+// Few different colours make a picture of noise half as large.
+constexpr double kOpacities = 12.0;
+constexpr double kDistanceStep_m = 0.01;
 
 /// World x, y to pixels: x to the right, y upwards.
 struct View {
@@ -99,8 +102,10 @@ Image xray(const Cloud& map, const View& view) {
   Image image(view.width, view.height, {255, 255, 255});
   for (std::size_t i = 0; i < cells; ++i) {
     if (count[i] <= 0) continue;
-    const double opacity = std::min(1.0, 0.15 + 0.85 * std::log1p(count[i]) / std::log1p(full));
-    const Rgb color = distance_color(sum[i] / count[i]);
+    const double fill = std::min(1.0, 0.15 + 0.85 * std::log1p(count[i]) / std::log1p(full));
+    const double opacity = std::round(kOpacities * fill) / kOpacities;
+    const double mean_m = static_cast<double>(sum[i]) / count[i];
+    const Rgb color = distance_color(std::round(mean_m / kDistanceStep_m) * kDistanceStep_m);
     for (std::size_t c = 0; c < 3; ++c) {
       image.pixels[i][c] =
           static_cast<std::uint8_t>(std::lround(255.0 + opacity * (color[c] - 255.0)));
