@@ -5,24 +5,53 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include "lidarena/base/error.hpp"
 
 namespace lidarena {
+namespace {
+
+constexpr std::size_t kPaletteColors = 256;
+
+/// A picture of few colours, as the format has it: a byte a pixel.
+struct Indexed {
+  std::vector<Rgb> palette;
+  std::vector<std::uint8_t> pixels;
+};
+
+/// Nothing when the picture has too many colours.
+std::optional<Indexed> indexed(const Image& image) {
+  Indexed result;
+  std::map<Rgb, std::uint8_t> known;
+  for (const Rgb& color : image.pixels) {
+    const auto [entry, is_new] = known.try_emplace(color, static_cast<std::uint8_t>(known.size()));
+    if (is_new && result.palette.size() == kPaletteColors) return std::nullopt;
+    if (is_new) result.palette.push_back(color);
+    result.pixels.push_back(entry->second);
+  }
+  return result;
+}
+
+}  // namespace
 
 std::string encode_png(const Image& image) {
+  const std::optional<Indexed> few = indexed(image);
   png_image png{};
   png.version = PNG_IMAGE_VERSION;
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
-  png.format = PNG_FORMAT_RGB;
+  png.format = few ? PNG_FORMAT_RGB_COLORMAP : PNG_FORMAT_RGB;
+  png.colormap_entries = few ? static_cast<png_uint_32>(few->palette.size()) : 0;
+  const void* pixels = few ? static_cast<const void*>(few->pixels.data()) : image.pixels.data();
+  const void* palette = few ? few->palette.data() : nullptr;
   png_alloc_size_t size = 0;
-  const void* pixels = image.pixels.data();
-  if (png_image_write_to_memory(&png, nullptr, &size, 0, pixels, 0, nullptr) == 0) {
+  if (png_image_write_to_memory(&png, nullptr, &size, 0, pixels, 0, palette) == 0) {
     throw Error(std::string("encoding a PNG: ") + png.message);
   }
   std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0, nullptr) == 0) {
+  if (png_image_write_to_memory(&png, bytes.data(), &size, 0, pixels, 0, palette) == 0) {
     throw Error(std::string("encoding a PNG: ") + png.message);
   }
   bytes.resize(size);

@@ -27,7 +27,8 @@ struct Image {
   }
 };
 
-/// The picture as the bytes of a PNG file; the same picture gives the same bytes.
+/// The picture as the bytes of a PNG file, with a palette where it has no more than 256 colours;
+/// the same picture gives the same bytes.
 std::string encode_png(const Image& image);
 std::string base64(std::string_view bytes);
 

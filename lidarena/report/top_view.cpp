@@ -16,8 +16,8 @@ namespace {
 constexpr int kMaxHeight = 900;
 constexpr int kTitleHeight = 24;
 constexpr double kMargin = 0.03;  // share of the picture left free on each side
-// Few different colours make a picture of noise half as large.
-constexpr double kOpacities = 12.0;
+// At most 256 colours: a picture of noise takes a third of the bytes.
+constexpr double kOpacities = 10.0;
 constexpr double kDistanceStep_m = 0.01;
 
 /// World x, y to pixels: x to the right, y upwards.
