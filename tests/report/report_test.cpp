@@ -37,6 +37,18 @@ TEST(Image, APngGivesItsPixelsBack) {
   EXPECT_EQ(back.pixels, image.pixels);
 }
 
+TEST(Image, APngWithOrWithoutAPaletteGivesItsPixelsBack) {
+  for (const int colors : {255, 256, 257}) {
+    Image image(32, 32, {0, 0, 0});
+    for (int i = 0; i < 32 * 32; ++i) {
+      const int color = i % colors;
+      image.at(i % 32, i / 32) = {static_cast<std::uint8_t>(color % 256),
+                                  static_cast<std::uint8_t>(color / 256), 7};
+    }
+    EXPECT_EQ(decoded(encode_png(image)).pixels, image.pixels) << colors << " colours";
+  }
+}
+
 TEST(Image, Base64AgreesWithTheExamplesOfRfc4648) {
   EXPECT_EQ(base64(""), "");
   EXPECT_EQ(base64("f"), "Zg==");
