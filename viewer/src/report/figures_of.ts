@@ -131,6 +131,7 @@ function memory(data: ReportData, world: string): Figure | null {
 }
 
 const LEAST_ERROR_CM = 0.1; // where the logarithmic scale begins
+const onLogScale = (cm: number | null) => (cm === null ? null : Math.max(cm, LEAST_ERROR_CM));
 
 /** Error of the path over time, a panel a sensor, a line an algorithm; logarithmic, so that a lost one hides no other. */
 function drift(data: ReportData, world: string): Figure | null {
@@ -156,7 +157,7 @@ function drift(data: ReportData, world: string): Figure | null {
       series: first.map((run) => ({
         type: "line", name: label(run), xAxisIndex: sensors.indexOf(run.sensor), yAxisIndex: sensors.indexOf(run.sensor), symbol: "none",
         lineStyle: { width: 1.3 }, color: RUN_COLORS[algorithms.indexOf(label(run)) % RUN_COLORS.length],
-        data: run.error!.t_s.map((t, k) => [t, Math.max(run.error!.cm[k], LEAST_ERROR_CM)]),
+        data: run.error!.t_s.map((t, k) => [t, onLogScale(run.error!.cm[k])]),
       })),
     },
   };

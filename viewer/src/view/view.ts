@@ -38,6 +38,7 @@ export class View {
   colorBy: ColorBy = "height";
   range: [number, number] = [0, 1];
   split = false;
+  private stood: Standpoint | null = null; // where the camera was put, until someone moves it
   budget: number;
   surfaceLook: SurfaceLook = "see-through";
   drawn = 0;
@@ -69,6 +70,7 @@ export class View {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.moved());
+    this.controls.addEventListener("start", () => { this.stood = null; });
     this.standAt("oblique");
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
@@ -175,6 +177,7 @@ export class View {
     this.camera.position.copy(center).addScaledVector(direction, this.distanceToFit(center, direction));
     this.controls.target.copy(center);
     this.controls.update();
+    this.stood = standpoint;
     this.invalidate();
   }
 
@@ -246,6 +249,7 @@ export class View {
     const { clientWidth, clientHeight } = this.container;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight);
+    if (this.stood) this.standAt(this.stood); // nobody has moved the camera since: all stays in the picture
     this.invalidate();
   }
 
