@@ -25,6 +25,7 @@ using ::testing::Not;
 
 constexpr int kWidth = 640;
 constexpr int kHeight = 480;
+constexpr const char* kSoftwareGl = "--use-gl=angle --use-angle=swiftshader";
 
 /// A floor of 8 x 6 m, a point every 4 cm: 5 cm off the mesh where x < 4, beyond 20 cm elsewhere.
 std::string floor_ply() {
@@ -52,9 +53,8 @@ struct Picture {
 class ViewInBrowser : public Cli {
  protected:
   void SetUp() override {
-    if (std::system("command -v chromium >/dev/null") != 0) {
-      GTEST_SKIP() << "skipped: no chromium to look at the page with";
-    }
+    const std::string lacking = lacking_to_browse();
+    if (!lacking.empty()) GTEST_SKIP() << "skipped: " << lacking;
     floor_ = write("floor.ply", floor_ply());
     const Outcome made = call("view " + floor_ + " --out page.html");
     if (made.err.find("has no interactive view") != std::string::npos) {
@@ -62,16 +62,36 @@ class ViewInBrowser : public Cli {
     }
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
-  /// Opens the page with `state` after the "#"; keeps what the console said.
-  std::string browse(const std::string& task, const std::string& state,
-                     const std::string& gl = "--use-gl=angle --use-angle=swiftshader") {
+  /// What this machine lacks to show any page with WebGL, apart from ours; empty: nothing.
+  std::string lacking_to_browse() {
+    if (std::system("command -v chromium >/dev/null") != 0) {
+      return "no chromium to look at the page with";
+    }
+    const std::string probe =
+        write("probe.html",
+              "<canvas></canvas><script>document.documentElement.dataset.webgl ="
+              " document.querySelector('canvas').getContext('webgl2') ? 'works' : 'none'</script>");
+    if (run_chromium("--dump-dom", probe, kSoftwareGl) != 0) return "chromium does not run here";
+    const bool works =
+        content(path("browser_out")).find("data-webgl=\"works\"") != std::string::npos;
+    return works ? "" : "chromium has no WebGL here";
+  }
+  /// Its exit code; what it prints is kept in browser_out, what the console says in browser_err.
+  int run_chromium(const std::string& task, const std::string& address, const std::string& gl) {
     const std::string command =
         "cd " + folder_.path().string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
         " --enable-unsafe-swiftshader --ignore-gpu-blocklist --hide-scrollbars --window-size=" +
         std::to_string(kWidth) + "," + std::to_string(kHeight) +
-        " --virtual-time-budget=20000 --enable-logging=stderr " + task + " 'file://" +
-        path("page.html") + state + "' >browser_out 2>browser_err";
-    EXPECT_EQ(std::system(command.c_str()), 0) << content(path("browser_err"));
+        " --no-first-run --disable-background-networking --disable-component-update"
+        " --disable-default-apps --disable-sync --virtual-time-budget=20000"
+        " --enable-logging=stderr " +
+        task + " 'file://" + address + "' >browser_out 2>browser_err";
+    return std::system(command.c_str());
+  }
+  /// Opens the page with `state` after the "#".
+  std::string browse(const std::string& task, const std::string& state,
+                     const std::string& gl = kSoftwareGl) {
+    EXPECT_EQ(run_chromium(task, path("page.html") + state, gl), 0) << content(path("browser_err"));
     return content(path("browser_out"));
   }
   Picture screenshot(const std::string& state) {
