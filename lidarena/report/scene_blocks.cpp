@@ -62,33 +62,47 @@ std::vector<Field> fields_of(const SceneCloud& cloud) {
   return fields;
 }
 
-using Indices = std::span<std::uint32_t>;
+/// A point of a cloud and its number there; side by side, so that sorting reads memory in order.
+struct Numbered {
+  Eigen::Vector3f position;
+  std::uint32_t number;
+};
+using Points = std::span<Numbered>;
 
-Eigen::AlignedBox3f box_of(const SceneCloud& cloud, Indices indices) {
+std::vector<Numbered> finite_points(const SceneCloud& cloud) {
+  std::vector<Numbered> points;
+  points.reserve(cloud.points.size());
+  for (std::size_t i = 0; i < cloud.points.size(); ++i) {
+    if (!cloud.points[i].allFinite()) continue;
+    points.push_back({cloud.points[i], static_cast<std::uint32_t>(i)});
+  }
+  return points;
+}
+
+Eigen::AlignedBox3f box_of(Points points) {
   Eigen::AlignedBox3f box;
-  for (const std::uint32_t i : indices) box.extend(cloud.points[i]);
+  for (const Numbered& point : points) box.extend(point.position);
   return box;
 }
 
 /// Parts the points into two halves across the longest side of their box.
-void halve(const SceneCloud& cloud, Indices indices) {
+void halve(Points points) {
   Eigen::Index axis = 0;
-  box_of(cloud, indices).sizes().maxCoeff(&axis);
-  const auto middle = indices.begin() + static_cast<std::ptrdiff_t>(indices.size() / 2);
-  std::nth_element(indices.begin(), middle, indices.end(), [&](std::uint32_t a, std::uint32_t b) {
-    return cloud.points[a][axis] < cloud.points[b][axis];
-  });
+  box_of(points).sizes().maxCoeff(&axis);
+  const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
+  std::nth_element(
+      points.begin(), middle, points.end(),
+      [axis](const Numbered& a, const Numbered& b) { return a.position[axis] < b.position[axis]; });
 }
 
 /// Halves all, again and again, until they fit into chunks.
-std::vector<Indices> cut_into_chunks(const SceneCloud& cloud, Indices all,
-                                     const Parallel& parallel) {
+std::vector<Points> cut_into_chunks(Points all, const Parallel& parallel) {
   if (all.empty()) return {};
-  std::vector<Indices> chunks{all};
+  std::vector<Points> chunks{all};
   while (chunks.back().size() > kChunkPoints) {  // the last half is never the smaller one
-    parallel.for_each(chunks.size(), 1, [&](std::size_t c) { halve(cloud, chunks[c]); });
-    std::vector<Indices> halves;
-    for (const Indices chunk : chunks) {
+    parallel.for_each(chunks.size(), 1, [&](std::size_t c) { halve(chunks[c]); });
+    std::vector<Points> halves;
+    for (const Points chunk : chunks) {
       halves.push_back(chunk.first(chunk.size() / 2));
       halves.push_back(chunk.subspan(chunk.size() / 2));
     }
@@ -98,27 +112,27 @@ std::vector<Indices> cut_into_chunks(const SceneCloud& cloud, Indices all,
 }
 
 /// Fisher and Yates, with numbers that depend on the place alone.
-void shuffle(Indices indices, std::uint32_t stream) {
+void shuffle(Points points, std::uint32_t stream) {
   const CounterRandom random(0, stream);
-  for (std::size_t i = indices.size(); i > 1; --i) {
+  for (std::size_t i = points.size(); i > 1; --i) {
     const auto j = static_cast<std::size_t>(random.uniform(i) * static_cast<double>(i));
-    std::swap(indices[i - 1], indices[j]);
+    std::swap(points[i - 1], points[j]);
   }
 }
 
-/// Positions of `indices` in `box`, then field after field.
-void append_points(std::string& bytes, const SceneCloud& cloud, const std::vector<Field>& fields,
-                   const Eigen::AlignedBox3f& box, Indices indices) {
+/// Positions of `points` in `box`, then field after field.
+void append_points(std::string& bytes, const std::vector<Field>& fields,
+                   const Eigen::AlignedBox3f& box, Points points) {
   const Eigen::Vector3d low = box.min().cast<double>();
   const Eigen::Vector3d size = box.sizes().cast<double>().cwiseMax(1e-6);
-  for (const std::uint32_t i : indices) {
-    const Eigen::Vector3d share = (cloud.points[i].cast<double>() - low).cwiseQuotient(size);
+  for (const Numbered& point : points) {
+    const Eigen::Vector3d share = (point.position.cast<double>() - low).cwiseQuotient(size);
     for (int axis = 0; axis < 3; ++axis) {
       append(bytes, static_cast<std::uint16_t>(std::lround(share[axis] * kLargest)));
     }
   }
   for (const Field& field : fields) {
-    for (const std::uint32_t i : indices) append(bytes, field.stored(i));
+    for (const Numbered& point : points) append(bytes, field.stored(point.number));
   }
 }
 
@@ -198,34 +212,30 @@ class Packer {
   }
 
   Json add_cloud(const SceneCloud& cloud) {
-    std::vector<std::uint32_t> order;
-    order.reserve(cloud.points.size());
-    for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-      if (cloud.points[i].allFinite()) order.push_back(static_cast<std::uint32_t>(i));
-    }
-    const std::vector<Indices> chunks = cut_into_chunks(cloud, order, parallel_);
+    std::vector<Numbered> points = finite_points(cloud);
+    const std::vector<Points> chunks = cut_into_chunks(points, parallel_);
     std::vector<Eigen::AlignedBox3f> boxes(chunks.size());
     parallel_.for_each(chunks.size(), 1, [&](std::size_t c) {
-      boxes[c] = box_of(cloud, chunks[c]);
+      boxes[c] = box_of(chunks[c]);
       shuffle(chunks[c], static_cast<std::uint32_t>(c));
     });
 
     const std::vector<Field> fields = fields_of(cloud);
-    const std::size_t parts = std::max<std::size_t>(1, order.size() / kBlockPoints);
+    const std::size_t parts = std::max<std::size_t>(1, points.size() / kBlockPoints);
     std::vector<std::string> blocks(parts);
     parallel_.for_each(parts, 1, [&](std::size_t part) {
-      blocks[part].reserve((order.size() / parts + chunks.size()) * (6 + 2 * fields.size()));
+      blocks[part].reserve((points.size() / parts + chunks.size()) * (6 + 2 * fields.size()));
       for (std::size_t c = 0; c < chunks.size(); ++c) {
         const std::size_t begin = share(chunks[c].size(), part, parts);
         const std::size_t end = share(chunks[c].size(), part + 1, parts);
-        append_points(blocks[part], cloud, fields, boxes[c], chunks[c].subspan(begin, end - begin));
+        append_points(blocks[part], fields, boxes[c], chunks[c].subspan(begin, end - begin));
       }
     });
-    return cloud_header(cloud, fields, chunks, boxes, order.size(), std::move(blocks));
+    return cloud_header(cloud, fields, chunks, boxes, points.size(), std::move(blocks));
   }
 
   Json cloud_header(const SceneCloud& cloud, const std::vector<Field>& fields,
-                    const std::vector<Indices>& chunks,
+                    const std::vector<Points>& chunks,
                     const std::vector<Eigen::AlignedBox3f>& boxes, std::size_t points,
                     std::vector<std::string> blocks) {
     Json header{{"name", cloud.name},       {"points", points},        {"left_out", cloud.left_out},
