@@ -287,10 +287,16 @@ export class View {
       this.renderer.render(this.scene, this.camera);
     }
     if (moving) {
-      this.renderer.getContext().finish();
+      this.finish();
       this.adapt(performance.now() - begin);
     }
     this.lastFrame_ms = performance.now() - begin;
+  }
+
+  /** Waits until all is drawn. Browsers take gl.finish() for a mere flush; a pixel that is read cannot be had too early. */
+  finish() {
+    const gl = this.renderer.getContext();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
   /** Near and far planes around the scene, so that depth is fine wherever the camera stands. */
