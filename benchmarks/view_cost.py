@@ -39,9 +39,10 @@ DRAW_ALL = """(() => {
   const loaded = view.clouds.reduce((sum, cloud) => sum + cloud.loaded, 0);
   panel.change({ budget: loaded });
   const gl = view.renderer.getContext();
+  view.finish();
   const begin = performance.now();
   view.render();
-  gl.finish();
+  view.finish();
   const frame_s = (performance.now() - begin) / 1000;
   const [width, height] = [gl.drawingBufferWidth, gl.drawingBufferHeight];
   const pixels = new Uint32Array(width * height);
@@ -207,7 +208,7 @@ def wait_until_ready(page):
     """The page's marks once everything is loaded; its own clock took them."""
     deadline = time.monotonic() + LIMIT_S
     while time.monotonic() < deadline:
-        marks = page.value("({ ...document.documentElement.dataset, origin: performance.timeOrigin })")
+        marks = page.value("({ ...document.documentElement?.dataset, origin: performance.timeOrigin })")
         if "failed" in marks:
             raise Failure(page.value("document.querySelector('.message').textContent"))
         if "ready" in marks:
