@@ -1,14 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud on the GPU: one buffer a chunk, filled block by block.
+// A cloud on the GPU: one buffer a chunk and column, made anew as the points it holds double.
 import * as THREE from "three";
 import type { ChunkHeader, CloudHeader, FieldHeader } from "./scene";
 import { pointMaterial, type PointStyle } from "./point_material";
 
+interface Column {
+  name: string;
+  width: number;
+  values: Uint16Array;  // of the whole chunk; what has not come yet is zero
+}
+
 interface Chunk {
   header: ChunkHeader;
+  columns: Column[];
   points: THREE.Points;
   box: THREE.Box3;
-  loaded: number;
+  loaded: number;  // on the GPU
 }
 
 /** How many points of a chunk the blocks before `part` hold, of `parts` in all. */
@@ -43,46 +50,53 @@ export class Cloud {
   }
 
   private addChunk(header: ChunkHeader) {
-    const geometry = new THREE.BufferGeometry();
-    const columns: [string, number][] = [["position", 3]];
-    for (const field of this.header.fields) columns.push([`a_${field.name}`, 1]);
-    for (const [name, width] of columns) {
-      const array = new Uint16Array(header.count * width);
-      const attribute = new THREE.BufferAttribute(array, width, true);
-      attribute.setUsage(THREE.StaticDrawUsage);
-      geometry.setAttribute(name, attribute);
-    }
-    geometry.setDrawRange(0, 0);
-    const points = new THREE.Points(geometry, this.material);
+    const column = (name: string, width: number): Column => ({ name, width, values: new Uint16Array(header.count * width) });
+    const columns = [column("position", 3), ...this.header.fields.map((field) => column(`a_${field.name}`, 1))];
+    const points = new THREE.Points(new THREE.BufferGeometry(), this.material);
+    points.visible = false;
     points.frustumCulled = false;  // culled in plan(), which also shares the budget out
     points.position.set(...header.min);
     points.scale.set(...(header.size.map((s) => Math.max(s, 1e-6)) as [number, number, number]));
     points.updateMatrixWorld();
     const min = new THREE.Vector3(...header.min);
     const box = new THREE.Box3(min, min.clone().add(new THREE.Vector3(...header.size)));
-    this.chunks.push({ header, points, box, loaded: 0 });
+    this.chunks.push({ header, columns, points, box, loaded: 0 });
     this.group.add(points);
   }
 
-  /** Takes the next block: for each chunk its positions, then its fields one after the other. */
-  addBlock(bytes: ArrayBuffer) {
+  /**
+   * Takes the next block: for each chunk its positions, then its fields one after the other. True when
+   * there is more to see: at the first, second, fourth, ... and the last block, so that what goes to the
+   * GPU is at most twice the cloud.
+   */
+  addBlock(bytes: ArrayBuffer): boolean {
     const parts = this.header.blocks.length;
     let offset = 0;
     for (const chunk of this.chunks) {
       const begin = sharePoints(chunk.header.count, this.partsLoaded, parts);
       const count = sharePoints(chunk.header.count, this.partsLoaded + 1, parts) - begin;
-      for (const attribute of Object.values(chunk.points.geometry.attributes)) {
-        const buffer = attribute as THREE.BufferAttribute;
-        const values = new Uint16Array(bytes, offset, count * buffer.itemSize);
-        (buffer.array as Uint16Array).set(values, begin * buffer.itemSize);
-        buffer.addUpdateRange(begin * buffer.itemSize, values.length);
-        buffer.needsUpdate = true;
-        offset += values.byteLength;
+      for (const { width, values } of chunk.columns) {
+        const part = new Uint16Array(bytes, offset, count * width);
+        values.set(part, begin * width);
+        offset += part.byteLength;
       }
-      chunk.loaded = begin + count;
     }
     if (offset !== bytes.byteLength) throw new Error(`${this.header.name}: a block of odd length`);
     this.partsLoaded += 1;
+    const doubled = (this.partsLoaded & (this.partsLoaded - 1)) === 0;
+    if (!doubled && this.partsLoaded < parts) return false;
+    for (const chunk of this.chunks) this.toGpu(chunk, sharePoints(chunk.header.count, this.partsLoaded, parts));
+    return true;
+  }
+
+  /** Gives the GPU the first `count` points of a chunk. */
+  private toGpu(chunk: Chunk, count: number) {
+    chunk.points.geometry.dispose();
+    chunk.points.geometry = new THREE.BufferGeometry();
+    for (const { name, width, values } of chunk.columns) {
+      chunk.points.geometry.setAttribute(name, new THREE.BufferAttribute(values.subarray(0, count * width), width, true));
+    }
+    chunk.loaded = count;
   }
 
   /** Points of the chunks that `frustum` touches. */
@@ -108,13 +122,12 @@ export class Cloud {
 
   /** Position and fields of point `i` of a chunk. */
   private pointOf(chunk: Chunk, i: number) {
-    const attributes = chunk.points.geometry.attributes;
-    const raw = attributes.position.array as Uint16Array;
+    const raw = chunk.columns[0].values;
     const position = new THREE.Vector3(raw[3 * i], raw[3 * i + 1], raw[3 * i + 2])
       .divideScalar(65535)
       .applyMatrix4(chunk.points.matrixWorld);
-    const values = this.header.fields.map((field) => {
-      const q = (attributes[`a_${field.name}`].array as Uint16Array)[i];
+    const values = this.header.fields.map((field, k) => {
+      const q = chunk.columns[1 + k].values[i];
       return { field, value: q === 65535 ? null : field.min + ((field.max - field.min) * q) / 65534 };
     });
     return { position, values };
@@ -128,7 +141,7 @@ export class Cloud {
     const clip = new THREE.Vector4();
     for (const chunk of this.chunks) {
       if (!chunk.points.visible) continue;
-      const raw = chunk.points.geometry.attributes.position.array as Uint16Array;
+      const raw = chunk.columns[0].values;
       const matrix = toClip.clone().multiply(chunk.points.matrixWorld);
       const drawn = chunk.points.geometry.drawRange.count;
       for (let i = 0; i < drawn; ++i) {

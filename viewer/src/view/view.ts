@@ -116,8 +116,7 @@ export class View {
       for (const cloud of loads) {
         const block = cloud.header.blocks[part];
         if (block === undefined) continue;
-        cloud.addBlock(await fetchBlock(block));
-        this.invalidate();
+        if (cloud.addBlock(await fetchBlock(block))) this.invalidate();
       }
     }
     this.invalidate();
