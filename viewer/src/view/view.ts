@@ -111,6 +111,7 @@ export class View {
       this.addTrack(new Track(path, await fetchBlock(path.block), color, this.size() / 40, this.planes), color);
     }
     for (const mesh of meshes) this.addSurface(new Surface(mesh, await fetchBlock(mesh.block), this.planes));
+    if (this.stood) this.standAt(this.stood); // around the meshes
     const loads = clouds.map((cloud) => this.addCloud(new Cloud(cloud, this.style)));
     for (let part = 0; loads.some((cloud) => part < cloud.header.blocks.length); ++part) {
       for (const cloud of loads) {
@@ -164,31 +165,40 @@ export class View {
     return Math.max(Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 0.1);
   }
 
-  standAt(standpoint: Standpoint) {
+  /** What a picture of all should hold: the meshes, for a map that was lost reaches far beyond them; else everything. */
+  private framed(): THREE.Box3 {
+    const box = new THREE.Box3();
+    for (const surface of this.surfaces) box.expandByObject(surface.object);
     const [low, high] = this.header.bounds.map((v) => new THREE.Vector3(...v));
-    const center = low.clone().add(high).multiplyScalar(0.5);
+    return box.isEmpty() ? new THREE.Box3(low, high) : box;
+  }
+
+  standAt(standpoint: Standpoint) {
+    const box = this.framed();
+    const center = box.getCenter(new THREE.Vector3());
     const direction = {
       top: new THREE.Vector3(0, -1e-3, 1),
       side: new THREE.Vector3(1, 0, 0.02),
       front: new THREE.Vector3(0, -1, 0.02),
       oblique: new THREE.Vector3(-0.55, -0.9, 0.95),
     }[standpoint].normalize();
-    this.camera.position.copy(center).addScaledVector(direction, this.distanceToFit(center, direction));
+    this.camera.position.copy(center).addScaledVector(direction, this.distanceToFit(box, direction));
     this.controls.target.copy(center);
     this.controls.update();
     this.stood = standpoint;
     this.invalidate();
   }
 
-  /** Distance from `center` at which the bounding box just fills the picture. */
-  private distanceToFit(center: THREE.Vector3, direction: THREE.Vector3): number {
+  /** Distance from its center at which the box just fills the picture. */
+  private distanceToFit({ min, max }: THREE.Box3, direction: THREE.Vector3): number {
+    const half = max.clone().sub(min).multiplyScalar(0.5);
     const right = new THREE.Vector3().crossVectors(this.camera.up, direction).normalize();
     const up = new THREE.Vector3().crossVectors(direction, right);
     const slopeY = Math.tan((this.camera.fov * Math.PI) / 360);
     const slopeX = slopeY * this.aspect();
     let distance = 0.1;
     for (let corner = 0; corner < 8; ++corner) {
-      const p = new THREE.Vector3(...([0, 1, 2].map((a) => this.header.bounds[(corner >> a) & 1][a]) as Vec3)).sub(center);
+      const p = new THREE.Vector3(...([1, 2, 4].map((bit) => (corner & bit ? 1 : -1)) as Vec3)).multiply(half);
       const reach = Math.max(Math.abs(p.dot(right)) / slopeX, Math.abs(p.dot(up)) / slopeY);
       distance = Math.max(distance, p.dot(direction) + 1.04 * reach);
     }
