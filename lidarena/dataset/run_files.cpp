@@ -93,8 +93,8 @@ RunFiles read_run(const fs::path& folder) {
                      "run the algorithm again");
   }
   if (!fs::exists(folder / "map.ply")) {
-    throw InputError(folder.string(), "keeps no maps: its study has 'keep_maps: false'",
-                     "its figures are in metrics.json; for the maps run it again");
+    throw InputError(folder.string(), "has no map.ply: a study with 'keep_maps: false' removes it",
+                     "what was scored is in metrics.json; for the maps run it again");
   }
   RunFiles run;
   run.manifest = read_json(manifest);

@@ -155,10 +155,9 @@ std::string without_bundle() {
 constexpr const char* kTiming =
     "The same flights, scanned in several ways. rolling: every shot from the pose at its own "
     "instant, as a sensor scans. frozen: all shots of a scan from the pose at its stamp, stamped "
-    "as "
-    "if the sensor had moved. frozen_unstamped: the same, without times of points. official: as "
-    "frozen_unstamped, and every range too short by the sensor's least one, as the makers' plugin "
-    "has it. What differs between the columns is the simulator's doing, not the method's.";
+    "as if the sensor had moved. frozen_unstamped: the same, without times of points. official: "
+    "as frozen_unstamped, and every range too short by the sensor's least one, as the makers' "
+    "plugin has it. What differs between the columns is the simulator's doing, not the method's.";
 constexpr const char* kReading =
     "RPE: the true path is cut into metres, from one estimated pose to another; for each, the "
     "motion that the algorithm found is set against the true one; root mean square over all. ATE: "

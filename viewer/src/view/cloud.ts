@@ -66,8 +66,8 @@ export class Cloud {
 
   /**
    * Takes the next block: for each chunk its positions, then its fields one after the other. True when
-   * there is more to see: at the first, second, fourth, ... and the last block, so that what goes to the
-   * GPU is at most twice the cloud.
+   * there is more to see: at the first, second, fourth, ... and the last block, so that all that ever goes
+   * to the GPU is less than three times the cloud.
    */
   addBlock(bytes: ArrayBuffer): boolean {
     const parts = this.header.blocks.length;
