@@ -8,7 +8,7 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/odometry/ct_icp/neighbourhood.hpp"
+#include "lidarena/odometry/ct_icp/neighborhood.hpp"
 #include "lidarena/odometry/ct_icp/registration.hpp"
 
 namespace lidarena::ct_icp {
@@ -68,7 +68,7 @@ void choose_keypoints(benchmark::State& state) {
 }
 BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
 
-void search_neighbours(benchmark::State& state) {
+void search_neighbors(benchmark::State& state) {
   const auto queries = keypoints();
   std::vector<VoxelHashMap::Neighbor> near(20);
   for (auto _ : state) {
@@ -77,14 +77,14 @@ void search_neighbours(benchmark::State& state) {
   }
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
 }
-BENCHMARK(search_neighbours)->Unit(benchmark::kMillisecond);
+BENCHMARK(search_neighbors)->Unit(benchmark::kMillisecond);
 
-void describe_neighbours(benchmark::State& state) {
+void describe_neighbors(benchmark::State& state) {
   std::vector<VoxelHashMap::Neighbor> near(20);
   near.resize(map().nearest(keypoints().front().position, 0.4F, near));
   for (auto _ : state) benchmark::DoNotOptimize(describe(near, PlanePoint::kMean));
 }
-BENCHMARK(describe_neighbours);
+BENCHMARK(describe_neighbors);
 
 /// Matches of a scan that moved a little, by the planes of the box.
 std::vector<ElasticMatch> matches() {

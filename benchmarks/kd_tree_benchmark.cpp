@@ -24,7 +24,7 @@ namespace lidarena {
 namespace {
 
 constexpr float kVoxel = 0.2F;  // m
-constexpr std::size_t kNeighbours = 5;
+constexpr std::size_t kNeighbors = 5;
 using Points = std::vector<Eigen::Vector3f>;
 
 /// Scan `index` of a walk through a room of 2 `half` m: 20,000 beams with 2 cm of range noise.
@@ -107,7 +107,7 @@ void kd_tree_nearest(benchmark::State& state) {
   const auto length = static_cast<int>(state.range(0));
   const auto count = static_cast<std::size_t>(state.range(1));
   const KdTree tree = walked(length);
-  std::array<Neighbour, kNeighbours> found;
+  std::array<Neighbor, kNeighbors> found;
   for (auto _ : state) {
     for (const Eigen::Vector3f& point : scans(length).back()) {
       benchmark::DoNotOptimize(tree.nearest(point, std::span(found).first(count), 2.236F));
@@ -188,8 +188,8 @@ void nanoflann_nearest(benchmark::State& state) {
   const Points points = walked(length).points();
   const Cloud cloud{points};
   const StaticTree tree(3, cloud);
-  std::array<std::uint32_t, kNeighbours> indices{};
-  std::array<float, kNeighbours> distances{};
+  std::array<std::uint32_t, kNeighbors> indices{};
+  std::array<float, kNeighbors> distances{};
   for (auto _ : state) {
     for (const Eigen::Vector3f& point : scans(length).back()) {
       benchmark::DoNotOptimize(
@@ -201,13 +201,13 @@ void nanoflann_nearest(benchmark::State& state) {
 }
 BENCHMARK(nanoflann_rebuild)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(nanoflann_nearest)
-    ->ArgsProduct({{20, 100}, {1, kNeighbours}})
+    ->ArgsProduct({{20, 100}, {1, kNeighbors}})
     ->Unit(benchmark::kMillisecond);
 #endif
 
 BENCHMARK(kd_tree_insertion)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(kd_tree_nearest)
-    ->ArgsProduct({{20, 100}, {1, kNeighbours}})
+    ->ArgsProduct({{20, 100}, {1, kNeighbors}})
     ->Unit(benchmark::kMillisecond);
 BENCHMARK(kd_tree_rebuild)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(voxel_map_insertion)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The steps of KISS-ICP, each on its own, on one thread: a scan in the middle of a flight through a
-// box of a room. And the map's nearest neighbours beside those of nanoflann on the same points.
+// box of a room. And the map's nearest neighbors beside those of nanoflann on the same points.
 #include <benchmark/benchmark.h>
 
 #ifdef LIDARENA_HAVE_NANOFLANN

@@ -362,7 +362,7 @@ void motion(benchmark::State& state) {
 }
 BENCHMARK(motion)->Unit(benchmark::kMillisecond);
 
-/// Which form of the bare call is fastest: rays one by one, and in packets of eight neighbours, in
+/// Which form of the bare call is fastest: rays one by one, and in packets of eight neighbors, in
 /// firing order and in casting order.
 void bare_one_by_one(benchmark::State& state, Sensor sensor) {
   const SensorConfig config = config_of(sensor, kGeometry);

@@ -156,7 +156,7 @@ bool keep_nearest(RTCPointQueryFunctionArguments* args) {
 
 void bare_embree_point_queries(benchmark::State& state) {
   static const Bare bare(scene().model.mesh);
-  constexpr std::size_t kStride = 10;  // a tenth of the points, as neighbours in runs
+  constexpr std::size_t kStride = 10;  // a tenth of the points, as neighbors in runs
   const std::vector<Vector3f>& map = scene().map;
   const std::size_t count = map.size() / kStride;
   for (auto _ : state) {

@@ -75,7 +75,7 @@ def write_reference(program, pages):
 
 
 def unlinked_outside(text):
-    """READMEs link to neighbours in the source tree, which the site does not have."""
+    """READMEs link to neighbors in the source tree, which the site does not have."""
     return re.sub(r"\[([^\]]+)\]\((?!https?:|#)[^)]+\)", r"\1", text)
 
 

@@ -17,7 +17,7 @@ STEP = 0.5  # deg a pixel
 
 
 def panel(lidar, seconds):
-    """Shots in each pixel, as grey values."""
+    """Shots in each pixel, as gray values."""
     scans = max(1, round(seconds * 1e9 / lidar.period))
     counts = np.zeros((int(180 / STEP), int(360 / STEP)))
     for index in range(scans):
@@ -26,17 +26,17 @@ def panel(lidar, seconds):
         row = np.clip((90 - np.degrees(np.arcsin(np.clip(z, -1, 1)))) / STEP, 0, counts.shape[0] - 1)
         np.add.at(counts, (row.astype(int), column.astype(int)), 1)
     seen = np.where(counts > 0, 0.25 + 0.75 * np.minimum(1, counts / 8), 0)
-    grey = (255 * (1 - seen)).astype(np.uint8)
-    grey[[0, -1], :], grey[:, [0, -1]] = 160, 160
-    return grey
+    gray = (255 * (1 - seen)).astype(np.uint8)
+    gray[[0, -1], :], gray[:, [0, -1]] = 160, 160
+    return gray
 
 
-def write_png(file, grey):
+def write_png(file, gray):
     def chunk(kind, data):
         return (struct.pack(">I", len(data)) + kind + data +
                 struct.pack(">I", zlib.crc32(kind + data)))
-    rows = b"".join(b"\0" + row.tobytes() for row in grey)
-    header = struct.pack(">IIBBBBB", grey.shape[1], grey.shape[0], 8, 0, 0, 0, 0)
+    rows = b"".join(b"\0" + row.tobytes() for row in gray)
+    header = struct.pack(">IIBBBBB", gray.shape[1], gray.shape[0], 8, 0, 0, 0, 0)
     file.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", header) +
                      chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 

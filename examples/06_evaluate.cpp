@@ -33,9 +33,9 @@ int main(int argc, char** argv) {
   const Trajectory estimate = given ? read_trajectory(argv[1]) : circle(1.01);
   const Trajectory truth = given ? read_trajectory(argv[2]) : circle(1.0);
   const Json metrics = evaluate_trajectory(estimate, truth);
-  const Json one_metre = metrics.at("rpe").at("1m").at("translation");
+  const Json one_meter = metrics.at("rpe").at("1m").at("translation");
   std::printf("relative error over 1 m: %.2f cm RMSE over %d pieces\n",
-              100.0 * one_metre.at("rmse_m").get<double>(), one_metre.at("count").get<int>());
+              100.0 * one_meter.at("rmse_m").get<double>(), one_meter.at("count").get<int>());
   if (argc > 4) {
     const Cloud map = read_cloud(argv[3]);
     const World world(load_mesh(argv[4]), argv[4]);
@@ -45,5 +45,5 @@ int main(int argc, char** argv) {
   }
   if (given) return 0;
   // 1 % of a chord of 1 m
-  return std::abs(one_metre.at("rmse_m").get<double>() - 0.01) < 2e-4 ? 0 : 1;
+  return std::abs(one_meter.at("rmse_m").get<double>() - 0.01) < 2e-4 ? 0 : 1;
 }

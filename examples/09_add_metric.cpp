@@ -15,7 +15,7 @@ namespace {
 using namespace lidarena;
 
 /// RMS distance (m) of points to the plane that fits them best, face by face. `cloud` is in the
-/// mesh's frame; points within `reach` metres of a face count, and faces with `least` points.
+/// mesh's frame; points within `reach` meters of a face count, and faces with `least` points.
 double flatness(const std::vector<Eigen::Vector3d>& cloud, const World& world, double reach = 0.2,
                 std::size_t least = 100) {
   std::vector<ClosestPoint> nearest(cloud.size());

@@ -63,7 +63,7 @@ std::array<std::pair<double, int>, kBands> radii(const Scan& scan) {
 
 /// One cloud in section: radius to both sides, height up; the wall as lines.
 std::string panel(const Scan& scan, const std::string& title, double x0) {
-  constexpr double kScale = 190.0;  // pixels a metre
+  constexpr double kScale = 190.0;  // pixels a meter
   const auto px = [&](double r) { return x0 + 160.0 + kScale * r; };
   const auto py = [](double z) { return 220.0 - kScale * z; };
   std::string svg = fmt::format(
@@ -92,7 +92,7 @@ void draw(const std::string& file, const Scan& official, const Scan& ours) {
       << "<rect width='660' height='290' fill='white'/>\n"
       << panel(official, "official plugin", 0) << panel(ours, "Lidarena", 330)
       << "<text x='330' y='280' text-anchor='middle' font-size='12'>a Mid-360 (red) "
-         "in a cylinder of radius 0.55 m (grey), in section</text>\n</svg>\n";
+         "in a cylinder of radius 0.55 m (gray), in section</text>\n</svg>\n";
 }
 
 }  // namespace

@@ -38,7 +38,7 @@ for (const { name, file, platform } of ENTRIES) {
 writeFileSync(path.join(out, "licenses.txt"), licenses());
 if (cppFile) writeFileSync(cppFile, asCpp());
 
-/** Names, versions and full licence texts of what is bundled. */
+/** Names, versions and full license texts of what is bundled. */
 function licenses() {
   return ["three", "echarts", "zrender", "tslib"].map((name) => {
     const folder = path.join(here, "node_modules", name);

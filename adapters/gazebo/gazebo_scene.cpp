@@ -30,14 +30,14 @@ Pose facing(const Vector3d& normal) {
 
 /// All triangles of a mesh file, or of one of its parts, in their own coordinates.
 TriangleMesh triangles_of(const ::gazebo::common::Mesh& mesh, const std::string& submesh,
-                          bool centred) {
+                          bool centered) {
   TriangleMesh out;
   for (unsigned int s = 0; s < mesh.GetSubMeshCount(); ++s) {
     const auto* part = mesh.GetSubMesh(s);
     if (!submesh.empty() && part->GetName() != submesh) continue;
     if (part->GetPrimitiveType() != ::gazebo::common::SubMesh::TRIANGLES) continue;
     const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    const Vector3d middle = centred && !submesh.empty()
+    const Vector3d middle = centered && !submesh.empty()
                                 ? Vector3d(0.5 * (to_vector(part->Max()) + to_vector(part->Min())))
                                 : Vector3d::Zero();
     for (unsigned int i = 0; i < part->GetVertexCount(); ++i) {
@@ -172,11 +172,11 @@ void GazeboScene::add_visuals(const physics::LinkPtr& link, bool is_static) {
   }
 }
 
-ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, bool centred,
+ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, bool centered,
                            const Vector3d& scale) {
   const std::string file = ::gazebo::common::find_file(uri);
   std::ostringstream key;
-  key << file << '|' << submesh << '|' << centred << '|' << scale.transpose();
+  key << file << '|' << submesh << '|' << centered << '|' << scale.transpose();
   const auto [entry, is_new] = meshes_.try_emplace(key.str(), nullptr);
   if (!is_new) return entry->second;
   const auto* loaded = ::gazebo::common::MeshManager::Instance()->Load(file);
@@ -185,7 +185,7 @@ ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, b
     return nullptr;
   }
   TriangleMesh scaled;
-  scaled.append(triangles_of(*loaded, submesh, centred), Pose::Identity(), scale);
+  scaled.append(triangles_of(*loaded, submesh, centered), Pose::Identity(), scale);
   try {
     clean_mesh(scaled, uri);
     entry->second = make_mesh(std::move(scaled));

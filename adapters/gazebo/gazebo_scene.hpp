@@ -16,7 +16,7 @@ namespace lidarena::gazebo_plugin {
 Pose to_pose(const ignition::math::Pose3d& pose);
 
 /// The shapes of a Gazebo world as a MovingWorld, without a rendering engine: planes, boxes,
-/// spheres, cylinders, and meshes with their scale, sub-mesh and centring. Others (heightmaps,
+/// spheres, cylinders, and meshes with their scale, sub-mesh and centering. Others (heightmaps,
 /// polylines) are named on Gazebo's console and left out. To be used within the world's update.
 class GazeboScene {
  public:
@@ -46,7 +46,7 @@ class GazeboScene {
   void add_visuals(const ::gazebo::physics::LinkPtr& link, bool is_static);
   void add(const ::gazebo::physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
            ShapePtr shape, const std::string& name);
-  ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centred,
+  ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centered,
                 const Eigen::Vector3d& scale);
 
   ::gazebo::physics::WorldPtr world_;

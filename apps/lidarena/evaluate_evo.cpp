@@ -86,7 +86,7 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
   flag("--origin", a.origin, "Lay the first poses on each other");
   option("--n-to-align", a.n_to_align, "Fit the first N pairs alone, 0 = all");
   option("--delta", a.delta, "Length of a piece (rpe)");
-  choice("--unit", a.unit, "Of delta: frames, metres, degrees, radians", names_of<EvoUnit>());
+  choice("--unit", a.unit, "Of delta: frames, meters, degrees, radians", names_of<EvoUnit>());
   option("--delta-tolerance", a.delta_tolerance, "Share of delta, for all pairs");
   flag("--all-pairs", a.all_pairs, "A piece from every pose");
   flag("--pairs-from-reference", a.pairs_from_reference, "Path and angle of the truth");

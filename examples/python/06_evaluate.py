@@ -32,13 +32,13 @@ else:
 metrics = lidarena.evaluate(estimate, truth)
 for warning in metrics["warnings"]:
     print("warning:", warning)
-one_metre = metrics["live"]["rpe"]["1m"]["translation"]
-print(f"relative error over 1 m: {100 * one_metre['rmse_m']:.2f} cm RMSE "
-      f"over {one_metre['count']} pieces")
+one_meter = metrics["live"]["rpe"]["1m"]["translation"]
+print(f"relative error over 1 m: {100 * one_meter['rmse_m']:.2f} cm RMSE "
+      f"over {one_meter['count']} pieces")
 if cloud is not None:
     figures, distances = lidarena.map_error(cloud, world)
     print(f"map: {len(distances)} points, {100 * np.nanmean(distances):.2f} cm from the mesh on "
           f"average, {figures['outliers_percent']:.1f} % beyond 20 cm")
 if len(sys.argv) < 3:
-    assert 0.002 < one_metre["rmse_m"] < 0.011  # 1 % of at most a metre of chord
+    assert 0.002 < one_meter["rmse_m"] < 0.011  # 1 % of at most a meter of chord
     assert np.nanmax(distances) < 1e-5  # the mesh's own corners

@@ -3,7 +3,7 @@
 """Add a metric: how straight are the floor and walls of a map? usage: 09_add_metric.py
 
 A metric is a function of what a run leaves (trajectory, map) and of the truth (trajectory, mesh).
-This one: RMS of a plane fitted to the map points nearest to each large triangle, in metres.
+This one: RMS of a plane fitted to the map points nearest to each large triangle, in meters.
 """
 import numpy as np
 
@@ -13,7 +13,7 @@ import lidarena
 def flatness(cloud, world, reach=0.2, least=100):
     """RMS distance (m) of points to the plane that fits them best, face by face.
 
-    `cloud` (N, 3) in the mesh's frame; only points within `reach` metres of a face count, and faces
+    `cloud` (N, 3) in the mesh's frame; only points within `reach` meters of a face count, and faces
     with at least `least` points. Returns NaN where there is none.
     """
     nearest = world.closest_points(cloud, max_distance=reach)
@@ -23,8 +23,8 @@ def flatness(cloud, world, reach=0.2, least=100):
         points = cloud[faces == face].astype(float)
         if len(points) < least:
             continue
-        centred = points - points.mean(axis=0)
-        squares += np.linalg.svd(centred, compute_uv=False)[2] ** 2
+        centered = points - points.mean(axis=0)
+        squares += np.linalg.svd(centered, compute_uv=False)[2] ** 2
         count += len(points)
     return np.sqrt(squares / count) if count else np.nan
 

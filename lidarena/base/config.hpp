@@ -37,7 +37,7 @@ inline Limits at_least(double low) { return {low, std::numeric_limits<double>::i
 inline Limits above(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
 inline Limits between(double low, double high) { return {low, high, false}; }
 
-/// Specialise for an enum: `static constexpr std::array names{std::pair{"rolling",
+/// Specialize for an enum: `static constexpr std::array names{std::pair{"rolling",
 /// Mode::kRolling}};`
 template <class E>
 struct EnumNames;

@@ -17,7 +17,7 @@ Eigen::Matrix3d coupling(const Eigen::Vector3d& rho, const Eigen::Vector3d& phi)
   double a;       // (t - sin t) / t^3
   double b;       // (t^2 + 2 cos t - 2) / (2 t^4)
   double c;       // (2 t - 3 sin t + t cos t) / (2 t^5)
-  if (t < 0.1) {  // quotients of cancelling terms: series, first dropped term under 1e-14
+  if (t < 0.1) {  // quotients of canceling terms: series, first dropped term under 1e-14
     a = 1.0 / 6.0 - t2 / 120.0 + t2 * t2 / 5040.0 - t2 * t2 * t2 / 362880.0;
     b = 1.0 / 24.0 - t2 / 720.0 + t2 * t2 / 40320.0 - t2 * t2 * t2 / 3628800.0;
     c = 1.0 / 120.0 - t2 / 2520.0 + t2 * t2 / 120960.0 - t2 * t2 * t2 / 9979200.0;

@@ -35,7 +35,7 @@ void encode_livox_cloud(const Scan& scan, const LidarInfo& lidar, std::string_vi
 
 /// PointCloud2 of ouster-ros, point type "original", 48 bytes a point: x y z at 0, 4, 8; intensity
 /// float32 16; t uint32 20 (ns since header.stamp, the first column's time); reflectivity, ring,
-/// ambient uint16 24, 26, 28; range uint32 32 (mm). Organised, rows x columns, destaggered: a point
+/// ambient uint16 24, 26, 28; range uint32 32 (mm). Organized, rows x columns, destaggered: a point
 /// stands in the column of its direction. Pixels without a return are NaN with range 0. Of several
 /// returns of one pixel the first is kept. Without times, or when `lidar` lacks rows, columns or
 /// pixel shifts, the points stand in one row as they come.

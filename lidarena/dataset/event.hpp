@@ -29,7 +29,7 @@ class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void write(const Event& event) = 0;
-  /// Completes what is written; without it a file stays recognisably unfinished. Throws Error when
+  /// Completes what is written; without it a file stays recognizably unfinished. Throws Error when
   /// the disk is full.
   virtual void close() = 0;
 };

@@ -21,7 +21,7 @@ enum class Encoding {
   kRos1,
 };
 
-/// Serialises one message after another into the same memory.
+/// Serializes one message after another into the same memory.
 class MessageWriter {
  public:
   explicit MessageWriter(Encoding encoding = Encoding::kCdr) : encoding_(encoding) { clear(); }

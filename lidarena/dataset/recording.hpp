@@ -61,7 +61,7 @@ class RecordingReader {
   virtual std::optional<RecordedMessage> next() = 0;
 };
 
-/// Takes messages in the order they come. What is not closed stays recognisably unfinished.
+/// Takes messages in the order they come. What is not closed stays recognizably unfinished.
 class RecordingWriter {
  public:
   virtual ~RecordingWriter() = default;

@@ -22,7 +22,7 @@ class TrajectoryRows {
   std::vector<StampedPose> poses_;
 };
 
-/// Pose of a quaternion as files have it: normalised here when its norm is within 1e-3 of one (six
+/// Pose of a quaternion as files have it: normalized here when its norm is within 1e-3 of one (six
 /// digits leave 1e-6, averaged ones up to 1e-4), else InputError.
 Pose pose_from_row(const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation,
                    const std::string& place);

@@ -13,9 +13,9 @@ namespace lidarena {
 /// Whether a file without a row is an empty trajectory or an error.
 enum class EmptyTrajectory { kError, kAllowed };
 
-/// Reads "t x y z qx qy qz qw" rows (seconds, metres), '#' comments. Times are read as decimal
+/// Reads "t x y z qx qy qz qw" rows (seconds, meters), '#' comments. Times are read as decimal
 /// text, so nanoseconds survive; blank lines, tabs, a byte order mark, CRLF and blanks at the ends
-/// do no harm. Quaternions are normalised. Throws InputError naming file and line: not 8 numbers,
+/// do no harm. Quaternions are normalized. Throws InputError naming file and line: not 8 numbers,
 /// a value that is not finite, a norm off 1 by more than 1e-3, a time not later than the one
 /// before, no row at all (unless `empty` allows it: a run that never gave a pose).
 Trajectory read_tum(const std::filesystem::path& file,

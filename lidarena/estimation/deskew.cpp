@@ -9,7 +9,7 @@ namespace lidarena {
 
 namespace {
 constexpr double kStraight =
-    1e-9;  // rad/s; a metre of path then departs 0.5 nm a second from its chord
+    1e-9;  // rad/s; a meter of path then departs 0.5 nm a second from its chord
 constexpr std::size_t kGrain = 2048;  // points a task: some 0.1 ms of work
 }  // namespace
 

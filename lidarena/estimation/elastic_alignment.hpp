@@ -38,7 +38,7 @@ struct MotionPrior {
   double velocity = 0.0;          ///< step as expected
   double angular_velocity = 0.0;  ///< turn as expected
   double small_velocity = 0.0;    ///< step is zero
-  double bend = 0.0;              ///< neighbouring segments move alike, in position ...
+  double bend = 0.0;              ///< neighboring segments move alike, in position ...
   double angular_bend = 0.0;      ///< ... and in rotation
 };
 
@@ -53,7 +53,7 @@ struct ElasticProblem {
   bool exact_slerp = true;  ///< false: ElasticSegment::first_order_row (Gauss-Newton alone)
 };
 
-/// 1/2 sum of losses, as both solvers minimise it: with N matches, each term of the prior counts
+/// 1/2 sum of losses, as both solvers minimize it: with N matches, each term of the prior counts
 /// N times.
 double cost_of(const ElasticProblem& problem, const ElasticMotion& motion);
 

@@ -10,7 +10,7 @@ namespace lidarena {
 
 namespace {
 constexpr double kStraight = 1e-9;  // rad; below, a segment does not turn
-// Below this angle (rad) quotients of cancelling terms are replaced by the first term of their
+// Below this angle (rad) quotients of canceling terms are replaced by the first term of their
 // series; the next one is smaller by the square.
 constexpr double kSmall = 1e-4;
 }  // namespace

@@ -10,7 +10,7 @@
 namespace lidarena {
 
 /// A motion through one scan by poses at equal steps of time from its first to its last instant, at
-/// least two. Between neighbours: linear in position, spherical-linear in rotation. With two knots
+/// least two. Between neighbors: linear in position, spherical-linear in rotation. With two knots
 /// it is the elastic scan of Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP" (ICRA 2022, III-B).
 struct ElasticMotion {
   std::vector<Pose> knots;
@@ -31,7 +31,7 @@ struct MotionChange {
 };
 MotionChange change_between(const ElasticMotion& a, const ElasticMotion& b);
 
-/// The motion between two neighbouring knots, laid out so that placing a point costs one sine and
+/// The motion between two neighboring knots, laid out so that placing a point costs one sine and
 /// one cosine. `a` in [0, 1] goes from one knot to the next.
 class ElasticSegment {
  public:

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/imu_sample.hpp"
 
-/// What an IMU at rest tells an odometry at its start (levelling: P. D. Groves, "Principles of
+/// What an IMU at rest tells an odometry at its start (leveling: P. D. Groves, "Principles of
 /// GNSS, Inertial, and Multisensor Integrated Navigation Systems", 2nd ed., 2013, section 5.6; that
 /// a LiDAR-inertial odometry begins so: W. Xu, F. Zhang, "FAST-LIO", IEEE RA-L 2021). The mean rate
 /// is the gyro's bias; the mean specific force points up.

@@ -27,7 +27,7 @@ struct InertialStart {
 
 /// Fuses poses from scan matching with the IMU: a factor graph of the last few states joined by
 /// preintegrated measurements (Shan et al., "LIO-SAM", IROS 2020, section III-B), solved by
-/// Gauss-Newton; what is older is marginalised into a prior. Beside the states it can estimate in
+/// Gauss-Newton; what is older is marginalized into a prior. Beside the states it can estimate in
 /// which direction gravity points in the world, whose frame the first scan has fixed.
 class InertialSmoother {
  public:

@@ -56,7 +56,7 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
 
 namespace {
 
-/// Kalman update by a measurement of N neighbouring parts of the state: `off` is measured minus
+/// Kalman update by a measurement of N neighboring parts of the state: `off` is measured minus
 /// believed, in their tangent space.
 template <int N>
 Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<double, N>& off,

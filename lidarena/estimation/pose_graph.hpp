@@ -57,7 +57,7 @@ struct PoseGraph {
 };
 
 /// Squared Mahalanobis distance of a measurement from the nodes as they stand; chi-squared with 6
-/// degrees of freedom when all is as modelled.
+/// degrees of freedom when all is as modeled.
 double squared_mahalanobis(const PoseGraph& graph, const PoseGraph::Between& measurement);
 
 struct PoseGraphSolution {

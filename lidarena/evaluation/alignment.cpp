@@ -16,7 +16,7 @@ constexpr double kMinSpread_m = 0.01;
 // A flight whose width is under a thousandth of its length is a line: the roll about it would be
 // known to no better than (position error) / (width), many radians for 1 cm in 10 m.
 constexpr double kMinWidthOfLength = 1e-3;
-// A heading-only fit of an estimate that leans more than this adds 3.5 cm a metre.
+// A heading-only fit of an estimate that leans more than this adds 3.5 cm a meter.
 constexpr double kLeans_rad = 0.035;
 
 /// Means and cross covariance C = mean (q - q_mean) (p - p_mean)^T of truth q and estimate p.

@@ -16,7 +16,7 @@ struct TimeSpan {
 /// What both trajectories span; empty (end < begin) when they do not meet.
 TimeSpan common_span(const Trajectory& a, const Trajectory& b);
 
-/// Path flown s(t) in metres, at a trajectory's own stamps within a span, zero at the first of
+/// Path flown s(t) in meters, at a trajectory's own stamps within a span, zero at the first of
 /// them.
 class ArcLength {
  public:

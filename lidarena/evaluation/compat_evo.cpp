@@ -301,7 +301,7 @@ IndexPairs evo_pieces(std::span<const Pose> poses, const EvoOptions& o) {
     if (o.delta >= static_cast<double>(poses.size())) return {};
     return pieces_of_frames(poses.size(), static_cast<std::size_t>(o.delta), o.all_pairs);
   }
-  const bool by_path = o.unit == EvoUnit::kMetres;
+  const bool by_path = o.unit == EvoUnit::kMeters;
   const double delta = o.unit == EvoUnit::kDegrees ? o.delta * kDegree : o.delta;
   if (o.all_pairs) {
     const double tolerance = delta * o.delta_tolerance;

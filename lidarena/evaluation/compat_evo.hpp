@@ -27,7 +27,7 @@ enum class EvoMetric {
 enum class EvoRelation {
   kTranslation,         ///< |t(E)|, m
   kRotation,            ///< Frobenius norm of R(E) - I, no unit
-  kFull,                ///< Frobenius norm of E - I: metres and rotation mixed
+  kFull,                ///< Frobenius norm of E - I: meters and rotation mixed
   kAngleDegrees,        ///< angle of R(E), deg
   kAngleRadians,        ///< angle of R(E), rad
   kPointDistance,       ///< APE: |t(E)|; RPE: difference of the chords' lengths, m
@@ -35,7 +35,7 @@ enum class EvoRelation {
 };
 
 /// In which unit `delta` gives the length of a piece (RPE).
-enum class EvoUnit { kFrames, kMetres, kDegrees, kRadians };
+enum class EvoUnit { kFrames, kMeters, kDegrees, kRadians };
 
 template <>
 struct EnumNames<EvoMetric> {
@@ -56,7 +56,7 @@ struct EnumNames<EvoRelation> {
 template <>
 struct EnumNames<EvoUnit> {
   static constexpr std::array names{
-      std::pair{"f", EvoUnit::kFrames}, std::pair{"m", EvoUnit::kMetres},
+      std::pair{"f", EvoUnit::kFrames}, std::pair{"m", EvoUnit::kMeters},
       std::pair{"d", EvoUnit::kDegrees}, std::pair{"r", EvoUnit::kRadians}};
 };
 
@@ -74,7 +74,7 @@ struct EvoOptions {
   // pieces of the RPE
   double delta = 1.0;
   EvoUnit unit = EvoUnit::kFrames;
-  double delta_tolerance = 0.1;       ///< of `delta`, for all pairs by metres and angles
+  double delta_tolerance = 0.1;       ///< of `delta`, for all pairs by meters and angles
   bool all_pairs = false;             ///< a piece from every pose, else one after the other
   bool pairs_from_reference = false;  ///< path and angle of the reference, else of the estimate
 };

@@ -22,7 +22,7 @@ std::vector<std::size_t> first_samples(const TriangleMesh& mesh) {
   double area = 0.0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     area += 0.5 * mesh.cross(t).norm();
-    first.push_back(static_cast<std::size_t>(area * SurfaceSamples::kPerSquareMetre + 0.5));
+    first.push_back(static_cast<std::size_t>(area * SurfaceSamples::kPerSquareMeter + 0.5));
   }
   return first;
 }
@@ -46,7 +46,7 @@ Vector3d sample_of(const TriangleMesh& mesh, std::size_t triangle, std::size_t k
 SurfaceSamples seen_samples(const World& world, const ObservedSurface& seen,
                             const Parallel& parallel) {
   const TriangleMesh& mesh = world.mesh();
-  const Vector3d centre = centre_of(world);
+  const Vector3d center = center_of(world);
   const PointGrid hits(seen.hits, SurfaceSamples::kSeen_m, SurfaceSamples::kSeen_m, parallel);
   const std::vector<std::size_t> first = first_samples(mesh);
   const CounterRandom random(kSeed, stream_of("seen_samples"));
@@ -62,7 +62,7 @@ SurfaceSamples seen_samples(const World& world, const ObservedSurface& seen,
           for (std::size_t k = 0; k < count; ++k) {
             const double u = random.uniform(first[t] + k);
             const Vector3d sample = sample_of(mesh, t, k, count, u, shift);
-            const Vector3f offset = (sample - centre).cast<float>();
+            const Vector3f offset = (sample - center).cast<float>();
             if (std::isfinite(hits.nearest(offset))) kept.push_back(offset);
           }
         }
@@ -85,11 +85,11 @@ Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
   result.samples = samples.offsets.size();
   result.seen_m2 = samples.area_m2();
   const Pose map_from_mesh = mesh_from_map.inverse();
-  const Vector3d centre = centre_of(world);
+  const Vector3d center = center_of(world);
   constexpr std::size_t kGrain = 4096;
   std::vector<float> nearest(samples.offsets.size());
   parallel.for_each(nearest.size(), kGrain, [&](std::size_t i) {
-    const Vector3d in_map = map_from_mesh * (centre + samples.offsets[i].cast<double>());
+    const Vector3d in_map = map_from_mesh * (center + samples.offsets[i].cast<double>());
     nearest[i] = grid.nearest(in_map.cast<float>());
   });
   const auto percent = [](std::ptrdiff_t part, std::size_t of) {

@@ -12,15 +12,15 @@
 
 namespace lidarena {
 
-/// Samples of the surface that rays hit, equally dense everywhere: as many to a square metre of a
+/// Samples of the surface that rays hit, equally dense everywhere: as many to a square meter of a
 /// large triangle as of small ones.
 struct SurfaceSamples {
   /// One in 10 cm^2. Distances from them to the map are exact, so their density makes no bias; it
   /// sets the error of a share p, sqrt(p (1 - p) / samples): 0.05 % of 100 m^2 at most.
-  static constexpr double kPerSquareMetre = 1000.0;
+  static constexpr double kPerSquareMeter = 1000.0;
   static constexpr double kSeen_m = 0.02;  ///< a sample was seen when a true hit is this near
-  std::vector<Eigen::Vector3f> offsets;    ///< m, from the mesh's centre (centre_of())
-  double area_m2() const { return static_cast<double>(offsets.size()) / kPerSquareMetre; }
+  std::vector<Eigen::Vector3f> offsets;    ///< m, from the mesh's center (center_of())
+  double area_m2() const { return static_cast<double>(offsets.size()) / kPerSquareMeter; }
 };
 
 /// Stratified by area along the list of triangles and within each; the same for the same mesh, on

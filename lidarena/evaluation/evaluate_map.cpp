@@ -170,11 +170,11 @@ std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, cons
   const double mesh_m = world.mesh().bounds().diagonal().norm();
   if (map_m > 0.0 && mesh_m > kSuspicious * map_m) {
     warnings.push_back(fmt::format(
-        "the mesh is {:.0f} times as large as the map: is it in millimetres?", mesh_m / map_m));
+        "the mesh is {:.0f} times as large as the map: is it in millimeters?", mesh_m / map_m));
   }
   if (map_m > kSuspicious * mesh_m) {
     warnings.push_back(fmt::format(
-        "the map is {:.0f} times as large as the mesh: is it in millimetres?", map_m / mesh_m));
+        "the map is {:.0f} times as large as the mesh: is it in millimeters?", map_m / mesh_m));
   }
   const double far = farthest_coordinate(map);
   const double step = far * std::numeric_limits<float>::epsilon();

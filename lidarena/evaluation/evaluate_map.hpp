@@ -38,7 +38,7 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
                   const Trajectory& truth, const World& world, const Parallel& parallel,
                   const SeenSurface* seen = nullptr, const IdentifiedMap* identified = nullptr);
 
-/// What looks wrong before any distance is taken: a mesh or a map that seems to be in millimetres,
+/// What looks wrong before any distance is taken: a mesh or a map that seems to be in millimeters,
 /// coordinates so large that single precision is too coarse, points that are not finite.
 std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, const World& world);
 

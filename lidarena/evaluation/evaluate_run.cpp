@@ -84,7 +84,7 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
       relative_pose_error(truth_at_estimates(estimate, truth), truth).translation_m.rmse;
   if (floor > kHighFloor * rpe && floor > kSmallFloor_m) {
     warnings.push_back(
-        fmt::format("of the {:.2f} cm of RPE per metre with interpolated ends, {:.2f} cm are "
+        fmt::format("of the {:.2f} cm of RPE per meter with interpolated ends, {:.2f} cm are "
                     "interpolation between the estimates, which a perfect one would show, too: "
                     "look at the one between poses, or give poses more often",
                     100.0 * rpe, 100.0 * floor));

@@ -26,7 +26,7 @@ struct Entry {
 };
 
 std::vector<Entry> entries_of(std::span<const PointScore> scores, const TriangleMesh& mesh) {
-  constexpr auto kCubesPerMetre = static_cast<float>(1.0 / Ghosting::kPatch_m);
+  constexpr auto kCubesPerMeter = static_cast<float>(1.0 / Ghosting::kPatch_m);
   std::vector<Entry> entries;
   entries.reserve(scores.size());
   for (const PointScore& score : scores) {
@@ -34,7 +34,7 @@ std::vector<Entry> entries_of(std::span<const PointScore> scores, const Triangle
     const Eigen::Vector3d normal = mesh.cross(score.triangle);
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
-    const VoxelKey cube = voxel_key(voxel_of(score.foot_offset, kCubesPerMetre));
+    const VoxelKey cube = voxel_key(voxel_of(score.foot_offset, kCubesPerMeter));
     entries.push_back({cube, static_cast<std::uint32_t>(axis),
                        normal[axis] > 0.0 ? score.height : -score.height});
   }

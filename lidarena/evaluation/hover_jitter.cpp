@@ -8,8 +8,8 @@ namespace {
 
 bool hovers(const PosePair& a, const PosePair& b, Time bracket) {
   if (b.stamp - a.stamp > bracket) return false;
-  const double metres = (b.truth.translation() - a.truth.translation()).norm();
-  return metres < HoverJitter::kSpeed_mps * to_seconds(b.stamp - a.stamp);
+  const double meters = (b.truth.translation() - a.truth.translation()).norm();
+  return meters < HoverJitter::kSpeed_mps * to_seconds(b.stamp - a.stamp);
 }
 
 /// Sum of the squared position errors about their mean.

@@ -27,13 +27,13 @@ constexpr double kSettled = 1e-10;  // m and rad
 // Keeps directions that the flight does not show where they start; the others feel none of it.
 constexpr double kDamping = 1e-9;
 
-/// Weights of metres and radians: one over the RMS of each.
+/// Weights of meters and radians: one over the RMS of each.
 struct Weights {
   double translation = 1.0;
   double rotation = 1.0;
 };
 
-/// (X^-1 Q X)^-1 P of each motion, as metres and radians, weighted.
+/// (X^-1 Q X)^-1 P of each motion, as meters and radians, weighted.
 Eigen::VectorXd residuals(const std::vector<MotionPair>& motions, const Pose& x, Weights w) {
   Eigen::VectorXd r(6 * static_cast<Eigen::Index>(motions.size()));
   const Pose x_inverse = x.inverse();

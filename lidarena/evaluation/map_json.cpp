@@ -64,7 +64,7 @@ Json to_json(const Completeness& completeness) {
   }
   return {{"definition", "completeness[seen2cm,stratified-by-area]"},
           {"samples", completeness.samples},
-          {"samples_per_m2", SurfaceSamples::kPerSquareMetre},
+          {"samples_per_m2", SurfaceSamples::kPerSquareMeter},
           {"seen_m2", completeness.seen_m2},
           {"rows", rows}};
 }

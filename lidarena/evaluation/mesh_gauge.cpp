@@ -58,7 +58,7 @@ struct Points {
 };
 
 /// The inverse root of the mean of hat(p)^T hat(p), map frame.
-Matrix3d rotations_of_one_metre(const std::vector<Vector3d>& positions, const Vector3d& centroid) {
+Matrix3d rotations_of_one_meter(const std::vector<Vector3d>& positions, const Vector3d& centroid) {
   Matrix3d levers = Matrix3d::Zero();
   for (const Vector3d& p : positions) {
     const Matrix3d hat = so3::hat(p - centroid);
@@ -78,26 +78,26 @@ Points every(std::size_t limit, std::span<const Eigen::Vector3f> map,
     points.centroid += points.positions.back();
   }
   points.centroid /= static_cast<double>(points.positions.size());
-  points.rad_per_m = rotations_of_one_metre(points.positions, points.centroid);
+  points.rad_per_m = rotations_of_one_meter(points.positions, points.centroid);
   return points;
 }
 
 /// What a twist is counted about and in, mesh frame.
 struct TwistFrame {
-  Vector3d centre;
+  Vector3d center;
   Matrix3d rad_per_m;
   TwistFrame(const Points& points, const Pose& pose)
-      : centre(pose * points.centroid),
+      : center(pose * points.centroid),
         rad_per_m(pose.linear() * points.rad_per_m * pose.linear().transpose()) {}
 };
 
-/// `pose` followed by a translation (m) and a rotation (rad) about the frame's centre.
+/// `pose` followed by a translation (m) and a rotation (rad) about the frame's center.
 Pose moved_by(const Vector3d& move, const Vector3d& turn, const TwistFrame& frame,
               const Pose& pose) {
   const Matrix3d rotation = so3::exp(turn);
   Pose moved = Pose::Identity();
   moved.linear() = rotation * pose.linear();
-  moved.translation() = rotation * (pose.translation() - frame.centre) + frame.centre + move;
+  moved.translation() = rotation * (pose.translation() - frame.center) + frame.center + move;
   return orthonormalized(moved);
 }
 
@@ -136,7 +136,7 @@ NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame,
         if (weight == 0.0) return;
         const Vector3d normal = mesh.cross(nearest.triangle).normalized();
         Eigen::Matrix<double, 1, 6> jacobian;
-        const Vector3d lever = (matches.positions[i] - frame.centre).cross(normal);
+        const Vector3d lever = (matches.positions[i] - frame.center).cross(normal);
         jacobian << normal.transpose(), lever.transpose() * frame.rad_per_m;
         const Eigen::Matrix<double, 1, 1> residual(
             normal.dot(matches.positions[i] - nearest.point));

@@ -43,7 +43,7 @@ struct MeshAlignment {
 /// laid onto the mesh by one part. Steps along directions with an eigenvalue below kUnobservable
 /// are left out (solution remapping, Zhang, Kaess, Singh 2016). Never scales. Refused when fewer
 /// than half of the points end within 20 cm, when fewer than three of five starts (off by 20 cm and
-/// 2 degrees) agree, or with fewer than 100 points. Minimises nearly what is reported: the rigid
+/// 2 degrees) agree, or with fewer than 100 points. Minimizes nearly what is reported: the rigid
 /// part of a drift is gone, a bend stays.
 MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& start,
                             const World& world, const Parallel& parallel);

@@ -38,7 +38,7 @@ Json to_json(const MapError& error);
 Json to_json(const HoverJitter& jitter);
 
 /// Columns t_s (since `start`), translation_m, rotation_rad; at most `limit` rows, of which each is
-/// the largest error of a run of neighbours, so that no peak is lost. Rounded to 1e-6.
+/// the largest error of a run of neighbors, so that no peak is lost. Rounded to 1e-6.
 Json errors_over_time(std::span<const SegmentError> segments, Time start, std::size_t limit = 2000);
 Json errors_over_time(std::span<const PoseError> poses, Time start, std::size_t limit = 2000);
 

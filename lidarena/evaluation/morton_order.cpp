@@ -17,8 +17,8 @@ std::uint64_t spread(std::uint64_t x) {
 }
 
 std::uint64_t code_of(const Eigen::Vector3f& point) {
-  constexpr auto kCellsPerMetre = static_cast<float>(1.0 / MortonOrder::kCell_m);
-  const Voxel voxel = voxel_of(point, kCellsPerMetre);
+  constexpr auto kCellsPerMeter = static_cast<float>(1.0 / MortonOrder::kCell_m);
+  const Voxel voxel = voxel_of(point, kCellsPerMeter);
   const auto part = [&](int axis) {
     return spread(static_cast<std::uint64_t>(voxel[axis] + (1 << 20)));
   };

@@ -10,8 +10,8 @@
 
 namespace lidarena {
 
-/// The finite points of a map along a curve that fills space (Morton, 1966): neighbours in the list
-/// are neighbours in space, and the points of one cube of a grid stand together.
+/// The finite points of a map along a curve that fills space (Morton, 1966): neighbors in the list
+/// are neighbors in space, and the points of one cube of a grid stand together.
 struct MortonOrder {
   static constexpr double kCell_m = 0.05 / 8.0;  ///< cubes of 2^k cells' edge stand together
   struct Entry {

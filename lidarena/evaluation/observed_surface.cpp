@@ -26,7 +26,7 @@ class Observation {
  public:
   explicit Observation(const World& world)
       : world_(world),
-        centre_(centre_of(world)),
+        center_(center_of(world)),
         voxels_(ObservedSurface::kVoxel_m),
         front_(world.mesh().triangles.size(), 0),
         back_(front_) {}
@@ -34,10 +34,10 @@ class Observation {
   /// Whether no return lay in the voxel of `position` (m, world frame) yet.
   bool is_new(const Vector3d& position) {
     ++surface_.returns;
-    return voxels_.insert((position - centre_).cast<float>());
+    return voxels_.insert((position - center_).cast<float>());
   }
   void add(const Vector3d& position, const Vector3f& towards_sensor, std::uint32_t triangle) {
-    surface_.hits.emplace_back((position - centre_).cast<float>());
+    surface_.hits.emplace_back((position - center_).cast<float>());
     const Vector3d normal = world_.mesh().cross(triangle);
     ++(normal.dot(towards_sensor.cast<double>()) > 0.0 ? front_ : back_)[triangle];
   }
@@ -58,7 +58,7 @@ class Observation {
 
  private:
   const World& world_;
-  Vector3d centre_;
+  Vector3d center_;
   PointMap voxels_;
   std::vector<std::uint32_t> front_, back_;
   ObservedSurface surface_;

@@ -18,7 +18,7 @@ namespace lidarena {
 /// The part of the mesh that the flight's rays really hit, and from which side.
 struct ObservedSurface {
   static constexpr double kVoxel_m = 0.02;
-  /// True hits, the first of each 2 cm voxel: m, offsets from the mesh's centre (centre_of()).
+  /// True hits, the first of each 2 cm voxel: m, offsets from the mesh's center (center_of()).
   std::vector<Eigen::Vector3f> hits;
   /// One a triangle. Free space is on the side that the rays came from; a triangle of which more
   /// than 5 % of the hits are on the other side has none.

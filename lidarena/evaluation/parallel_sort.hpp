@@ -8,7 +8,7 @@
 
 namespace lidarena {
 
-/// Sorts runs, then merges neighbours. `values` must have a strict order without equals, so that
+/// Sorts runs, then merges neighbors. `values` must have a strict order without equals, so that
 /// the result depends on nothing else.
 template <class T>
 void parallel_sort(std::span<T> values, const Parallel& parallel) {

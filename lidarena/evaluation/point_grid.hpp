@@ -14,7 +14,7 @@
 
 namespace lidarena {
 
-/// A cloud sorted into cubes, for exact nearest neighbours within a reach. 16 bytes a point.
+/// A cloud sorted into cubes, for exact nearest neighbors within a reach. 16 bytes a point.
 class PointGrid {
  public:
   /// Points that are not finite are left out. Cubes of `cell` m; `reach` m is the farthest that

@@ -13,10 +13,10 @@ namespace {
 constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points in flight; bounds the memory
 
 PointScore score_of(const Vector3d& point, const ClosestPoint& nearest, const TriangleMesh& mesh,
-                    const Vector3d& centre) {
+                    const Vector3d& center) {
   PointScore score;
   score.distance = nearest.distance;
-  score.foot_offset = (nearest.point - centre).cast<float>();
+  score.foot_offset = (nearest.point - center).cast<float>();
   score.triangle = nearest.triangle;
   const Vector3d normal = mesh.cross(nearest.triangle).normalized();
   score.height = static_cast<float>(normal.dot(point - nearest.point));
@@ -25,13 +25,13 @@ PointScore score_of(const Vector3d& point, const ClosestPoint& nearest, const Tr
 
 }  // namespace
 
-Vector3d centre_of(const World& world) { return world.mesh().bounds().center(); }
+Vector3d center_of(const World& world) { return world.mesh().bounds().center(); }
 
 std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
                                      const Pose& mesh_from_map, const World& world,
                                      const Parallel& parallel) {
   const std::size_t count = order.entries.size();
-  const Vector3d centre = centre_of(world);
+  const Vector3d center = center_of(world);
   std::vector<PointScore> scores(count);
   std::vector<Vector3d> moved(std::min(kChunk, count));
   std::vector<ClosestPoint> nearest(moved.size());
@@ -44,7 +44,7 @@ std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const
     world.closest_points(std::span(moved).first(length), std::numeric_limits<double>::infinity(),
                          nearest, parallel);
     parallel.for_each(length, kGrain, [&](std::size_t k) {
-      scores[begin + k] = score_of(moved[k], nearest[k], world.mesh(), centre);
+      scores[begin + k] = score_of(moved[k], nearest[k], world.mesh(), center);
     });
   }
   return scores;

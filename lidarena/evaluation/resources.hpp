@@ -36,7 +36,7 @@ struct ResourceFigures {
 /// Empty without rows.
 std::optional<ResourceFigures> resource_figures(std::span<const ResourceRow> rows);
 
-/// With the figures over sensor time: at most `limit` rows, each the largest of its neighbours.
+/// With the figures over sensor time: at most `limit` rows, each the largest of its neighbors.
 /// Null without rows.
 Json resources_json(std::span<const ResourceRow> rows, std::size_t limit = 500);
 

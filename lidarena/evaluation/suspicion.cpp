@@ -14,7 +14,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kSameLength = 1.5;  // a flight may be cut by this factor and still be recognised
+constexpr double kSameLength = 1.5;  // a flight may be cut by this factor and still be recognized
 constexpr double kClearly_rad = 0.035;
 
 struct Unit {

@@ -56,7 +56,7 @@ std::optional<double> misfit(const std::vector<Piece>& pieces, const Trajectory&
   return sum / static_cast<double>(count);
 }
 
-/// Vertex of the parabola through the misfits at three neighbouring shifts.
+/// Vertex of the parabola through the misfits at three neighboring shifts.
 std::optional<TimeOffset> vertex(double before, double least, double after, double shift_s,
                                  double independent_pieces) {
   const double curvature = (before - 2.0 * least + after) / (kStep_s * kStep_s);

@@ -86,7 +86,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
         1e-6 * static_cast<double>(most));
     return result;
   }
-  const Vector3d origin = centre_of(world);
+  const Vector3d origin = center_of(world);
   KdTree tree;
   tree.build(subdivided_vertices(world.mesh(), edge, origin));
   std::vector<double> distances(map.size(), std::numeric_limits<double>::quiet_NaN());
@@ -100,7 +100,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
     }
     const Vector3d moved = mesh_from_map * map[index].cast<double>();
     const auto bound = static_cast<float>(to_surface + edge);  // there is one within 0.58 edges
-    Neighbour nearest;
+    Neighbor nearest;
     tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
     distances[index] = std::sqrt(double{nearest.squared_distance});
   });

@@ -17,7 +17,7 @@ struct Encounter {
   double distance = 0.0;                               ///< m; 0 when the path passes through
 };
 
-/// First instant at which the body's centre is nearer than `clearance` m to the mesh or passes
+/// First instant at which the body's center is nearer than `clearance` m to the mesh or passes
 /// through it. The distance to a surface changes by no more than the way flown, so nothing is
 /// asked again before the margin is used up: what lies between two samples is clear by the same
 /// law, up to the way flown in 5 ms.

@@ -146,13 +146,13 @@ struct FlightConfig {
     v("corner_m", self.corner_m, "m",
       "largest distance between the path and the line; smaller means slower corners",
       Limits{0.001, 100.0, false});
-    v("clearance_m", self.clearance_m, "m", "least distance from body centre to any surface",
+    v("clearance_m", self.clearance_m, "m", "least distance from body center to any surface",
       at_least(0));
     v("duration_s", self.duration_s, "s",
       "length of the flight: it loops (to and fro when the line is open) or stops early; 0 = once "
       "through",
       at_least(0));
-    v("hover_s", self.hover_s, "s", "rest at begin and end; estimators initialise in it",
+    v("hover_s", self.hover_s, "s", "rest at begin and end; estimators initialize in it",
       at_least(0));
     v("dynamics", self.dynamics, "",
       "a quadrotor that follows the path as well as it can, {} for the default one; without this "

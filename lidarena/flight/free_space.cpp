@@ -33,20 +33,20 @@ std::uint64_t key_of(const Vector3i& at) {
   return key;
 }
 
-/// The point of the cube around `centre` that hill climbing finds farthest from the surface.
-/// What cannot come to `least` within it, or has `preferred` at its centre, is left there.
-Cell settled(const World& world, const Vector3d& centre, double edge, const Distances& wanted) {
-  Cell cell{centre, 0.0, {}};
+/// The point of the cube around `center` that hill climbing finds farthest from the surface.
+/// What cannot come to `least` within it, or has `preferred` at its center, is left there.
+Cell settled(const World& world, const Vector3d& center, double edge, const Distances& wanted) {
+  Cell cell{center, 0.0, {}};
   cell.next.fill(FreeSpace::kNone);
-  ClosestPoint nearest = world.closest_point(centre, kFar);
+  ClosestPoint nearest = world.closest_point(center, kFar);
   cell.clearance = std::min(nearest.distance, kFar);
   const double most = cell.clearance + 0.5 * std::sqrt(3.0) * edge;
   if (most < wanted.least || cell.clearance == 0.0) return cell;
   for (double step = 0.5 * edge; step > 0.1 * edge && cell.clearance < wanted.preferred;
        step *= 0.5) {
     const Vector3d away = (cell.point - nearest.point) / nearest.distance;
-    const Vector3d offset = (cell.point + step * away - centre).cwiseMax(-0.5 * edge);
-    const Vector3d there = centre + offset.cwiseMin(0.5 * edge);
+    const Vector3d offset = (cell.point + step * away - center).cwiseMax(-0.5 * edge);
+    const Vector3d there = center + offset.cwiseMin(0.5 * edge);
     const ClosestPoint next = world.closest_point(there, kFar);
     if (next.distance < cell.clearance + 1e-3) continue;
     cell.point = there;
@@ -72,10 +72,10 @@ bool join(const World& world, double least, const Grid& grid, const Vector3i& at
   for (std::size_t side = 0; side < kSteps.size(); ++side) {
     const auto other = grid.find(key_of(stepped(at, side)));
     if (other == grid.end() || other->second < 0) continue;
-    Cell& neighbour = cells[static_cast<std::size_t>(other->second)];
-    if (!is_joined(world, cell, neighbour, least)) continue;
+    Cell& neighbor = cells[static_cast<std::size_t>(other->second)];
+    if (!is_joined(world, cell, neighbor, least)) continue;
     cell.next[side] = other->second;
-    neighbour.next[side ^ 1U] = static_cast<std::int32_t>(cells.size());
+    neighbor.next[side ^ 1U] = static_cast<std::int32_t>(cells.size());
     joined = true;
   }
   return joined;
@@ -103,8 +103,8 @@ bool FreeSpace::explore(const World& world, const Vector3d& start, std::size_t m
   while (!wave.empty() && cells_.size() <= max_cells) {
     std::vector<Cell> looked_at(wave.size());
     parallel.for_each(wave.size(), 32, [&](std::size_t i) {
-      const Vector3d centre = start + cell_m_ * wave[i].cast<double>();
-      looked_at[i] = settled(world, centre, cell_m_, distances_);
+      const Vector3d center = start + cell_m_ * wave[i].cast<double>();
+      looked_at[i] = settled(world, center, cell_m_, distances_);
     });
     const std::size_t first_new = cells_.size();
     for (std::size_t i = 0; i < wave.size(); ++i) {

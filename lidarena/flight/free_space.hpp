@@ -21,7 +21,7 @@ struct Distances {
 
 /// What can be reached from a place inside the mesh's box: the cells of a cubic grid in which a
 /// point keeps the least distance to every surface, joined where the straight way between two
-/// neighbours' points keeps it too. In narrow places the point is the one of its cell that hill
+/// neighbors' points keeps it too. In narrow places the point is the one of its cell that hill
 /// climbing finds farthest from the surface, so that a door need not lie on the grid.
 class FreeSpace {
  public:
@@ -29,7 +29,7 @@ class FreeSpace {
   struct Cell {
     Eigen::Vector3d point;
     double clearance;                  ///< m, at the point; distances beyond 1 m are not told apart
-    std::array<std::int32_t, 6> next;  ///< neighbours in -x, +x, -y, +y, -z, +z, or kNone
+    std::array<std::int32_t, 6> next;  ///< neighbors in -x, +x, -y, +y, -z, +z, or kNone
   };
 
   /// Explores from `start` with cells of `cell_m`, or larger ones if there would be more than
@@ -40,7 +40,7 @@ class FreeSpace {
 
   std::span<const Cell> cells() const { return cells_; }
   double cell_m() const { return cell_m_; }
-  /// Lengths of the shortest ways along neighbours from one cell to all, in half cells.
+  /// Lengths of the shortest ways along neighbors from one cell to all, in half cells.
   std::vector<std::int32_t> lengths_from(std::int32_t from) const;
   /// The cells on a shortest way, both ends included.
   std::vector<std::int32_t> way(std::int32_t from, std::int32_t to) const;

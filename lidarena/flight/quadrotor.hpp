@@ -9,7 +9,7 @@
 namespace lidarena {
 
 /// Everything that changes while a quadrotor flies. Body frame: x forward, y left, z up, at the
-/// centre of mass. Rotors: front left, front right, rear left, rear right.
+/// center of mass. Rotors: front left, front right, rear left, rear right.
 struct QuadrotorState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< m, world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< m/s, world
@@ -57,7 +57,7 @@ class Quadrotor {
   double lever_;  ///< m, of a rotor about the x and the y axis
 };
 
-/// state + h * rate; the quaternion is not normalised.
+/// state + h * rate; the quaternion is not normalized.
 QuadrotorState advanced(const QuadrotorState& state, const QuadrotorRate& rate, double h);
 
 /// One step of the classical Runge-Kutta method of order 4 over h seconds from `t`.

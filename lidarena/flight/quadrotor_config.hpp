@@ -51,7 +51,7 @@ struct DynamicsConfig {
   static void visit(Self& self, V&& v) {
     v("mass_kg", self.mass_kg, "kg", "with everything it carries", above(0));
     v("inertia", self.inertia, "kg m^2", "about the body's x, y, z", above(0));
-    v("arm_m", self.arm_m, "m", "from the centre to each motor", above(0));
+    v("arm_m", self.arm_m, "m", "from the center to each motor", above(0));
     v("max_thrust", self.max_thrust, "N", "of one rotor at full speed", above(0));
     v("torque_per_thrust", self.torque_per_thrust, "m", "of a rotor about its axis", above(0));
     v("motor_lag_s", self.motor_lag_s, "s", "time constant of a rotor's speed", between(0.004, 1));

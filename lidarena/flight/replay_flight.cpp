@@ -26,14 +26,14 @@ struct Node {
   Rates position, rotation;
 };
 
-/// Derivatives at pose `i` of the polynomial through it and up to four neighbours, the same number
+/// Derivatives at pose `i` of the polynomial through it and up to four neighbors, the same number
 /// on both sides where there are that many.
 Node node_at(std::span<const StampedPose> poses, std::size_t i) {
   const std::size_t count = std::min<std::size_t>(5, poses.size());
   const std::size_t first = std::min(i - std::min<std::size_t>(i, 2), poses.size() - count);
   const Pose& here = poses[i].world_from_body;
   const double scale = to_seconds(poses[first + count - 1].stamp - poses[first].stamp);
-  // row: one neighbour's step = [t t^2 t^3 ...] * coefficients, with time in units of `scale`
+  // row: one neighbor's step = [t t^2 t^3 ...] * coefficients, with time in units of `scale`
   const auto n = static_cast<Eigen::Index>(count - 1);
   Eigen::MatrixXd powers(n, n);
   Eigen::MatrixXd steps(n, 6);

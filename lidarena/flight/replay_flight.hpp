@@ -14,9 +14,9 @@ namespace lidarena {
 /// continuously differentiable in position and rotation. Time 0 is the first pose.
 ///
 /// Velocity and acceleration at a pose are those of the polynomial through it and its four nearest
-/// neighbours in the row (for the rotation: of rotation vectors relative to that pose); between two
+/// neighbors in the row (for the rotation: of rotation vectors relative to that pose); between two
 /// poses a quintic Hermite polynomial joins them. Between samples h apart of a smooth motion the
-/// position is off by O(h^5) and the acceleration by O(h^3); noise of s metres in the recording
+/// position is off by O(h^5) and the acceleration by O(h^3); noise of s meters in the recording
 /// becomes noise of about 3 s / h^2 in the acceleration, so thin a noisy recording first (thinned).
 /// A recording that begins or ends in motion does so here too: outside, the body rests there.
 class ReplayFlight final : public Flight {

@@ -12,7 +12,7 @@ namespace lidarena {
 struct PathPiece {
   Eigen::Vector3d begin = Eigen::Vector3d::Zero();
   Eigen::Vector3d tangent = Eigen::Vector3d::UnitX();  ///< unit, at `begin`
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< unit, towards the arc's centre
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();    ///< unit, towards the arc's center
   double curvature = 0.0;                              ///< 1/m; 0 for a line
   double length = 0.0;                                 ///< m
   bool from_stop = false;                              ///< the path turns on the spot at `begin`
@@ -40,7 +40,7 @@ class RoundedPath {
 /// becomes a stop.
 RoundedPath round_corners(std::span<const Eigen::Vector3d> waypoints, double tolerance);
 
-/// Throws InputError (naming `place`) unless there are two or more waypoints and neighbours lie
+/// Throws InputError (naming `place`) unless there are two or more waypoints and neighbors lie
 /// apart.
 void check_waypoints(std::span<const Eigen::Vector3d> waypoints, const std::string& place);
 

@@ -10,7 +10,7 @@ namespace lidarena {
 inline constexpr std::size_t kFitReach = 3;
 
 /// Control points of a uniform B-spline of degree D (at most 6) that follows samples taken at its
-/// controls' centres: control j belongs to sample j + kFitReach. A local quasi-interpolant (de
+/// controls' centers: control j belongs to sample j + kFitReach. A local quasi-interpolant (de
 /// Boor, "A Practical Guide to Splines", ch. XII): polynomials up to degree D are reproduced, any
 /// other smooth motion to order D + 1 in the knot.
 ///

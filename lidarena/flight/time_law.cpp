@@ -82,7 +82,7 @@ double TimeLaw::distance_at(double t) const {
 TimeLaw law_of_duration(const RoundedPath& path, const PathLimits& limits, double duration) {
   double low = 0.0;
   double high = path.length();
-  // 50 halvings leave less than a picometre of any path
+  // 50 halvings leave less than a picometer of any path
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
     (TimeLaw(path, limits, middle).duration() < duration ? low : high) = middle;

@@ -32,7 +32,7 @@ class TimeLaw {
     double s, speed;
     double arrival, departure;  ///< s; they differ at stops
   };
-  /// Lowers the nodes' speeds to what neighbours allow with each cell's acceleration.
+  /// Lowers the nodes' speeds to what neighbors allow with each cell's acceleration.
   void make_reachable(const std::vector<double>& along);
 
   std::vector<Node> nodes_;

@@ -29,7 +29,7 @@ struct Tour {
 ///  2. places spread over it, and what of the surface is seen from each: together, what can be
 ///  seen;
 ///  3. the few of them that see the wanted share of that (greedy set cover);
-///  4. their order: nearest neighbour, then 2-opt, by shortest ways, back to the start;
+///  4. their order: nearest neighbor, then 2-opt, by shortest ways, back to the start;
 ///  5. each way pulled straight as far as the clearance allows;
 ///  6. corners of the flight that would come too near are flown tighter, by waypoints beside them.
 /// The start is `tour.start`, or the first point of the world's first route, or, of a grid of
@@ -44,7 +44,7 @@ Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& 
 std::string describe(const Tour& tour);
 
 /// The tour as the text of a file of configs/flights, so that it need not be planned again:
-/// `config` with its kind made waypoints, to the millimetre.
+/// `config` with its kind made waypoints, to the millimeter.
 std::string as_yaml(const Tour& tour, const FlightConfig& config);
 
 }  // namespace lidarena

@@ -8,7 +8,7 @@ namespace {
 
 using Lengths = std::vector<std::vector<std::int32_t>>;
 
-std::vector<std::size_t> nearest_neighbours(const Lengths& lengths) {
+std::vector<std::size_t> nearest_neighbors(const Lengths& lengths) {
   std::vector<std::size_t> order{0};
   std::vector<bool> visited(lengths.size(), false);
   visited[0] = true;
@@ -27,7 +27,7 @@ std::vector<std::size_t> nearest_neighbours(const Lengths& lengths) {
 }  // namespace
 
 std::vector<std::size_t> order_of_visits(const Lengths& lengths) {
-  std::vector<std::size_t> order = nearest_neighbours(lengths);
+  std::vector<std::size_t> order = nearest_neighbors(lengths);
   const std::size_t n = order.size();
   for (bool shorter = true; shorter;) {
     shorter = false;

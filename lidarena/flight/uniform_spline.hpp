@@ -10,7 +10,7 @@ namespace lidarena {
 
 /// Uniform B-spline of degree D with values in R^N (de Boor, "A Practical Guide to Splines").
 /// Interval k spans [k, k+1) * knot seconds and is shaped by the control points k .. k+D; control
-/// point j has its centre at (j - (D-1)/2) * knot. D - 1 times continuously differentiable.
+/// point j has its center at (j - (D-1)/2) * knot. D - 1 times continuously differentiable.
 ///
 /// Weights are not negative and sum to one, so a value lies in the convex hull of its D+1 control
 /// points, and so do derivatives in that of the control points' finite differences: bounds on

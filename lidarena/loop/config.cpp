@@ -20,8 +20,8 @@ LoopConfig careful_loops() {
   config.max_fitness_m2 = 0.01;
   config.least_overlap = 0.7;
   config.least_constraint = 0.005;
-  config.drift_per_metre = 0.02;
-  config.turn_drift_rad_per_metre = 0.002;
+  config.drift_per_meter = 0.02;
+  config.turn_drift_rad_per_meter = 0.002;
   config.agreeing_loops = 2;
   config.loop_shift_sigma_m = 0.03;
   config.loop_turn_sigma_rad = 3e-3;

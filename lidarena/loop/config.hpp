@@ -38,8 +38,8 @@ struct LoopConfig {
   double least_overlap = 0.0;
   double least_constraint = 0.0;
 
-  double drift_per_metre = 0.0;
-  double turn_drift_rad_per_metre = 0.0;
+  double drift_per_meter = 0.0;
+  double turn_drift_rad_per_meter = 0.0;
   double drift_gate = 3.0;
   int agreeing_loops = 1;
   double agreement_m = 0.3;
@@ -85,12 +85,12 @@ struct LoopConfig {
       between(0, 1));
     v("least_constraint", self.least_constraint, "",
       "share of the least held direction in all that the points tell (planes only)", between(0, 1));
-    v("drift_per_metre", self.drift_per_metre, "m/m",
+    v("drift_per_meter", self.drift_per_meter, "m/m",
       "sigma of the odometry's drift; a loop that asks for more than `drift_gate` of it is "
       "refused; "
       "0: any is believed",
       at_least(0));
-    v("turn_drift_rad_per_metre", self.turn_drift_rad_per_metre, "rad/m", "likewise", at_least(0));
+    v("turn_drift_rad_per_meter", self.turn_drift_rad_per_meter, "rad/m", "likewise", at_least(0));
     v("drift_gate", self.drift_gate, "sigma", "", above(0));
     v("agreeing_loops", self.agreeing_loops, "",
       "so many that ask for the same correction are needed before one is believed", at_least(1));

@@ -24,13 +24,13 @@ constexpr double kStill = 3e-4;      // m, rad: a step that has converged
 constexpr double kShrink = 0.7;      // of the reach, each iteration
 
 /// The normal at the nearest points, if they lie flat.
-bool find_normal(std::span<const Neighbour> near, Vector3d& normal) {
-  Vector3d centre = Vector3d::Zero();
-  for (const Neighbour& n : near)
-    centre += n.point.cast<double>() / static_cast<double>(near.size());
+bool find_normal(std::span<const Neighbor> near, Vector3d& normal) {
+  Vector3d center = Vector3d::Zero();
+  for (const Neighbor& n : near)
+    center += n.point.cast<double>() / static_cast<double>(near.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Neighbour& n : near) {
-    const Vector3d d = n.point.cast<double>() - centre;
+  for (const Neighbor& n : near) {
+    const Vector3d d = n.point.cast<double>() - center;
     spread += d * d.transpose();
   }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
@@ -40,7 +40,7 @@ bool find_normal(std::span<const Neighbour> near, Vector3d& normal) {
 }
 
 void add_point(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
-  std::array<Neighbour, 1> near;
+  std::array<Neighbor, 1> near;
   if (target.nearest(moved.cast<float>(), near, static_cast<float>(reach)) == 0) return;
   Eigen::Matrix<double, 3, 6> j;
   j << -so3::hat(moved), Eigen::Matrix3d::Identity();
@@ -49,7 +49,7 @@ void add_point(const Vector3d& moved, const KdTree& target, double reach, Equati
 }
 
 void add_plane(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
-  std::array<Neighbour, kPlanePoints> near;
+  std::array<Neighbor, kPlanePoints> near;
   const std::size_t found =
       target.nearest(moved.cast<float>(), near, static_cast<float>(std::max(reach, kPlaneReach)));
   if (found < kPlanePoints || double{near[0].squared_distance} > reach * reach) return;
@@ -81,7 +81,7 @@ void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
   const bool planes = config.metric == IcpMetric::kPlanes;
   const auto reach = static_cast<float>(planes ? config.inlier_m : config.correspondence_m);
   for (const Eigen::Vector3f& p : source) {
-    std::array<Neighbour, 1> near;
+    std::array<Neighbor, 1> near;
     const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
     if (target.nearest(moved, near, reach) == 0) continue;
     const auto squared = static_cast<double>(near[0].squared_distance);
@@ -96,10 +96,10 @@ void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
 }
 
 /// Share of the least held direction; turning is about the middle of the correspondences.
-double constraint_of(Equations sum, double lever, const Vector3d& centre) {
-  Eigen::Matrix<double, 6, 6> to_centre = Eigen::Matrix<double, 6, 6>::Identity();
-  to_centre.bottomLeftCorner<3, 3>() = so3::hat(centre);
-  Eigen::Matrix<double, 6, 6> hessian = to_centre.transpose() * sum.hessian * to_centre;
+double constraint_of(Equations sum, double lever, const Vector3d& center) {
+  Eigen::Matrix<double, 6, 6> to_center = Eigen::Matrix<double, 6, 6>::Identity();
+  to_center.bottomLeftCorner<3, 3>() = so3::hat(center);
+  Eigen::Matrix<double, 6, 6> hessian = to_center.transpose() * sum.hessian * to_center;
   Eigen::Matrix<double, 6, 1> unit = Eigen::Matrix<double, 6, 1>::Ones();
   unit.head<3>().setConstant(1.0 / lever);
   hessian = (unit.asDiagonal() * hessian * unit.asDiagonal()).eval();
@@ -131,13 +131,13 @@ IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& ta
     if (planes) reach = std::max(config.inlier_m, kShrink * reach);
   }
   measure(source, target, config, result);
-  Vector3d centre = Vector3d::Zero();
+  Vector3d center = Vector3d::Zero();
   for (const Eigen::Vector3f& p : source)
-    centre += p.cast<double>() / static_cast<double>(source.size());
+    center += p.cast<double>() / static_cast<double>(source.size());
   double squared = 1e-6;
   for (const Eigen::Vector3f& p : source)
-    squared += (p.cast<double>() - centre).squaredNorm() / static_cast<double>(source.size());
-  result.constraint = constraint_of(sum, std::sqrt(squared), result.target_from_source * centre);
+    squared += (p.cast<double>() - center).squaredNorm() / static_cast<double>(source.size());
+  result.constraint = constraint_of(sum, std::sqrt(squared), result.target_from_source * center);
   return result;
 }
 

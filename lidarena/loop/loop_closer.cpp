@@ -162,11 +162,11 @@ std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_
 }
 
 bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
-  if (config_.drift_per_metre <= 0.0) return false;
+  if (config_.drift_per_meter <= 0.0) return false;
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
   return apart - config_.correspondence_m >
-         config_.drift_gate * (kLeastShift + config_.drift_per_metre * loop.way);
+         config_.drift_gate * (kLeastShift + config_.drift_per_meter * loop.way);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
@@ -213,9 +213,9 @@ LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) cons
   if (!(icp.fitness < config_.max_fitness_m2)) return LoopVerdict::kPoorFit;
   if (icp.overlap < config_.least_overlap) return LoopVerdict::kLittleOverlap;
   if (icp.constraint < config_.least_constraint) return LoopVerdict::kUnconstrained;
-  if (config_.drift_per_metre > 0.0) {
-    const double shift = kLeastShift + config_.drift_per_metre * loop.way;
-    const double turn = kLeastTurn + config_.turn_drift_rad_per_metre * loop.way;
+  if (config_.drift_per_meter > 0.0) {
+    const double shift = kLeastShift + config_.drift_per_meter * loop.way;
+    const double turn = kLeastTurn + config_.turn_drift_rad_per_meter * loop.way;
     if (loop.shift > config_.drift_gate * shift || loop.turn > config_.drift_gate * turn)
       return LoopVerdict::kBeyondDrift;
   }

@@ -89,7 +89,7 @@ class LoopCloser {
   /// Whether the two places lie further apart than drift can have brought them.
   bool is_out_of_reach(const LoopRecord& loop) const;
   LoopVerdict judge(const IcpResult& icp, const LoopRecord& loop) const;
-  /// Measured metres from each keyframe to the last one, by the shortest way through known loops.
+  /// Measured meters from each keyframe to the last one, by the shortest way through known loops.
   std::vector<double> ways_to_last() const;
   bool agree(const LoopRecord& a, const LoopRecord& b) const;
   /// Those waiting that agree with the last record, and itself, if they are enough to be believed.

@@ -9,7 +9,7 @@ namespace lidarena {
 /// The best points so far, sorted; the last entry's distance bounds what is still of interest.
 struct KdTree::Search {
   Eigen::Vector3f query;
-  std::span<Neighbour> best;
+  std::span<Neighbor> best;
   std::size_t count = 0;
   /// Squared distance to the region that is being searched, by axis.
   std::array<float, 3> away{};
@@ -70,14 +70,14 @@ bool KdTree::insert_thinned(const Eigen::Vector3f& point, float voxel) {
     return std::nextafter(x, -std::numeric_limits<float>::infinity());
   });
   const Eigen::AlignedBox3f cell(corner.cwiseMin(point), last.cwiseMax(point));
-  const Eigen::Vector3f centre = corner.array() + 0.5F * voxel;
+  const Eigen::Vector3f center = corner.array() + 0.5F * voxel;
   Eigen::Vector3f winner = point;
-  float smallest = (point - centre).squaredNorm();
+  float smallest = (point - center).squaredNorm();
   bool is_new = true;
   std::size_t others = 0;
   visit(root_, cell, [&](const Eigen::Vector3f& other) {
     ++others;
-    const float squared = (other - centre).squaredNorm();
+    const float squared = (other - center).squaredNorm();
     if (squared > smallest) return;
     smallest = squared;
     winner = other;
@@ -248,11 +248,11 @@ void KdTree::visit(Index node, const Eigen::AlignedBox3f& box, const Visit& visi
   if (box.max()[split.axis] >= split.high) visit(split.right, box, visit_point);
 }
 
-std::size_t KdTree::nearest(const Eigen::Vector3f& query, std::span<Neighbour> out,
+std::size_t KdTree::nearest(const Eigen::Vector3f& query, std::span<Neighbor> out,
                             float max_distance) const {
   if (out.empty() || root_ == kNone) return 0;
   const float bound = max_distance * max_distance;
-  std::fill(out.begin(), out.end(), Neighbour{Eigen::Vector3f::Zero(), bound});
+  std::fill(out.begin(), out.end(), Neighbor{Eigen::Vector3f::Zero(), bound});
   Search state{query, out, 0, {}};
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     const float outside =

@@ -13,7 +13,7 @@
 namespace lidarena {
 
 /// A point of the tree and its squared distance (m^2) to the query.
-struct Neighbour {
+struct Neighbor {
   Eigen::Vector3f point = Eigen::Vector3f::Zero();
   float squared_distance = std::numeric_limits<float>::infinity();
 };
@@ -38,7 +38,7 @@ class KdTree {
   void build(std::vector<Eigen::Vector3f> points);
   void insert(const Eigen::Vector3f& point);
   /// Of the points in the cell of a grid with edge `voxel` and of `point`, keeps the one nearest to
-  /// the cell's centre and removes the others. True when that is `point`.
+  /// the cell's center and removes the others. True when that is `point`.
   bool insert_thinned(const Eigen::Vector3f& point, float voxel);
   /// Removes the points in a closed box; returns how many.
   std::size_t remove(const Eigen::AlignedBox3f& box);
@@ -46,7 +46,7 @@ class KdTree {
 
   /// The nearest points within `max_distance` of `query`, nearest first, as many as `out` holds;
   /// returns how many were found.
-  std::size_t nearest(const Eigen::Vector3f& query, std::span<Neighbour> out,
+  std::size_t nearest(const Eigen::Vector3f& query, std::span<Neighbor> out,
                       float max_distance = std::numeric_limits<float>::infinity()) const;
   /// Appends the points in a closed box.
   void collect(const Eigen::AlignedBox3f& box, std::vector<Eigen::Vector3f>& out) const;

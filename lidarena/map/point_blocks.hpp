@@ -15,7 +15,7 @@ class PointBlocks {
  public:
   static constexpr std::size_t capacity(int level) { return std::size_t{1} << level; }
 
-  /// Room for capacity(level) points, not initialised; stays in place until released.
+  /// Room for capacity(level) points, not initialized; stays in place until released.
   Eigen::Vector3f* allocate(int level);
   void release(Eigen::Vector3f* block, int level);
   std::size_t memory_bytes() const;

@@ -15,7 +15,7 @@ namespace lidarena {
 
 /// Points in the order they came, at most one a voxel: the first point met in a voxel stays, later
 /// ones are refused. Never averages, so noise stays visible. Which voxels are taken is kept in bits,
-/// 4 x 4 x 4 voxels together in a hash table: neighbours of a scan are neighbours in memory, and a
+/// 4 x 4 x 4 voxels together in a hash table: neighbors of a scan are neighbors in memory, and a
 /// surface takes some 3 bytes a voxel besides the 12 of its point.
 class PointMap {
  public:

@@ -17,7 +17,7 @@ struct Step {
   int dx, dy, dz;
 };
 
-/// The cell itself and its 26 neighbours, those with a common face first, then edge, then corner.
+/// The cell itself and its 26 neighbors, those with a common face first, then edge, then corner.
 constexpr std::array<Step, 27> make_steps() {
   std::array<Step, 27> steps{};
   std::size_t next = 0;
@@ -82,9 +82,9 @@ void VoxelHashMap::fit_plane(Cell& cell) {
   if (cell.count < kLeastPoints) return;
   const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
   const Eigen::Vector3f mean = points.rowwise().mean();
-  const Eigen::Matrix3Xf centred = points.colwise() - mean;
+  const Eigen::Matrix3Xf centered = points.colwise() - mean;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(centred * centred.transpose());
+  solver.computeDirect(centered * centered.transpose());
   const Eigen::Vector3f& variances = solver.eigenvalues();
   if (variances[1] < kLineThinness * variances[2]) return release_plane(cell, kShapeless);
   if (!(variances[0] < static_cast<float>(options_.plane_thinness) * variances[1]))

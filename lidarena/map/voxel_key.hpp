@@ -27,11 +27,11 @@ struct EnumNames<VoxelRounding> {
                                     std::pair{"truncate", VoxelRounding::kTruncate}};
 };
 
-/// A voxel in one number, 21 bits an axis. Keys of neighbours differ by a constant.
+/// A voxel in one number, 21 bits an axis. Keys of neighbors differ by a constant.
 using VoxelKey = std::uint64_t;
 
 /// Cells further than this from the origin are one with the cell at this distance (524 km at 0.5 m,
-/// 20 km at 2 cm); one cell is left free on each side so that neighbours never wrap around.
+/// 20 km at 2 cm); one cell is left free on each side so that neighbors never wrap around.
 inline constexpr int kMaxVoxelIndex = (1 << 20) - 2;
 
 /// Cell of a finite point (m); `inverse_edge` in 1/m.
@@ -58,7 +58,7 @@ inline VoxelKey voxel_key(const Voxel& voxel) {
   return kBias + voxel_key_step(voxel.x(), voxel.y(), voxel.z());
 }
 
-/// Spreads neighbouring keys over all bits (Fibonacci hashing, Knuth, TAOCP vol. 3, 6.4).
+/// Spreads neighboring keys over all bits (Fibonacci hashing, Knuth, TAOCP vol. 3, 6.4).
 struct VoxelKeyHash {
   std::size_t operator()(VoxelKey key) const {
     const std::uint64_t product = key * 0x9E3779B97F4A7C15ULL;  // 2^64 / golden ratio

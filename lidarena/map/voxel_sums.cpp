@@ -8,11 +8,11 @@
 namespace lidarena {
 namespace {
 
-constexpr double kMicrometres = 1e6;  // in a metre
+constexpr double kMicrometers = 1e6;  // in a meter
 
-Eigen::Matrix<std::int64_t, 3, 1> in_micrometres(const Eigen::Vector3f& point) {
+Eigen::Matrix<std::int64_t, 3, 1> in_micrometers(const Eigen::Vector3f& point) {
   const auto rounded = [](float x) {
-    return static_cast<std::int64_t>(std::llround(kMicrometres * double{x}));
+    return static_cast<std::int64_t>(std::llround(kMicrometers * double{x}));
   };
   return {rounded(point.x()), rounded(point.y()), rounded(point.z())};
 }
@@ -35,7 +35,7 @@ void VoxelSums::add(std::span<const Eigen::Vector3f> points) {
         places_.try_emplace(key_of(point), static_cast<std::uint32_t>(cells_.size()));
     if (is_new) cells_.push_back({place->first});
     Cell& cell = cells_[place->second];
-    cell.sum_um += in_micrometres(point);
+    cell.sum_um += in_micrometers(point);
     ++cell.count;
   }
 }
@@ -46,7 +46,7 @@ void VoxelSums::remove(std::span<const Eigen::Vector3f> points) {
     const auto place = places_.find(key_of(point));
     if (place == places_.end()) continue;
     Cell& cell = cells_[place->second];
-    cell.sum_um -= in_micrometres(point);
+    cell.sum_um -= in_micrometers(point);
     if (--cell.count > 0) continue;
     const std::uint32_t freed = place->second;  // the last one moves there
     places_.erase(place);
@@ -67,7 +67,7 @@ std::vector<Eigen::Vector3f> VoxelSums::means() const {
   std::vector<Eigen::Vector3f> means;
   means.reserve(cells_.size());
   for (const Cell& cell : cells_) {
-    const double unit = 1.0 / (kMicrometres * static_cast<double>(cell.count));
+    const double unit = 1.0 / (kMicrometers * static_cast<double>(cell.count));
     means.emplace_back((cell.sum_um.cast<double>() * unit).cast<float>());
   }
   return means;

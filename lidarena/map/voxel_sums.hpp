@@ -14,7 +14,7 @@
 namespace lidarena {
 
 /// Means of the points in each cell of a grid, where points come and go: a map that follows a
-/// sensor pays for what changes and not for all of it. Coordinates are summed in whole micrometres,
+/// sensor pays for what changes and not for all of it. Coordinates are summed in whole micrometers,
 /// so what is removed leaves nothing behind. Points that are not finite are left out.
 class VoxelSums {
  public:

@@ -29,7 +29,7 @@ struct WithLoopConfig {
   }
 };
 
-/// Loop closure around any odometry that publishes its scans: every so many metres a scan is kept,
+/// Loop closure around any odometry that publishes its scans: every so many meters a scan is kept,
 /// and when the path comes back to one of them the path is bent. The odometry itself is left alone;
 /// its live estimates are carried along by what the last loop asked for.
 class WithLoop : public Odometry {

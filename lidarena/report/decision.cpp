@@ -59,7 +59,7 @@ std::string figures_of(const Candidate& c) {
   return fmt::format(
       "its map lies {} cm (RMS) from the mesh with {} % of its points beyond 20 cm, its path "
       "drifts "
-      "by {} cm per metre; 95 of 100 scans take less than {:.0f} % of the time between two scans, "
+      "by {} cm per meter; 95 of 100 scans take less than {:.0f} % of the time between two scans, "
       "and it holds {} MB",
       figure(c.map_rmse_cm, 2).text, figure(c.outliers_percent, 2).text,
       figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy.value_or(0.0), figure(c.memory_mb, 2).text);

@@ -74,10 +74,10 @@ std::string color_key() {
   }
   const Rgb far = distance_color(1.0);
   return fmt::format(
-      "<p class='note'>Each map from above, like an X-ray: upright surfaces are dark. Colour: mean "
+      "<p class='note'>Each map from above, like an X-ray: upright surfaces are dark. Color: mean "
       "point-to-mesh distance, 0 <span class='ramp' "
       "style='background:linear-gradient(90deg{})'></span> "
-      "20 cm, beyond <span class='ramp' style='width:14px;background:rgb({},{},{})'></span>. Grey: "
+      "20 cm, beyond <span class='ramp' style='width:14px;background:rgb({},{},{})'></span>. Gray: "
       "the true path; orange: the estimate, laid over it by SE(3) over all positions. First "
       "seed.</p>",
       stops, far[0], far[1], far[2]);
@@ -159,7 +159,7 @@ constexpr const char* kTiming =
     "as frozen_unstamped, and every range too short by the sensor's least one, as the makers' "
     "plugin has it. What differs between the columns is the simulator's doing, not the method's.";
 constexpr const char* kReading =
-    "RPE: the true path is cut into metres, from one estimated pose to another; for each, the "
+    "RPE: the true path is cut into meters, from one estimated pose to another; for each, the "
     "motion that the algorithm found is set against the true one; root mean square over all. ATE: "
     "distance between the two paths "
     "after laying one over the other. Map: point-to-mesh distance to the very mesh that was "

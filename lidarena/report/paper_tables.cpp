@@ -61,7 +61,7 @@ ReportTable accuracy_table(const StudyCells& cells, const std::string& world, Pa
 
 /// Table 1 from the datasets' own descriptions of their sensors.
 ReportTable sensor_table(const Results& results) {
-  // the paper's Table 1: points a second in millions, range in metres
+  // the paper's Table 1: points a second in millions, range in meters
   static const std::map<std::string, std::array<const char*, 2>> paper{{"Os0-128", {"2.4", "100"}},
                                                                        {"Mid-360", {"0.2", "40"}}};
   ReportTable table{"table1",

@@ -43,7 +43,7 @@ struct SceneMesh {
   TriangleMesh mesh;  ///< not relative to Scene::origin
 };
 
-/// What the 3D view shows: everything in one frame, metres, z up.
+/// What the 3D view shows: everything in one frame, meters, z up.
 struct Scene {
   std::string title;
   std::string frame = "world";                       ///< what coordinates are told in
@@ -56,7 +56,7 @@ struct Scene {
 };
 
 /// Box to look at, relative to the origin: holds paths, meshes and, in each direction, 99.8 % of
-/// the points of each cloud, so that a few stray ones do not shrink the picture. A cube of a metre
+/// the points of each cloud, so that a few stray ones do not shrink the picture. A cube of a meter
 /// for an empty scene.
 Eigen::AlignedBox3d bounds_to_show(const Scene& scene);
 

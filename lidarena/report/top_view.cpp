@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxHeight = 900;
 constexpr int kTitleHeight = 24;
 constexpr double kMargin = 0.03;  // share of the picture left free on each side
-// At most 256 colours: a picture of noise takes less than half of the bytes.
+// At most 256 colors: a picture of noise takes less than half of the bytes.
 constexpr double kOpacities = 10.0;
 constexpr double kDistanceStep_m = 0.01;
 

@@ -11,8 +11,8 @@
 namespace lidarena {
 
 /// A map seen from above like an X-ray: upright surfaces are dark because many points fall into one
-/// pixel, and the colour is the mean point-to-mesh distance there (see distance_color). Over it the
-/// true path (grey) and the estimated one (orange), and a scale bar.
+/// pixel, and the color is the mean point-to-mesh distance there (see distance_color). Over it the
+/// true path (gray) and the estimated one (orange), and a scale bar.
 struct TopView {
   std::string title;
   const Cloud* map = nullptr;  ///< in the mesh's frame, with distances

@@ -14,7 +14,7 @@ namespace lidarena {
 
 /// Which cells of a grid over a field of view have been hit by a ray. Cells are squares in azimuth
 /// and elevation, in rows from the lowest azimuth and elevation on; a cell belongs to the field of
-/// view when its centre does.
+/// view when its center does.
 class Coverage {
  public:
   /// `cell_deg` > 0; boxes should measure whole cells.

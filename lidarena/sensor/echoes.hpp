@@ -29,7 +29,7 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count);
 Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles);
 
 /// Replaces `echoes` by the pulses that `parts` make, nearest first: sorted by range, parts belong
-/// together as long as each follows the one before within `pulse_length` metres. Sorts `parts`.
+/// together as long as each follows the one before within `pulse_length` meters. Sorts `parts`.
 void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>& echoes);
 
 /// Puts the echoes of a shot, nearest first, in the order in which they are reported, and drops

@@ -115,7 +115,7 @@ Time Lidar::stamp(std::uint64_t index) const {
 
 Time Lidar::last_firing(std::uint64_t index) const { return stamp(index) + Time{last_dt_ns_}; }
 
-/// Sub-rays of a shot are neighbours and lie together; single rays lie in casting order.
+/// Sub-rays of a shot are neighbors and lie together; single rays lie in casting order.
 void Lidar::place_rays(Block& block) const {
   const std::size_t split = sub_rays_.size();
   const std::size_t count = block.shots.size();
@@ -253,7 +253,7 @@ void Lidar::shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& 
   place_rays(block);
   aim(world_from_lidar, block);
   world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
-             RayOrder::kNeighbours);
+             RayOrder::kNeighbors);
   block.count = 0;
   const bool one_sure_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {

@@ -10,7 +10,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kRowPitch = 0.012314;     // rad behind the lens, of neighbouring rows
+constexpr double kRowPitch = 0.012314;     // rad behind the lens, of neighboring rows
 constexpr double kColumnPitch = 0.048775;  // rad, half the step between pixel columns
 constexpr double kCubicTerm = 0.04265;     // of the f-theta lens
 

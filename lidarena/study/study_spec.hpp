@@ -140,7 +140,7 @@ struct CellEstimate {
 };
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 
-/// The cells of a part: neighbours, so that few flights are flown by two parts, and as many as are
+/// The cells of a part: neighbors, so that few flights are flown by two parts, and as many as are
 /// expected to take an N-th of the time.
 std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
                                  const ConfigFolder& configs);

@@ -18,7 +18,7 @@ struct BoxTest {
   Eigen::Vector3d origin, inverse;
   std::array<bool, 3> backwards;
 
-  BoxTest(const Eigen::Vector3d& centred, const Eigen::Vector3d& direction) : origin(centred) {
+  BoxTest(const Eigen::Vector3d& centered, const Eigen::Vector3d& direction) : origin(centered) {
     constexpr double kParallel = 1e-30;  // a zero would make 0 * infinity of a box's side
     for (int axis = 0; axis < 3; ++axis) {
       const double size = std::max(std::abs(direction[axis]), kParallel);
@@ -47,7 +47,7 @@ class BoxTree {
   /// A box and what is in it.
   struct Node {
     Eigen::AlignedBox3f box;
-    std::uint32_t first = 0;  ///< of `count` members, or of two neighbouring nodes when 0
+    std::uint32_t first = 0;  ///< of `count` members, or of two neighboring nodes when 0
     std::uint32_t count = 0;
   };
 

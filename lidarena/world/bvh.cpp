@@ -26,13 +26,13 @@ double box_margin(const AlignedBox3d& bounds) {
          64.0 * std::numeric_limits<double>::epsilon() * largest;
 }
 
-std::vector<AlignedBox3f> triangle_boxes(const TriangleMesh& mesh, const Vector3d& centre,
+std::vector<AlignedBox3f> triangle_boxes(const TriangleMesh& mesh, const Vector3d& center,
                                          double margin) {
   std::vector<AlignedBox3f> boxes(mesh.triangles.size());
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     AlignedBox3d box;
     for (const std::uint32_t corner : mesh.triangles[i]) box.extend(mesh.vertices[corner]);
-    const Vector3d low = box.min() - centre, high = box.max() - centre;
+    const Vector3d low = box.min() - center, high = box.max() - center;
     boxes[i] = {(low.array() - margin).cast<float>().matrix(),
                 (high.array() + margin).cast<float>().matrix()};
   }
@@ -83,8 +83,8 @@ bool can_hit(const Ray& ray) {
 
 Bvh::Bvh(const TriangleMesh& mesh)
     : mesh_(mesh),
-      centre_(mesh.bounds().center()),
-      tree_(triangle_boxes(mesh, centre_, box_margin(mesh.bounds()))) {}
+      center_(mesh.bounds().center()),
+      tree_(triangle_boxes(mesh, center_, box_margin(mesh.bounds()))) {}
 
 /// Calls `meet(triangle, range)` for what the ray meets between `near` and `far`, which `meet` may
 /// bring nearer, roughly from near to far.
@@ -93,7 +93,7 @@ void Bvh::walk(const Ray& ray, double near, double& far, const Meet& meet) const
   if (!can_hit(ray)) return;
   const Vector3d direction = ray.direction.cast<double>();
   const TriangleTest triangles(ray.origin, direction);
-  tree_.walk(BoxTest(ray.origin - centre_, direction), near, far, [&](std::uint32_t triangle) {
+  tree_.walk(BoxTest(ray.origin - center_, direction), near, far, [&](std::uint32_t triangle) {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
     const double range = triangles.range(v[a], v[b], v[c]);
@@ -132,9 +132,9 @@ bool Bvh::occluded(const Ray& ray, double near, double far) const {
 
 void Bvh::visit_near(const Vector3d& point, double radius, TriangleVisitor& visitor) const {
   if (!point.allFinite()) return;
-  const Vector3d centred = point - centre_;
+  const Vector3d centered = point - center_;
   const auto widened2 = [](double r) { return r * r * (1.0 + 8.0 * kFloatEpsilon); };
-  tree_.visit_near(centred, widened2(radius),
+  tree_.visit_near(centered, widened2(radius),
                    [&](std::uint32_t triangle) { return widened2(visitor.visit(triangle)); });
 }
 

@@ -34,8 +34,8 @@ class Bvh : public MeshTree {
   void walk(const Ray& ray, double near, double& far, const Meet& meet) const;
 
   const TriangleMesh& mesh_;
-  Eigen::Vector3d centre_;
-  BoxTree tree_;  ///< of boxes relative to the centre, a little too large so that rounding is safe
+  Eigen::Vector3d center_;
+  BoxTree tree_;  ///< of boxes relative to the center, a little too large so that rounding is safe
 };
 
 }  // namespace lidarena

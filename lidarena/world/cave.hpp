@@ -24,7 +24,7 @@ struct CaveConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("loops", self.loops, "", "loops in a row; neighbours share a tunnel", between(1, 12));
+    v("loops", self.loops, "", "loops in a row; neighbors share a tunnel", between(1, 12));
     v("cell_length_m", self.cell_length_m, "m", "distance between cross tunnels, before winding",
       between(8, 100));
     v("cell_width_m", self.cell_width_m, "m", "length of a cross tunnel, before winding",
@@ -49,7 +49,7 @@ struct CaveConfig {
 };
 
 /// The cave's rock surface (one closed 2-manifold, normals into free space) and one closed route
-/// along the centrelines through every tunnel. Its first and last points are equal. The same
+/// along the centerlines through every tunnel. Its first and last points are equal. The same
 /// (config, seed) give the same bits. Throws InputError when the narrowest width is above the
 /// widest, or too little for the roughness.
 WorldModel make_cave(const CaveConfig& config, std::uint64_t seed);

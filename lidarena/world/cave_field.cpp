@@ -43,7 +43,7 @@ double CaveField::noise_bound() const {
   return kNoisePeak * (config_.roughness_2m_m + config_.roughness_03m_m + config_.roughness_005m_m);
 }
 
-Eigen::Vector3d CaveField::block_centre(const Eigen::Vector3i& block) const {
+Eigen::Vector3d CaveField::block_center(const Eigen::Vector3i& block) const {
   return block_m_ * (block.cast<double>() + Eigen::Vector3d::Constant(0.5));
 }
 
@@ -68,7 +68,7 @@ void CaveField::index_segments() {
     for (b.z() = int(std::floor(low.z())); b.z() <= high.z(); ++b.z()) {
       for (b.y() = int(std::floor(low.y())); b.y() <= high.y(); ++b.y()) {
         for (b.x() = int(std::floor(low.x())); b.x() <= high.x(); ++b.x()) {
-          if (segment_distance(s, block_centre(b)) > reach) continue;
+          if (segment_distance(s, block_center(b)) > reach) continue;
           Near& near = near_[SparseField::key(b)];
           if (near.empty()) blocks_.push_back(b);
           near.push_back(i);
@@ -105,7 +105,7 @@ double CaveField::operator()(const Eigen::Vector3d& p) const {
 
 bool CaveField::may_hold_surface(const Eigen::Vector3i& block, const Near& near) const {
   const double half_diagonal = 0.5 * std::sqrt(3.0) * block_m_;
-  return std::abs(tunnel_distance(near, block_centre(block))) <=
+  return std::abs(tunnel_distance(near, block_center(block))) <=
          half_diagonal + noise_bound() + 2 * config_.resolution_m;
 }
 

@@ -20,7 +20,7 @@ class CaveField {
  public:
   CaveField(const CaveGraph& graph, const CaveConfig& config, std::uint64_t seed);
 
-  /// Valid within about a metre of the surface; +1 m where no tunnel is near.
+  /// Valid within about a meter of the surface; +1 m where no tunnel is near.
   double operator()(const Eigen::Vector3d& p) const;
   /// Samples the field wherever the surface may pass, on a grid of the configured resolution.
   SparseField sample() const;
@@ -40,7 +40,7 @@ class CaveField {
   double noise(const Eigen::Vector3d& p) const;
   void index_segments();
   bool may_hold_surface(const Eigen::Vector3i& block, const Near& near) const;
-  Eigen::Vector3d block_centre(const Eigen::Vector3i& block) const;
+  Eigen::Vector3d block_center(const Eigen::Vector3i& block) const;
 
   CaveConfig config_;
   double block_m_;  ///< edge of a block

@@ -13,7 +13,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 constexpr double kPointSpacing = 0.5;  // m, fine against the winding's wavelengths
 constexpr double kRouteSpacing = 1.5;  // m
-constexpr double kMaxHeading = 0.35;   // rad; neighbouring cells bend by at most twice this
+constexpr double kMaxHeading = 0.35;   // rad; neighboring cells bend by at most twice this
 /// Share of the roughness heights by which the noise is expected to narrow or widen a tunnel:
 /// gradient noise seldom exceeds 0.6.
 constexpr double kRoughnessReach = 0.6;
@@ -31,7 +31,7 @@ std::vector<Eigen::Vector3d> ladder_junctions(const CaveConfig& config, Sequenti
     heading.push_back(random.uniform(-kMaxHeading, kMaxHeading));
   }
   std::vector<Eigen::Vector3d> junctions;
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
   for (int i = 0; i <= config.loops; ++i) {
     const double before = heading[static_cast<std::size_t>(std::max(i - 1, 0))];
     const double after = heading[static_cast<std::size_t>(std::min(i, config.loops - 1))];
@@ -40,15 +40,15 @@ std::vector<Eigen::Vector3d> ladder_junctions(const CaveConfig& config, Sequenti
         0.5 * config.cell_width_m * Eigen::Vector3d(std::cos(across), std::sin(across), 0);
     for (const double sign : {1.0, -1.0}) {
       const double height = random.uniform(-config.relief_m, config.relief_m);
-      junctions.emplace_back(centre + sign * half + height * Eigen::Vector3d::UnitZ());
+      junctions.emplace_back(center + sign * half + height * Eigen::Vector3d::UnitZ());
     }
-    centre += config.cell_length_m * Eigen::Vector3d(std::cos(after), std::sin(after), 0);
+    center += config.cell_length_m * Eigen::Vector3d(std::cos(after), std::sin(after), 0);
   }
   return junctions;
 }
 
 /// A slow swing between -1 and 1: a long wave, and a shorter one that breaks its regularity. The
-/// wavelengths (m) keep the centreline's bends wider than the tunnel.
+/// wavelengths (m) keep the centerline's bends wider than the tunnel.
 class Swing {
  public:
   explicit Swing(SequentialRandom& random)
@@ -113,7 +113,7 @@ std::vector<std::size_t> weave(std::size_t cells) {
   return order;
 }
 
-/// The centreline between two neighbouring junctions, from `from` to `to`.
+/// The centerline between two neighboring junctions, from `from` to `to`.
 std::vector<Eigen::Vector3d> way(const CaveGraph& graph, std::size_t from, std::size_t to) {
   for (const Tunnel& tunnel : graph.tunnels) {
     if (tunnel.from == from && tunnel.to == to) return tunnel.points;

@@ -10,7 +10,7 @@
 
 namespace lidarena {
 
-/// A tunnel's centreline between two junctions, as a polyline with a radius at each point.
+/// A tunnel's centerline between two junctions, as a polyline with a radius at each point.
 struct Tunnel {
   std::size_t from = 0;  ///< junctions
   std::size_t to = 0;

@@ -42,7 +42,7 @@ void check(RTCDevice device, const std::string& name) {
               ")");
 }
 
-Scene build_scene(RTCDevice device, const TriangleMesh& mesh, const Vector3d& centre) {
+Scene build_scene(RTCDevice device, const TriangleMesh& mesh, const Vector3d& center) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
                                                                RTC_FORMAT_FLOAT3, 3 * sizeof(float),
@@ -53,7 +53,7 @@ Scene build_scene(RTCDevice device, const TriangleMesh& mesh, const Vector3d& ce
   Scene scene(rtcNewScene(device));
   if (vertices != nullptr && indices != nullptr) {
     for (const Vector3d& v : mesh.vertices) {
-      for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(v[axis] - centre[axis]);
+      for (int axis = 0; axis < 3; ++axis) *vertices++ = static_cast<float>(v[axis] - center[axis]);
     }
     for (const Triangle& triangle : mesh.triangles) {
       indices = std::copy(triangle.begin(), triangle.end(), indices);
@@ -125,13 +125,13 @@ struct Packet {
   }
 
   /// Takes one to eight rays.
-  void load(std::span<const Ray> rays, const Vector3d& centre, float far) {
+  void load(std::span<const Ray> rays, const Vector3d& center, float far) {
     for (std::size_t i = 0; i < kSize; ++i) {
       valid[i] = i < rays.size() ? -1 : 0;
       const Ray& ray = rays[std::min(i, rays.size() - 1)];
-      query.ray.org_x[i] = static_cast<float>(ray.origin.x() - centre.x());
-      query.ray.org_y[i] = static_cast<float>(ray.origin.y() - centre.y());
-      query.ray.org_z[i] = static_cast<float>(ray.origin.z() - centre.z());
+      query.ray.org_x[i] = static_cast<float>(ray.origin.x() - center.x());
+      query.ray.org_y[i] = static_cast<float>(ray.origin.y() - center.y());
+      query.ray.org_z[i] = static_cast<float>(ray.origin.z() - center.z());
       query.ray.dir_x[i] = ray.direction.x();
       query.ray.dir_y[i] = ray.direction.y();
       query.ray.dir_z[i] = ray.direction.z();
@@ -145,18 +145,18 @@ class EmbreeTree : public MeshTree {
  public:
   EmbreeTree(const TriangleMesh& mesh, const std::string& name) {
     const Eigen::AlignedBox3d box = mesh.bounds();
-    centre_ = box.center();
+    center_ = box.center();
     half_extent_ = 0.5 * box.sizes().maxCoeff();
     device_.reset(rtcNewDevice(nullptr));
     check(device_.get(), name);
-    scene_ = build_scene(device_.get(), mesh, centre_);
+    scene_ = build_scene(device_.get(), mesh, center_);
     check(device_.get(), name);
   }
 
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
             RayOrder order) const override {
     const auto far = static_cast<float>(max_range);
-    if (order == RayOrder::kNeighbours) return cast_packets(rays, far, hits);
+    if (order == RayOrder::kNeighbors) return cast_packets(rays, far, hits);
     cast_one_by_one(rays, far, hits);
   }
   bool occluded(const Ray& ray, double near, double far) const override;
@@ -166,8 +166,8 @@ class EmbreeTree : public MeshTree {
   void cast_one_by_one(std::span<const Ray> rays, float far, std::span<Hit> hits) const;
   void cast_packets(std::span<const Ray> rays, float far, std::span<Hit> hits) const;
 
-  Vector3d centre_;
-  double half_extent_;  ///< largest coordinate of the re-centred mesh
+  Vector3d center_;
+  double half_extent_;  ///< largest coordinate of the re-centered mesh
   Device device_;
   Scene scene_;
 };
@@ -176,7 +176,7 @@ void EmbreeTree::cast_one_by_one(std::span<const Ray> rays, float far, std::span
   Caster caster{scene_.get()};
   RTCRayHit query{};
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    query.ray = make_ray(rays[i].origin - centre_, rays[i].direction, 0.0F, far);
+    query.ray = make_ray(rays[i].origin - center_, rays[i].direction, 0.0F, far);
     query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     caster.intersect(query);
     const bool is_hit = query.hit.geomID != RTC_INVALID_GEOMETRY_ID;
@@ -189,7 +189,7 @@ void EmbreeTree::cast_packets(std::span<const Ray> rays, float far, std::span<Hi
   Packet packet;
   for (std::size_t first = 0; first < rays.size(); first += Packet::kSize) {
     const auto together = rays.subspan(first, std::min(Packet::kSize, rays.size() - first));
-    packet.load(together, centre_, far);
+    packet.load(together, center_, far);
     caster.intersect(packet.valid, packet.query);
     for (std::size_t i = 0; i < together.size(); ++i) {
       const bool is_hit = packet.query.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
@@ -201,7 +201,7 @@ void EmbreeTree::cast_packets(std::span<const Ray> rays, float far, std::span<Hi
 }
 
 bool EmbreeTree::occluded(const Ray& ray, double near, double far) const {
-  RTCRay query = make_ray(ray.origin - centre_, ray.direction, static_cast<float>(near),
+  RTCRay query = make_ray(ray.origin - center_, ray.direction, static_cast<float>(near),
                           static_cast<float>(far));
   Caster{scene_.get()}.occlude(query);
   return query.tfar < 0.0F;  // Embree marks an occluded ray by -infinity
@@ -226,14 +226,14 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 }
 
 void EmbreeTree::visit_near(const Vector3d& point, double radius, TriangleVisitor& visitor) const {
-  const Vector3d centred = point - centre_;
+  const Vector3d centered = point - center_;
   // How far the tree's float boxes may be from the truth: rounding of the point, of the vertices,
   // and of Embree's own arithmetic on their differences.
-  const double slack = 8.0 * kFloatEpsilon * (half_extent_ + centred.lpNorm<Eigen::Infinity>());
+  const double slack = 8.0 * kFloatEpsilon * (half_extent_ + centered.lpNorm<Eigen::Infinity>());
   RTCPointQuery query{};
-  query.x = static_cast<float>(centred.x());
-  query.y = static_cast<float>(centred.y());
-  query.z = static_cast<float>(centred.z());
+  query.x = static_cast<float>(centered.x());
+  query.y = static_cast<float>(centered.y());
+  query.z = static_cast<float>(centered.z());
   query.radius = search_radius(radius, slack);
   Visit visit{visitor, slack};
   RTCPointQueryContext context;

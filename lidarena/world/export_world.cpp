@@ -69,7 +69,7 @@ std::string model_config(const std::string& name) {
   <name>{}</name>
   <version>1.0</version>
   <sdf version="1.6">model.sdf</sdf>
-  <description>Exported by Lidarena; metres, z up.</description>
+  <description>Exported by Lidarena; meters, z up.</description>
 </model>
 )",
                      name);
@@ -96,7 +96,7 @@ std::string world_sdf(const std::string& name) {
 }  // namespace
 
 void save_obj(const fs::path& file, const TriangleMesh& mesh) {
-  std::string text = "# metres, z up\no " + file.stem().string() + "\n";
+  std::string text = "# meters, z up\no " + file.stem().string() + "\n";
   text.reserve(40 * (mesh.vertices.size() + mesh.triangles.size()));
   auto out = std::back_inserter(text);
   for (const Eigen::Vector3d& v : mesh.vertices) {

@@ -8,7 +8,7 @@
 
 namespace lidarena {
 
-/// Writes Wavefront OBJ: one object, metres, z up, 9 significant digits, no normals or colours.
+/// Writes Wavefront OBJ: one object, meters, z up, 9 significant digits, no normals or colors.
 /// The file appears under its name only once it is whole. Throws Error when it cannot be written.
 void save_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 

@@ -21,7 +21,7 @@ class Furnisher {
 
   Furnisher(const HousePlan& plan, const HouseConfig& config, SequentialRandom& random);
 
-  /// With its back to a wall, its foot `z` metres up; any wall, or the given one.
+  /// With its back to a wall, its foot `z` meters up; any wall, or the given one.
   Handle against_wall(RoomUse use, const Piece& piece, double z = 0, std::optional<Side> side = {});
   /// Free in the room, about the fractions (u, v) of its floor, turned by quarters at will.
   Handle standing(RoomUse use, const Piece& piece, double u, double v);

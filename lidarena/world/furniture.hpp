@@ -7,7 +7,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-/// Things that stand, lie and hang in a house. Sizes are in metres; each piece has its back at
+/// Things that stand, lie and hang in a house. Sizes are in meters; each piece has its back at
 /// y = 0, its front towards +y, its middle at x = 0, and stands on z = 0 (hangs from z = 0).
 namespace lidarena::furniture {
 
@@ -71,7 +71,7 @@ Piece basin(Craft& craft);
 Piece towel_rail(Craft& craft);
 /// Open stairs `width` wide (x) and `run` long (y) that climb by `rise` towards y = 0.
 Piece stairs(Craft& craft, double width, double run, double rise, int steps);
-/// A slab whose top lies at z = size.z(), with a railing along its front that leaves `gap` metres
+/// A slab whose top lies at z = size.z(), with a railing along its front that leaves `gap` meters
 /// free at low x.
 Piece gallery(Craft& craft, const Eigen::Vector3d& size, double gap);
 Piece column(Craft& craft, double height);

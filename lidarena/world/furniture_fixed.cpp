@@ -15,7 +15,7 @@ using shape::scaled;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRail = 0.95;  // m, height of a handrail
 
-/// A handrail from `a` to `b` (on the floor below it) on posts `spacing` metres apart.
+/// A handrail from `a` to `b` (on the floor below it) on posts `spacing` meters apart.
 TriangleMesh railing(Craft& craft, const Vector3d& a, const Vector3d& b, double spacing) {
   const Vector3d up(0, 0, kRail);
   TriangleMesh mesh = shape::bar({a + up, b + up}, 0.025, craft.fine(18));

@@ -27,10 +27,10 @@ std::size_t group_length(std::span<const Vector3d> points, double size) {
   return length;
 }
 
-/// Bounds what double arithmetic loses in distances between a mesh and points around `centre`.
-double rounding_at(const Vector3d& centre, double radius) {
+/// Bounds what double arithmetic loses in distances between a mesh and points around `center`.
+double rounding_at(const Vector3d& center, double radius) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
-  return 64.0 * kEpsilon * (centre.lpNorm<Eigen::Infinity>() + radius);
+  return 64.0 * kEpsilon * (center.lpNorm<Eigen::Infinity>() + radius);
 }
 
 }  // namespace
@@ -51,17 +51,17 @@ void GroupSearch::one_by_one(Points points, Answers out) {
   }
 }
 
-/// Let y be the surface point nearest to the centre, and r the group's radius. A point p finds the
-/// triangle of y at some distance u(p), so its own nearest triangle is not farther from the centre
-/// than u(p) + |p - centre|.
+/// Let y be the surface point nearest to the center, and r the group's radius. A point p finds the
+/// triangle of y at some distance u(p), so its own nearest triangle is not farther from the center
+/// than u(p) + |p - center|.
 void GroupSearch::together(Points points, Answers out) {
   if (points.size() < kWorthwhile) return one_by_one(points, out);
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
-  const Vector3d centre = box.center();
+  const Vector3d center = box.center();
   double radius = 0.0;
-  for (const Vector3d& p : points) radius = std::max(radius, (p - centre).norm());
-  const ClosestPoint middle = tree_.nearest(centre, max_distance_ + radius, last_);
+  for (const Vector3d& p : points) radius = std::max(radius, (p - center).norm());
+  const ClosestPoint middle = tree_.nearest(center, max_distance_ + radius, last_);
   if (!middle.valid()) {
     std::fill(out.begin(), out.end(), ClosestPoint{});
     return;
@@ -69,24 +69,24 @@ void GroupSearch::together(Points points, Answers out) {
   last_ = middle.triangle;
   double reach = 0.0;
   for (const Vector3d& p : points) {
-    const double offset = (p - centre).norm();
+    const double offset = (p - center).norm();
     const double bound = std::min((p - middle.point).norm(), max_distance_);
     reach = std::max(reach, bound + offset);
   }
-  const double rounding = rounding_at(centre, reach);
-  if (!gather(centre, reach + rounding)) {
+  const double rounding = rounding_at(center, reach);
+  if (!gather(center, reach + rounding)) {
     const std::size_t half = points.size() / 2;
     together(points.first(half), out.first(half));
     together(points.subspan(half), out.subspan(half));
     return;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
-    out[i] = choose(points[i], (points[i] - centre).norm(), rounding);
+    out[i] = choose(points[i], (points[i] - center).norm(), rounding);
   }
 }
 
-bool GroupSearch::gather(const Vector3d& centre, double radius) {
-  if (!tree_.within(centre, radius, kMostTriangles, found_)) return false;
+bool GroupSearch::gather(const Vector3d& center, double radius) {
+  if (!tree_.within(center, radius, kMostTriangles, found_)) return false;
   std::sort(found_.begin(), found_.end(), [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
   });
@@ -98,7 +98,7 @@ bool GroupSearch::gather(const Vector3d& centre, double radius) {
   return true;
 }
 
-/// `offset`: of the point from the centre. Distances are compared roughly first; those that may win
+/// `offset`: of the point from the center. Distances are compared roughly first; those that may win
 /// are computed again as closest_point_on_triangle has them.
 ClosestPoint GroupSearch::choose(const Vector3d& point, double offset, double rounding) const {
   ClosestPoint best;

@@ -24,13 +24,13 @@ class TriangleTree {
   /// See World::closest_point; `guess` is a triangle that may be near (or Hit::kNone).
   virtual ClosestPoint nearest(const Eigen::Vector3d& point, double max_distance,
                                std::uint32_t guess) const = 0;
-  /// All triangles within `radius` of `centre`; false, with `found` in any state, when there are
+  /// All triangles within `radius` of `center`; false, with `found` in any state, when there are
   /// more than `limit`.
-  virtual bool within(const Eigen::Vector3d& centre, double radius, std::size_t limit,
+  virtual bool within(const Eigen::Vector3d& center, double radius, std::size_t limit,
                       std::vector<NearTriangle>& found) const = 0;
 };
 
-/// Nearest points of a mesh for many points of which neighbours in the list are neighbours in
+/// Nearest points of a mesh for many points of which neighbors in the list are neighbors in
 /// space: the tree is walked once for a group of them, and each then looks at the few triangles
 /// found, nearest first. The answers are those of one search a point, bit for bit.
 class GroupSearch {
@@ -47,7 +47,7 @@ class GroupSearch {
 
   void one_by_one(Points points, Answers out);
   void together(Points points, Answers out);
-  bool gather(const Eigen::Vector3d& centre, double radius);
+  bool gather(const Eigen::Vector3d& center, double radius);
   ClosestPoint choose(const Eigen::Vector3d& point, double offset, double rounding) const;
 
   const TriangleMesh& mesh_;
@@ -55,7 +55,7 @@ class GroupSearch {
   double group_size_;  ///< m, largest edge of the box around a group
   double max_distance_;
   std::uint32_t last_ = Hit::kNone;  ///< what the last search found: a good first guess
-  std::vector<NearTriangle> found_;  ///< around the group, nearest to its centre first
+  std::vector<NearTriangle> found_;  ///< around the group, nearest to its center first
   std::vector<TriangleFrame> frames_;
 };
 

@@ -8,12 +8,12 @@
 
 namespace lidarena {
 
-/// A furnished one-storey house of seven rooms, two of them (living room and hall) open over two
-/// storeys. The seed moves inner walls and doors and draws the furniture and where it stands.
+/// A furnished one-story house of seven rooms, two of them (living room and hall) open over two
+/// stories. The seed moves inner walls and doors and draws the furniture and where it stands.
 struct HouseConfig {
   double width_m = 16;
   double depth_m = 10.4;
-  double storey_m = 2.7;
+  double story_m = 2.7;
   double wall_m = 0.15;
   double door_width_m = 0.9;
   double door_height_m = 2.05;
@@ -25,7 +25,7 @@ struct HouseConfig {
   static void visit(Self& self, V&& v) {
     v("width_m", self.width_m, "m", "length of the house along x", between(15, 24));
     v("depth_m", self.depth_m, "m", "length of the house along y", between(10, 16));
-    v("storey_m", self.storey_m, "m", "height of a storey; two rooms are twice as high",
+    v("story_m", self.story_m, "m", "height of a story; two rooms are twice as high",
       between(2.6, 3.2));
     v("wall_m", self.wall_m, "m", "thickness of walls", between(0.1, 0.2));
     v("door_width_m", self.door_width_m, "m", "clear width of the doors", between(0.86, 0.9));
@@ -37,7 +37,7 @@ struct HouseConfig {
   }
 };
 
-/// The house stands on [0, width] x [0, depth] (outer walls' centre lines), floor at z = 0. Its one
+/// The house stands on [0, width] x [0, depth] (outer walls' center lines), floor at z = 0. Its one
 /// route is closed (the last point equals the first), passes every door straight between points
 /// 0.8 m before and behind, and every room; it keeps 0.5 m from furniture and 0.4 m from door
 /// posts. With panes, every ray from inside hits something. The same (config, seed) give the same

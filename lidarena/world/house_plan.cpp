@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kDoorApproach = 0.8;  // m before and behind a door that the route flies straight
 
-/// Centre lines of the inner walls. South of y: living room, dining room, kitchen; north of it:
+/// Center lines of the inner walls. South of y: living room, dining room, kitchen; north of it:
 /// child's bedroom, hall, bathroom, main bedroom.
 struct InnerWalls {
   double y;
@@ -29,9 +29,9 @@ InnerWalls draw_walls(const HouseConfig& c, SequentialRandom& random) {
 }
 
 std::vector<Room> make_rooms(const HouseConfig& c, const InnerWalls& w) {
-  const auto room = [&](RoomUse use, double x0, double y0, double x1, double y1, int storeys) {
+  const auto room = [&](RoomUse use, double x0, double y0, double x1, double y1, int stories) {
     return Room{use, Eigen::AlignedBox2d(Eigen::Vector2d(x0, y0), Eigen::Vector2d(x1, y1)),
-                storeys * c.storey_m};
+                stories * c.story_m};
   };
   return {room(RoomUse::kLiving, 0, 0, w.living_dining, w.y, 2),
           room(RoomUse::kDining, w.living_dining, 0, w.dining_kitchen, w.y, 1),
@@ -57,9 +57,9 @@ enum Door : std::size_t {
 std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
                                 SequentialRandom& random) {
   const double north = c.depth_m - w.y;
-  const auto door = [&](int axis, double line, double centre) {
-    centre += random.uniform(-c.vary_m, c.vary_m);
-    return Opening{axis, line, centre, c.door_width_m, 0, c.door_height_m};
+  const auto door = [&](int axis, double line, double center) {
+    center += random.uniform(-c.vary_m, c.vary_m);
+    return Opening{axis, line, center, c.door_width_m, 0, c.door_height_m};
   };
   return {door(1, w.living_dining, 0.32 * c.depth_m),
           door(1, w.dining_kitchen, 0.36 * c.depth_m),
@@ -73,9 +73,9 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
 
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
   const double low = 0.9;                  // m, sill of ordinary windows
-  const double head = 0.82 * c.storey_m;   // their upper edge
-  const double upper = 1.35 * c.storey_m;  // sill of the windows of the second storey
-  const double upper_head = 1.8 * c.storey_m;
+  const double head = 0.82 * c.story_m;   // their upper edge
+  const double upper = 1.35 * c.story_m;  // sill of the windows of the second story
+  const double upper_head = 1.8 * c.story_m;
   const double north = 0.5 * (w.y + c.depth_m);
   const double main = 0.5 * (w.bath_main + c.width_m);
   const double hall = 0.5 * (w.child_hall + w.hall_bath);
@@ -100,7 +100,7 @@ class RouteBuilder {
  public:
   explicit RouteBuilder(const HousePlan& plan) : plan_(plan) {}
 
-  /// The place at fractions (u, v) of the room, z metres up.
+  /// The place at fractions (u, v) of the room, z meters up.
   RouteBuilder& in(RoomUse use, double u, double v, double z) {
     const Eigen::AlignedBox2d& floor = plan_.room(use).floor;
     const Eigen::Vector2d p = floor.min() + Eigen::Vector2d(u, v).cwiseProduct(floor.sizes());
@@ -172,8 +172,8 @@ std::vector<Eigen::Vector3d> make_route(const HousePlan& plan) {
 }  // namespace
 
 Eigen::Vector3d Opening::point(double ahead, double z) const {
-  return axis == 0 ? Eigen::Vector3d(centre, line + ahead, z)
-                   : Eigen::Vector3d(line + ahead, centre, z);
+  return axis == 0 ? Eigen::Vector3d(center, line + ahead, z)
+                   : Eigen::Vector3d(line + ahead, center, z);
 }
 
 HousePlan plan_house(const HouseConfig& config, std::uint64_t seed) {
@@ -194,11 +194,11 @@ GalleryPlan plan_gallery(const HousePlan& plan, const HouseConfig& config) {
   constexpr double kFoot = 0.8;     // m of floor before the first step
   const Eigen::AlignedBox2d& living = plan.room(RoomUse::kLiving).floor;
   const double face = 0.5 * config.wall_m;
-  const double top = config.storey_m + kSlab;
+  const double top = config.story_m + kSlab;
   const Eigen::Vector2d low = living.min().array() + face;
   const Eigen::Vector2d high = living.max().array() - face;
   GalleryPlan gallery;
-  gallery.floor = {Eigen::Vector3d(low.x(), low.y(), config.storey_m),
+  gallery.floor = {Eigen::Vector3d(low.x(), low.y(), config.story_m),
                    Eigen::Vector3d(high.x(), low.y() + kDepth, top)};
   gallery.stairs = {Eigen::Vector3d(low.x(), low.y() + kDepth, 0),
                     Eigen::Vector3d(low.x() + kFlight, high.y() - kFoot, top)};

@@ -13,19 +13,19 @@ enum class RoomUse { kLiving, kDining, kKitchen, kMainBedroom, kBathroom, kHall,
 
 struct Room {
   RoomUse use;
-  Eigen::AlignedBox2d floor;  ///< between the centre lines of its walls
+  Eigen::AlignedBox2d floor;  ///< between the center lines of its walls
   double height;              ///< of the ceiling
 };
 
-/// A rectangular hole in the wall whose centre line is y = line (axis 0) or x = line (axis 1).
+/// A rectangular hole in the wall whose center line is y = line (axis 0) or x = line (axis 1).
 struct Opening {
   int axis;
   double line;
-  double centre;  ///< along the wall
+  double center;  ///< along the wall
   double width;
   double sill;  ///< lower edge
   double head;  ///< upper edge
-  /// The middle of the hole at height z, `ahead` metres along the positive normal of the wall.
+  /// The middle of the hole at height z, `ahead` meters along the positive normal of the wall.
   Eigen::Vector3d point(double ahead, double z) const;
 };
 

@@ -50,7 +50,7 @@ void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3
 
 /// A plate in the xz plane, `thickness` thick, with rectangular holes, as one closed surface: the
 /// holes' edges cut it into cells, and each solid cell gets a front, a back, and a side towards
-/// each neighbour that is not solid.
+/// each neighbor that is not solid.
 TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
                    const std::vector<Eigen::AlignedBox2d>& holes) {
   std::array<std::set<double>, 2> sets;
@@ -90,8 +90,8 @@ TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
 }
 
 Eigen::AlignedBox2d hole_of(const Opening& opening) {
-  return {Eigen::Vector2d(opening.centre - 0.5 * opening.width, opening.sill),
-          Eigen::Vector2d(opening.centre + 0.5 * opening.width, opening.head)};
+  return {Eigen::Vector2d(opening.center - 0.5 * opening.width, opening.sill),
+          Eigen::Vector2d(opening.center + 0.5 * opening.width, opening.head)};
 }
 
 /// The wall's plate in its own frame, whose x is the world's x or y.
@@ -99,8 +99,8 @@ TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const HouseConf
   std::vector<Eigen::AlignedBox2d> holes;
   for (const auto* openings : {&plan.doors, &plan.windows}) {
     for (const Opening& opening : *openings) {
-      if (opening.axis == wall.axis && opening.line == wall.line && opening.centre > wall.from &&
-          opening.centre < wall.to) {
+      if (opening.axis == wall.axis && opening.line == wall.line && opening.center > wall.from &&
+          opening.center < wall.to) {
         holes.push_back(hole_of(opening));
       }
     }
@@ -122,7 +122,7 @@ TriangleMesh frame(const Eigen::AlignedBox2d& hole, double width, double depth, 
 TriangleMesh build_window(const Opening& window, const HouseConfig& config) {
   const Eigen::AlignedBox2d hole = hole_of(window);
   TriangleMesh mesh = frame(hole, kFrame, kFrame, true);
-  const double x = window.centre;
+  const double x = window.center;
   mesh.append(shape::box({x - 0.5 * kFrame, -0.5 * kFrame, window.sill},
                          {x + 0.5 * kFrame, 0.5 * kFrame, window.head}));
   mesh.paint(materials::kWood);

@@ -8,7 +8,7 @@ namespace lidarena {
 /// A straight wall along x (axis 0) or y (axis 1), from the floor to `top`.
 struct Wall {
   int axis;
-  double line;  ///< the other coordinate of its centre line
+  double line;  ///< the other coordinate of its center line
   double from, to;
   double top;
 };

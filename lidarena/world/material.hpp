@@ -17,7 +17,7 @@ struct Material {
 
 /// Light that comes back to where it came from, relative to a white diffuse surface seen head-on.
 /// The scattered part follows Lambert, cos(incidence). The mirrored part leaves in a narrow lobe
-/// (Phong 1975, normalised: (m + 2) / 2 cos^m of the angle to the mirror direction, which is twice
+/// (Phong 1975, normalized: (m + 2) / 2 cos^m of the angle to the mirror direction, which is twice
 /// the incidence), so a mirror is seen head-on alone, where it exceeds 1, and is black elsewhere.
 inline double backscatter(const Material& material, double cos_incidence) {
   constexpr double kGloss = 200.0;  // m: a lobe about 6 deg wide, as of polished surfaces
@@ -30,7 +30,7 @@ inline double backscatter(const Material& material, double cos_incidence) {
   return material.reflectivity * gain * cosine;
 }
 
-/// Typical values; measured ones differ by make, colour and wear.
+/// Typical values; measured ones differ by make, color and wear.
 namespace materials {
 inline const Material kDefault;
 inline const Material kPlaster{"plaster", 0.8, 0.0};

@@ -141,12 +141,12 @@ TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int se
   return mesh;
 }
 
-std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& centre, double radius, double from,
+std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, double from,
                                  double to, int count) {
   std::vector<Eigen::Vector2d> points;
   for (int i = 0; i <= count; ++i) {
     const double angle = from + (to - from) * i / count;
-    points.emplace_back(centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
+    points.emplace_back(center + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle)));
   }
   return points;
 }

@@ -7,7 +7,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-/// Tessellated shapes from which furniture is put together. Metres; normals point outward.
+/// Tessellated shapes from which furniture is put together. Meters; normals point outward.
 namespace lidarena::shape {
 
 /// Point of a surface at (u, v) in [0, 1]^2.
@@ -18,7 +18,7 @@ TriangleMesh grid(int nu, int nv, const Surface& surface);
 
 TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
-/// A box of `size` on z = 0, centred in x and y, whose edges are rounded with `radius` and whose
+/// A box of `size` on z = 0, centered in x and y, whose edges are rounded with `radius` and whose
 /// faces are puffed up by `bulge` in the middle; cells x cells quads a face.
 TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells, double bulge = 0);
 
@@ -35,8 +35,8 @@ TriangleMesh ball(double radius, int segments);
 /// A round bar along a polyline, closed at both ends.
 TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int segments);
 
-/// Points of a circle's arc: centre + radius (cos a, sin a) for `count` + 1 angles.
-std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& centre, double radius, double from,
+/// Points of a circle's arc: center + radius (cos a, sin a) for `count` + 1 angles.
+std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, double from,
                                  double to, int count);
 
 TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& offset);

@@ -38,7 +38,7 @@ Eigen::Affine3d z_up_from_y_up() {
   return Eigen::Affine3d(turn);
 }
 
-/// What is still to be done to what the importer gives. Told to honour a DAE's <up_axis>, it
+/// What is still to be done to what the importer gives. Told to honor a DAE's <up_axis>, it
 /// delivers y up, whichever the file's axis is.
 Eigen::Affine3d upright_from_file(const std::string& ending, UpAxis up) {
   const bool is_y_up =

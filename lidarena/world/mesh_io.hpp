@@ -32,7 +32,7 @@ struct MeshPart {
 /// True for the endings that load_mesh() reads (.obj .ply .stl .dae .gltf .glb, in any case).
 bool is_mesh_file(const std::filesystem::path& file);
 
-/// The surfaces of a mesh file in metres, z up: node transforms and DAE units are applied, polygons
+/// The surfaces of a mesh file in meters, z up: node transforms and DAE units are applied, polygons
 /// cut into triangles, points and lines left out, equal vertices made one (but in PLY, which keeps
 /// its own). Degenerate triangles stay in (see clean_mesh). Only PLY is read in double precision;
 /// the others throw when single precision would move a vertex by more than 5 mm.

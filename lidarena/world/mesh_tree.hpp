@@ -24,7 +24,7 @@ class MeshTree {
   /// As World::cast, but the hits' normals stay zero.
   virtual void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                     RayOrder order) const = 0;
-  /// True when a triangle lies between `near` and `far` metres along the ray.
+  /// True when a triangle lies between `near` and `far` meters along the ray.
   virtual bool occluded(const Ray& ray, double near, double far) const = 0;
   /// Shows every triangle within the radius (m) around `point`, and some beyond; the radius is that
   /// of the visitor's last answer, at first `radius`.

@@ -327,7 +327,7 @@ void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   part += ".part";
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   const bool has_materials = !mesh.material_ids.empty();
-  out << "ply\nformat binary_little_endian 1.0\ncomment metres, z up\n";
+  out << "ply\nformat binary_little_endian 1.0\ncomment meters, z up\n";
   for (const Material& material : mesh.palette) {
     out << fmt::format("comment material {} {} {}\n", material.reflectivity, material.specular,
                        material.name);

@@ -7,7 +7,7 @@
 
 /// SDF's primitive shapes as triangle meshes about their own origin, normals outward. Round shapes
 /// are inscribed: their corners lie on the surface, and between corners the mesh is inside it by at
-/// most r (1 - cos(pi / 64)), 1.2 mm for each metre of radius.
+/// most r (1 - cos(pi / 64)), 1.2 mm for each meter of radius.
 namespace lidarena {
 
 constexpr int kSectors = 64;  ///< round the axis of a round shape

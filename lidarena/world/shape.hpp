@@ -25,13 +25,13 @@ class Shape {
   virtual ~Shape() = default;
   /// Infinite along the axes where the shape is.
   virtual Eigen::AlignedBox3d bounds() const = 0;
-  /// False when the ray meets nothing within `far` metres.
+  /// False when the ray meets nothing within `far` meters.
   virtual bool meet(const Ray& ray, double far, Meeting& meeting) const = 0;
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-/// By the primitives' own equations, with no facets. Lengths in metres, above 0.
+/// By the primitives' own equations, with no facets. Lengths in meters, above 0.
 ShapePtr make_sphere(double radius);
 /// Axis along z, closed at both ends; the origin is its middle.
 ShapePtr make_cylinder(double radius, double length);

@@ -34,7 +34,7 @@ unsigned free_corners(const Corners& corners) {
 std::vector<Eigen::Vector3i> surface_cells(const SparseField& field) {
   constexpr int kSide = SparseField::kBlock + 1;
   std::vector<Eigen::Vector3i> cells;
-  std::array<signed char, kSide * kSide * kSide> sign{};  // of one block and its upper neighbours
+  std::array<signed char, kSide * kSide * kSide> sign{};  // of one block and its upper neighbors
   const auto at = [&](const Eigen::Vector3i& p) -> signed char& {
     return sign[static_cast<std::size_t>(p.x() + kSide * (p.y() + kSide * p.z()))];
   };

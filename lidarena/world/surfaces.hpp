@@ -16,10 +16,10 @@ struct Ray {
   Eigen::Vector3f direction;
 };
 
-/// What the caster may expect of neighbouring rays. Each ray's hit is the same up to rounding.
+/// What the caster may expect of neighboring rays. Each ray's hit is the same up to rounding.
 enum class RayOrder {
   kAny,
-  kNeighbours  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
+  kNeighbors  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
 };
 
 /// First surface along a ray.
@@ -35,7 +35,7 @@ struct Hit {
 class Surfaces {
  public:
   virtual ~Surfaces() = default;
-  /// First hit of each ray within `max_range` metres; `hits` has the length of `rays`. Faces are
+  /// First hit of each ray within `max_range` meters; `hits` has the length of `rays`. Faces are
   /// seen from both sides.
   virtual void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                     RayOrder order = RayOrder::kAny) const = 0;

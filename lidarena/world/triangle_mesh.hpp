@@ -16,8 +16,8 @@ namespace lidarena {
 /// Indices of a triangle's corners.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A triangle soup in metres, world frame, z up. Double precision, so that a mesh far from the
-/// origin loses nothing; World re-centres it for the single-precision ray caster.
+/// A triangle soup in meters, world frame, z up. Double precision, so that a mesh far from the
+/// origin loses nothing; World re-centers it for the single-precision ray caster.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;

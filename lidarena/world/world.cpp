@@ -47,15 +47,15 @@ std::span<const RayCaster> ray_casters() { return kRayCasters; }
 
 struct World::Impl : TriangleTree {
   TriangleMesh mesh;
-  Vector3d centre;
+  Vector3d center;
   std::vector<Vector3f> normals;   ///< unit, one a triangle
-  double half_extent;              ///< largest coordinate of the re-centred mesh
+  double half_extent;              ///< largest coordinate of the re-centered mesh
   double typical_edge;             ///< m, of a square of a triangle's mean area
   std::unique_ptr<MeshTree> tree;  ///< may refer to `mesh`
 
   ClosestPoint nearest(const Vector3d& point, double max_distance,
                        std::uint32_t guess) const override;
-  bool within(const Vector3d& centre, double radius, std::size_t limit,
+  bool within(const Vector3d& center, double radius, std::size_t limit,
               std::vector<NearTriangle>& found) const override;
 };
 
@@ -63,7 +63,7 @@ World::World(TriangleMesh mesh, const std::string& name, RayCaster caster)
     : impl_(std::make_unique<Impl>()) {
   clean_mesh(mesh, name);
   const Eigen::AlignedBox3d box = mesh.bounds();
-  impl_->centre = box.center();
+  impl_->center = box.center();
   impl_->half_extent = 0.5 * box.sizes().maxCoeff();
   impl_->typical_edge = std::sqrt(mesh.area() / static_cast<double>(mesh.triangles.size()));
   impl_->normals.reserve(mesh.triangles.size());
@@ -105,7 +105,7 @@ bool World::visible(const Vector3d& a, const Vector3d& b) const {
   constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
   const Vector3d way = b - a;
   const double length = way.norm();
-  const double reach = std::max((a - impl_->centre).lpNorm<Eigen::Infinity>(), length);
+  const double reach = std::max((a - impl_->center).lpNorm<Eigen::Infinity>(), length);
   const double slack = 16.0 * kFloatEpsilon * (impl_->half_extent + reach);
   if (length <= 2.0 * slack) return true;
   return !impl_->tree->occluded({a, (way / length).cast<float>()}, slack, length - slack);
@@ -149,23 +149,23 @@ class Nearest : public TriangleVisitor {
 /// All triangles within a radius, until there are too many.
 class Within : public TriangleVisitor {
  public:
-  Within(const TriangleMesh& mesh, const Vector3d& centre, double radius, std::size_t limit,
+  Within(const TriangleMesh& mesh, const Vector3d& center, double radius, std::size_t limit,
          std::vector<NearTriangle>& found)
-      : mesh_(mesh), centre_(centre), radius_(radius), limit_(limit), found_(found) {}
+      : mesh_(mesh), center_(center), radius_(radius), limit_(limit), found_(found) {}
 
   double visit(std::uint32_t triangle) override {
     if (found_.size() > limit_) return 0.0;  // the rest of the tree does not matter
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
-    const Vector3d nearest = closest_point_on_triangle(centre_, v[a], v[b], v[c]);
-    const double distance = (nearest - centre_).norm();
+    const Vector3d nearest = closest_point_on_triangle(center_, v[a], v[b], v[c]);
+    const double distance = (nearest - center_).norm();
     if (distance <= radius_) found_.push_back({distance, triangle});
     return found_.size() > limit_ ? 0.0 : radius_;
   }
 
  private:
   const TriangleMesh& mesh_;
-  Vector3d centre_;
+  Vector3d center_;
   double radius_;
   std::size_t limit_;
   std::vector<NearTriangle>& found_;

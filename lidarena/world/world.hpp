@@ -33,7 +33,7 @@ struct ClosestPoint {
 };
 
 /// A mesh and the structure that answers questions about it. Move only; all queries are const,
-/// thread safe, and exact up to single precision relative to the mesh's centre.
+/// thread safe, and exact up to single precision relative to the mesh's center.
 class World : public Surfaces {
  public:
   /// Takes the mesh over and cleans it (see clean_mesh), so mesh() may have fewer triangles; throws
@@ -48,9 +48,9 @@ class World : public Surfaces {
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
             RayOrder order = RayOrder::kAny) const override;
   const Material& material(std::uint32_t triangle) const override;
-  /// Nearest surface point of each point within `max_distance` metres, computed in double precision
+  /// Nearest surface point of each point within `max_distance` meters, computed in double precision
   /// from the mesh itself; of triangles equally near, the one with the lower index. Points that are
-  /// not finite have none. Fast where neighbours in the list are neighbours in space.
+  /// not finite have none. Fast where neighbors in the list are neighbors in space.
   void closest_points(std::span<const Eigen::Vector3d> points, double max_distance,
                       std::span<ClosestPoint> out, const Parallel& parallel) const;
   ClosestPoint closest_point(const Eigen::Vector3d& point,

@@ -11,7 +11,7 @@
     result = lidarena.run(odometry, events)
     print(lidarena.evaluate(result.trajectory, flight.sample(result.trajectory.stamps)))
 
-Times are integer nanoseconds, lengths metres, angles radians, poses 4x4 matrices named
+Times are integer nanoseconds, lengths meters, angles radians, poses 4x4 matrices named
 a_from_b. Arrays are views without copies where the documentation says "a view"; they are read-only
 and keep their owner alive. Long calls release the GIL. What is wrong with an input is an
 InputError (a ValueError) that names place and remedy; messages go to logging.getLogger("lidarena").

@@ -9,11 +9,11 @@
 
 namespace lidarena {
 
-enum class Colour { kRed, kBlue };
+enum class Color { kRed, kBlue };
 template <>
-struct EnumNames<Colour> {
-  static constexpr std::array names{std::pair{"red", Colour::kRed},
-                                    std::pair{"blue", Colour::kBlue}};
+struct EnumNames<Color> {
+  static constexpr std::array names{std::pair{"red", Color::kRed},
+                                    std::pair{"blue", Color::kBlue}};
 };
 
 namespace {
@@ -33,7 +33,7 @@ struct Inner {
 
 struct Outer {
   bool deskew = true;
-  Colour colour = Colour::kRed;
+  Color color = Color::kRed;
   std::string name = "x";
   std::vector<double> list{1, 2};
   Eigen::Vector3d offset{0, 0, 0};
@@ -43,7 +43,7 @@ struct Outer {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("deskew", self.deskew, "", "");
-    v("colour", self.colour, "", "");
+    v("color", self.color, "", "");
     v("name", self.name, "", "");
     v("list", self.list, "", "");
     v("offset", self.offset, "m", "");
@@ -70,10 +70,10 @@ std::string error_of(const std::string& yaml) {
 
 TEST(Config, NamedKeysReplaceDefaultsAndTheRestStays) {
   const Outer c = parse(
-      "deskew: false\ncolour: blue\nlist: [3, 4, 5]\noffset: [1, 2, 3]\nthreshold: 0.25\n"
+      "deskew: false\ncolor: blue\nlist: [3, 4, 5]\noffset: [1, 2, 3]\nthreshold: 0.25\n"
       "inner: {count: 7}\npose: [1, 2, 3, 0, 0, 1, 0]\n");
   EXPECT_FALSE(c.deskew);
-  EXPECT_EQ(c.colour, Colour::kBlue);
+  EXPECT_EQ(c.color, Color::kBlue);
   EXPECT_EQ(c.name, "x");
   EXPECT_EQ(c.list.size(), 3U);
   EXPECT_EQ(c.offset, Eigen::Vector3d(1, 2, 3));
@@ -88,7 +88,7 @@ TEST(Config, AnUnknownKeyNamesFileLineAndTheNearestValidKey) {
   EXPECT_THAT(error_of("deskew: true\ninner:\n  voxel_sise_m: 1\n"),
               AllOf(HasSubstr("test.yaml:3"), HasSubstr("unknown key 'voxel_sise_m'"),
                     HasSubstr("did you mean 'voxel_size_m'?")));
-  EXPECT_THAT(error_of("wholly_else: 1\n"), HasSubstr("valid keys: deskew, colour"));
+  EXPECT_THAT(error_of("wholly_else: 1\n"), HasSubstr("valid keys: deskew, color"));
 }
 
 TEST(Config, WrongTypesRangesChoicesAndDuplicatesAreErrorsWithTheirPlace) {
@@ -100,7 +100,7 @@ TEST(Config, WrongTypesRangesChoicesAndDuplicatesAreErrorsWithTheirPlace) {
   EXPECT_THAT(error_of("inner: 5"), HasSubstr("a map"));
   EXPECT_THAT(error_of("threshold: .nan"), HasSubstr("not a finite number"));
   EXPECT_THAT(error_of("deskew: maybe"), HasSubstr("not a truth value"));
-  EXPECT_THAT(error_of("colour: green"), HasSubstr("use one of red, blue"));
+  EXPECT_THAT(error_of("color: green"), HasSubstr("use one of red, blue"));
   EXPECT_THAT(error_of("offset: [1, 2]"), HasSubstr("2 numbers"));
   EXPECT_THAT(error_of("pose: [0,0,0, 0,0,0,2]"), HasSubstr("norm 2"));
   EXPECT_THAT(error_of("name: a\nname: b\n"), HasSubstr("second time"));
@@ -108,7 +108,7 @@ TEST(Config, WrongTypesRangesChoicesAndDuplicatesAreErrorsWithTheirPlace) {
 }
 
 TEST(Config, WhatIsSavedAsJsonIsReadBackTheSame) {
-  Outer c = parse("offset: [0.1, 0.2, 0.30000000000000004]\ncolour: blue\nthreshold: 1.5\n");
+  Outer c = parse("offset: [0.1, 0.2, 0.30000000000000004]\ncolor: blue\nthreshold: 1.5\n");
   const std::string text = to_json(c).dump();
   const Outer back = parse(text);
   EXPECT_EQ(to_json(back).dump(), text);

@@ -138,7 +138,7 @@ TEST_F(FramesOfText, AreNamedByACommentBeforeTheFirstRow) {
   EXPECT_EQ(silent.world + silent.body, "");
 }
 
-TEST_F(FramesOfText, StampsInOtherUnitsAreRecognised) {
+TEST_F(FramesOfText, StampsInOtherUnitsAreRecognized) {
   const auto refusal = [&](const char* stamp) {
     try {
       read(std::string(stamp) + " 0 0 0 0 0 0 1\n");

@@ -123,7 +123,7 @@ TEST_F(Room, TheTruthOfTheLidarFrameIsMovedToTheBody) {
   put("meta.json", R"({"columns": ["x", "y", "z", "t", "ring"], "truth": "lidar frame",
       "body_from_lidar": [1, 0, 0, 0, 0, 0.70710678118654757, 0.70710678118654757]})");
   const auto truth = room_truth(path());
-  // a lidar level at (1,2,3) with x ahead: the body looks right, so its centre is 1 m to the left
+  // a lidar level at (1,2,3) with x ahead: the body looks right, so its center is 1 m to the left
   const Pose body = truth->poses()[0].world_from_body;
   EXPECT_LT((body.translation() - Eigen::Vector3d(1, 3, 3)).norm(), 1e-12);
   EXPECT_LT((body.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d(0, -1, 0)).norm(), 1e-12);

@@ -127,7 +127,7 @@ TEST(InertialSmoother, AShortLagGivesWhatAllMeasurementsAtOnceGive) {
   EXPECT_EQ(some.size(), 6U);
   const State::Vector apart = minus(some.latest(), all.latest());
   const State::Vector sigma = all.covariance().diagonal().cwiseSqrt();
-  // Marginalising keeps the Jacobians of the time: the difference is of second order in errors that
+  // Marginalizing keeps the Jacobians of the time: the difference is of second order in errors that
   // are small beside one radian, so small beside one sigma.
   EXPECT_LT(apart.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1);
   const State::Vector ratio = some.covariance().diagonal().cwiseQuotient(sigma.cwiseAbs2());

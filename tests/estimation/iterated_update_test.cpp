@@ -182,8 +182,8 @@ TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
 
 /// Errors of a second of motion: a state drawn from the prior, an IMU with the noise that the
 /// filter is told, and each tenth of a second 60 points on planes that are known. Returns the
-/// normalised estimation error squared of pose (6) and of the whole state (23) at the end.
-std::pair<double, double> normalised_errors(std::uint64_t seed) {
+/// normalized estimation error squared of pose (6) and of the whole state (23) at the end.
+std::pair<double, double> normalized_errors(std::uint64_t seed) {
   constexpr double kStep = 0.005;
   constexpr double kSigma = 0.02;
   const ImuNoise noise{2e-3, 2e-2, 1e-3, 1e-2};
@@ -222,7 +222,7 @@ TEST(IteratedUpdate, IsConsistentWhenTheNoiseIsAsItIsTold) {
   double pose = 0.0;
   double all = 0.0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const auto [of_pose, of_all] = normalised_errors(seed);
+    const auto [of_pose, of_all] = normalized_errors(seed);
     pose += of_pose / kSeeds;
     all += of_all / kSeeds;
   }

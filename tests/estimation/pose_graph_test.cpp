@@ -26,19 +26,19 @@ Vector3d random_vector(SequentialRandom& random, double sigma) {
   return sigma * Vector3d(x, y, random.normal());
 }
 
-Pose random_pose(SequentialRandom& random, double metres, double radians) {
+Pose random_pose(SequentialRandom& random, double meters, double radians) {
   const Vector3d turn = random_vector(random, radians);
-  return make_pose(so3::exp(turn), random_vector(random, metres));
+  return make_pose(so3::exp(turn), random_vector(random, meters));
 }
 
-Pose along_x(double metres) { return make_pose(Eigen::Matrix3d::Identity(), {metres, 0.0, 0.0}); }
+Pose along_x(double meters) { return make_pose(Eigen::Matrix3d::Identity(), {meters, 0.0, 0.0}); }
 
 double distance(const Pose& a, const Pose& b) {
   return (a.translation() - b.translation()).norm() +
          so3::angle(a.linear().transpose() * b.linear());
 }
 
-/// Edges between neighbours as they are in `truth`, each off by `off`.
+/// Edges between neighbors as they are in `truth`, each off by `off`.
 PoseGraph chain(const std::vector<Pose>& truth, const Pose& off, const Covariance& covariance) {
   PoseGraph graph;
   graph.nodes.push_back(truth.front());

@@ -25,7 +25,7 @@ TEST(Association, ACompleteEstimateCoversAllAndMatchesEveryPose) {
   EXPECT_DOUBLE_EQ(found.truth_rate_hz, 200.0);
 }
 
-TEST(Association, CoverageIsTheShareOfTruthTimeBetweenNeighbouringEstimates) {
+TEST(Association, CoverageIsTheShareOfTruthTimeBetweenNeighboringEstimates) {
   // 2..17 s of 0..20 s with a hole of 3 s: 12 of 20 s
   const Trajectory cut = with_gap(with_gap(sample(tour, 100ms, 20s), -1s, 2s), 17s, 30s);
   const Association found = associate(with_gap(cut, 8s, 11s), sample(tour, 5ms, 20s));

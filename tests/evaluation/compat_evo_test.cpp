@@ -66,7 +66,7 @@ struct Command {
   }
 };
 
-// Coordinates of some ten metres and angles of some ten degrees are rounded to 64 times less than
+// Coordinates of some ten meters and angles of some ten degrees are rounded to 64 times less than
 // this: errors that are nothing but rounding, and deviations of errors that are all alike, are
 // known no better.
 constexpr double kRounding = 1e-13;
@@ -131,8 +131,8 @@ std::vector<Pose> poses_along(const std::function<Pose(int)>& pose, int count) {
   for (int i = 0; i < count; ++i) poses.push_back(pose(i));
   return poses;
 }
-std::vector<Pose> steps_of(double metres, int count) {
-  return poses_along([&](int i) { return level({metres * i, 0, 0}); }, count);
+std::vector<Pose> steps_of(double meters, int count) {
+  return poses_along([&](int i) { return level({meters * i, 0, 0}); }, count);
 }
 std::vector<Pose> turns_of(double degrees, int count) {
   const double step = degrees * std::numbers::pi / 180.0;
@@ -164,18 +164,18 @@ TEST(EvoPieces, FramesFollowOneAnotherOrStartAtEveryPose) {
   EXPECT_TRUE(evo_pieces(poses, pieces(EvoUnit::kFrames, 8)).empty());
 }
 
-TEST(EvoPieces, OfMetresTheFirstIsLostAndNoneIsShorter) {
+TEST(EvoPieces, OfMetersTheFirstIsLostAndNoneIsShorter) {
   // steps of 0.375 m are exact: 1 m is passed at 1.125 m, every third pose
-  EXPECT_THAT(evo_pieces(steps_of(0.375, 11), pieces(EvoUnit::kMetres, 1.0)),
+  EXPECT_THAT(evo_pieces(steps_of(0.375, 11), pieces(EvoUnit::kMeters, 1.0)),
               ElementsAre(Pair(3, 6), Pair(6, 9)));
-  EXPECT_THAT(evo_pieces(steps_of(0.25, 13), pieces(EvoUnit::kMetres, 1.0)),
+  EXPECT_THAT(evo_pieces(steps_of(0.25, 13), pieces(EvoUnit::kMeters, 1.0)),
               ElementsAre(Pair(4, 8), Pair(8, 12)));
 }
 
-TEST(EvoPieces, AllPairsOfMetresTakeTheNearestPoseWithinTheTolerance) {
+TEST(EvoPieces, AllPairsOfMetersTakeTheNearestPoseWithinTheTolerance) {
   const std::vector<Pose> poses = steps_of(0.375, 5);
-  EXPECT_TRUE(evo_pieces(poses, pieces(EvoUnit::kMetres, 1.0, true)).empty());  // 12.5 % off
-  EvoOptions wide = pieces(EvoUnit::kMetres, 1.0, true);
+  EXPECT_TRUE(evo_pieces(poses, pieces(EvoUnit::kMeters, 1.0, true)).empty());  // 12.5 % off
+  EvoOptions wide = pieces(EvoUnit::kMeters, 1.0, true);
   wide.delta_tolerance = 0.125;
   EXPECT_THAT(evo_pieces(poses, wide), ElementsAre(Pair(0, 3), Pair(1, 4)));
 }
@@ -219,7 +219,7 @@ Trajectory line(double scale) {
 }
 
 TEST(CompatEvo, OfALineOnePercentTooLongIsKnown) {
-  EvoOptions ratio = pieces(EvoUnit::kMetres, 1.0);
+  EvoOptions ratio = pieces(EvoUnit::kMeters, 1.0);
   ratio.relation = EvoRelation::kPointDistanceRatio;
   const EvoResult relative = compat_evo(line(1.0), line(1.01), ratio);
   EXPECT_EQ(relative.matched, 101U);
@@ -303,12 +303,12 @@ TEST(CompatEvo, RefusesInWords) {
   const auto of = [&](const EvoOptions& o) { return refusal(flight, flight, o); };
   EXPECT_THAT(refusal(flight, flights::shifted(flight, 1h), {}), HasSubstr("no stamps are within"));
   EXPECT_THAT(refusal(flight, Trajectory(), {}), HasSubstr("no stamps are within"));
-  EXPECT_THAT(of(pieces(EvoUnit::kMetres, 0.0)), HasSubstr("not a positive number"));
-  EXPECT_THAT(of(pieces(EvoUnit::kMetres, std::nan(""))), HasSubstr("not a positive number"));
+  EXPECT_THAT(of(pieces(EvoUnit::kMeters, 0.0)), HasSubstr("not a positive number"));
+  EXPECT_THAT(of(pieces(EvoUnit::kMeters, std::nan(""))), HasSubstr("not a positive number"));
   EXPECT_THAT(of(pieces(EvoUnit::kFrames, 1.5)), HasSubstr("whole number of frames"));
   EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 181.0)), HasSubstr("more than half a turn"));
   EXPECT_THAT(of(pieces(EvoUnit::kRadians, 3.2)), HasSubstr("more than half a turn"));
-  EXPECT_THAT(of(pieces(EvoUnit::kMetres, 50.0)), HasSubstr("no two poses as far apart"));
+  EXPECT_THAT(of(pieces(EvoUnit::kMeters, 50.0)), HasSubstr("no two poses as far apart"));
   EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 10.0)), HasSubstr("no two poses as far apart"));
   EXPECT_THAT(of(absolute(EvoRelation::kPointDistanceRatio)), HasSubstr("rpe alone"));
   EvoOptions align;

@@ -21,7 +21,7 @@ using listed::Truths;
 
 const Parallel kTwo(2);
 
-/// Hits on the floor z = 0 for x in [0, length], |y| < 1, every centimetre, met from above.
+/// Hits on the floor z = 0 for x in [0, length], |y| < 1, every centimeter, met from above.
 Truths hits_on_floor(double length) {
   Truths truths;
   ScanTruth scan{"front", Time(0), {}};
@@ -166,7 +166,7 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
   const auto coarse = std::count_if(samples.offsets.begin(), samples.offsets.end(),
                                     [](const Vector3f& p) { return p.x() < 0.0F; });
   EXPECT_NEAR(static_cast<double>(coarse) / 4000.0, 1.0, 0.002);
-  // each tenth of a square metre has its hundred, nearly: they are stratified (100 +- 10 if random)
+  // each tenth of a square meter has its hundred, nearly: they are stratified (100 +- 10 if random)
   std::vector<int> tiles(20, 0);
   for (const Vector3f& p : samples.offsets) {
     if (p.x() < 0.0F) ++tiles[static_cast<std::size_t>((p.x() + 2.0F) * 10.0F)];

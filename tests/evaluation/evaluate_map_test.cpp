@@ -55,7 +55,7 @@ struct Room {
     return make_seen_surface({observe(truths, world, kTwo), {}}, world, kTwo);
   }();
 
-  /// The hits, each `before` metres before the wall, in a frame that is off by `offset`.
+  /// The hits, each `before` meters before the wall, in a frame that is off by `offset`.
   std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
     std::vector<Vector3f> points;
     for (const PointTruth& hit : hits.points) {
@@ -135,16 +135,16 @@ TEST(EvaluateMap, IsTheSameTextOnAnyNumberOfThreads) {
   EXPECT_EQ(one.dump(), four.dump());
 }
 
-TEST(MapWarnings, AMeshOrAMapInMillimetresIsSuspected) {
-  TriangleMesh millimetres = meshes::box(1000.0 * kHalf);
+TEST(MapWarnings, AMeshOrAMapInMillimetersIsSuspected) {
+  TriangleMesh millimeters = meshes::box(1000.0 * kHalf);
   const Room room;
-  EXPECT_THAT(map_warnings(room.map(0.0), World(millimetres)),
-              ElementsAre(HasSubstr("times as large as the map: is it in millimetres?")));
+  EXPECT_THAT(map_warnings(room.map(0.0), World(millimeters)),
+              ElementsAre(HasSubstr("times as large as the map: is it in millimeters?")));
   std::vector<Vector3f> map = room.map(0.0);
   EXPECT_THAT(map_warnings(map, room.world), IsEmpty());
   for (Vector3f& p : map) p *= 1000.0F;
   EXPECT_THAT(map_warnings(map, room.world),
-              ElementsAre(HasSubstr("times as large as the mesh: is it in millimetres?")));
+              ElementsAre(HasSubstr("times as large as the mesh: is it in millimeters?")));
 }
 
 TEST(MapWarnings, CoordinatesTooLargeForSinglePrecisionAndPointsThatAreNotFiniteAreSaid) {

@@ -103,7 +103,7 @@ TEST_F(EvaluateRun, EveryMetricNamesItsDefinition) {
             "rpe_1m[ref-arc,1m,every0.1m,interp,gap1.5]");
 }
 
-TEST_F(EvaluateRun, AHoverIsScoredByItsJitterAndByTheSecondWhereThereAreNoMetres) {
+TEST_F(EvaluateRun, AHoverIsScoredByItsJitterAndByTheSecondWhereThereAreNoMeters) {
   const auto still = [](double) { return level({1, 2, 0}); };
   truth_ = sample(still, 5ms, 30s);
   run_.trajectory = run_.live = sample(still, 100ms, 30s);
@@ -239,7 +239,7 @@ TEST_F(EvaluateRun, LateStampsAndMissingPartsAreWarnedOfButNotCorrected) {
   EXPECT_GT(m["final"]["ate"]["se3"]["translation"]["rmse_m"], 0.01);
 }
 
-TEST(ErrorsOverTime, KeepsThePeakOfEveryRunOfNeighbours) {
+TEST(ErrorsOverTime, KeepsThePeakOfEveryRunOfNeighbors) {
   std::vector<PoseError> errors;
   for (int i = 0; i < 1000; ++i) errors.push_back({std::chrono::milliseconds(100 * i), 0.01, 0.0});
   errors[437].translation_m = 0.5;

@@ -35,10 +35,10 @@ inline Pose tour(double t) {
                    position);
 }
 
-inline Pose random_pose(SequentialRandom& random, double metres) {
+inline Pose random_pose(SequentialRandom& random, double meters) {
   const Vector3d turn(random.normal(), random.normal(), random.normal());
   const Vector3d move(random.normal(), random.normal(), random.normal());
-  return make_pose(so3::exp(turn), metres * move);
+  return make_pose(so3::exp(turn), meters * move);
 }
 
 /// Each pose of `trajectory` replaced by change(pose).

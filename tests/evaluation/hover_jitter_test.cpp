@@ -31,8 +31,8 @@ TEST(HoverJitter, IsTheNoiseOfTheHoversWhateverTheFlightBetweenAndTheFrame) {
   const Trajectory estimate =
       flights::mapped(sample(two_hovers, 100ms, 20s), [&](const StampedPose& pose) {
         const Vector3d noise(random.normal(), random.normal(), random.normal());
-        const double metres = pose.world_from_body.translation().x();
-        const Vector3d drift(0, 0.1 * metres, 0);  // 1 m over the flight, none at rest
+        const double meters = pose.world_from_body.translation().x();
+        const Vector3d drift(0, 0.1 * meters, 0);  // 1 m over the flight, none at rest
         return elsewhere * level(drift + sigma * noise) * pose.world_from_body;
       });
   const HoverJitter jitter = jitter_of(estimate, truth);

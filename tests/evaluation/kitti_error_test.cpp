@@ -19,14 +19,14 @@ using flights::level;
 using flights::sample;
 using ::testing::HasSubstr;
 
-/// `metres` in steps of exactly 1 m, 10 Hz.
-Trajectory drive(int metres, double scale = 1.0, double yaw_per_m = 0.0) {
+/// `meters` in steps of exactly 1 m, 10 Hz.
+Trajectory drive(int meters, double scale = 1.0, double yaw_per_m = 0.0) {
   return sample(
       [&](double t) {
         const double s = std::round(10.0 * t);
         return make_pose(so3::exp({0, 0, yaw_per_m * s}), Vector3d(scale * s, 0, 0));
       },
-      100ms, metres * 100ms);
+      100ms, meters * 100ms);
 }
 
 TEST(KittiError, PiecesStartAtEveryTenthFrameAndEndAtTheFirstBeyondTheLength) {
@@ -45,7 +45,7 @@ TEST(KittiError, PiecesStartAtEveryTenthFrameAndEndAtTheFirstBeyondTheLength) {
   EXPECT_NEAR(error.rotation_rad_per_m, 0.0, 1e-12);
 }
 
-TEST(KittiError, RotationIsTheAnglePerMetre) {
+TEST(KittiError, RotationIsTheAnglePerMeter) {
   const double w = 0.002;
   const KittiError error = kitti_error(drive(300, 1.0, w), drive(300));
   EXPECT_NEAR(error.lengths[0].rotation_rad_per_m, w * 1.01, 1e-12);

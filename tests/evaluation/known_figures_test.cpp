@@ -64,7 +64,7 @@ double rms_of(const Errors& errors, Value value) {
 }
 
 // The inputs are written with 6 decimals (quaternions 9), which both tools read alike; 1e-7 leaves
-// room for evo's quaternions, which it does not normalise (1e-9 off).
+// room for evo's quaternions, which it does not normalize (1e-9 off).
 constexpr double kSame = 1e-7;
 
 TEST_F(EvoFigures, RotationErrorAfterSe3AlignmentAndFromTheOriginIsTheSame) {

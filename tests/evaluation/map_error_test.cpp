@@ -51,7 +51,7 @@ TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
 }
 
 TEST(MapError, MeasuresToTheSurfaceNotToItsCorners) {
-  // Noise-free points of a plane of two triangles: vertices are metres away, the surface is not.
+  // Noise-free points of a plane of two triangles: vertices are meters away, the surface is not.
   const World world(meshes::plane(10.0));
   const MapError e = map_error(noisy_plane(1000, 0.0), Pose::Identity(), world, Parallel(1));
   EXPECT_LT(e.distance_m.max, kSingle);
@@ -71,7 +71,7 @@ TEST(MapError, OfPointsAroundABoxIsTheDistanceToFaceEdgeAndCorner) {
   }
 }
 
-TEST(MapError, PointsTwentyFiveCentimetresOffAreAllOutliers) {
+TEST(MapError, PointsTwentyFiveCentimetersOffAreAllOutliers) {
   const World world(meshes::plane(10.0));
   const Pose lifted = flights::level({0, 0, 0.25});
   const MapError e = map_error(noisy_plane(1000, 0.0), lifted, world, Parallel(1));
@@ -133,7 +133,7 @@ TEST(MapError, IsTheSameBitsOnOneTwoAndFiveThreads) {
   }
 }
 
-TEST(MapError, BinsAreCentimetresAndTwentyCentimetresAreStillIn) {
+TEST(MapError, BinsAreCentimetersAndTwentyCentimetersAreStillIn) {
   const std::vector<double> distances{0.0, 0.0099, 0.0101, 0.1999, 0.20, 0.2001, 5.0};
   const MapError e = summarize_distances(distances);
   EXPECT_EQ(e.histogram[0], 2U);

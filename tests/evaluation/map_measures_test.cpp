@@ -59,7 +59,7 @@ TEST(MortonOrder, HoldsEachFinitePointOnceAndTheSameOnAnyNumberOfThreads) {
     seen[i] = true;
     if (k > 0) length += double{(points[i] - points[one.entries[k - 1].index]).norm()};
   }
-  // as they came, neighbours lie 11 m apart
+  // as they came, neighbors lie 11 m apart
   EXPECT_LT(length / static_cast<double>(points.size()), 1.0);
 }
 
@@ -112,7 +112,7 @@ TEST(SignedDistance, OfABiasedMapIsTheBias) {
   }
 }
 
-TEST(SignedDistance, BinsStartAtMinusTwentyCentimetresAndTheRestIsCountedApart) {
+TEST(SignedDistance, BinsStartAtMinusTwentyCentimetersAndTheRestIsCountedApart) {
   const std::vector<Vector3f> map{{0, 0, -0.195F}, {0, 0, 0.005F}, {0, 0, 0.195F},
                                   {0, 0, -0.5F},   {0, 0, 0.3F},   {0, 0, 0.4F}};
   const Scored s{map, World(meshes::plane(10.0))};
@@ -148,7 +148,7 @@ TEST(Ghosting, ThicknessOfANoisyFloorIsItsQuantileRange) {
 }
 
 TEST(Ghosting,
-     ATenPercentDoubleWallAtFifteenCentimetresIsSeenThoughTheTwentyCentimetreRuleMissesIt) {
+     ATenPercentDoubleWallAtFifteenCentimetersIsSeenThoughTheTwentyCentimeterRuleMissesIt) {
   const double sigma = 0.02;
   const Scored s{points_off_floor(200000, 4.0,
                                   [&](SequentialRandom& r) {

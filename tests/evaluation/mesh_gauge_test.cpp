@@ -89,7 +89,7 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
   }
 }
 
-TEST(MeshGauge, AMapBentByTwentyCentimetresKeepsItsError) {
+TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
   // A hall of 40 m whose map swings by 20 cm to either side: no rigid move can undo that.
   const World world(meshes::box(Vector3d(20, 2, 1.5)));
   std::vector<Vector3d> points = points_on(world.mesh(), 30000, 0.01);

@@ -6,7 +6,7 @@
 /// Surfaces whose distances are known in closed form.
 namespace lidarena::meshes {
 
-/// Square in z = 0, centred, as two triangles.
+/// Square in z = 0, centered, as two triangles.
 inline TriangleMesh plane(double edge) {
   const double h = 0.5 * edge;
   TriangleMesh mesh;

@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A run with an RPE of `cm` per metre, as metrics.json has it.
+/// A run with an RPE of `cm` per meter, as metrics.json has it.
 ScoredRun run_of(const std::string& name, const std::string& algorithm, const std::string& flight,
                  double cm) {
   ScoredRun run{name, algorithm, flight, "1", Json::object()};
@@ -89,9 +89,9 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
   EXPECT_THAT(text, HasSubstr("at 0.25 -0.1 ? m, turned by 0 0 5.73 deg"));
   EXPECT_THAT(text, HasSubstr("SE(3) gauge refused: the flight is a line"));
   EXPECT_THAT(text, HasSubstr("refused: the common path is 45 m"));
-  EXPECT_LT(text.find("coverage"), text.find("RPE per metre"));
+  EXPECT_LT(text.find("coverage"), text.find("RPE per meter"));
   for (const std::string& line : lines_of(text)) {
-    if (line.find("RPE per metre  ") == std::string::npos) continue;
+    if (line.find("RPE per meter  ") == std::string::npos) continue;
     EXPECT_THAT(line, HasSubstr("1.250 cm"));
     EXPECT_THAT(line, HasSubstr("coverage 87 %, 38 of 45 pieces"));
   }
@@ -112,7 +112,7 @@ TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
   run.metrics["live"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"] = 0.03;
   run.metrics["live"]["association"]["coverage"] = 0.5;
   const std::string text = metrics_text(run);
-  const std::string live = text.substr(text.find("RPE per metre, live"));
+  const std::string live = text.substr(text.find("RPE per meter, live"));
   EXPECT_THAT(live.substr(0, live.find('\n')), AllOf(HasSubstr("3.000 cm"), HasSubstr("50 %")));
 }
 

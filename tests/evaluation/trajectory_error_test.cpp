@@ -21,7 +21,7 @@ using flights::tour;
 using flights::with_gap;
 using std::numbers::pi;
 
-constexpr double kRounding = 1e-9;  // of metres ~ 10, and of times in whole nanoseconds at 1 m/s
+constexpr double kRounding = 1e-9;  // of meters ~ 10, and of times in whole nanoseconds at 1 m/s
 
 /// 1 m/s along x.
 Pose line(double t) { return level({t, 0, 0}); }
@@ -53,7 +53,7 @@ TEST(RelativePoseError, BetweenPosesASlowlySampledCopyHasNone) {
   }
 }
 
-TEST(RelativePoseError, BetweenPosesOnePercentOfScaleIsOneCentimetrePerMetre) {
+TEST(RelativePoseError, BetweenPosesOnePercentOfScaleIsOneCentimeterPerMeter) {
   const Trajectory truth = sample(line, 10ms, 20s);
   const auto scaled = [](double t) { return level({1.01 * t, 0, 0}); };
   for (const Time period : {Time(100ms), Time(300ms), Time(800ms)}) {
@@ -67,7 +67,7 @@ TEST(RelativePoseError, BetweenPosesOnePercentOfScaleIsOneCentimetrePerMetre) {
   }
 }
 
-TEST(RelativePoseError, BetweenPosesTooSeldomForAMetreThePiecesAreLonger) {
+TEST(RelativePoseError, BetweenPosesTooSeldomForAMeterThePiecesAreLonger) {
   // At 1 m/s a pose every 3 s: of three pieces one has ends that come to different poses.
   const Trajectory truth = sample(line, 10ms, 30s);
   const RelativePoseError rpe = relative_pose_error_at_poses(sample(line, 3s, 30s), truth);
@@ -81,11 +81,11 @@ TEST(RelativePoseError, BetweenPosesNothingIsTakenAcrossAGap) {
   const Trajectory estimate = with_gap(sample(line, 100ms, 20s), 5500ms, 8250ms);
   const RelativePoseError rpe = relative_pose_error_at_poses(estimate, truth);
   EXPECT_EQ(rpe.total, 20U);
-  EXPECT_EQ(rpe.used, 16U);  // those that begin or end in metres 5.5 to 8.25 are out
+  EXPECT_EQ(rpe.used, 16U);  // those that begin or end in meters 5.5 to 8.25 are out
   EXPECT_LT(rpe.translation_m.max, kRounding);
 }
 
-TEST(RelativePoseError, OnePercentOfScaleIsOneCentimetrePerMetre) {
+TEST(RelativePoseError, OnePercentOfScaleIsOneCentimeterPerMeter) {
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory estimate = sample([](double t) { return level({1.01 * t, 0, 0}); }, 100ms, 20s);
   for (const double length : kLadder_m) {
@@ -108,7 +108,7 @@ TEST(RelativePoseError, SlidingSegmentsStartEveryStep) {
 }
 
 TEST(RelativePoseError, AHeadingThatDriftsTurnsTheChordSeenFromTheStart) {
-  // Estimate yaws w rad per metre more than the truth: over [s, s + 1] the rotation error is w and
+  // Estimate yaws w rad per meter more than the truth: over [s, s + 1] the rotation error is w and
   // the chord, seen from the start frame, is turned by w s: 2 sin(w s / 2).
   const double w = 0.03;
   const Trajectory truth = sample(line, 10ms, 20s);
@@ -127,7 +127,7 @@ TEST(RelativePoseError, AHeadingThatDriftsTurnsTheChordSeenFromTheStart) {
 
 TEST(RelativePoseError, ALeverArmShowsOnlyWhereTheBodyTurns) {
   // Q flies a line yawing at w; P = Q * lever: error 2 |lever| sin(w / 2) over one second and
-  // metre.
+  // meter.
   const double w = 0.5;
   const double lever = 0.3;
   const auto turning = [&](double t) {
@@ -181,7 +181,7 @@ TEST(RelativePoseError, DoesNotDependOnEitherWorldFrame) {
 }
 
 TEST(RelativePoseError, NeverInterpolatesAcrossATrackingLoss) {
-  // 1 m/s; estimates between 5.3 and 8.3 s are missing: the metres that start or end there go.
+  // 1 m/s; estimates between 5.3 and 8.3 s are missing: the meters that start or end there go.
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory whole = sample([](double t) { return level({1.01 * t, 0, 0}); }, 100ms, 20s);
   const Trajectory lost = mapped(with_gap(whole, 5300ms, 8300ms), [](const StampedPose& pose) {
@@ -198,7 +198,7 @@ TEST(RelativePoseError, NeverInterpolatesAcrossATrackingLoss) {
   EXPECT_EQ(truth_lost.used, 16U);
 }
 
-TEST(RelativePoseError, AHoverHasNoMetresToScoreButHasSeconds) {
+TEST(RelativePoseError, AHoverHasNoMetersToScoreButHasSeconds) {
   const Trajectory truth = sample([](double) { return level({0, 0, 2}); }, 10ms, 10s);
   const Trajectory estimate = sample(
       [](double t) {
@@ -301,7 +301,7 @@ TEST(AbsoluteTrajectoryError, ARotationErrorFoldsBackBeyondHalfATurn) {
 }
 
 TEST(RelativePoseError, OfATurnInPlaceIsSeenByTheSecondAlone) {
-  // no metres are flown; the estimate turns 2 % too fast
+  // no meters are flown; the estimate turns 2 % too fast
   const auto spin = [](double rate) {
     return [rate](double t) { return make_pose(so3::exp({0, 0, rate * t}), Vector3d(1, 2, 3)); };
   };

@@ -18,7 +18,7 @@ double share(const Seen& seen) {
 
 TEST(Coverage, SamplesAreSpreadByArea) {
   const TriangleMesh mesh = scenes::box({0, 0, 0}, {1, 2, 10});
-  const auto samples = sample_surface(mesh, 6400);  // 64 m^2: one on each square decimetre
+  const auto samples = sample_surface(mesh, 6400);  // 64 m^2: one on each square decimeter
   std::vector<int> count(mesh.triangles.size(), 0);
   Vector3d mean = Vector3d::Zero();
   for (const SurfaceSample& s : samples) {

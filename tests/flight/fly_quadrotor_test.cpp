@@ -61,7 +61,7 @@ TEST_P(FlownStyles, ObeyTheLawsOfFlightsInStillAirAndInGusts) {
   conformance::expect_lawful(*fly_quadrotor(line, gusty(1.0), "test"), 2);
 }
 
-TEST_P(FlownStyles, FollowTheirReferenceWithinCentimetres) {
+TEST_P(FlownStyles, FollowTheirReferenceWithinCentimeters) {
   // Seen in still air: 3, 10 and 42 mm; what is left of it is the motors' lag, which grows with the
   // jerk. In gusts of 1 m/s: 70, 70 and 94 mm, of the order of the drag they change over the
   // stiffness of the position control, 0.3/s * 3 m/s / (3 rad/s)^2 = 100 mm.

@@ -98,7 +98,7 @@ TEST(FreeSpace, ShortestWaysAreThoseOfTheRelaxedGraph) {
   EXPECT_EQ(space.lengths_from(0), slow);
 }
 
-TEST(FreeSpace, AWayLeadsFromNeighbourToNeighbourThroughTheDoor) {
+TEST(FreeSpace, AWayLeadsFromNeighborToNeighborThroughTheDoor) {
   const FreeSpace space(rooms(), {1, 1, 1.2}, {0.4, 0.5}, 0.1, 100'000, Parallel(2));
   std::int32_t far = 0;
   for (std::size_t i = 0; i < space.cells().size(); ++i) {

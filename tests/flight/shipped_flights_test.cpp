@@ -120,7 +120,7 @@ void expect_tour(const WorldModel& model, const World& world, double cell_m) {
   }
 }
 
-TEST(ShippedTour, ReachesEveryRoomOfTheHouseThroughDoorsThatLeaveFiveCentimetres) {
+TEST(ShippedTour, ReachesEveryRoomOfTheHouseThroughDoorsThatLeaveFiveCentimeters) {
   const auto& [model, world] = scene_of(kConfigs / "worlds/house.yaml");
   const auto& route = model.routes.front();
   const FreeSpace space(world, route.front(), {0.4, 0.5}, 0.2, 100'000, Parallel());
@@ -129,7 +129,7 @@ TEST(ShippedTour, ReachesEveryRoomOfTheHouseThroughDoorsThatLeaveFiveCentimetres
     for (const FreeSpace::Cell& cell : space.cells()) {
       nearest = std::min(nearest, (cell.point - point).norm());
     }
-    // a cell's centre lies at most half a diagonal away, 0.17 m, its settled point as far again
+    // a cell's center lies at most half a diagonal away, 0.17 m, its settled point as far again
     EXPECT_LT(nearest, 0.35) << point.transpose();
   }
 }

@@ -6,7 +6,7 @@
 namespace lidarena::scenes {
 
 /// Two rooms of 4 x 4 x 2.5 m, x in [0, 4] and [4.1, 8.1], y in [0, 4], z in [0, 2.5], with walls,
-/// floor and ceiling 0.1 m thick and a door 0.9 m wide, centred at y = 1.03, and 2 m high between
+/// floor and ceiling 0.1 m thick and a door 0.9 m wide, centered at y = 1.03, and 2 m high between
 /// them. Solid boxes side by side: what lies between two of them can be seen from nowhere.
 inline TriangleMesh two_rooms() {
   TriangleMesh mesh = box({-0.1, -0.1, -0.1}, {8.2, 4.1, 0});  // floor

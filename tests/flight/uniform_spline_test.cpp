@@ -107,7 +107,7 @@ TEST(SplineFit, ErrsByTheSeventhPowerOfTheKnot) {
   const auto wave = [](double t) { return std::sin(4.0 * t + 0.3); };
   const double ratio = fit_error(wave, 0.1) / fit_error(wave, 0.05);
   EXPECT_GT(ratio, 110.0);
-  EXPECT_LT(ratio, 260.0);  // between 2^7 and 2^8: the leading term vanishes at the centres
+  EXPECT_LT(ratio, 260.0);  // between 2^7 and 2^8: the leading term vanishes at the centers
 }
 
 TEST(UniformSpline, HoldsItsEnds) {

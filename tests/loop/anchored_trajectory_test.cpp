@@ -8,7 +8,7 @@
 namespace lidarena {
 namespace {
 
-Pose at_x(double metres) { return make_pose(Eigen::Matrix3d::Identity(), {metres, 0.0, 0.0}); }
+Pose at_x(double meters) { return make_pose(Eigen::Matrix3d::Identity(), {meters, 0.0, 0.0}); }
 
 /// Keyframes at 0, 10 and 20 s, 1 m after each other; a pose each second, 0.1 m further.
 AnchoredTrajectory straight() {

@@ -32,7 +32,7 @@ Walk walk(const std::vector<Pose>& truth, const Points& world, double reach,
   return walk;
 }
 
-/// 1.3 times around the block; the odometry is 1 % too long and turns 0.06 degrees a metre too far.
+/// 1.3 times around the block; the odometry is 1 % too long and turns 0.06 degrees a meter too far.
 Walk round_trip() {
   std::vector<Pose> truth;
   for (int i = 0; i <= 104; ++i) truth.push_back(places::around_the_block(i));
@@ -145,8 +145,8 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
   EXPECT_GT(closer.accepted(), 0U) << "true ones, within each room";
   EXPECT_LT(rms_error(tour, closer.poses()), 0.1);
 
-  // Without that knowledge false loops are believed; the graph's robust kernel is the last defence.
-  config.drift_per_metre = 0.0;
+  // Without that knowledge false loops are believed; the graph's robust kernel is the last defense.
+  config.drift_per_meter = 0.0;
   const LoopCloser trusting = closed(tour, config);
   int believed = 0;
   for (const LoopRecord& loop : trusting.records())

@@ -8,9 +8,9 @@
 namespace lidarena {
 namespace {
 
-PlaceDescriptor at(double metres, double turn, std::uint64_t seed) {
+PlaceDescriptor at(double meters, double turn, std::uint64_t seed) {
   static const places::Points world = places::ring_corridor();
-  const Pose pose = places::around_the_block(metres);
+  const Pose pose = places::around_the_block(meters);
   return describe(
       places::seen_from(pose * make_pose(so3::exp({0, 0, turn}), Eigen::Vector3d::Zero().eval()),
                         world, 15.0, seed),

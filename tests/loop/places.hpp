@@ -88,9 +88,9 @@ inline Pose standing(double x, double y, double yaw) {
   return make_pose(so3::exp({0.0, 0.0, yaw}), {x, y, 1.5});
 }
 
-/// `metres` along a square of 20 x 20 m in the corridor's middle, facing onwards.
-inline Pose around_the_block(double metres) {
-  const double along = std::fmod(metres, 80.0);
+/// `meters` along a square of 20 x 20 m in the corridor's middle, facing onwards.
+inline Pose around_the_block(double meters) {
+  const double along = std::fmod(meters, 80.0);
   const int side = static_cast<int>(along / 20.0);
   const double yaw = side * std::acos(-1.0) / 2.0;
   const Pose corner = make_pose(so3::exp({0.0, 0.0, yaw}), Eigen::Vector3d::Zero());

@@ -11,7 +11,7 @@
 namespace lidarena {
 namespace {
 
-/// A wall of 8 m x 8 m a centimetre beside a border of cells of 0.2 m, with 2 cm of noise across.
+/// A wall of 8 m x 8 m a centimeter beside a border of cells of 0.2 m, with 2 cm of noise across.
 std::vector<Eigen::Vector3f> noisy_wall(std::size_t count, std::uint64_t seed) {
   SequentialRandom random(seed);
   std::vector<Eigen::Vector3f> points;

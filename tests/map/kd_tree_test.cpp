@@ -22,12 +22,12 @@ class SlowPoints {
     const auto cell = [voxel](const Eigen::Vector3f& p) -> Eigen::Vector3f {
       return (p / voxel).array().floor();
     };
-    const Eigen::Vector3f centre = (cell(point).array() + 0.5F) * voxel;
-    const auto to_centre = [&](const Eigen::Vector3f& p) { return (p - centre).squaredNorm(); };
+    const Eigen::Vector3f center = (cell(point).array() + 0.5F) * voxel;
+    const auto to_center = [&](const Eigen::Vector3f& p) { return (p - center).squaredNorm(); };
     Eigen::Vector3f best = point;
     bool is_new = true;
     for (const Eigen::Vector3f& other : points_) {
-      if (cell(other) != cell(point) || to_centre(other) > to_centre(best)) continue;
+      if (cell(other) != cell(point) || to_center(other) > to_center(best)) continue;
       best = other;
       is_new = false;
     }
@@ -65,7 +65,7 @@ Eigen::Vector3f random_point(SequentialRandom& random, float half_side) {
 }
 
 std::vector<float> squared(const KdTree& tree, const Eigen::Vector3f& query, std::size_t count) {
-  std::array<Neighbour, 8> found;
+  std::array<Neighbor, 8> found;
   const std::size_t n = tree.nearest(query, std::span(found).first(count));
   std::vector<float> distances;
   for (std::size_t i = 0; i < n; ++i) {
@@ -174,7 +174,7 @@ TEST(KdTree, ABuiltTreeAnswersAsAGrownOne) {
 TEST(KdTree, SearchEndsAtTheLargestDistance) {
   KdTree tree;
   for (int i = 0; i < 10; ++i) tree.insert({static_cast<float>(i), 0.0F, 0.0F});
-  std::array<Neighbour, 5> found;
+  std::array<Neighbor, 5> found;
   EXPECT_EQ(tree.nearest({0.0F, 0.0F, 0.0F}, found, 2.5F), 3U);
   EXPECT_EQ(tree.nearest({-9.0F, 0.0F, 0.0F}, found, 2.5F), 0U);
   EXPECT_EQ(KdTree().nearest({0.0F, 0.0F, 0.0F}, found), 0U);

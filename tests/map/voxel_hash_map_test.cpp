@@ -118,7 +118,7 @@ TEST(VoxelHashMap, SoItDoesWithCellsRoundedTowardsZero) {
   compare_with_the_slow_map({0.5, 12, 0.1, VoxelRounding::kTruncate});
 }
 
-TEST(VoxelHashMap, ANeighbourWithinOneEdgeIsTheTrueNearestOfAllPoints) {
+TEST(VoxelHashMap, ANeighborWithinOneEdgeIsTheTrueNearestOfAllPoints) {
   VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096});
   const Points points = random_points(3000, 4.0);
   map.insert(points);
@@ -137,7 +137,7 @@ TEST(VoxelHashMap, ACellTakesNoMoreThanItsLimitAndNothingNearerThanTheSpacing) {
   EXPECT_TRUE(map.insert({0.5F, 0.5F, 0.71F}));
   EXPECT_TRUE(map.insert({0.5F, 0.1F, 0.5F}));
   EXPECT_FALSE(map.insert({0.9F, 0.9F, 0.1F})) << "the cell is full";
-  EXPECT_TRUE(map.insert({1.05F, 0.5F, 0.5F})) << "the next cell does not mind its neighbours";
+  EXPECT_TRUE(map.insert({1.05F, 0.5F, 0.5F})) << "the next cell does not mind its neighbors";
   EXPECT_EQ(map.size(), 4U);
 }
 

@@ -92,7 +92,7 @@ double largest_error(const Recording& recording, const Trajectory& estimate) {
   return largest;
 }
 
-// A quarter of the 1 m cells of the coarsest preset's map. Losing track shows in metres: the flight
+// A quarter of the 1 m cells of the coarsest preset's map. Losing track shows in meters: the flight
 // goes 2.3 m away and turns by 45 degrees.
 constexpr double kTracked = 0.25;
 

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/so3.hpp"
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
-#include "lidarena/odometry/ct_icp/neighbourhood.hpp"
+#include "lidarena/odometry/ct_icp/neighborhood.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
 namespace lidarena::ct_icp {
@@ -108,7 +108,7 @@ TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
       5U);
 }
 
-/// Neighbours in a plane z = 2 (spread 2:1), nearest first.
+/// Neighbors in a plane z = 2 (spread 2:1), nearest first.
 std::vector<Eigen::Vector3f> plane_points() {
   std::vector<Eigen::Vector3f> points;
   for (int i = -2; i <= 2; ++i) {
@@ -118,56 +118,56 @@ std::vector<Eigen::Vector3f> plane_points() {
   return points;
 }
 
-std::vector<VoxelHashMap::Neighbor> neighbours_of(const std::vector<Eigen::Vector3f>& points,
+std::vector<VoxelHashMap::Neighbor> neighbors_of(const std::vector<Eigen::Vector3f>& points,
                                                   const Eigen::Vector3f& query) {
   std::vector<VoxelHashMap::Neighbor> all;
   for (const auto& point : points) all.push_back({&point, (point - query).squaredNorm()});
   return all;
 }
 
-TEST(CtIcpNeighbourhood, OfAPlaneKnowsItsNormalItsPlanarityAndItsPoint) {
+TEST(CtIcpNeighborhood, OfAPlaneKnowsItsNormalItsPlanarityAndItsPoint) {
   const auto points = plane_points();
-  const auto neighbours = neighbours_of(points, {0.0F, 0.01F, 2.1F});
-  const Neighbourhood mean = describe(neighbours, PlanePoint::kMean);
+  const auto neighbors = neighbors_of(points, {0.0F, 0.01F, 2.1F});
+  const Neighborhood mean = describe(neighbors, PlanePoint::kMean);
   EXPECT_NEAR(std::abs(mean.normal.z()), 1.0, 1e-6);
   EXPECT_NEAR(std::abs(mean.line.x()), 1.0, 1e-6);
   EXPECT_NEAR(mean.planarity, 0.5, 1e-3) << "deviations 2 : 1 : 0";
   EXPECT_NEAR(mean.linearity, 0.5, 1e-3);
   EXPECT_LT((mean.anchor - Eigen::Vector3d(0, 0, 2)).norm(), 1e-6);
-  const Neighbourhood nearest = describe(neighbours, PlanePoint::kNearest);
+  const Neighborhood nearest = describe(neighbors, PlanePoint::kNearest);
   EXPECT_LT((nearest.anchor - Eigen::Vector3d(0, 0, 2)).norm(), 1e-6);
-  const Neighbourhood farthest = describe(neighbours, PlanePoint::kFarthest);
+  const Neighborhood farthest = describe(neighbors, PlanePoint::kFarthest);
   EXPECT_NEAR(std::abs(farthest.anchor.x()), 0.4, 1e-6);
   EXPECT_NEAR(farthest.anchor.y(), -0.2, 1e-6);
 }
 
-TEST(CtIcpNeighbourhood, OfOnePointManyTimesHasNoShapeAndNoNan) {
+TEST(CtIcpNeighborhood, OfOnePointManyTimesHasNoShapeAndNoNan) {
   const std::vector<Eigen::Vector3f> same(10, Eigen::Vector3f(1, 2, 3));
-  const Neighbourhood found = describe(neighbours_of(same, {1, 2, 3}), PlanePoint::kMean);
+  const Neighborhood found = describe(neighbors_of(same, {1, 2, 3}), PlanePoint::kMean);
   EXPECT_EQ(found.planarity, 0.0);
   EXPECT_EQ(found.linearity, 0.0);
   EXPECT_TRUE(found.normal.allFinite());
 }
 
-TEST(CtIcpNeighbourhood, WeighsAPlaneAsThePublicProgramDoes) {
-  Neighbourhood near{{0, 0, 2}, {0, 0, 1}, {1, 0, 0}, {0, 1, 4}, 0.5, 0.5};
+TEST(CtIcpNeighborhood, WeighsAPlaneAsThePublicProgramDoes) {
+  Neighborhood near{{0, 0, 2}, {0, 0, 1}, {1, 0, 0}, {0, 1, 4}, 0.5, 0.5};
   RegistrationConfig config;
-  config.min_neighbours = 20;
+  config.min_neighbors = 20;
   const ElasticMatch match = plane_match(near, {0, 0, 2.3}, config);
   EXPECT_NEAR(match.weight, 0.9 * 0.25 + 0.1 * std::exp(-0.3 / (0.3 * 20)), 1e-12);
   EXPECT_EQ(match.rows, 1);
 }
 
-TEST(CtIcpNeighbourhood, IsALineAPlaneOrADistribution) {
+TEST(CtIcpNeighborhood, IsALineAPlaneOrADistribution) {
   const Eigen::Vector3d gap(0.3, 0.2, 0.1);
-  const Neighbourhood plane{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 1}, 0.9, 0.0};
+  const Neighborhood plane{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 1, 1}, 0.9, 0.0};
   EXPECT_EQ(shape_match(plane).rows, 1);
-  const Neighbourhood line{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, 0.0, 0.9};
+  const Neighborhood line{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0, 0, 1}, 0.0, 0.9};
   EXPECT_EQ(shape_match(line).rows, 3);
   EXPECT_NEAR((shape_match(line).shape * gap).norm(), std::hypot(0.2, 0.1), 1e-12);
   EXPECT_NEAR(shape_match(line).weight, 0.81, 1e-12);
   // deviations 0.1, 0.2, 0.4 along z, y, x: distance in units of the smallest
-  const Neighbourhood cloud{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.01, 0.04, 0.16}, 0.25, 0.5};
+  const Neighborhood cloud{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.01, 0.04, 0.16}, 0.25, 0.5};
   const ElasticMatch match = shape_match(cloud);
   EXPECT_NEAR((match.shape * gap).squaredNorm(), 0.01 * (0.09 / 0.16 + 0.04 / 0.04 + 0.01 / 0.01),
               1e-12);
@@ -209,8 +209,8 @@ TEST(CtIcpPrediction, EachWayGoesOnFromTheMotionSoFar) {
   EXPECT_EQ(prior.location, 0.001);
 }
 
-Registration registration_of(double yaw, double metres, std::size_t matches) {
-  Registration registration{motion_of(Pose::Identity(), turned(yaw, {metres, 0, 0}))};
+Registration registration_of(double yaw, double meters, std::size_t matches) {
+  Registration registration{motion_of(Pose::Identity(), turned(yaw, {meters, 0, 0}))};
   registration.keypoints = 100;
   registration.matches = matches;
   return registration;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether FAST-LIO2's covariance tells its errors: normalised squared errors (NEES), averaged over
+// Whether FAST-LIO2's covariance tells its errors: normalized squared errors (NEES), averaged over
 // seeds of all noise. LIDARENA_NEES_SEEDS says over how many (3; 20 take minutes).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -25,16 +25,16 @@ int number_of_seeds() {
   return given == nullptr ? 3 : std::max(1, std::atoi(given));
 }
 
-/// Normalised squared errors, and the errors' squares; sums over seeds.
+/// Normalized squared errors, and the errors' squares; sums over seeds.
 struct Errors {
   double pose = 0.0, position = 0.0, attitude = 0.0;
-  double metres2 = 0.0, radians2 = 0.0;
+  double meters2 = 0.0, radians2 = 0.0;
 
   Errors& operator+=(const Errors& e) {
     pose += e.pose;
     position += e.position;
     attitude += e.attitude;
-    metres2 += e.metres2;
+    meters2 += e.meters2;
     radians2 += e.radians2;
     return *this;
   }
@@ -98,7 +98,7 @@ std::vector<Errors> mean_errors(int seeds, bool plane_uncertainty) {
     for (std::size_t i = 0; i < errors.size(); ++i) sums[i] += errors[i];
   }
   for (Errors& sum : sums) {
-    for (double* part : {&sum.pose, &sum.position, &sum.attitude, &sum.metres2, &sum.radians2}) {
+    for (double* part : {&sum.pose, &sum.position, &sum.attitude, &sum.meters2, &sum.radians2}) {
       *part /= seeds;
     }
   }
@@ -127,7 +127,7 @@ TEST(FastLio2Consistency, TheCovarianceTellsTheErrors) {
         "{:.1f} s: pose {:.2f} of 6, position {:.2f} of 3, attitude {:.2f} of 3; rms {:.2f} mm, "
         "{:.3f} mrad\n",
         0.1 * kEvery * static_cast<double>(i + 3), with[i].pose, with[i].position, with[i].attitude,
-        1e3 * std::sqrt(with[i].metres2), 1e3 * std::sqrt(with[i].radians2));
+        1e3 * std::sqrt(with[i].meters2), 1e3 * std::sqrt(with[i].radians2));
   }
   // 99 % of chi-square, of the seeds alone: instants of one flight are no independent trials.
   constexpr double kZ = 2.5758;

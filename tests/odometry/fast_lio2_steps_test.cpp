@@ -104,7 +104,7 @@ TEST(FastLio2Start, GravityAndBiasComeFromTheMeans) {
   EXPECT_NEAR(start.belief.state.gyro_bias.x(), 0.01, 1e-3);
 }
 
-TEST(FastLio2Start, AccelerationsInGAreRecognised) {
+TEST(FastLio2Start, AccelerationsInGAreRecognized) {
   const Start start =
       start_from(standing(1.0 / 9.80665, 1e-3), Pose::Identity(), improved_config());
   EXPECT_DOUBLE_EQ(start.accel_scale, 9.80665);
@@ -171,11 +171,11 @@ TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
 
 // --- Planes ---
 
-Neighbours points_on(const Eigen::Vector3d& normal, double offset, double thickness,
+Neighbors points_on(const Eigen::Vector3d& normal, double offset, double thickness,
                      SequentialRandom& random) {
   const auto basis = tangent_basis(normal);
-  Neighbours points;
-  for (Neighbour& point : points) {
+  Neighbors points;
+  for (Neighbor& point : points) {
     const Eigen::Vector2d along(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
     point.point = (normal * (-offset + thickness * (2.0 * random.uniform() - 1.0)) + basis * along)
                       .cast<float>();
@@ -187,7 +187,7 @@ TEST(FastLio2Planes, AreFoundByBothFits) {
   SequentialRandom random(3, 1);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
-    const Neighbours points = points_on(normal, -3.0, 0.0, random);
+    const Neighbors points = points_on(normal, -3.0, 0.0, random);
     for (const PlaneFit fit : {PlaneFit::kThroughOrigin, PlaneFit::kPrincipal}) {
       const auto plane = fit_plane(points, fit, 0.1);
       ASSERT_TRUE(plane.has_value());
@@ -202,7 +202,7 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
   int found = 0;
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
-    const Neighbours points = points_on(normal, 0.0, 0.0, random);
+    const Neighbors points = points_on(normal, 0.0, 0.0, random);
     const auto plane = fit_plane(points, PlaneFit::kPrincipal, 0.1);
     ASSERT_TRUE(plane.has_value());
     EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.999);
@@ -214,17 +214,17 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
 
 TEST(FastLio2Planes, ThickOnesAreRefused) {
   SequentialRandom random(5, 1);
-  const Neighbours points = points_on({0.0, 0.0, 1.0}, -2.0, 0.5, random);
+  const Neighbors points = points_on({0.0, 0.0, 1.0}, -2.0, 0.5, random);
   EXPECT_FALSE(fit_plane(points, PlaneFit::kPrincipal, 0.01).has_value());
-  Neighbours same;
-  for (Neighbour& point : same) point.point.setZero();
+  Neighbors same;
+  for (Neighbor& point : same) point.point.setZero();
   EXPECT_FALSE(fit_plane(same, PlaneFit::kThroughOrigin, 0.1).has_value()) << "not finite";
 }
 
 /// A cross of arms `length` and `width` in a tilted plane, each point off it by `sigma`.
-Neighbours cross(double length, double width, double sigma, SequentialRandom& random) {
+Neighbors cross(double length, double width, double sigma, SequentialRandom& random) {
   const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
-  Neighbours points;
+  Neighbors points;
   const double arms[5][2] = {{0, 0}, {length, 0}, {-length, 0}, {0, width}, {0, -width}};
   for (std::size_t i = 0; i < 5; ++i) {
     const Eigen::Vector3d at(arms[i][0], arms[i][1], 5.0 + sigma * random.normal());
@@ -249,7 +249,7 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
       ASSERT_TRUE(plane.has_value());
       squares += std::pow(plane->normal.dot(end) + plane->offset, 2);
     }
-    const Neighbours exact = cross(kLength, width, 0.0, random);
+    const Neighbors exact = cross(kLength, width, 0.0, random);
     const auto plane = fit_plane(exact, PlaneFit::kPrincipal, 0.1);
     const double told = plane_variance(exact, *plane, kSigma * kSigma);
     const double tilt = kSigma * kSigma / (2.0 * width * width);
@@ -261,7 +261,7 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
 
 TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
   SequentialRandom random(13, 1);
-  const Neighbours line = cross(0.3, 0.0, 0.0, random);
+  const Neighbors line = cross(0.3, 0.0, 0.0, random);
   const auto plane = fit_plane(line, PlaneFit::kPrincipal, 0.1);
   ASSERT_TRUE(plane.has_value());
   EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2, and finite:";
@@ -330,12 +330,12 @@ TEST(FastLio2Map, ShortcutsOfInsertionDoNotChangeWhatACellKeeps) {
     for (int i = 0; i < 100; ++i) points.push_back(random_point());
     std::vector<Match> matches(points.size());
     for (std::size_t i = 0; i < points.size(); ++i) {
-      matches[i].found = with_shortcuts.nearest(points[i], matches[i].neighbours, 2.0F);
+      matches[i].found = with_shortcuts.nearest(points[i], matches[i].neighbors, 2.0F);
     }
     add_scan(points, matches, 0.5F, with_shortcuts);
     add_scan(points, {}, 0.5F, without);
   }
-  // Without neighbours each cell keeps its best point. The neighbours are those before the scan and
+  // Without neighbors each cell keeps its best point. The neighbors are those before the scan and
   // not only of the own cell, so now and then a better point is refused or one too many inserted.
   EXPECT_NEAR(static_cast<double>(with_shortcuts.size()), static_cast<double>(without.size()),
               0.2 * static_cast<double>(without.size()));

@@ -19,7 +19,7 @@ namespace {
 
 using synthetic::Recording;
 
-constexpr double kTracked = 0.1;  // m: lost track shows in metres, the map's cells have 0.2 m
+constexpr double kTracked = 0.1;  // m: lost track shows in meters, the map's cells have 0.2 m
 
 struct Outcome {
   std::vector<ScanResult> results;
@@ -122,7 +122,7 @@ TEST(FastLio2Standing, TheFirstMotionIsFollowed) {
 }
 
 TEST(FastLio2Standing, BeamsThatHitTheSamePlacesDoNotHoldTheStart) {
-  // 160 columns: the neighbours of a point lie on one line, and a plane through them may as well
+  // 160 columns: the neighbors of a point lie on one line, and a plane through them may as well
   // stand across the wall and move with the sensor.
   const Recording sparse{.motion = slow_start, .seconds = 6.0};
   const std::vector<Event> events = synthetic::record(sparse);
@@ -256,7 +256,7 @@ TEST(FastLio2Data, AStartInMotionIsSurvived) {
   EXPECT_LT(play(synthetic::record(moving), moving).final_error(moving), kTracked);
 }
 
-TEST(FastLio2Data, AccelerationsInGAreRecognisedAndSaid) {
+TEST(FastLio2Data, AccelerationsInGAreRecognizedAndSaid) {
   const Outcome in_g = play(with_imu([](ImuSample& sample) {
     sample.accel /= 9.80665;
     return true;

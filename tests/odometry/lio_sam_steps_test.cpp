@@ -105,11 +105,11 @@ std::vector<Pixel> row_of(const std::vector<float>& ranges) {
   return row;
 }
 
-TEST(LioSamFeatures, RoughnessIsTheSquareOfWhatTheNeighboursRangesExceedBy) {
+TEST(LioSamFeatures, RoughnessIsTheSquareOfWhatTheNeighborsRangesExceedBy) {
   Config config;
-  config.smoothness_neighbours = 2;
+  config.smoothness_neighbors = 2;
   const auto rough = roughness(row_of({5, 5, 5, 6, 5, 5, 5, 5}), config);
-  EXPECT_EQ(rough[3], 16.0F) << "4 neighbours, each 1 m nearer";
+  EXPECT_EQ(rough[3], 16.0F) << "4 neighbors, each 1 m nearer";
   EXPECT_EQ(rough[2], 1.0F);
   EXPECT_EQ(rough[5], 1.0F);
   EXPECT_EQ(rough[1], 0.0F) << "too near to the row's end";
@@ -194,10 +194,10 @@ TEST(LioSamRegistration, JacobiansAreTheNumericOnes) {
   }
 }
 
-Neighbours five(const std::vector<Vector3d>& points) {
-  Neighbours neighbours;
-  for (std::size_t i = 0; i < kNeighbours; ++i) neighbours[i].point = points[i].cast<float>();
-  return neighbours;
+Neighbors five(const std::vector<Vector3d>& points) {
+  Neighbors neighbors;
+  for (std::size_t i = 0; i < kNeighbors; ++i) neighbors[i].point = points[i].cast<float>();
+  return neighbors;
 }
 
 TEST(LioSamRegistration, LinesAndPlanesAreFoundWhereThereAreSome) {

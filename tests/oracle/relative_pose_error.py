@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""RPE per metre by the definition of docs/metrics.md, written apart from the library and slowly.
+"""RPE per meter by the definition of docs/metrics.md, written apart from the library and slowly.
 
     relative_pose_error.py FILE.json      with {"files": {name: TUM text}}; prints used, total, cm
 

@@ -45,7 +45,7 @@ TEST(Image, APngWithOrWithoutAPaletteGivesItsPixelsBack) {
       image.at(i % 32, i / 32) = {static_cast<std::uint8_t>(color % 256),
                                   static_cast<std::uint8_t>(color / 256), 7};
     }
-    EXPECT_EQ(decoded(encode_png(image)).pixels, image.pixels) << colors << " colours";
+    EXPECT_EQ(decoded(encode_png(image)).pixels, image.pixels) << colors << " colors";
   }
 }
 
@@ -58,12 +58,12 @@ TEST(Image, Base64AgreesWithTheExamplesOfRfc4648) {
   EXPECT_EQ(base64("\xff\xfe\xfd"), "//79");
 }
 
-TEST(Image, ColoursGrowLighterWithTheDistanceUntilTheThreshold) {
+TEST(Image, ColorsGrowLighterWithTheDistanceUntilTheThreshold) {
   const auto lightness = [](Rgb c) { return 0.2126 * c[0] + 0.7152 * c[1] + 0.0722 * c[2]; };
   double last = -1;
   for (int mm = 0; mm <= 200; ++mm) {
     const double now = lightness(distance_color(mm * 1e-3));
-    EXPECT_GE(now, last - 1.0) << mm;  // one grey level of rounding
+    EXPECT_GE(now, last - 1.0) << mm;  // one gray level of rounding
     last = now;
   }
   EXPECT_EQ(distance_color(0.2001), distance_color(5.0));
@@ -95,7 +95,7 @@ TEST(TopView, APointFallsWhereItsCoordinatesSay) {
   cloud.distance.assign(cloud.points.size(), 0.0F);
   TopView view;
   view.map = &cloud;
-  view.width = 212;  // 10 m and 3 % margin on each side: 20 pixels a metre
+  view.width = 212;  // 10 m and 3 % margin on each side: 20 pixels a meter
   const std::string svg = top_view_svg(view);
   const std::string marker = "base64,";
   const std::size_t begin = svg.find(marker) + marker.size();

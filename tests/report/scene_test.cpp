@@ -20,7 +20,7 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// Points on a lattice of centimetres, shuffled over 20 x 20 x 2 m by a multiplier without a common
+/// Points on a lattice of centimeters, shuffled over 20 x 20 x 2 m by a multiplier without a common
 /// factor; each point's distance says which point it is.
 SceneCloud lattice_cloud(std::size_t count) {
   SceneCloud cloud;
@@ -169,7 +169,7 @@ TEST(SceneFiles, DistancesToAPlaneAreHeights) {
   EXPECT_TRUE(std::isnan(scene.clouds[0].distance[2])) << "beyond the reach of 2 m";
 }
 
-TEST(SceneFiles, ACloudFarFromTheOriginKeepsItsCentimetres) {
+TEST(SceneFiles, ACloudFarFromTheOriginKeepsItsCentimeters) {
   const TemporaryFolder folder;
   std::string rows;
   for (int i = 0; i < 10; ++i) rows += "4321000." + std::to_string(i) + "1 500000.5 12.25\n";

@@ -32,7 +32,7 @@ Record record(const ImuConfig& config, int samples) {
 }
 
 /// Allan variance over clusters of `length` samples side by side, mean of three axes, and its
-/// relative sigma. With M clusters an axis, M - 1 differences are averaged. Neighbours correlate by
+/// relative sigma. With M clusters an axis, M - 1 differences are averaged. Neighbors correlate by
 /// -1/2 for white noise and by +1/4 for a random walk, so the variance of the mean square is at
 /// most 2 (1 + 2 (1/2)^2) / (M - 1) = 3 / (M - 1) of its square, and a third of that over three
 /// axes.

@@ -30,7 +30,7 @@ TEST(CastOrder, CastsEveryShotOnce) {
   }
 }
 
-TEST(CastOrder, EightAtATimeAreNeighboursOfOneRow) {
+TEST(CastOrder, EightAtATimeAreNeighborsOfOneRow) {
   const auto beams = beams_of(ouster(2048));
   const CastOrder order(beams);
   ASSERT_EQ(order.tile(), 8U * 128U);

@@ -59,9 +59,9 @@ TEST(Coverage, IsTheSolidAngleOfTheCellsThatWereHit) {
   EXPECT_NEAR(of_rows[0], row / 18 / (2 * std::sin(testing::radians(30))), 1e-12);
 }
 
-TEST(Coverage, InAConeCountsTheCellsWhoseCentreLiesInIt) {
+TEST(Coverage, InAConeCountsTheCellsWhoseCenterLiesInIt) {
   const FieldOfView fov{-10, 10, -10, 10,
-                        8.0};  // of four cells' centres none is 8 deg off the axis
+                        8.0};  // of four cells' centers none is 8 deg off the axis
   EXPECT_NEAR(coverage(FewRays({ray(1, 1)}), fov, 10.0, seconds({1.0}))[0], 0.25, 1e-12);
   const FieldOfView narrow{-15, 15, -15, 15, 8.0};  // of nine only the one ahead
   EXPECT_NEAR(coverage(FewRays({ray(1, 1)}), narrow, 10.0, seconds({1.0}))[0], 1.0, 1e-12);
@@ -104,7 +104,7 @@ TEST(Coverage, OfTheMid40AndMid70IsThatOfTheMakersTables) {
                          Row{livox_mid70(), 35.216, 0.5, {0.194, 0.683, 0.923, 1.000}},
                          Row{livox_mid70(), 35.216, 0.25, {0.093, 0.390, 0.644, 0.993}}}) {
     const LivoxPattern pattern(row.model, 10.0, "test");
-    // How the reference's cells lie is not told. With one centred on the axis all 16 figures agree;
+    // How the reference's cells lie is not told. With one centered on the axis all 16 figures agree;
     // shifted by half a cell they differ by up to 0.004.
     const double edge = 40.0 + row.cell_deg / 2;
     const FieldOfView fov{-edge, edge, -edge, edge, row.half_fov_deg};

@@ -53,7 +53,7 @@ std::vector<Vector3d> in_world(const Scan& scan, const Flight& flight, const Pos
   return points;
 }
 
-TEST(Geometry, AFinelyFacetedCylinderIsRoundToATenthOfAMillimetre) {
+TEST(Geometry, AFinelyFacetedCylinderIsRoundToATenthOfAMillimeter) {
   const double radius = 40.0;
   // Facets lie within R (1 - cos(pi / n)) of the circle: 3e-5 m.
   const World world(cylinder_mesh(radius, 2560));

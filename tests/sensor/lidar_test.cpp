@@ -353,7 +353,7 @@ TEST(Lidar, ScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
 
 TEST(Lidar, IntensityIsTheReflectivityTimesTheCosineOfIncidence) {
   TriangleMesh wall = wall_mesh(10.0);
-  wall.paint({"grey", 0.4, 0.0});
+  wall.paint({"gray", 0.4, 0.0});
   const World world(std::move(wall));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();

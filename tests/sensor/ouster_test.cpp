@@ -31,10 +31,10 @@ TEST(Ouster, RowsSpanPlusMinus45p78DegreesFromTopToBottom) {
 
 TEST(Ouster, FourPixelColumnsSpreadTheRowsInAzimuth) {
   const double top[] = {11.09, 3.66, -3.62, -10.75};
-  const double centre[] = {8.39, 2.80, -2.80, -8.39};
+  const double center[] = {8.39, 2.80, -2.80, -8.39};
   for (int i = 0; i < 4; ++i) {
     EXPECT_NEAR(degrees(os0_128_row(i).azimuth_offset), top[i], 0.005);
-    EXPECT_NEAR(degrees(os0_128_row(64 + i).azimuth_offset), centre[i], 0.01);
+    EXPECT_NEAR(degrees(os0_128_row(64 + i).azimuth_offset), center[i], 0.01);
   }
 }
 

@@ -46,7 +46,7 @@ std::vector<Event> all_of(EventSource& source) {
   return events;
 }
 
-/// `most`: metres by which points may differ.
+/// `most`: meters by which points may differ.
 void expect_same_scan(const Scan& a, const Scan& b, double most) {
   EXPECT_EQ(a.stamp, b.stamp);
   EXPECT_EQ(a.timed, b.timed);

@@ -65,8 +65,8 @@ TEST_F(Evaluate, AnyonesTrajectoryIsScoredDiagnosisFirst) {
   const Outcome outcome = call("--trajectory slam.tum --truth truth.tum");
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
   EXPECT_THAT(outcome.out, AllOf(HasSubstr("301 of 301 poses matched, coverage 100.0 %"),
-                                 HasSubstr("RPE per metre"), HasSubstr("coverage 100 %")));
-  EXPECT_LT(outcome.out.find("poses matched"), outcome.out.find("RPE per metre"));
+                                 HasSubstr("RPE per meter"), HasSubstr("coverage 100 %")));
+  EXPECT_LT(outcome.out.find("poses matched"), outcome.out.find("RPE per meter"));
   const json metrics = json::parse(call("--json --trajectory slam.tum --truth truth.tum").out);
   EXPECT_EQ(metrics["status"], "ok");
   EXPECT_NEAR(metrics["final"]["ate"]["first_pose"]["translation"]["max_m"], 0.030, 1e-6);

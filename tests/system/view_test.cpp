@@ -122,10 +122,10 @@ class ViewInBrowser : public Cli {
   std::string floor_;
 };
 
-TEST_F(ViewInBrowser, PixelsHaveTheColoursOfTheirDistancesAndTheConsoleStaysSilent) {
+TEST_F(ViewInBrowser, PixelsHaveTheColorsOfTheirDistancesAndTheConsoleStaysSilent) {
   const Picture picture = screenshot("#view=top&size=6");
   EXPECT_THAT(page_errors(), ElementsAre());
-  // Seen from above the floor is centred: x < 4 m on the left. Colours as distance_color() has
+  // Seen from above the floor is centered: x < 4 m on the left. Colors as distance_color() has
   // them for 0 and for more than 20 cm.
   EXPECT_THAT(picture.at(kWidth / 2 - 60, kHeight / 2), ElementsAre(0, 34, 78));
   EXPECT_THAT(picture.at(kWidth / 2 + 20, kHeight / 2), ElementsAre(214, 32, 39));

@@ -101,8 +101,8 @@ TEST_P(RayCasters, FindTheTriangleThatABruteForceCasterFindsInASoup) {
 }
 
 TEST(Bvh, HasDoublePrecisionFarOut) {
-  // Half a millimetre between two floors, seen from a kilometre: a float there is 0.06 mm, and
-  // 5000 km from the origin half a metre.
+  // Half a millimeter between two floors, seen from a kilometer: a float there is 0.06 mm, and
+  // 5000 km from the origin half a meter.
   const Vector3d far(5.0e6, 5.4e6, 300.0);
   TriangleMesh floors;
   for (const double z : {0.0, 5e-4}) {

@@ -110,7 +110,7 @@ TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
   const double step = small_cave().resolution_m;
   for (const Triangle& t : cave.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      // Vertices of neighbouring cells lie less than two steps apart along each axis; projection
+      // Vertices of neighboring cells lie less than two steps apart along each axis; projection
       // moves each by at most one step more.
       EXPECT_LT((cave.mesh.vertices[t[k]] - cave.mesh.vertices[t[(k + 1) % 3]]).norm(), 4 * step);
     }
@@ -162,7 +162,7 @@ TEST(Cave, EveryRayFromTheRouteHitsRock) {
   for (const Hit& hit : hits) EXPECT_TRUE(hit.valid());
 }
 
-TEST(Cave, TunnelsAreTwoToFourMetresWide) {
+TEST(Cave, TunnelsAreTwoToFourMetersWide) {
   const WorldModel cave = make_cave(CaveConfig{}, 1);
   const CaveGraph graph = make_cave_graph(CaveConfig{}, 1);
   const World world(cave.mesh, "cave");
@@ -189,14 +189,14 @@ double flattest_place(const TriangleMesh& mesh, double radius) {
   };
   for (const Eigen::Vector3d& v : mesh.vertices) cells[SparseField::key(cell(v))].push_back(v);
   double flattest = std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& centre : mesh.vertices) {
+  for (const Eigen::Vector3d& center : mesh.vertices) {
     std::vector<Eigen::Vector3d> near;
     for (int i = 0; i < 27; ++i) {
       const Eigen::Vector3i offset(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
-      const auto found = cells.find(SparseField::key(cell(centre) + offset));
+      const auto found = cells.find(SparseField::key(cell(center) + offset));
       if (found == cells.end()) continue;
       for (const Eigen::Vector3d& p : found->second) {
-        if ((p - centre).norm() <= radius) near.push_back(p);
+        if ((p - center).norm() <= radius) near.push_back(p);
       }
     }
     Eigen::Vector3d mean = Eigen::Vector3d::Zero();
@@ -216,7 +216,7 @@ double flattest_place(const TriangleMesh& mesh, double radius) {
 /// A fraction of the range noise of the sensors (2 to 3 cm).
 constexpr double kFlat = 0.003;  // m
 
-TEST(Cave, HasNoFlatFaceHalfAMetreAcross) {
+TEST(Cave, HasNoFlatFaceHalfAMeterAcross) {
   CaveConfig config = small_cave();
   config.resolution_m = CaveConfig{}.resolution_m;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
@@ -231,8 +231,8 @@ TEST(Cave, WithoutRoughnessItsTunnelsWouldBeFlatAtThatScale) {
   EXPECT_LT(flattest_place(make_cave(config, 1).mesh, 0.25), kFlat);
 }
 
-/// Power of `profile` (one sample a `spacing` metres, Hann window, mean taken out) at wavelengths
-/// from `low` to `high` metres; sums to the variance over all wavelengths.
+/// Power of `profile` (one sample a `spacing` meters, Hann window, mean taken out) at wavelengths
+/// from `low` to `high` meters; sums to the variance over all wavelengths.
 double band_power(const std::vector<double>& profile, double spacing, double low, double high) {
   const auto n = profile.size();
   const double mean = std::accumulate(profile.begin(), profile.end(), 0.0) / double(n);
@@ -272,7 +272,7 @@ double wall_distance(const CaveField& rock, double x, double angle) {
   return inside;
 }
 
-/// Mean power of the wall's profiles along the tunnel at wavelengths about `scale` metres.
+/// Mean power of the wall's profiles along the tunnel at wavelengths about `scale` meters.
 double power_at_scale(const CaveConfig& config, double scale) {
   constexpr int kSamples = 200;
   constexpr int kLines = 12;

@@ -56,7 +56,7 @@ void ClosestPoints::expect_same(const TriangleMesh& mesh, const std::vector<Vect
   }
 }
 
-/// Quarter-metre squares in z = 0, two triangles each: points above grid lines have ties.
+/// Quarter-meter squares in z = 0, two triangles each: points above grid lines have ties.
 TriangleMesh floor_of_squares(std::uint32_t cells) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i <= cells; ++i) {
@@ -73,7 +73,7 @@ TriangleMesh floor_of_squares(std::uint32_t cells) {
   return mesh;
 }
 
-/// A walk with steps of a few centimetres: neighbours in the list are neighbours in space.
+/// A walk with steps of a few centimeters: neighbors in the list are neighbors in space.
 std::vector<Vector3d> walk(std::size_t count, double step, double reach) {
   SequentialRandom random(51);
   std::vector<Vector3d> points(count, Vector3d::Zero());
@@ -97,7 +97,7 @@ TEST_P(ClosestPoints, WithinALimitAreThoseOfAllTrianglesOneByOne) {
 TEST_P(ClosestPoints, OfEquallyNearTrianglesAreThoseWithTheLowestIndex) {
   const TriangleMesh floor = floor_of_squares(8);
   std::vector<Vector3d> points;
-  // every eighth of a metre: above corners (six triangles), edges (two), diagonals (two), faces
+  // every eighth of a meter: above corners (six triangles), edges (two), diagonals (two), faces
   for (int i = 0; i <= 16; ++i) {
     for (int j = 0; j <= 16; ++j) points.emplace_back(0.125 * i, 0.125 * j, 0.0625);
   }
@@ -125,7 +125,7 @@ TEST_P(ClosestPoints, FarFromTheOriginAreThoseOfAllTrianglesOneByOne) {
   expect_same(shifted, points, kFar);
 }
 
-TEST_P(ClosestPoints, APointThatIsNotFiniteHasNoneAndHarmsNoNeighbour) {
+TEST_P(ClosestPoints, APointThatIsNotFiniteHasNoneAndHarmsNoNeighbor) {
   const TriangleMesh soup = testing::triangle_soup(300, 5.0, 55);
   std::vector<Vector3d> points = walk(100, 0.01, 5.0);
   points[0].x() = std::numeric_limits<double>::quiet_NaN();

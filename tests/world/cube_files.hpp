@@ -55,7 +55,7 @@ inline std::string box_ply() {
   return out.str();
 }
 
-/// `coordinates` are in units of `unit` metres.
+/// `coordinates` are in units of `unit` meters.
 inline std::string dae_text(const std::string& up_axis, double unit, const std::string& nodes) {
   std::ostringstream out;
   out << R"(<?xml version="1.0" encoding="utf-8"?>

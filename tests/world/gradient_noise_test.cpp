@@ -24,13 +24,13 @@ TEST(GradientNoise, HasMeanZeroAndTheSameVarianceEverywhere) {
   // Samples further apart than a lattice step are independent: the mean of n of them scatters by
   // sigma / sqrt(n).
   constexpr int kCount = 200000;
-  for (const double centre : {0.0, 5000.0}) {
+  for (const double center : {0.0, 5000.0}) {
     const GradientNoise noise(11);
     SequentialRandom random(2);
     double sum = 0;
     double squares = 0;
     for (int i = 0; i < kCount; ++i) {
-      const double value = noise(random_point(random, 400) + Eigen::Vector3d::Constant(centre));
+      const double value = noise(random_point(random, 400) + Eigen::Vector3d::Constant(center));
       sum += value;
       squares += value * value;
     }

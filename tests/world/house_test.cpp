@@ -36,7 +36,7 @@ std::vector<HouseConfig> extreme_houses() {
     HouseConfig config = coarse_house();
     config.width_m = large ? 24 : 15;
     config.depth_m = large ? 16 : 10;
-    config.storey_m = large ? 3.2 : 2.6;
+    config.story_m = large ? 3.2 : 2.6;
     config.wall_m = large ? 0.1 : 0.2;
     config.door_width_m = large ? 0.9 : 0.86;
     config.door_height_m = large ? 2.2 : 2.0;
@@ -138,7 +138,7 @@ TEST(House, RoomsFillTheHouseWithoutOverlap) {
   }
 }
 
-TEST(House, CeilingsAreOneOrTwoStoreysUp) {
+TEST(House, CeilingsAreOneOrTwoStoriesUp) {
   const HouseConfig config = coarse_house();
   const HousePlan plan = plan_house(config, 1);
   const World shell(build_shell(plan, config), "shell");
@@ -192,7 +192,7 @@ TEST(House, RouteIsAClosedTourOfAllRoomsAndDoors) {
       ASSERT_NE(room, nullptr);
       rooms.insert(room);
       EXPECT_GE(p.z(), 0.8);
-      EXPECT_LE(p.z(), room->height > config.storey_m ? 4 : 2);
+      EXPECT_LE(p.z(), room->height > config.story_m ? 4 : 2);
     }
     EXPECT_EQ(rooms.size(), plan.rooms.size());
     for (const Opening& door : plan.doors) {

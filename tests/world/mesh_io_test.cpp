@@ -47,7 +47,7 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFormats,
                                            FormatCase{"ascii.ply", testing::box_ply()},
                                            FormatCase{"z_up.dae", testing::box_dae("Z_UP", 1.0)},
                                            FormatCase{"y_up.dae", testing::box_dae("Y_UP", 1.0)},
-                                           FormatCase{"centimetres.dae",
+                                           FormatCase{"centimeters.dae",
                                                       testing::box_dae("Z_UP", 0.01)},
                                            FormatCase{"box.gltf", testing::box_gltf()}));
 

@@ -48,7 +48,7 @@ inline Topology topology(const TriangleMesh& mesh) {
     const auto opposite = edges.find(edge << 32U | edge >> 32U);
     if (count != 1 || opposite == edges.end()) ++result.open_edges;
   }
-  for (const auto& [edge, neighbour] : next) {
+  for (const auto& [edge, neighbor] : next) {
     const auto a = static_cast<std::uint32_t>(edge >> 32U);
     if (degree[a] == 0) continue;  // its ring was walked already
     const auto first = static_cast<std::uint32_t>(edge);

@@ -155,7 +155,7 @@ TEST_F(SdfWorld, MeshPathsAreRelativeToTheFileThatNamesThem) {
   EXPECT_EQ(load(world_with(include("model://box", "a", "0 0 0 0 0 0"))).triangles.size(), 12U);
 }
 
-TEST_F(SdfWorld, ASubmeshIsTakenAloneAndCentredWhenAsked) {
+TEST_F(SdfWorld, ASubmeshIsTakenAloneAndCenteredWhenAsked) {
   folder_.write("worlds/two.dae", testing::two_boxes_dae());
   const auto submesh = [](const std::string& content) {
     return world_of("<mesh><uri>two.dae</uri><submesh>" + content + "</submesh></mesh>");
@@ -240,7 +240,7 @@ TEST_F(SdfWorld, AShapeThatIsNotSupportedIsNoSilentHole) {
   EXPECT_THAT(input_error_of([&] { load(polyline); }), HasSubstr("polyline"));
 }
 
-TEST_F(SdfWorld, AColourOutOfRangeOrAMasslessLinkDoesNotMatter) {
+TEST_F(SdfWorld, AColorOutOfRangeOrAMasslessLinkDoesNotMatter) {
   const TriangleMesh mesh = load(
       world_with("<scene><ambient>150 150 150 255 </ambient></scene><model name='m'><link name='l'>"
                  "<inertial><mass>-1</mass></inertial>" +

@@ -50,7 +50,7 @@ TEST_P(SharedWorlds, HaveTheTrianglesAndTheExtentsTheirReadmeStates) {
   const WorldModel world = load_world(file_, options, log);
   EXPECT_EQ(world.mesh.triangles.size(), expected.mesh_triangles + expected.primitive_triangles);
   const Eigen::AlignedBox3d box = world.mesh.bounds();
-  constexpr double kRounding = 0.5;  // m; the README rounds to metres
+  constexpr double kRounding = 0.5;  // m; the README rounds to meters
   for (int axis = 0; axis < 3 && !expected.extent.isEmpty(); ++axis) {
     EXPECT_NEAR(box.min()[axis], expected.extent.min()[axis], kRounding) << "axis " << axis;
     EXPECT_NEAR(box.max()[axis], expected.extent.max()[axis], kRounding) << "axis " << axis;

@@ -91,7 +91,7 @@ TEST(Materials, ThatDoNotFitTheTrianglesAreRefused) {
 
 TEST(Materials, ADiffuseSurfaceFollowsLambertAndAMirrorIsSeenHeadOnAlone) {
   for (const double cosine : {0.0, 0.3, 1.0}) {
-    EXPECT_DOUBLE_EQ(backscatter({"grey", 0.4, 0.0}, cosine), 0.4 * cosine);
+    EXPECT_DOUBLE_EQ(backscatter({"gray", 0.4, 0.0}, cosine), 0.4 * cosine);
   }
   const double head_on = backscatter(materials::kMirror, 1.0);
   EXPECT_GT(head_on, 10.0);
@@ -148,7 +148,7 @@ TEST(CleanMesh, RefusesAMeshOfDegenerateTrianglesOnly) {
   EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }), HasSubstr("degenerate"));
 }
 
-TEST(CleanMesh, KeepsMicrometreTrianglesNearTheOrigin) {
+TEST(CleanMesh, KeepsMicrometerTrianglesNearTheOrigin) {
   TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1e-6, 1e-6, 1e-6});
   EXPECT_EQ(clean_mesh(mesh, "speck"), 0U);
 }

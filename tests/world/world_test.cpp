@@ -19,12 +19,12 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 class WorldCast : public testing::EveryRayCaster {};
-class WorldRecentring : public testing::EveryRayCaster {};
+class WorldRecentering : public testing::EveryRayCaster {};
 class WorldClosestPoint : public testing::EveryRayCaster {};
 class WorldVisible : public testing::EveryRayCaster {};
 class WorldMesh : public testing::EveryRayCaster {};
 INSTANTIATE_TEST_SUITE_P(With, WorldCast, testing::every_ray_caster(), testing::ray_caster_name);
-INSTANTIATE_TEST_SUITE_P(With, WorldRecentring, testing::every_ray_caster(),
+INSTANTIATE_TEST_SUITE_P(With, WorldRecentering, testing::every_ray_caster(),
                          testing::ray_caster_name);
 INSTANTIATE_TEST_SUITE_P(With, WorldClosestPoint, testing::every_ray_caster(),
                          testing::ray_caster_name);
@@ -102,10 +102,10 @@ TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
   EXPECT_GT(hit_count, kRays / 2);
 }
 
-TEST_P(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
+TEST_P(WorldCast, FindsTheSameHitsForNeighborsTogetherAsForRaysAlone) {
   const World world = make_world(testing::triangle_soup(4000, 5.0, 11));
   SequentialRandom random(13);
-  for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last are no neighbours at all
+  for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last are no neighbors at all
     std::vector<Ray> rays;
     while (rays.size() < 1003) {  // the last packet is not full
       const Vector3d origin = testing::random_point(random, 6.0);
@@ -117,7 +117,7 @@ TEST_P(WorldCast, FindsTheSameHitsForNeighboursTogetherAsForRaysAlone) {
     }
     std::vector<Hit> alone(rays.size()), together(rays.size());
     world.cast(rays, 8.0, alone);
-    world.cast(rays, 8.0, together, RayOrder::kNeighbours);
+    world.cast(rays, 8.0, together, RayOrder::kNeighbors);
     std::size_t others = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (alone[i].triangle != together[i].triangle) {
@@ -174,7 +174,7 @@ TEST_P(WorldCast, FindsNothingBeyondItsRangeOrInTheOpen) {
 
 TEST_P(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
   // A finely triangulated room; rays aimed at corners and edges of its triangles. Sixteenths of a
-  // metre are exact floats, so neighbours share their corners to the last bit.
+  // meter are exact floats, so neighbors share their corners to the last bit.
   TriangleMesh wall;
   constexpr std::uint32_t kCells = 16;
   for (std::uint32_t i = 0; i <= kCells; ++i) {
@@ -237,7 +237,7 @@ TEST_P(WorldCast, NoRaySlipsThroughTheEdgesAndCornersOfASphere) {
   EXPECT_LE(lost_at_corners, GetParam() == RayCaster::kBvh ? 0 : sphere.triangles.size() / 100);
 }
 
-TEST_P(WorldRecentring, KeepsATenthOfAMillimetreFarFromTheOrigin) {
+TEST_P(WorldRecentering, KeepsATenthOfAMillimeterFarFromTheOrigin) {
   // UTM-like coordinates: a float there is off by 3 cm (easting) and 25 cm (northing).
   const Vector3d far(5.0e5, 5.4e6, 300.0);
   const TriangleMesh soup = testing::triangle_soup(500, 5.0, 21);

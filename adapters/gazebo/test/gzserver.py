@@ -26,4 +26,4 @@ def run(world, plugins, models=(), limit_s=300, extra=None, arguments=()):
     env.update(extra or {})
     done = subprocess.run(["gzserver", "--verbose", *arguments, str(world)], env=env, text=True,
                           stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=limit_s)
-    return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)  # without colours
+    return done.returncode, re.sub(r"\x1b\[[0-9;]*m", "", done.stdout)  # without colors

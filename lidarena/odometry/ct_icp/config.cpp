@@ -33,7 +33,7 @@ Config improved(const LidarInfo& lidar) {
   registration.translation_threshold_m = 1e-3;
   registration.rotation_threshold_rad = 2e-4;
   registration.search_radius_m = 0.4;
-  registration.min_neighbours = 10;
+  registration.min_neighbors = 10;
   registration.plane_point = PlanePoint::kMean;
   registration.gate_distances = true;
   registration.start_iterations = 0;

@@ -30,10 +30,10 @@ enum class InitialMotion {
 enum class Solver {
   kGaussNewton,  ///< point to plane, our own normal equations
   kCeres,        ///< point to plane, Levenberg-Marquardt
-  kCeresShapes,  ///< likewise with lines, planes and distributions, whatever a neighbourhood is
+  kCeresShapes,  ///< likewise with lines, planes and distributions, whatever a neighborhood is
 };
 
-/// The point of a neighbourhood that its plane is laid through.
+/// The point of a neighborhood that its plane is laid through.
 enum class PlanePoint { kFarthest, kNearest, kMean };
 
 /// When a scan is not inserted into the map (until too many in a row were not).
@@ -85,8 +85,8 @@ struct RegistrationConfig {
   double rotation_threshold_rad = 0.1 * 3.14159265358979 / 180.0;
   double search_radius_m = 0.75;
   double search_again_m = 0.0;
-  int min_neighbours = 20;
-  int max_neighbours = 20;
+  int min_neighbors = 20;
+  int max_neighbors = 20;
   PlanePoint plane_point = PlanePoint::kFarthest;
   double planarity_weight = 0.9;
   double nearness_weight = 0.1;
@@ -113,16 +113,16 @@ struct RegistrationConfig {
       "registration ends when both ends together moved less ...", at_least(0));
     v("rotation_threshold_rad", self.rotation_threshold_rad, "rad", "... and turned less",
       at_least(0));
-    v("search_radius_m", self.search_radius_m, "m", "for neighbours in the map", above(0));
+    v("search_radius_m", self.search_radius_m, "m", "for neighbors in the map", above(0));
     v("search_again_m", self.search_again_m, "m",
-      "neighbours are searched anew once a keypoint moved so far; 0: in each iteration",
+      "neighbors are searched anew once a keypoint moved so far; 0: in each iteration",
       at_least(0));
-    v("min_neighbours", self.min_neighbours, "", "a keypoint with fewer is not matched",
+    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer is not matched",
       at_least(3));
-    v("max_neighbours", self.max_neighbours, "", "the nearest so many count", Limits{3, 64});
+    v("max_neighbors", self.max_neighbors, "", "the nearest so many count", Limits{3, 64});
     v("plane_point", self.plane_point, "",
-      "what a plane is laid through: farthest (the public program), nearest or mean of neighbours");
-    v("planarity_weight", self.planarity_weight, "", "of the square of a neighbourhood's planarity",
+      "what a plane is laid through: farthest (the public program), nearest or mean of neighbors");
+    v("planarity_weight", self.planarity_weight, "", "of the square of a neighborhood's planarity",
       at_least(0));
     v("nearness_weight", self.nearness_weight, "",
       "of the exponential of the plane point's distance", at_least(0));

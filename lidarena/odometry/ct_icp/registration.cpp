@@ -7,18 +7,18 @@
 #include <optional>
 #include <vector>
 
-#include "lidarena/odometry/ct_icp/neighbourhood.hpp"
+#include "lidarena/odometry/ct_icp/neighborhood.hpp"
 
 namespace lidarena::ct_icp {
 
 namespace {
 
-constexpr std::size_t kMostNeighbours = 64;
+constexpr std::size_t kMostNeighbors = 64;
 constexpr std::size_t kGrain = 64;  // keypoints a task: some 0.2 ms of work
 
 /// What was found about a keypoint, and where it was then.
 struct Found {
-  std::optional<Neighbourhood> neighbourhood;
+  std::optional<Neighborhood> neighborhood;
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(INFINITY);
 };
 
@@ -55,8 +55,8 @@ class Matcher {
     if (!((position - found.searched_at).norm() < config_.search_again_m)) {
       found = {search(position.cast<float>()), position};
     }
-    if (!found.neighbourhood) return std::nullopt;
-    const Neighbourhood& near = *found.neighbourhood;
+    if (!found.neighborhood) return std::nullopt;
+    const Neighborhood& near = *found.neighborhood;
     const double distance = near.normal.dot(position - near.anchor);
     if (config_.gate_distances && std::abs(distance) >= config_.max_plane_distance_m)
       return std::nullopt;
@@ -68,12 +68,12 @@ class Matcher {
     return match;
   }
 
-  std::optional<Neighbourhood> search(const Eigen::Vector3f& position) const {
-    std::array<VoxelHashMap::Neighbor, kMostNeighbours> room;
-    const std::span near(room.data(), static_cast<std::size_t>(config_.max_neighbours));
+  std::optional<Neighborhood> search(const Eigen::Vector3f& position) const {
+    std::array<VoxelHashMap::Neighbor, kMostNeighbors> room;
+    const std::span near(room.data(), static_cast<std::size_t>(config_.max_neighbors));
     const auto radius = static_cast<float>(config_.search_radius_m);
     const std::size_t count = map_.nearest(position, radius, near);
-    if (count < static_cast<std::size_t>(config_.min_neighbours)) return std::nullopt;
+    if (count < static_cast<std::size_t>(config_.min_neighbors)) return std::nullopt;
     return describe(near.first(count), config_.plane_point);
   }
 

@@ -12,7 +12,7 @@
 
 namespace lidarena::fast_lio2 {
 
-/// How a plane is laid through the five neighbours of a point.
+/// How a plane is laid through the five neighbors of a point.
 enum class PlaneFit {
   kThroughOrigin,  ///< a . x = -1 by least squares: has no answer for planes through the origin
   kPrincipal,      ///< through the centroid, across the direction in which they spread least
@@ -37,7 +37,7 @@ struct Config {
   int max_iterations = 3;
   double convergence = 1e-3;
   double point_variance_m2 = 1e-3;
-  double max_neighbour_m = 2.236;
+  double max_neighbor_m = 2.236;
   double plane_thickness_m = 0.1;
   PlaneFit plane_fit = PlaneFit::kThroughOrigin;
   bool plane_uncertainty = false;
@@ -87,13 +87,13 @@ struct Config {
     v("convergence", self.convergence, "m, rad, m/s, ...", "largest step of a converged update",
       above(0));
     v("point_variance_m2", self.point_variance_m2, "m^2", "of a point across its plane", above(0));
-    v("max_neighbour_m", self.max_neighbour_m, "m", "distance of the fifth neighbour, at most",
+    v("max_neighbor_m", self.max_neighbor_m, "m", "distance of the fifth neighbor, at most",
       above(0));
     v("plane_thickness_m", self.plane_thickness_m, "m",
-      "distance of each neighbour from their plane, at most", above(0));
+      "distance of each neighbor from their plane, at most", above(0));
     v("plane_fit", self.plane_fit, "", "through_origin or principal (cure)");
     v("plane_uncertainty", self.plane_uncertainty, "",
-      "cure: a point counts less the less its five neighbours say about their plane's place there, "
+      "cure: a point counts less the less its five neighbors say about their plane's place there, "
       "which is next to nothing when they lie on a line");
     v("estimate_extrinsics", self.estimate_extrinsics, "",
       "whether the LiDAR's place on the IMU is estimated, too");

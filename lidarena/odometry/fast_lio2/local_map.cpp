@@ -8,17 +8,17 @@ namespace {
 
 enum class Insertion { kPlain, kThinned, kNone };
 
-/// What the neighbours say (FAST-LIO2, section V-E; the shortcuts are the public program's): when
+/// What the neighbors say (FAST-LIO2, section V-E; the shortcuts are the public program's): when
 /// the nearest lies outside the cell on every axis, the cell is empty; when one of them is nearer
-/// to the cell's centre, the point would lose.
+/// to the cell's center, the point would lose.
 Insertion insertion_of(const Eigen::Vector3f& point, const Match& match, float voxel) {
   if (match.found == 0) return Insertion::kThinned;
-  const Eigen::Vector3f centre = ((point / voxel).array().floor() + 0.5F) * voxel;
-  const Eigen::Vector3f away = (match.neighbours[0].point - centre).cwiseAbs();
+  const Eigen::Vector3f center = ((point / voxel).array().floor() + 0.5F) * voxel;
+  const Eigen::Vector3f away = (match.neighbors[0].point - center).cwiseAbs();
   if ((away.array() > 0.5F * voxel).all()) return Insertion::kPlain;
-  const float own = (point - centre).squaredNorm();
+  const float own = (point - center).squaredNorm();
   for (std::size_t i = 0; i < match.found; ++i) {
-    if ((match.neighbours[i].point - centre).squaredNorm() < own) return Insertion::kNone;
+    if ((match.neighbors[i].point - center).squaredNorm() < own) return Insertion::kNone;
   }
   return Insertion::kThinned;
 }
@@ -36,14 +36,14 @@ void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>&
 }
 
 void MapWindow::follow(const Eigen::Vector3f& sensor, KdTree& map) {
-  if ((sensor - centre_).cwiseAbs().maxCoeff() < 0.25F * radius_) return;
-  centre_ = sensor;
+  if ((sensor - center_).cwiseAbs().maxCoeff() < 0.25F * radius_) return;
+  center_ = sensor;
   constexpr float kFar = std::numeric_limits<float>::max();
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     Eigen::AlignedBox3f below(Eigen::Vector3f::Constant(-kFar), Eigen::Vector3f::Constant(kFar));
     Eigen::AlignedBox3f above = below;
-    below.max()[axis] = centre_[axis] - radius_;
-    above.min()[axis] = centre_[axis] + radius_;
+    below.max()[axis] = center_[axis] - radius_;
+    above.min()[axis] = center_[axis] + radius_;
     map.remove(below);
     map.remove(above);
   }

@@ -10,7 +10,7 @@
 namespace lidarena::fast_lio2 {
 
 /// Adds a scan's points (m, world) to the map: one point a cell stays, the one nearest to its
-/// centre. `matches` are those of the points' last search, empty if there was none.
+/// center. `matches` are those of the points' last search, empty if there was none.
 void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
               float voxel, KdTree& map);
 
@@ -23,7 +23,7 @@ class MapWindow {
 
  private:
   float radius_;
-  Eigen::Vector3f centre_ = Eigen::Vector3f::Zero();
+  Eigen::Vector3f center_ = Eigen::Vector3f::Zero();
 };
 
 }  // namespace lidarena::fast_lio2

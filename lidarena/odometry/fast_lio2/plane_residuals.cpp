@@ -8,25 +8,25 @@
 namespace lidarena::fast_lio2 {
 namespace {
 
-using Columns = Eigen::Matrix<double, 3, kNeighbours>;
+using Columns = Eigen::Matrix<double, 3, kNeighbors>;
 
 /// a . x = -1 in the sense of least squares.
 Plane through_origin(const Columns& points) {
-  const Eigen::Matrix<float, kNeighbours, 3> rows = points.transpose().cast<float>();
+  const Eigen::Matrix<float, kNeighbors, 3> rows = points.transpose().cast<float>();
   const Eigen::Vector3f a =
-      rows.colPivHouseholderQr().solve(Eigen::Matrix<float, kNeighbours, 1>::Constant(-1.0F));
+      rows.colPivHouseholderQr().solve(Eigen::Matrix<float, kNeighbors, 1>::Constant(-1.0F));
   const double length = a.cast<double>().norm();
   return {a.cast<double>() / length, 1.0 / length};
 }
 
 /// Across the direction in which the points spread least.
 Plane principal(const Columns& points) {
-  const Eigen::Vector3d centre = points.rowwise().mean();
-  const Columns centred = points.colwise() - centre;
+  const Eigen::Vector3d center = points.rowwise().mean();
+  const Columns centered = points.colwise() - center;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
-  spread.computeDirect(centred * centred.transpose());
+  spread.computeDirect(centered * centered.transpose());
   const Eigen::Vector3d normal = spread.eigenvectors().col(0);
-  return {normal, -normal.dot(centre)};
+  return {normal, -normal.dot(center)};
 }
 
 /// Whether the residual is small for the point's range: 0.11 m at 1 m, 0.35 m at 10 m.
@@ -36,9 +36,9 @@ bool is_near(double distance, double range) {
 
 }  // namespace
 
-std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness) {
+std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness) {
   Columns columns;
-  for (std::size_t i = 0; i < kNeighbours; ++i) {
+  for (std::size_t i = 0; i < kNeighbors; ++i) {
     columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
   }
   const Plane plane = fit == PlaneFit::kPrincipal ? principal(columns) : through_origin(columns);
@@ -48,21 +48,21 @@ std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double th
   return plane;
 }
 
-double plane_variance(const Neighbours& points, const Plane& plane, double point_variance) {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  for (const Neighbour& p : points) centre += p.point.cast<double>() / kNeighbours;
+double plane_variance(const Neighbors& points, const Plane& plane, double point_variance) {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  for (const Neighbor& p : points) center += p.point.cast<double>() / kNeighbors;
   const Eigen::Matrix<double, 3, 2> basis = tangent_basis(plane.normal);
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // along the plane
   double reach = 0.0;
-  for (const Neighbour& p : points) {
-    const Eigen::Vector2d along = basis.transpose() * (p.point.cast<double>() - centre);
+  for (const Neighbor& p : points) {
+    const Eigen::Vector2d along = basis.transpose() * (p.point.cast<double>() - center);
     spread += along * along.transpose();
     reach = std::max(reach, along.squaredNorm());
   }
   const double half = 0.5 * spread.trace();
   const double width = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
   const double tilt = point_variance / std::max(width, 1e-3 * point_variance);
-  return point_variance / kNeighbours + tilt * reach;
+  return point_variance / kNeighbors + tilt * reach;
 }
 
 PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
@@ -87,15 +87,15 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Kd
 
 void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
   match.found =
-      map_.nearest(in_world, match.neighbours, static_cast<float>(config_.max_neighbour_m));
+      map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
   match.plane.reset();
-  if (match.found == kNeighbours) {
-    match.plane = fit_plane(match.neighbours, config_.plane_fit, config_.plane_thickness_m);
+  if (match.found == kNeighbors) {
+    match.plane = fit_plane(match.neighbors, config_.plane_fit, config_.plane_thickness_m);
   }
   match.near_plane = match.plane.has_value();
   if (!match.plane || !config_.plane_uncertainty) return;
   const double own = config_.point_variance_m2;
-  match.weight = own / (own + plane_variance(match.neighbours, *match.plane, own));
+  match.weight = own / (own + plane_variance(match.neighbors, *match.plane, own));
 }
 
 double PlaneResiduals::near_planes() const {

@@ -15,8 +15,8 @@
 
 namespace lidarena::fast_lio2 {
 
-inline constexpr std::size_t kNeighbours = 5;
-using Neighbours = std::array<Neighbour, kNeighbours>;
+inline constexpr std::size_t kNeighbors = 5;
+using Neighbors = std::array<Neighbor, kNeighbors>;
 
 /// normal . x + offset = 0, with a unit normal.
 struct Plane {
@@ -25,17 +25,17 @@ struct Plane {
 };
 
 /// The plane through five points (m), if all lie within `thickness` of it.
-std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness);
+std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness);
 
 /// How far (m^2) the plane may be off within the reach of its five points, which are off it by
 /// `point_variance` (m^2): s^2 / 5 of the centroid, and over the distance of the farthest of them
 /// the tilt s^2 / w about the direction in which they spread most, w the sum of their squared
 /// distances from that line. Points on one line leave the tilt open.
-double plane_variance(const Neighbours& points, const Plane& plane, double point_variance);
+double plane_variance(const Neighbors& points, const Plane& plane, double point_variance);
 
 /// A point of the scan and what it was matched with.
 struct Match {
-  Neighbours neighbours;  ///< of the last search; the first `found` are valid
+  Neighbors neighbors;  ///< of the last search; the first `found` are valid
   std::size_t found = 0;
   std::optional<Plane> plane;  ///< none: does not count until the next search
   double weight = 1.0;         ///< variance of the point alone by that with its plane's

@@ -38,13 +38,13 @@ Config improved(const LidarInfo& lidar) {
   config.initial_threshold_m = 0.2;
   config.threshold_memory = 10.0;
   config.threshold_lever = ThresholdLever::kMeanRange;
-  config.kernel_in_metres = true;
+  config.kernel_in_meters = true;
   config.max_iterations = 20;
   config.convergence = 1e-3;
   config.equal_times_are_no_times = true;
   config.motion_per_second = true;
   config.motion_kept_when_lost = 0.5;
-  config.sensor_centred = true;
+  config.sensor_centered = true;
   return config;
 }
 

@@ -57,14 +57,14 @@ struct Config {
   double keypoint_thinning = 1.5;
   int calm_start = 0;
   double kernel_fraction = 1.0;
-  bool kernel_in_metres = false;
+  bool kernel_in_meters = false;
   int max_iterations = 500;
   double convergence = 1e-4;
 
   bool equal_times_are_no_times = false;
   bool motion_per_second = false;
   double motion_kept_when_lost = 1.0;
-  bool sensor_centred = false;
+  bool sensor_centered = false;
 
   double voxel_size() const { return voxel_size_m.value_or(max_range_m / 100.0); }
 
@@ -109,7 +109,7 @@ struct Config {
       "cure: after so many, an error's share in sigma is down to 1/e; null: never forgotten",
       at_least(1));
     v("threshold_lever", self.threshold_lever, "",
-      "what turns an angle into metres in sigma: max_range or, cure, mean_range of the keypoints");
+      "what turns an angle into meters in sigma: max_range or, cure, mean_range of the keypoints");
     v("plane_thinness", self.plane_thinness, "",
       "cure: cells whose points vary across a plane by at most this part of their variance along "
       "it count as that plane, and points are drawn to it along its normal alone; null: no planes",
@@ -129,7 +129,7 @@ struct Config {
       "edge of the cells of which one point each is registered", above(0));
     v("kernel_fraction", self.kernel_fraction, "",
       "scale of the robust kernel as a fraction of sigma", above(0));
-    v("kernel_in_metres", self.kernel_in_metres, "",
+    v("kernel_in_meters", self.kernel_in_meters, "",
       "cure: the kernel's scale is that length; false: the root of it, as its formula has it");
     v("max_iterations", self.max_iterations, "", "of ICP; bounds the time of a lost scan",
       at_least(1));
@@ -141,7 +141,7 @@ struct Config {
     v("motion_kept_when_lost", self.motion_kept_when_lost, "",
       "cure below 1: factor on the predicted motion after each scan that matches nothing",
       between(0, 1));
-    v("sensor_centred", self.sensor_centred, "",
+    v("sensor_centered", self.sensor_centered, "",
       "cure: increments turn about the sensor, not about the origin of the map");
   }
 };

@@ -19,7 +19,7 @@ double kernel_weight(double squared_error, double sigma) {
 
 /// Sigma that gives that weight the scale `scale` m.
 double kernel_of(double scale, const Config& config) {
-  return config.kernel_in_metres ? scale * scale : scale;
+  return config.kernel_in_meters ? scale * scale : scale;
 }
 
 /// Pose of the lidar at a point's instant, and the share that it has in the scan's increment.
@@ -88,7 +88,7 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
       const Eigen::Vector3d point = map_from_instant * keypoints.positions[i].cast<double>();
       const auto match = map.nearest(point.cast<float>(), radius);
       if (!match) return;
-      const Eigen::Vector3d center = config.sensor_centred
+      const Eigen::Vector3d center = config.sensor_centered
                                          ? Eigen::Vector3d(map_from_instant.translation())
                                          : Eigen::Vector3d::Zero();
       if (match.plane != nullptr) {
@@ -107,7 +107,7 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
     };
     const auto equations = accumulate_normal_equations<6>(parallel, keypoints.size(), add_match);
     const Eigen::Vector3d center =
-        config.sensor_centred ? Eigen::Vector3d(pose.translation()) : Eigen::Vector3d::Zero();
+        config.sensor_centered ? Eigen::Vector3d(pose.translation()) : Eigen::Vector3d::Zero();
     const se3::Vector6 increment = equations.solve();
     pose = orthonormalized(apply_about(increment, center) * pose);
     result.matches = equations.count;

@@ -21,7 +21,7 @@ Config original_livox() {
   config.columns_by = Columns::kArrival;
   config.min_range_m = 0.5;
   config.max_range_m = 40.0;
-  config.smoothness_neighbours = 2;
+  config.smoothness_neighbors = 2;
   config.edges_per_sector = 40;
   config.occluded_points = 3;
   config.grazing_share = 0.1;

@@ -19,7 +19,7 @@ enum class Columns {
   kArrival,  ///< a place in the order of firing within the ring: for patterns that do not repeat
 };
 
-/// How a plane is laid through the five neighbours of a point.
+/// How a plane is laid through the five neighbors of a point.
 enum class PlaneFit {
   kThroughOrigin,  ///< a . x = -1 by least squares: has no answer for planes through the origin
   kPrincipal,      ///< through the centroid, across the direction in which they spread least
@@ -44,7 +44,7 @@ struct Config {
   bool deskew_translation = false;
   bool deskew_bias = false;
 
-  int smoothness_neighbours = 5;
+  int smoothness_neighbors = 5;
   double edge_threshold_m2 = 1.0;
   int edges_per_sector = 20;
   int occluded_points = 6;
@@ -101,13 +101,13 @@ struct Config {
     v("deskew_translation", self.deskew_translation, "",
       "cure: points are moved by the body's shift within the scan too, not by its turn alone");
     v("deskew_bias", self.deskew_bias, "", "cure: by the turn without the gyro's bias");
-    v("smoothness_neighbours", self.smoothness_neighbours, "",
+    v("smoothness_neighbors", self.smoothness_neighbors, "",
       "on each side, that a point's range is compared with", at_least(1));
     v("edge_threshold_m2", self.edge_threshold_m2, "m^2", "rougher points may be edges", above(0));
     v("edges_per_sector", self.edges_per_sector, "", "a sector is a sixth of a row", at_least(0));
     v("occluded_points", self.occluded_points, "", "barred on the far side of a jump", at_least(0));
     v("grazing_share", self.grazing_share, "",
-      "points whose range differs from both neighbours' by more than this share are barred",
+      "points whose range differs from both neighbors' by more than this share are barred",
       above(0));
     v("edge_leaf_m", self.edge_leaf_m, "m", "edges are averaged in cells of this edge", above(0));
     v("surface_leaf_m", self.surface_leaf_m, "m", "surface points likewise", above(0));
@@ -124,7 +124,7 @@ struct Config {
       "after a smaller step the correspondences stay; 0: searched in each iteration", at_least(0));
     v("plane_fit", self.plane_fit, "", "through_origin or principal (cure)");
     v("plane_thickness_m", self.plane_thickness_m, "m",
-      "distance of each neighbour from their plane, at most", above(0));
+      "distance of each neighbor from their plane, at most", above(0));
     v("degeneracy", self.degeneracy, "", "eigenvalue or share (cure)");
     v("keyframe_distance_m", self.keyframe_distance_m, "m", "moved so far, a scan is a keyframe",
       above(0));

@@ -9,8 +9,8 @@
 namespace lidarena::lio_sam {
 namespace {
 
-constexpr int kAdjacent = 10;     // columns: points further apart are not neighbours
-constexpr float kJump = 0.3F;     // m, between neighbours: one hides what is behind it
+constexpr int kAdjacent = 10;     // columns: points further apart are not neighbors
+constexpr float kJump = 0.3F;     // m, between neighbors: one hides what is behind it
 constexpr int kSectors = 6;       // of a row
 constexpr int kSuppressed = 5;    // points on each side of an edge that are none
 constexpr std::size_t kRows = 8;  // a task
@@ -23,7 +23,7 @@ void bar(Flags& flags, int first, int count) {
     flags[static_cast<std::size_t>(i)] = true;
 }
 
-/// Bars an edge's neighbours on one side, up to a gap.
+/// Bars an edge's neighbors on one side, up to a gap.
 void suppress(std::span<const Pixel> row, Flags& flags, int at, int step) {
   const int size = static_cast<int>(row.size());
   for (int k = 1; k <= kSuppressed; ++k) {
@@ -55,7 +55,7 @@ Flags edges_of(std::span<const Pixel> row, const Config& config) {
   Flags barred = barred_points(row, config);
   const std::vector<float> rough = roughness(row, config);
   Flags edges(row.size(), false);
-  const int margin = config.smoothness_neighbours;
+  const int margin = config.smoothness_neighbors;
   const int usable = static_cast<int>(row.size()) - 2 * margin;
   for (int sector = 0; sector < kSectors && usable > 0; ++sector) {
     const int begin = margin + usable * sector / kSectors;
@@ -95,7 +95,7 @@ std::vector<bool> barred_points(std::span<const Pixel> row, const Config& config
 
 std::vector<float> roughness(std::span<const Pixel> row, const Config& config) {
   std::vector<float> rough(row.size(), 0.0F);
-  const auto w = static_cast<std::size_t>(config.smoothness_neighbours);
+  const auto w = static_cast<std::size_t>(config.smoothness_neighbors);
   for (std::size_t i = w; i + w < row.size(); ++i) {
     float sum = 0.0F;
     for (std::size_t k = 1; k <= w; ++k)

@@ -19,7 +19,7 @@ struct Features {
 /// seen from elsewhere there. One flag a pixel.
 std::vector<bool> barred_points(std::span<const Pixel> row, const Config& config);
 
-/// Square (m^2) of the sum of the neighbours' ranges beyond a point's own; 0 near the row's ends.
+/// Square (m^2) of the sum of the neighbors' ranges beyond a point's own; 0 near the row's ends.
 std::vector<float> roughness(std::span<const Pixel> row, const Config& config);
 
 /// Edges are the roughest points of each sixth of a row, not next to each other; all others are

@@ -18,7 +18,7 @@ struct Pixel {
   int column = 0;
 };
 
-/// A scan as rows of points that neighbour each other; empty cells are left out.
+/// A scan as rows of points that neighbor each other; empty cells are left out.
 struct RangeImage {
   std::vector<Pixel> pixels;         ///< row by row, by column
   std::vector<std::size_t> row_end;  ///< index of the pixel after each row

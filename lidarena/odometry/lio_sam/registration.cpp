@@ -10,36 +10,36 @@ namespace lidarena::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
-using Columns3 = Eigen::Matrix<double, 3, kNeighbours>;
+using Columns3 = Eigen::Matrix<double, 3, kNeighbors>;
 
 constexpr double kPlaneRatio = 0.05;        // spread of a plane's narrow side by its wide one
-constexpr float kMaxNeighbour = 1.0F;       // m, the fifth
+constexpr float kMaxNeighbor = 1.0F;       // m, the fifth
 constexpr double kLineRatio = 3.0;          // spread along by spread across
 constexpr double kLeastWeight = 0.1;        // of a match that counts
 constexpr std::size_t kLeastMatches = 50;   // fewer tell nothing
 constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's
 constexpr double kLeastShare = 0.003;       // of all; 1/6 if all alike
 
-Columns3 columns_of(const Neighbours& points) {
+Columns3 columns_of(const Neighbors& points) {
   Columns3 columns;
-  for (std::size_t i = 0; i < kNeighbours; ++i)
+  for (std::size_t i = 0; i < kNeighbors; ++i)
     columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
   return columns;
 }
 
-/// Eigenvectors of the spread about the centre, the smallest first.
+/// Eigenvectors of the spread about the center, the smallest first.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread_of(const Columns3& points,
-                                                         const Vector3d& centre) {
-  const Columns3 centred = points.colwise() - centre;
+                                                         const Vector3d& center) {
+  const Columns3 centered = points.colwise() - center;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
-  spread.computeDirect(centred * centred.transpose());
+  spread.computeDirect(centered * centered.transpose());
   return spread;
 }
 
 Plane through_origin(const Columns3& points) {
-  const Eigen::Matrix<float, kNeighbours, 3> rows = points.transpose().cast<float>();
+  const Eigen::Matrix<float, kNeighbors, 3> rows = points.transpose().cast<float>();
   const Vector3d a = rows.colPivHouseholderQr()
-                         .solve(Eigen::Matrix<float, kNeighbours, 1>::Constant(-1.0F))
+                         .solve(Eigen::Matrix<float, kNeighbors, 1>::Constant(-1.0F))
                          .cast<double>();
   return {a / a.norm(), 1.0 / a.norm()};
 }
@@ -61,10 +61,10 @@ void search(const std::vector<Eigen::Vector3f>& points, const KdTree& map, const
             const Parallel& parallel, Fit&& fit, Matches<Shape>& matches) {
   constexpr std::size_t kGrain = 256;
   parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
-    Neighbours near;
+    Neighbors near;
     const auto found =
-        map.nearest((pose * points[i].cast<double>()).cast<float>(), near, kMaxNeighbour);
-    matches[i] = found == kNeighbours ? fit(near) : std::nullopt;
+        map.nearest((pose * points[i].cast<double>()).cast<float>(), near, kMaxNeighbor);
+    matches[i] = found == kNeighbors ? fit(near) : std::nullopt;
   });
 }
 
@@ -96,7 +96,7 @@ class Matcher {
       search(features_.edges, map_.edges, pose, parallel_, fit_line, lines_);
       search(
           features_.surfaces, map_.surfaces, pose, parallel_,
-          [&](const Neighbours& near) {
+          [&](const Neighbors& near) {
             return fit_plane(near, config_.plane_fit, config_.plane_thickness_m);
           },
           planes_);
@@ -124,26 +124,26 @@ double lever_of(const std::vector<Eigen::Vector3f>& points) {
 
 }  // namespace
 
-std::optional<Line> fit_line(const Neighbours& points) {
+std::optional<Line> fit_line(const Neighbors& points) {
   const Columns3 columns = columns_of(points);
-  const Vector3d centre = columns.rowwise().mean();
-  const auto spread = spread_of(columns, centre);
+  const Vector3d center = columns.rowwise().mean();
+  const auto spread = spread_of(columns, center);
   if (!(spread.eigenvalues()[2] > kLineRatio * spread.eigenvalues()[1])) return std::nullopt;
-  return Line{centre, spread.eigenvectors().col(2)};
+  return Line{center, spread.eigenvectors().col(2)};
 }
 
-std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness) {
+std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness) {
   const Columns3 columns = columns_of(points);
   Plane plane;
   if (fit == PlaneFit::kThroughOrigin) {
     plane = through_origin(columns);
   } else {
-    const Vector3d centre = columns.rowwise().mean();
-    const auto spread = spread_of(columns, centre);
+    const Vector3d center = columns.rowwise().mean();
+    const auto spread = spread_of(columns, center);
     // on a line, as the sweeps of one scan leave them, they hold no plane
     if (spread.eigenvalues()[1] < kPlaneRatio * spread.eigenvalues()[2]) return std::nullopt;
     plane.normal = spread.eigenvectors().col(0);
-    plane.offset = -plane.normal.dot(centre);
+    plane.offset = -plane.normal.dot(center);
   }
   const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
   // Not "greater than": a fit that failed is not finite.
@@ -154,8 +154,8 @@ std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double th
 std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& line,
                                            const Pose& map_from_lidar) {
   const Vector3d arm = map_from_lidar.linear() * point;
-  const Vector3d from_centre = arm + map_from_lidar.translation() - line.centre;
-  const Vector3d away = from_centre - line.direction.dot(from_centre) * line.direction;
+  const Vector3d from_center = arm + map_from_lidar.translation() - line.center;
+  const Vector3d away = from_center - line.direction.dot(from_center) * line.direction;
   const double distance = away.norm();
   const double weight = 1.0 - 0.9 * distance;
   if (weight <= kLeastWeight || distance == 0.0) return std::nullopt;

@@ -15,13 +15,13 @@
 
 namespace lidarena::lio_sam {
 
-inline constexpr std::size_t kNeighbours = 5;
-using Neighbours = std::array<Neighbour, kNeighbours>;
+inline constexpr std::size_t kNeighbors = 5;
+using Neighbors = std::array<Neighbor, kNeighbors>;
 /// Errors of a pose: turn (rad, about the sensor, axes of the world), then shift (m, world).
 using PoseEquations = NormalEquations<6>;
 
 struct Line {
-  Eigen::Vector3d centre;
+  Eigen::Vector3d center;
   Eigen::Vector3d direction;  ///< unit
 };
 /// normal . x + offset = 0, with a unit normal.
@@ -31,9 +31,9 @@ struct Plane {
 };
 
 /// The line through points that spread three times as much along it as across.
-std::optional<Line> fit_line(const Neighbours& points);
+std::optional<Line> fit_line(const Neighbors& points);
 /// The plane through points that all lie within `thickness` (m) of it.
-std::optional<Plane> fit_plane(const Neighbours& points, PlaneFit fit, double thickness);
+std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness);
 
 /// A point's distance (m, not negative) from its line or plane and how it grows with the pose's
 /// errors, both times the weight of the match; nothing when that is too small.

@@ -30,7 +30,7 @@ TEST(AdaptiveThreshold, SigmaIsTheRootMeanSquareOfTheFirstGuessAndLargeErrors) {
   EXPECT_NEAR(threshold.sigma(), std::sqrt((4.0 + 0.25 + 1.0) / 3.0), 1e-12);
 }
 
-TEST(AdaptiveThreshold, In2023TheFirstGuessHoldsForHalfAMetreAndThenDropsOut) {
+TEST(AdaptiveThreshold, In2023TheFirstGuessHoldsForHalfAMeterAndThenDropsOut) {
   Config config;
   config.threshold_start = ThresholdStart::kUntilMoved;
   AdaptiveThreshold threshold(config);

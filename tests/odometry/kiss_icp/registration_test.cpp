@@ -72,10 +72,10 @@ TEST(Registration, TheSamePointsMovedAreFoundWhereTheyWere) {
   const VoxelHashMap map = map_of(points);
   // points lie 0.2 m apart and more; a shift of 5 cm pairs nearly all rightly from the start
   const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
-  for (const bool sensor_centred : {false, true}) {
+  for (const bool sensor_centered : {false, true}) {
     Config config;
     config.convergence = 1e-9;
-    config.sensor_centred = sensor_centred;
+    config.sensor_centered = sensor_centered;
     const Registration found = register_still(points, map, shift, 0.5, config);
     EXPECT_LT((found.map_from_lidar.matrix() - Pose::Identity().matrix()).norm(), 1e-6);
     EXPECT_EQ(found.matches, points.size());
@@ -111,8 +111,8 @@ TEST(Registration, TurningAboutTheSensorOrTheOriginEndsAtTheSamePose) {
   const Pose guess = far_away * pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   Config config;
   config.convergence = 1e-7;
-  for (const bool sensor_centred : {false, true}) {
-    config.sensor_centred = sensor_centred;
+  for (const bool sensor_centered : {false, true}) {
+    config.sensor_centered = sensor_centered;
     const Registration found = register_still(points, map, guess, 0.5, config);
     const Pose error = far_away.inverse() * found.map_from_lidar;
     EXPECT_LT(error.translation().norm(), 1e-4) << "floats at 360 m round to 3e-5 m";
@@ -164,7 +164,7 @@ TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
   const VoxelHashMap map = map_of(walls);
   const TimedPoints keypoints = look_around_moving(end, twist, 2003);
   Config config;
-  config.sensor_centred = true;
+  config.sensor_centered = true;
   config.convergence = 1e-6;
   const auto error_with = [&](double own_motion) {
     const auto found = register_points(keypoints, map, {start, 0.1, Vector6::Zero()}, start, 1.0,
@@ -206,7 +206,7 @@ TEST(Registration, PlanesAverageTheNoiseOfTheirCells) {
   }
   const Pose guess = pose_of(0.1, 0.03, 0.0, 0, 0, 0);
   Config config;
-  config.sensor_centred = true;
+  config.sensor_centered = true;
   config.convergence = 1e-7;
   VoxelHashMap planes({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   planes.insert(wall);
@@ -244,7 +244,7 @@ TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
   VoxelHashMap alone({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   alone.insert(pattern);
   Config config;
-  config.sensor_centred = true;
+  config.sensor_centered = true;
   config.convergence = 1e-7;
   const auto shift_in = [&](const VoxelHashMap& map, double weight) -> double {
     config.shapeless_weight = weight;
@@ -270,9 +270,9 @@ TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
     for (int copy = 0; copy < 3; ++copy) seen.push_back(points.back());
     seen.emplace_back(points.back() - Eigen::Vector3f(static_cast<float>(kOff), 0.0F, 0.0F));
   }
-  for (const bool in_metres : {false, true}) {
+  for (const bool in_meters : {false, true}) {
     const double scale = kSigma * kFraction;
-    const double k = in_metres ? scale * scale : scale;
+    const double k = in_meters ? scale * scale : scale;
     const auto slope = [&](double x) {
       const auto pull = [&](double r) { return r * std::pow(k / (k + r * r), 2.0); };
       return 3.0 * pull(x) + pull(x - kOff);
@@ -281,12 +281,12 @@ TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
     for (int i = 0; i < 60; ++i)
       (slope(0.5 * (low + high)) < 0.0 ? low : high) = 0.5 * (low + high);
     Config config;
-    config.sensor_centred = true;
+    config.sensor_centered = true;
     config.convergence = 1e-9;
     config.kernel_fraction = kFraction;
-    config.kernel_in_metres = in_metres;
+    config.kernel_in_meters = in_meters;
     const auto found = register_still(seen, map_of(points), Pose::Identity(), kSigma, config);
-    EXPECT_NEAR(found.map_from_lidar.translation().x(), low, 1e-7) << in_metres;
+    EXPECT_NEAR(found.map_from_lidar.translation().x(), low, 1e-7) << in_meters;
     EXPECT_LT(found.map_from_lidar.translation().tail<2>().norm(), 1e-7);
   }
 }
@@ -296,7 +296,7 @@ TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
   const VoxelHashMap map = map_of(points);
   const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   Config config;
-  config.sensor_centred = true;
+  config.sensor_centered = true;
   const std::vector<float> all_at_it(points.size(), 0.0F);
   const Departure departure{pose_of(1, 2, 3, 0, 0, 1), 0.1, Vector6::Zero()};
   const auto moving =

@@ -72,7 +72,7 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
     });
   }));
   const full = Math.min(100, Math.ceil((top * 1.02) / 20) * 20);
-  // the threshold stands on an axis of centimetres of its own, over the bars' axis of bins
+  // the threshold stands on an axis of centimeters of its own, over the bars' axis of bins
   algorithms.forEach((_, panel) => series.push({
     type: "line", xAxisIndex: algorithms.length + panel, yAxisIndex: panel, symbol: "none", silent: true, tooltip: { show: false },
     lineStyle: { color: THRESHOLD, width: 2 }, data: [[bins, 0], [bins, full]],
@@ -209,7 +209,7 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
   const sensors = distinct(runs, (run) => run.sensor);
   const title = `Error against ${id === "pareto-cpu" ? "computing time" : "memory"}`;
   return {
-    id, title, caption: `Every run of every world: colour the algorithm, shape the sensor. Lower left is better; the grey steps join the runs that no other beats in both.`,
+    id, title, caption: `Every run of every world: color the algorithm, shape the sensor. Lower left is better; the gray steps join the runs that no other beats in both.`,
     width: 560, height: 360 + 23 * Math.ceil(algorithms.length / 3), overTime: false,
     option: {
       ...base(title), legend: { top: 24, left: 50, data: algorithms, textStyle: { fontSize: 11 } },

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colours of values: ramps ordered in lightness, so that they survive grey print and colour
+// Colors of values: ramps ordered in lightness, so that they survive gray print and color
 // blindness.
 
 export type Rgb = [number, number, number];
@@ -13,7 +13,7 @@ const VALUE_RAMP: Rgb[] = [
 ];
 export const OUTLIER: Rgb = [214, 32, 39];
 export const TRUTH = "#4b5563";
-/** One colour a run, the same in every chart and view; told apart also when colours look alike. */
+/** One color a run, the same in every chart and view; told apart also when colors look alike. */
 export const RUN_COLORS = [
   "#2b6cb0", "#c2410c", "#4d7c0f", "#7c3aed", "#0f766e", "#be185d", "#a16207", "#334155",
   "#0891b2", "#f59e0b", "#65a30d", "#94a3b8",
@@ -23,7 +23,7 @@ export function rampOf(name: string): Rgb[] {
   return name === "distance" ? DISTANCE_RAMP : VALUE_RAMP;
 }
 
-/** The ramp's colour at `s` of 0 ... 1. */
+/** The ramp's color at `s` of 0 ... 1. */
 export function rampColor(ramp: Rgb[], s: number): Rgb {
   const position = Math.min(Math.max(s, 0), 1) * (ramp.length - 1);
   const low = Math.min(Math.floor(position), ramp.length - 2);

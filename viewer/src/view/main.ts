@@ -33,7 +33,7 @@ function start() {
     panel.showLayers();
   }).then(() => {
     progress.hidden = true;
-    panel.change({ color: panel.state.color });  // tracks that came later take the colour too
+    panel.change({ color: panel.state.color });  // tracks that came later take the color too
     view.render();
     view.onFrame();
     marks.loadedMs = drawnMs();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Controls around a View: what is shown and how, the time line, the colour key, the point under the
+// Controls around a View: what is shown and how, the time line, the color key, the point under the
 // pointer.
 import { cssGradient, OUTLIER, rampColor, rampOf } from "./colors";
 import { button, checkbox, choice, element, section, slider, type Slider } from "./elements";
@@ -54,7 +54,7 @@ export class Panel {
         button("Dark", "dark or light background", () => this.change({ dark: !this.state.dark })),
         button("PNG", "save this picture", () => this.savePicture())),
       section("Shown", this.layerList),
-      section("Colour", choice("by", colorsOf(view.header), state.color, (color) => this.change({ color, range: null })), this.rangeFields()),
+      section("Color", choice("by", colorsOf(view.header), state.color, (color) => this.change({ color, range: null })), this.rangeFields()),
     ];
     const points = section("Points",
       slider("size", { min: 1, max: 8, step: 0.5, value: state.size, shown: (v) => `${v} px` }, (size) => this.change({ size })).element,
@@ -243,7 +243,7 @@ export class Panel {
     }
   }
 
-  /** The picture with its colour key, as a PNG file. */
+  /** The picture with its color key, as a PNG file. */
   async savePicture() {
     this.view.render();
     const source = this.view.renderer.domElement;

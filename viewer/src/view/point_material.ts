@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How points are coloured, filtered and cut, all on the GPU.
+// How points are colored, filtered and cut, all on the GPU.
 import * as THREE from "three";
 import { OUTLIER, rampOf, rampTexels } from "./colors";
 import type { FieldHeader } from "./scene";

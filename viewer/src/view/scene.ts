@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What a page is given: a small header in JSON and blocks of bytes, written by
-// lidarena/report/scene_blocks.cpp. All coordinates are metres relative to `origin`, z up; times are
+// lidarena/report/scene_blocks.cpp. All coordinates are meters relative to `origin`, z up; times are
 // seconds since `time_origin_s`.
 
 export type Vec3 = [number, number, number];

@@ -7,7 +7,7 @@ import type { Standpoint } from "./view";
 
 export interface State {
   color: ColorBy;
-  range: [number, number] | null;  // null: the usual one of the colour
+  range: [number, number] | null;  // null: the usual one of the color
   outliers: boolean;
   surface: SurfaceLook;
   split: boolean;
@@ -24,7 +24,7 @@ export function hasField(header: SceneHeader, name: string): boolean {
   return header.clouds.some((cloud) => cloud.fields.some((field) => field.name === name));
 }
 
-/** Colours that the scene can show. */
+/** Colors that the scene can show. */
 export function colorsOf(header: SceneHeader): ColorBy[] {
   const always: ColorBy[] = ["height", "solid"];
   const byField = COLOR_BY.filter((by) => hasField(header, by));
@@ -32,7 +32,7 @@ export function colorsOf(header: SceneHeader): ColorBy[] {
   return [...byField, ...byPath, ...always];
 }
 
-/** The range of values that a colour spans unless it is set. */
+/** The range of values that a color spans unless it is set. */
 export function usualRange(header: SceneHeader, by: ColorBy): [number, number] {
   if (by === "distance") return [0, header.outlier_m];
   if (by === "height") return [header.bounds[0][2], header.bounds[1][2]];

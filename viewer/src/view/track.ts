@@ -48,7 +48,7 @@ export class Track {
     this.marker.quaternion.fromArray(this.turns, 4 * i);
   }
 
-  /** Colours the line by its error, 0 ... `full` metres, or plainly again (null). */
+  /** Colors the line by its error, 0 ... `full` meters, or plainly again (null). */
   setErrorColors(full: number | null) {
     const byError = full !== null && this.errors !== null;
     if (byError) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/odometry/ct_icp/neighbourhood.hpp"
+#include "lidarena/odometry/ct_icp/neighborhood.hpp"
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -13,34 +13,34 @@ constexpr double kDistinct = 0.8;            // linearity or planarity from whic
 constexpr double kDistributionWeight = 0.1;  // of neither
 constexpr double kThinnest = 0.02;           // m, least deviation of a distribution: range noise
 
-Eigen::Vector3d anchor_of(std::span<const VoxelHashMap::Neighbor> neighbours,
+Eigen::Vector3d anchor_of(std::span<const VoxelHashMap::Neighbor> neighbors,
                           const Eigen::Vector3d& mean, PlanePoint plane_point) {
   if (plane_point == PlanePoint::kMean) return mean;
   const auto [nearest, farthest] = std::minmax_element(
-      neighbours.begin(), neighbours.end(),
+      neighbors.begin(), neighbors.end(),
       [](const auto& a, const auto& b) { return a.squared_distance < b.squared_distance; });
   return (plane_point == PlanePoint::kNearest ? nearest : farthest)->point->cast<double>();
 }
 
 }  // namespace
 
-Neighbourhood describe(std::span<const VoxelHashMap::Neighbor> neighbours, PlanePoint plane_point) {
-  const Eigen::Vector3f& origin = *neighbours.front().point;
+Neighborhood describe(std::span<const VoxelHashMap::Neighbor> neighbors, PlanePoint plane_point) {
+  const Eigen::Vector3f& origin = *neighbors.front().point;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (const auto& neighbour : neighbours) {
-    const Eigen::Vector3f d = *neighbour.point - origin;  // small, so floats do
+  for (const auto& neighbor : neighbors) {
+    const Eigen::Vector3f d = *neighbor.point - origin;  // small, so floats do
     sum += d;
     squares += d * d.transpose();
   }
-  const auto count = static_cast<double>(neighbours.size());
+  const auto count = static_cast<double>(neighbors.size());
   const Eigen::Vector3d mean = sum.cast<double>() / count;
   const Eigen::Matrix3d covariance = squares.cast<double>() / count - mean * mean.transpose();
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(covariance);
 
-  Neighbourhood result;
-  result.anchor = anchor_of(neighbours, mean + origin.cast<double>(), plane_point);
+  Neighborhood result;
+  result.anchor = anchor_of(neighbors, mean + origin.cast<double>(), plane_point);
   result.normal = solver.eigenvectors().col(0);
   result.line = solver.eigenvectors().col(2);
   result.eigenvalues = solver.eigenvalues().cwiseMax(0.0);
@@ -52,35 +52,35 @@ Neighbourhood describe(std::span<const VoxelHashMap::Neighbor> neighbours, Plane
   return result;
 }
 
-ElasticMatch plane_match(const Neighbourhood& neighbourhood, const Eigen::Vector3d& keypoint,
+ElasticMatch plane_match(const Neighborhood& neighborhood, const Eigen::Vector3d& keypoint,
                          const RegistrationConfig& config) {
-  const double reach = config.max_plane_distance_m * config.min_neighbours;
-  const double nearness = std::exp(-(neighbourhood.anchor - keypoint).norm() / reach);
+  const double reach = config.max_plane_distance_m * config.min_neighbors;
+  const double nearness = std::exp(-(neighborhood.anchor - keypoint).norm() / reach);
   ElasticMatch match;
-  match.anchor = neighbourhood.anchor;
-  match.shape.row(0) = neighbourhood.normal;
-  match.weight = (config.planarity_weight * neighbourhood.planarity * neighbourhood.planarity +
+  match.anchor = neighborhood.anchor;
+  match.shape.row(0) = neighborhood.normal;
+  match.weight = (config.planarity_weight * neighborhood.planarity * neighborhood.planarity +
                   config.nearness_weight * nearness) /
                  (config.planarity_weight + config.nearness_weight);
   return match;
 }
 
-ElasticMatch shape_match(const Neighbourhood& neighbourhood) {
+ElasticMatch shape_match(const Neighborhood& neighborhood) {
   ElasticMatch match;
-  match.anchor = neighbourhood.anchor;
-  if (neighbourhood.planarity > kDistinct) {
-    match.shape.row(0) = neighbourhood.normal;
-    match.weight = neighbourhood.planarity * neighbourhood.planarity;
-  } else if (neighbourhood.linearity > kDistinct) {
+  match.anchor = neighborhood.anchor;
+  if (neighborhood.planarity > kDistinct) {
+    match.shape.row(0) = neighborhood.normal;
+    match.weight = neighborhood.planarity * neighborhood.planarity;
+  } else if (neighborhood.linearity > kDistinct) {
     match.rows = 3;
-    match.shape = Eigen::Matrix3d::Identity() - neighbourhood.line * neighbourhood.line.transpose();
-    match.weight = neighbourhood.linearity * neighbourhood.linearity;
+    match.shape = Eigen::Matrix3d::Identity() - neighborhood.line * neighborhood.line.transpose();
+    match.weight = neighborhood.linearity * neighborhood.linearity;
   } else {
-    // Deviations along the axes, scaled so that the smallest counts in metres as a plane's does.
-    const Eigen::Vector3d deviations = neighbourhood.eigenvalues.cwiseSqrt().cwiseMax(kThinnest);
+    // Deviations along the axes, scaled so that the smallest counts in meters as a plane's does.
+    const Eigen::Vector3d deviations = neighborhood.eigenvalues.cwiseSqrt().cwiseMax(kThinnest);
     Eigen::Matrix3d axes;
-    axes << neighbourhood.normal, neighbourhood.line.cross(neighbourhood.normal),
-        neighbourhood.line;
+    axes << neighborhood.normal, neighborhood.line.cross(neighborhood.normal),
+        neighborhood.line;
     match.rows = 3;
     match.shape = (deviations[0] * deviations.cwiseInverse()).asDiagonal() * axes.transpose();
     match.weight = kDistributionWeight;
