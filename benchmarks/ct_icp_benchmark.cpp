@@ -70,7 +70,7 @@ BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
 
 void search_neighbors(benchmark::State& state) {
   const auto queries = keypoints();
-  std::vector<VoxelHashMap::Neighbor> near(20);
+  std::vector<Neighbor> near(20);
   for (auto _ : state) {
     for (const TimedPoint& query : queries)
       benchmark::DoNotOptimize(map().nearest(query.position, 0.4F, near));
@@ -80,7 +80,7 @@ void search_neighbors(benchmark::State& state) {
 BENCHMARK(search_neighbors)->Unit(benchmark::kMillisecond);
 
 void describe_neighbors(benchmark::State& state) {
-  std::vector<VoxelHashMap::Neighbor> near(20);
+  std::vector<Neighbor> near(20);
   near.resize(map().nearest(keypoints().front().position, 0.4F, near));
   for (auto _ : state) benchmark::DoNotOptimize(describe(near, PlanePoint::kMean));
 }
@@ -106,7 +106,7 @@ std::vector<ElasticMatch> matches() {
 template <bool kCeresSolver>
 void solve(benchmark::State& state) {
   const auto made = matches();
-  const ElasticProblem problem{made, {}, Loss::kCauchy, 0.05, true};
+  const ElasticProblem problem{made, {}, RobustKernel::kCauchy, 0.05, true};
   const auto guess = ElasticMotion::still(make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}),
                                           static_cast<int>(state.range(0)));
   const Parallel one(1);

@@ -78,7 +78,7 @@ struct Stage {
   explicit Stage(std::size_t count)
       : config(preset("improved", LidarInfo{})),
         scan(scan_at(kScans, count)),
-        times(times_of(scan, Time{0}, config.pose_instant)),
+        times(times_of(scan, Time{0})),
         points(preprocess(scan, times, se3::Vector6::Zero(), config, parallel)),
         map_points(thin_for_map(points)),
         keypoints(thin_for_registration(map_points)),

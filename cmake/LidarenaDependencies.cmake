@@ -14,6 +14,8 @@ find_package(tsl-robin-map REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
 pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
+pkg_check_modules(lzf REQUIRED IMPORTED_TARGET liblzf)
+pkg_check_modules(md REQUIRED IMPORTED_TARGET libmd)
 find_package(ZLIB REQUIRED)
 find_package(BZip2 QUIET)  # for reading old bags
 

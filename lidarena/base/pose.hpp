@@ -2,6 +2,8 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <span>
+#include <vector>
 
 namespace lidarena {
 
@@ -32,6 +34,19 @@ inline Pose interpolate(const Pose& a, const Pose& b, double s) {
 /// The same pose with its rotation made orthonormal again (after many products).
 inline Pose orthonormalized(const Pose& pose) {
   return make_pose(Eigen::Quaterniond(pose.linear()), pose.translation());
+}
+
+/// Appends `pose` times each of `points` (m) to `out`; computed in double precision.
+inline void append_transformed(const Pose& pose, std::span<const Eigen::Vector3f> points,
+                               std::vector<Eigen::Vector3f>& out) {
+  out.reserve(out.size() + points.size());
+  for (const Eigen::Vector3f& p : points) out.push_back((pose * p.cast<double>()).cast<float>());
+}
+inline std::vector<Eigen::Vector3f> transformed(const Pose& pose,
+                                                std::span<const Eigen::Vector3f> points) {
+  std::vector<Eigen::Vector3f> moved;
+  append_transformed(pose, points, moved);
+  return moved;
 }
 
 }  // namespace lidarena

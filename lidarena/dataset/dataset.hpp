@@ -34,13 +34,13 @@ struct Dataset {
 };
 
 /// Opens a dataset folder of ours, a single .mcap or ROS 1 .bag, a bag folder of rosbag2 with one
-/// .mcap, a folder of PCD/PLY/bin sweeps, or a folder in the room format. In recordings of others,
+/// .mcap, or a folder of PCD/PLY/bin sweeps. In recordings of others,
 /// topics are found by type: the first with scans (PointCloud2, Livox CustomMsg) or that of
 /// `options.sensor` (topic or id), and the first Imu, whose accelerations may be in g. Throws
 /// InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// True motion of the body where the dataset carries one (truth.tum, or gt.tum of the room format).
+/// True motion of the body where the dataset carries one (truth.tum).
 /// For evaluation; nothing that estimates may call it.
 std::optional<Trajectory> load_truth(const std::filesystem::path& dataset);
 

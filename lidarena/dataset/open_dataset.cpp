@@ -7,7 +7,6 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/recording_source.hpp"
-#include "lidarena/dataset/room.hpp"
 #include "lidarena/dataset/ros_messages.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/sweep_dataset.hpp"
@@ -250,7 +249,6 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
       throw InputError(path.string(), "is an unfinished dataset: it has no manifest.json",
                        "write it again, or give its data file alone");
     }
-    if (is_room(path)) return open_room(path, options);
     if (const auto bag = rosbag_file(path)) return open_recording_file(*bag, options);
     return open_sweep_folder(path, options);
   }
@@ -267,7 +265,7 @@ std::optional<Trajectory> load_truth(const fs::path& dataset) {
     return recording_format_of(dataset) ? truth_in_recording(dataset) : std::nullopt;
   }
   if (fs::exists(dataset / layout::kTruth)) return read_tum(dataset / layout::kTruth);
-  return is_room(dataset) ? room_truth(dataset) : std::nullopt;
+  return std::nullopt;
 }
 
 bool has_measurements(const fs::path& folder) {

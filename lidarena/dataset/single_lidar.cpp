@@ -7,15 +7,14 @@
 
 namespace lidarena {
 
-Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options,
-                     const Pose& body_from_lidar) {
+Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options) {
   LidarInfo lidar;
   lidar.id = "lidar";
   if (!options.sensor.empty() && options.sensor != lidar.id) {
     throw InputError(path.string(), fmt::format("has no LiDAR '{}'", options.sensor),
                      fmt::format("its only one is '{}'", lidar.id));
   }
-  lidar.body_from_lidar = options.body_from_lidar.value_or(body_from_lidar);
+  lidar.body_from_lidar = options.body_from_lidar.value_or(Pose::Identity());
   Rig rig;
   rig.lidars.push_back(std::move(lidar));
   return rig;

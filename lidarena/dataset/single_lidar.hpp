@@ -8,9 +8,8 @@
 namespace lidarena {
 
 /// Rig of foreign data with one LiDAR, named "lidar", mounted as `options.body_from_lidar` says, or
-/// else as the data do. Throws InputError (place `path`) when options.sensor names another one.
-Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options,
-                     const Pose& body_from_lidar);
+/// else in the body frame. Throws InputError (place `path`) when options.sensor names another one.
+Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options);
 
 /// Leaves the LiDAR `options.sensor` alone in the rig (empty = all) and mounts it as
 /// `options.body_from_lidar` says. Throws InputError (place `place`) when there is none such, or

@@ -195,7 +195,7 @@ Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
         "nothing says how the LiDAR is mounted; it is taken to be in the body "
         "frame");
   }
-  dataset.rig = single_lidar_rig(place, options, Pose::Identity());
+  dataset.rig = single_lidar_rig(place, options);
   dataset.rig.lidars.front().rate_hz = mean_rate(stamps, options.rate_hz);
   dataset.scan_count = files.size();
   dataset.events = std::make_unique<SweepSource>(files, std::move(stamps), layout,

@@ -18,35 +18,6 @@ constexpr double kConverged = 1e-9;  // m and rad, of the whole step
 // match tells of stays as it was, and far below what any match tells.
 constexpr double kDamping = 1e-10;
 
-double kernel_weight(Loss loss, double squared_error, double scale) {
-  switch (loss) {
-    case Loss::kNone:
-      return 1.0;
-    case Loss::kHuber:
-      return robust::huber(squared_error, scale);
-    case Loss::kCauchy:
-      return robust::cauchy(squared_error, scale);
-    case Loss::kTukey:
-      return robust::tukey(squared_error, scale);
-  }
-  return 1.0;
-}
-
-double loss_of(Loss loss, double squared_error, double scale) {
-  const double ratio = squared_error / (scale * scale);
-  switch (loss) {
-    case Loss::kNone:
-      return 0.5 * squared_error;
-    case Loss::kHuber:
-      return ratio <= 1.0 ? 0.5 * squared_error : scale * scale * (std::sqrt(ratio) - 0.5);
-    case Loss::kCauchy:
-      return 0.5 * scale * scale * std::log1p(ratio);
-    case Loss::kTukey:
-      return scale * scale / 6.0 * (1.0 - std::pow(std::max(0.0, 1.0 - ratio), 3.0));
-  }
-  return 0.0;
-}
-
 /// Normal equations of a motion's knots, from those of its segments.
 struct MotionEquations {
   std::vector<NormalEquations<12>> segments;
@@ -66,7 +37,7 @@ void add_match(const ElasticProblem& problem, const ElasticTrack& track, const E
   const double squared_weight = match.weight * match.weight;
   const double squared_error = squared_weight * (shape * gap).squaredNorm();
   const double weight =
-      squared_weight * kernel_weight(problem.loss, squared_error, problem.loss_scale);
+      squared_weight * robust_weight(problem.kernel, squared_error, problem.kernel_scale);
   for (int r = 0; r < match.rows; ++r) {
     const Eigen::Vector3d direction = shape.row(r);
     const auto row = problem.exact_slerp ? segment.row(match.point, a, direction)
@@ -213,7 +184,7 @@ double cost_of(const ElasticProblem& problem, const ElasticMotion& motion) {
     const Eigen::Vector3d gap = track.place(match.point, match.alpha) - match.anchor;
     const double squared_error =
         match.weight * match.weight * (match.shape.topRows(match.rows) * gap).squaredNorm();
-    cost += loss_of(problem.loss, squared_error, problem.loss_scale);
+    cost += robust_cost(problem.kernel, squared_error, problem.kernel_scale);
   }
   const auto count = static_cast<double>(problem.matches.size());
   const PriorTerms prior(problem.prior, motion);

@@ -2,14 +2,12 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <span>
-#include <utility>
 
-#include "lidarena/base/config.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/elastic_motion.hpp"
+#include "lidarena/estimation/robust_kernel.hpp"
 
 namespace lidarena {
 
@@ -42,15 +40,12 @@ struct MotionPrior {
   double angular_bend = 0.0;      ///< ... and in rotation
 };
 
-/// What becomes of large errors.
-enum class Loss { kNone, kHuber, kCauchy, kTukey };
-
 struct ElasticProblem {
   std::span<const ElasticMatch> matches;
   MotionPrior prior;
-  Loss loss = Loss::kCauchy;
-  double loss_scale = 0.1;  ///< m, of the weighted error
-  bool exact_slerp = true;  ///< false: ElasticSegment::first_order_row (Gauss-Newton alone)
+  RobustKernel kernel = RobustKernel::kCauchy;
+  double kernel_scale = 0.1;  ///< m, of the weighted error
+  bool exact_slerp = true;    ///< false: ElasticSegment::first_order_row (Gauss-Newton alone)
 };
 
 /// 1/2 sum of losses, as both solvers minimize it: with N matches, each term of the prior counts
@@ -65,12 +60,5 @@ ElasticMotion align_by_gauss_newton(const ElasticProblem& problem, ElasticMotion
 /// Up to `iterations` steps of Levenberg-Marquardt by Ceres (which ends earlier when a step lowers
 /// the cost by less than 1e-6 of it).
 ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion, int iterations);
-
-template <>
-struct EnumNames<Loss> {
-  static constexpr std::array names{
-      std::pair{"none", Loss::kNone}, std::pair{"huber", Loss::kHuber},
-      std::pair{"cauchy", Loss::kCauchy}, std::pair{"tukey", Loss::kTukey}};
-};
 
 }  // namespace lidarena

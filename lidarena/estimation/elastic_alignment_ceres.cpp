@@ -148,20 +148,6 @@ struct AngularBendCost {
   }
 };
 
-std::unique_ptr<ceres::LossFunction> loss_function(Loss loss, double scale) {
-  switch (loss) {
-    case Loss::kNone:
-      return nullptr;
-    case Loss::kHuber:
-      return std::make_unique<ceres::HuberLoss>(scale);
-    case Loss::kCauchy:
-      return std::make_unique<ceres::CauchyLoss>(scale);
-    case Loss::kTukey:
-      return std::make_unique<ceres::TukeyLoss>(scale);
-  }
-  return nullptr;
-}
-
 /// An ElasticProblem in Ceres' terms, about knots that lie in `knots`.
 class Adjustment {
  public:
@@ -169,7 +155,7 @@ class Adjustment {
       : problem_(problem),
         knots_(knots),
         manifold_(ceres::EigenQuaternionManifold{}, ceres::EuclideanManifold<3>{}),
-        loss_(loss_function(problem.loss, problem.loss_scale)),
+        loss_(make_ceres_loss(problem.kernel, problem.kernel_scale)),
         adjustment_(options()) {
     for (Knot& knot : knots_) adjustment_.AddParameterBlock(knot.data(), kKnot, &manifold_);
     for (const ElasticMatch& match : problem_.matches) add(match);

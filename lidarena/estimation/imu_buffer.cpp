@@ -2,9 +2,19 @@
 #include "lidarena/estimation/imu_buffer.hpp"
 
 #include <algorithm>
+#include <chrono>
 
 namespace lidarena {
 namespace {
+
+constexpr Time kMaxPause = std::chrono::seconds(1);  // no IMU pauses longer and then continues
+// The smallest ranges of IMUs for vehicles: 125 deg/s and 2 g.
+constexpr double kMinGyroRange = 2.1;    // rad/s
+constexpr double kMinAccelRange = 18.6;  // m/s^2
+
+bool repeats(const Eigen::Vector3d& previous, const Eigen::Vector3d& value, double min_range) {
+  return ((previous.array() == value.array()) && (value.array().abs() > min_range)).any();
+}
 
 auto first_after(const std::deque<ImuSample>& samples, Time t) {
   return std::upper_bound(samples.begin(), samples.end(), t,
@@ -13,11 +23,38 @@ auto first_after(const std::deque<ImuSample>& samples, Time t) {
 
 }  // namespace
 
+bool is_saturated(const ImuSample& previous, const ImuSample& sample, double accel_scale) {
+  return repeats(previous.gyro, sample.gyro, kMinGyroRange) ||
+         repeats(previous.accel, sample.accel, kMinAccelRange / accel_scale);
+}
+
+double longest_gap_s(const std::vector<ImuInterval>& intervals) {
+  double longest = 0.0;
+  for (const ImuInterval& interval : intervals)
+    if (interval.gap) longest = std::max(longest, interval.seconds());
+  return longest;
+}
+
+std::size_t count_saturated(const std::vector<ImuInterval>& intervals) {
+  return static_cast<std::size_t>(
+      std::count_if(intervals.begin(), intervals.end(),
+                    [](const ImuInterval& interval) { return interval.saturated; }));
+}
+
 bool ImuBuffer::add(const ImuSample& sample) {
-  const bool later = samples_.empty() || sample.stamp > samples_.back().stamp;
-  if (!later || !sample.gyro.allFinite() || !sample.accel.allFinite()) {
+  if (!sample.gyro.allFinite() || !sample.accel.allFinite()) {
     ++refused_;
     return false;
+  }
+  if (!samples_.empty() && sample.stamp <= samples_.back().stamp) {
+    ++refused_;
+    // Either this stamp is wrong, or the previous one, if that was far ahead of all others.
+    const bool previous_jumped = samples_.back().stamp - before_newest_ > kMaxPause &&
+                                 before_newest_ != Time::min() && sample.stamp > before_newest_;
+    if (!previous_jumped) return false;
+    samples_.pop_back();
+  } else if (!samples_.empty()) {
+    before_newest_ = samples_.back().stamp;
   }
   samples_.push_back(sample);
   return true;
@@ -39,6 +76,12 @@ bool ImuBuffer::is_gap(Time t) const {
   return after->stamp - (after - 1)->stamp > max_gap_;
 }
 
+bool ImuBuffer::is_saturated_at(Time t) const {
+  const auto after = first_after(samples_, t);
+  if (after == samples_.begin() || after == samples_.end()) return false;
+  return is_saturated(*(after - 1), *after, accel_scale_);
+}
+
 std::vector<ImuInterval> ImuBuffer::between(Time begin, Time end) const {
   std::vector<ImuInterval> intervals;
   if (samples_.empty()) return intervals;
@@ -50,7 +93,8 @@ std::vector<ImuInterval> ImuBuffer::between(Time begin, Time end) const {
     ImuSample b = at(cut);
     b.stamp = cut;
     intervals.push_back({a.stamp, cut, 0.5 * (a.gyro + b.gyro), 0.5 * (a.accel + b.accel),
-                         is_gap(after == samples_.end() ? cut : a.stamp)});
+                         is_gap(after == samples_.end() ? cut : a.stamp),
+                         is_saturated_at(a.stamp)});
     a = b;
   }
   return intervals;

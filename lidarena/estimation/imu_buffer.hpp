@@ -17,16 +17,28 @@ struct ImuInterval {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
   bool gap = false;                                 ///< too far from any sample to be trusted
+  bool saturated = false;  ///< one of its samples is at the end of its range
   double seconds() const { return to_seconds(end - begin); }
 };
+/// Duration of the longest gap, s; 0 if there is none.
+double longest_gap_s(const std::vector<ImuInterval>& intervals);
+std::size_t count_saturated(const std::vector<ImuInterval>& intervals);
+
+/// Whether the sensor is at the end of its range: an axis repeats a large value to the last bit,
+/// which noise hardly ever does. (Few data sheets give the range that a maker has set.)
+/// `accel_scale` converts the samples' accelerations to m/s^2.
+bool is_saturated(const ImuSample& previous, const ImuSample& sample, double accel_scale);
 
 /// The IMU's last samples, which can be asked for any span of time, and again.
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s) : max_gap_(from_seconds(max_gap_s)) {}
 
-  /// Refuses samples that are not finite or not later than the one before; true if it was taken.
+  /// Refuses samples that are not finite or not later than the previous one; true if it was taken.
+  /// A stamp far ahead of all others is dropped when the next sample shows that it was wrong.
   bool add(const ImuSample& sample);
+  /// Factor that converts accelerations to m/s^2; used for judging saturation alone.
+  void set_accel_scale(double scale) { accel_scale_ = scale; }
   /// Intervals without gap between them from `begin` to `end`, cut at the samples. What lies
   /// between samples is interpolated; the first and the last sample hold beyond. Empty without
   /// samples, and unless begin < end.
@@ -37,15 +49,20 @@ class ImuBuffer {
   void forget_before(Time t);
 
   bool empty() const { return samples_.empty(); }
+  /// Of the first sample that is not forgotten; the buffer is not empty.
+  Time first_stamp() const { return samples_.front().stamp; }
   std::size_t refused() const { return refused_; }
   std::uint64_t memory_bytes() const { return samples_.size() * sizeof(ImuSample); }
 
  private:
   ImuSample at(Time t) const;
   bool is_gap(Time t) const;
+  bool is_saturated_at(Time t) const;
 
   Time max_gap_;
+  double accel_scale_ = 1.0;
   std::deque<ImuSample> samples_;
+  Time before_newest_{Time::min()};  ///< stamp of the sample that was added before the last one
   std::size_t refused_ = 0;
 };
 

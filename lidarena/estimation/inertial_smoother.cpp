@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/inertial_state.hpp"
 
 namespace lidarena {
 namespace {

@@ -40,13 +40,13 @@ Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction) {
 
 State plus(const State& state, const State::Vector& delta) {
   State moved = state;
-  moved.position += part(delta, State::kPosition);
-  moved.rotation *= so3::exp(part(delta, State::kRotation));
-  moved.lidar_rotation *= so3::exp(part(delta, State::kLidarRotation));
-  moved.lidar_position += part(delta, State::kLidarPosition);
-  moved.velocity += part(delta, State::kVelocity);
-  moved.gyro_bias += part(delta, State::kGyroBias);
-  moved.accel_bias += part(delta, State::kAccelBias);
+  moved.position() += part(delta, State::kPosition);
+  moved.rotation() *= so3::exp(part(delta, State::kRotation));
+  moved.imu_from_lidar.linear() *= so3::exp(part(delta, State::kLidarRotation));
+  moved.imu_from_lidar.translation() += part(delta, State::kLidarPosition);
+  moved.nav.velocity += part(delta, State::kVelocity);
+  moved.nav.bias.gyro += part(delta, State::kGyroBias);
+  moved.nav.bias.accel += part(delta, State::kAccelBias);
   const Eigen::Vector3d turn = tangent_basis(state.gravity) * part<2>(delta, State::kGravity);
   moved.gravity = so3::exp(turn) * state.gravity;
   return moved;
@@ -54,10 +54,11 @@ State plus(const State& state, const State::Vector& delta) {
 
 State::Vector minus(const State& a, const State& b) {
   State::Vector delta;
-  delta << a.position - b.position, so3::log(b.rotation.transpose() * a.rotation),
-      so3::log(b.lidar_rotation.transpose() * a.lidar_rotation),
-      a.lidar_position - b.lidar_position, a.velocity - b.velocity, a.gyro_bias - b.gyro_bias,
-      a.accel_bias - b.accel_bias,
+  delta << a.position() - b.position(), so3::log(b.rotation().transpose() * a.rotation()),
+      so3::log(b.imu_from_lidar.linear().transpose() * a.imu_from_lidar.linear()),
+      a.imu_from_lidar.translation() - b.imu_from_lidar.translation(),
+      a.nav.velocity - b.nav.velocity, a.nav.bias.gyro - b.nav.bias.gyro,
+      a.nav.bias.accel - b.nav.bias.accel,
       tangent_basis(b.gravity).transpose() * turn_between(a.gravity, b.gravity);
   return delta;
 }
@@ -79,14 +80,14 @@ State::Matrix transport(const State& from, const State::Vector& delta) {
 
 State::Matrix propagate(State& state, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel,
                         double seconds, Integration integration) {
-  const Eigen::Vector3d turn = (gyro - state.gyro_bias) * seconds;
-  const Eigen::Vector3d force = accel - state.accel_bias;
-  const Eigen::Vector3d acceleration = state.rotation * force + state.gravity;
+  const Eigen::Vector3d turn = (gyro - state.nav.bias.gyro) * seconds;
+  const Eigen::Vector3d force = accel - state.nav.bias.accel;
+  const Eigen::Vector3d acceleration = state.rotation() * force + state.gravity;
   const double half = integration == Integration::kSecondOrder ? 0.5 * seconds : 0.0;
 
   State::Matrix f = State::Matrix::Identity();
-  const Eigen::Matrix3d by_rotation = -state.rotation * so3::hat(force) * seconds;
-  const Eigen::Matrix3d by_bias = -state.rotation * seconds;
+  const Eigen::Matrix3d by_rotation = -state.rotation() * so3::hat(force) * seconds;
+  const Eigen::Matrix3d by_bias = -state.rotation() * seconds;
   const Eigen::Matrix<double, 3, 2> by_gravity =
       -so3::hat(state.gravity) * tangent_basis(state.gravity) * seconds;
   f.block<3, 3>(State::kPosition, State::kVelocity).diagonal().setConstant(seconds);
@@ -99,9 +100,9 @@ State::Matrix propagate(State& state, const Eigen::Vector3d& gyro, const Eigen::
   f.block<3, 3>(State::kVelocity, State::kAccelBias) = by_bias;
   f.block<3, 2>(State::kVelocity, State::kGravity) = by_gravity;
 
-  state.position += (state.velocity + half * acceleration) * seconds;
-  state.velocity += acceleration * seconds;
-  state.rotation *= so3::exp(turn);
+  state.position() += (state.nav.velocity + half * acceleration) * seconds;
+  state.nav.velocity += acceleration * seconds;
+  state.rotation() *= so3::exp(turn);
   return f;
 }
 

@@ -5,6 +5,8 @@
 
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/estimation/imu_noise.hpp"
+#include "lidarena/estimation/nav_state.hpp"
 
 namespace lidarena {
 
@@ -28,18 +30,16 @@ struct InertialState {
   using Vector = Eigen::Matrix<double, kDof, 1>;
   using Matrix = Eigen::Matrix<double, kDof, kDof>;
 
-  Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< m, of the IMU in the world
-  Eigen::Matrix3d rotation = Eigen::Matrix3d::Identity();        ///< world from IMU
-  Eigen::Matrix3d lidar_rotation = Eigen::Matrix3d::Identity();  ///< IMU from LiDAR
-  Eigen::Vector3d lidar_position = Eigen::Vector3d::Zero();      ///< m, of the LiDAR in the IMU
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< m/s, world
-  Eigen::Vector3d gyro_bias = Eigen::Vector3d::Zero();           ///< rad/s
-  Eigen::Vector3d accel_bias = Eigen::Vector3d::Zero();          ///< m/s^2
-  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};                   ///< m/s^2, world, constant length
+  NavState nav;                                 ///< of the IMU
+  Pose imu_from_lidar = Pose::Identity();       ///< extrinsics
+  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world, constant length
 
-  Pose world_from_imu() const { return make_pose(rotation, position); }
-  Pose imu_from_lidar() const { return make_pose(lidar_rotation, lidar_position); }
-  Pose world_from_lidar() const { return world_from_imu() * imu_from_lidar(); }
+  const Pose& world_from_imu() const { return nav.world_from_imu; }
+  Pose world_from_lidar() const { return nav.world_from_imu * imu_from_lidar; }
+  auto position() { return nav.world_from_imu.translation(); }
+  auto position() const { return nav.world_from_imu.translation(); }
+  auto rotation() { return nav.world_from_imu.linear(); }
+  auto rotation() const { return nav.world_from_imu.linear(); }
 };
 
 /// `state` moved by a tangent vector.
@@ -54,14 +54,6 @@ InertialState::Matrix transport(const InertialState& from, const InertialState::
 /// Orthonormal basis of the plane across `direction`; continuous but where the smallest of the
 /// direction's components changes.
 Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction);
-
-/// Noise of an IMU: continuous densities, as on data sheets.
-struct ImuNoise {
-  double gyro_density = 0.0;   ///< rad/s/sqrt(Hz)
-  double accel_density = 0.0;  ///< m/s^2/sqrt(Hz)
-  double gyro_walk = 0.0;      ///< rad/s^2/sqrt(Hz)
-  double accel_walk = 0.0;     ///< m/s^3/sqrt(Hz)
-};
 
 /// How the position goes on over a step: x + v dt, or with the half of a dt^2.
 enum class Integration { kFirstOrder, kSecondOrder };

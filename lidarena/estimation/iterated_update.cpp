@@ -75,7 +75,7 @@ Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<doub
 }  // namespace
 
 Belief zero_velocity_update(const Belief& prior, double sigma) {
-  return observe<3>(prior, State::kVelocity, -prior.state.velocity,
+  return observe<3>(prior, State::kVelocity, -prior.state.nav.velocity,
                     Eigen::Vector3d::Constant(sigma));
 }
 
@@ -83,8 +83,8 @@ Belief pose_update(const Belief& prior, const Pose& world_from_imu, double posit
                    double rotation_sigma) {
   static_assert(State::kRotation == State::kPosition + 3);
   State measured = prior.state;
-  measured.position = world_from_imu.translation();
-  measured.rotation = world_from_imu.linear();
+  measured.position() = world_from_imu.translation();
+  measured.rotation() = world_from_imu.linear();
   Eigen::Vector<double, 6> sigma;
   sigma << Eigen::Vector3d::Constant(position_sigma), Eigen::Vector3d::Constant(rotation_sigma);
   return observe<6>(prior, State::kPosition,

@@ -93,20 +93,6 @@ Eigen::Matrix<double, N, N> root_of_information(const Eigen::Matrix<double, N, N
   return factor.matrixL().solve(Eigen::Matrix<double, N, N>::Identity());
 }
 
-ceres::LossFunction* make_loss(const RobustLoss& loss) {
-  switch (loss.kind) {
-    case RobustLoss::Kind::kHuber:
-      return new ceres::HuberLoss(loss.scale);
-    case RobustLoss::Kind::kCauchy:
-      return new ceres::CauchyLoss(loss.scale);
-    case RobustLoss::Kind::kTukey:
-      return new ceres::TukeyLoss(loss.scale);
-    case RobustLoss::Kind::kNone:
-      break;
-  }
-  return nullptr;
-}
-
 /// Builds the solver's problem; the problem owns what is new here.
 class Problem {
  public:
@@ -173,13 +159,15 @@ class Problem {
                               rotation(between.second), translation(between.second)};
     auto* error = new ceres::AutoDiffCostFunction<BetweenError, 6, 4, 3, 4, 3>(
         new BetweenError{between.first_from_second, root_of_information(between.covariance)});
-    problem_.AddResidualBlock(error, make_loss(between.loss), blocks, 4);
+    problem_.AddResidualBlock(error, make_ceres_loss(between.loss.kernel, between.loss.scale),
+                              blocks, 4);
   }
   void add(const PoseGraph::Position& position) {
     double* const block = translation(position.node);
     auto* error = new ceres::AutoDiffCostFunction<PositionError, 3, 3>(
         new PositionError{position.position, root_of_information(position.covariance)});
-    problem_.AddResidualBlock(error, make_loss(position.loss), block);
+    problem_.AddResidualBlock(error, make_ceres_loss(position.loss.kernel, position.loss.scale),
+                              block);
   }
 
   std::vector<Parameters> parameters_;

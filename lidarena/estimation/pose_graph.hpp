@@ -6,18 +6,13 @@
 #include <vector>
 
 #include "lidarena/base/pose.hpp"
+#include "lidarena/estimation/robust_kernel.hpp"
 
 namespace lidarena {
 
-/// How much a measurement that fits badly still counts.
+/// Robust kernel of a measurement, on its Mahalanobis distance.
 struct RobustLoss {
-  enum class Kind {
-    kNone,    ///< in full
-    kHuber,   ///< linearly beyond `scale`
-    kCauchy,  ///< logarithmically beyond `scale`
-    kTukey,   ///< no more beyond `scale`
-  };
-  Kind kind = Kind::kNone;
+  RobustKernel kernel = RobustKernel::kNone;
   double scale = 1.0;  ///< in sigmas of the whole measurement
 };
 

@@ -39,24 +39,6 @@ Step advance(RelativeMotion& motion, const Vector3d& rate, const Vector3d& force
 
 }  // namespace
 
-NavState plus(const NavState& state, const NavState::Vector& delta) {
-  NavState moved = state;
-  moved.world_from_imu.linear() *= so3::exp(delta.segment<3>(State::kRotation));
-  moved.world_from_imu.translation() += delta.segment<3>(State::kPosition);
-  moved.velocity += delta.segment<3>(State::kVelocity);
-  moved.bias.gyro += delta.segment<3>(State::kGyroBias);
-  moved.bias.accel += delta.segment<3>(State::kAccelBias);
-  return moved;
-}
-
-NavState::Vector minus(const NavState& a, const NavState& b) {
-  NavState::Vector delta;
-  delta << so3::log(b.world_from_imu.linear().transpose() * a.world_from_imu.linear()),
-      a.velocity - b.velocity, a.world_from_imu.translation() - b.world_from_imu.translation(),
-      a.bias.gyro - b.bias.gyro, a.bias.accel - b.bias.accel;
-  return delta;
-}
-
 void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, double seconds) {
   integrate(gyro, accel, seconds, noise_);
 }

@@ -4,31 +4,10 @@
 #include <Eigen/Core>
 
 #include "lidarena/base/pose.hpp"
-#include "lidarena/estimation/inertial_state.hpp"
+#include "lidarena/estimation/imu_noise.hpp"
+#include "lidarena/estimation/nav_state.hpp"
 
 namespace lidarena {
-
-/// What is added to a still IMU's samples, slowly changing.
-struct ImuBias {
-  Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
-  Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
-};
-
-/// Motion of an IMU at an instant, and its biases. World frame: any. Errors live in its tangent
-/// space of 15 dimensions, the rotation perturbed on the right.
-struct NavState {
-  static constexpr int kDof = 15;
-  enum Block { kRotation = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12 };
-  using Vector = Eigen::Matrix<double, kDof, 1>;
-  using Matrix = Eigen::Matrix<double, kDof, kDof>;
-
-  Pose world_from_imu = Pose::Identity();
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, world
-  ImuBias bias;
-};
-NavState plus(const NavState& state, const NavState::Vector& delta);
-/// The tangent vector at `b` that leads to `a`: plus(b, minus(a, b)) is a.
-NavState::Vector minus(const NavState& a, const NavState& b);
 
 /// Motion between two instants as the IMU alone feels it, in its frame at the first one: no
 /// gravity, no velocity to begin with.

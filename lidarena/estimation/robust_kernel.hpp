@@ -1,38 +1,38 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cmath>
+#include <array>
+#include <utility>
 
-/// Weights of iteratively re-weighted least squares: w(r) = (d rho / d r) / r for a loss rho that
-/// behaves as r^2 / 2 near zero, so w(0) = 1. All take the SQUARED residual and a scale in the unit
-/// of the residual. Losses as listed by Zhang, "Parameter estimation techniques" (1997), table 1.
-namespace lidarena::robust {
+#include "lidarena/base/config.hpp"
 
-/// rho = r^2 / 2 up to `scale`, linear beyond.
-inline double huber(double squared_residual, double scale) {
-  return squared_residual <= scale * scale ? 1.0 : scale / std::sqrt(squared_residual);
+namespace ceres {
+class LossFunction;
 }
 
-/// rho = scale^2 / 2 log(1 + r^2 / scale^2).
-inline double cauchy(double squared_residual, double scale) {
-  return 1.0 / (1.0 + squared_residual / (scale * scale));
-}
+namespace lidarena {
 
-/// rho = r^2 / 2 / (1 + r^2 / scale^2).
-inline double geman_mcclure(double squared_residual, double scale) {
-  const double ratio = 1.0 / (1.0 + squared_residual / (scale * scale));
-  return ratio * ratio;
-}
+/// Robust kernels: costs rho(r) that grow slower than r^2 / 2 beyond a scale. All are r^2 / 2 for
+/// small residuals r; the scale is in the residual's unit.
+enum class RobustKernel {
+  kNone,    ///< r^2 / 2
+  kHuber,   ///< linear beyond `scale`
+  kCauchy,  ///< scale^2 / 2 log(1 + r^2 / scale^2)
+  kTukey,   ///< scale^2 / 6 (1 - (1 - r^2 / scale^2)^3), constant beyond `scale`
+};
 
-/// rho = scale^2 / 6 (1 - (1 - r^2 / scale^2)^3), constant beyond `scale`.
-inline double tukey(double squared_residual, double scale) {
-  const double remainder = 1.0 - squared_residual / (scale * scale);
-  return remainder > 0.0 ? remainder * remainder : 0.0;
-}
+template <>
+struct EnumNames<RobustKernel> {
+  static constexpr std::array names{
+      std::pair{"none", RobustKernel::kNone}, std::pair{"huber", RobustKernel::kHuber},
+      std::pair{"cauchy", RobustKernel::kCauchy}, std::pair{"tukey", RobustKernel::kTukey}};
+};
 
-/// rho = r^2 / 2, constant beyond `scale`.
-inline double truncated(double squared_residual, double scale) {
-  return squared_residual <= scale * scale ? 1.0 : 0.0;
-}
+/// rho(r).
+double robust_cost(RobustKernel kernel, double squared_residual, double scale);
+/// rho'(r) / r: weight of the residual in iteratively re-weighted least squares.
+double robust_weight(RobustKernel kernel, double squared_residual, double scale);
+/// The same kernel for Ceres, owned by the caller; null for kNone.
+ceres::LossFunction* make_ceres_loss(RobustKernel kernel, double scale);
 
-}  // namespace lidarena::robust
+}  // namespace lidarena

@@ -132,7 +132,8 @@ NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame,
       parallel, matches.positions.size(), [&](std::size_t i, NormalEquations<6>& equations) {
         const ClosestPoint& nearest = matches.nearest[i];
         if (!nearest.valid() || nearest.distance > matches.gate) return;
-        const double weight = robust::tukey(nearest.distance * nearest.distance, scale);
+        const double weight =
+            robust_weight(RobustKernel::kTukey, nearest.distance * nearest.distance, scale);
         if (weight == 0.0) return;
         const Vector3d normal = mesh.cross(nearest.triangle).normalized();
         Eigen::Matrix<double, 1, 6> jacobian;

@@ -278,7 +278,7 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
     const double variance = std::max(loop.fitness, kLeastVariance);
     const auto squared = [](double sigma) { return sigma * sigma; };
     const RobustLoss loss = config_.robust_scale > 0.0
-                                ? RobustLoss{RobustLoss::Kind::kCauchy, config_.robust_scale}
+                                ? RobustLoss{RobustKernel::kCauchy, config_.robust_scale}
                                 : RobustLoss{};
     graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
                                by_fitness

@@ -10,13 +10,9 @@
 #include <span>
 #include <vector>
 
-namespace lidarena {
+#include "lidarena/map/neighbor.hpp"
 
-/// A point of the tree and its squared distance (m^2) to the query.
-struct Neighbor {
-  Eigen::Vector3f point = Eigen::Vector3f::Zero();
-  float squared_distance = std::numeric_limits<float>::infinity();
-};
+namespace lidarena {
 
 /// A k-d tree of points (m) that grows, shrinks and stays balanced, after Cai, Xu, Zhang,
 /// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808): it thins while

@@ -77,7 +77,7 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
 }
 
 void VoxelHashMap::fit_plane(Cell& cell) {
-  constexpr int kLeastPoints = 5;          // fewer lie near some plane by chance
+  constexpr int kLeastPoints = 5;         // fewer lie near some plane by chance
   constexpr float kLineThinness = 0.02F;  // points of a line: so much of their variance across it
   if (cell.count < kLeastPoints) return;
   const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
@@ -119,8 +119,7 @@ void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
   }
 }
 
-VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
-                                             float max_distance) const {
+VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float max_distance) const {
   if (!query.allFinite()) return {};
   const Voxel voxel = cell_of(query);
   const VoxelKey key = voxel_key(voxel);
@@ -135,7 +134,8 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
   const auto gap = [&](int axis, int step) {
     return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
   };
-  Neighbor best{nullptr, max_distance * max_distance};
+  Match best;
+  best.squared_distance = max_distance * max_distance;
   std::uint32_t plane = kNoPlane;
   for (const auto& [dx, dy, dz] : kSteps) {
     if (gap(0, dx) + gap(1, dy) + gap(2, dz) >= best.squared_distance) continue;
@@ -145,7 +145,9 @@ VoxelHashMap::Neighbor VoxelHashMap::nearest(const Eigen::Vector3f& query,
     for (std::size_t i = 0; i < cell.count; ++i) {
       const float squared_distance = (cell.points[i] - query).squaredNorm();
       if (squared_distance >= best.squared_distance) continue;
-      best = {cell.points + i, squared_distance};
+      best.point = cell.points[i];
+      best.squared_distance = squared_distance;
+      best.found = true;
       plane = cell.plane;
     }
   }
@@ -159,7 +161,6 @@ namespace {
 /// The nearest of many, kept as a heap whose first one is the farthest.
 class NearestFew {
  public:
-  using Neighbor = VoxelHashMap::Neighbor;
   NearestFew(std::span<Neighbor> out, float radius) : out_(out), bound_(radius * radius) {}
 
   /// Squared distance from which on a point does not matter.
@@ -169,13 +170,13 @@ class NearestFew {
   void offer(const Eigen::Vector3f& point, float squared_distance) {
     if (squared_distance >= bound_) return;
     if (count_ < out_.size()) {
-      out_[count_++] = {&point, squared_distance};
+      out_[count_++] = {point, squared_distance};
       if (count_ < out_.size()) return;
       std::make_heap(out_.begin(), out_.end(), [](const Neighbor& a, const Neighbor& b) {
         return a.squared_distance < b.squared_distance;
       });
     } else {
-      replace_farthest({&point, squared_distance});
+      replace_farthest({point, squared_distance});
     }
     bound_ = out_.front().squared_distance;
   }

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "lidarena/map/neighbor.hpp"
 #include "lidarena/map/point_blocks.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
@@ -31,14 +32,14 @@ class VoxelHashMap {
     Eigen::Vector3f mean;    ///< of the cell's points, m
     Eigen::Vector3f normal;  ///< unit, either way
   };
-  struct Neighbor {
-    const Eigen::Vector3f* point = nullptr;  ///< in the map; null if there is none
-    float squared_distance = 0.0F;           ///< m^2
-    const Plane* plane = nullptr;            ///< of the point's cell; null if it is not flat
-    /// Where planes are looked for: the point's cell has fewer than five points, or they lie on a
-    /// line, so that they tell how the sensor looked there rather than what there is.
+  /// The nearest point and what its cell looks like.
+  struct Match : Neighbor {
+    bool found = false;
+    const Plane* plane = nullptr;  ///< of the point's cell; null if it is not flat
+    /// Where planes are fitted: the point's cell has fewer than five points, or they lie on a line,
+    /// so that they show the sensor's scan pattern rather than a surface.
     bool shapeless = false;
-    explicit operator bool() const { return point != nullptr; }
+    explicit operator bool() const { return found; }
   };
 
   /// Throws InputError on options that make no sense.
@@ -53,7 +54,7 @@ class VoxelHashMap {
 
   /// Nearest point to `query` among its cell and the 26 around, nearer than `max_distance`: the
   /// true nearest one if that is at most `voxel_size` away.
-  Neighbor nearest(const Eigen::Vector3f& query, float max_distance) const;
+  Match nearest(const Eigen::Vector3f& query, float max_distance) const;
 
   /// The points nearest to `query` among those nearer than `radius`, as many as `out` holds, in an
   /// order that is the same for the same map; returns how many were found. Looks up
@@ -72,7 +73,7 @@ class VoxelHashMap {
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
-    std::uint8_t level = 0;  ///< of the block, see PointBlocks
+    std::uint8_t level = 0;            ///< of the block, see PointBlocks
     std::uint32_t plane = kShapeless;  ///< in planes_, or one of the above
   };
 

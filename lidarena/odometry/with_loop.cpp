@@ -60,10 +60,8 @@ Trajectory WithLoop::trajectory() const {
 
 std::vector<Eigen::Vector3f> WithLoop::map() const {
   std::vector<Eigen::Vector3f> points;
-  for (std::size_t i = 0; i < clouds_.size(); ++i) {
-    for (const Eigen::Vector3f& p : clouds_[i])
-      points.push_back((closer_.poses()[i] * p.cast<double>()).cast<float>());
-  }
+  for (std::size_t i = 0; i < clouds_.size(); ++i)
+    append_transformed(closer_.poses()[i], clouds_[i], points);
   return points;
 }
 

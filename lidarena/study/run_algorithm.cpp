@@ -63,7 +63,7 @@ Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& 
   Cloud cloud;
   for (std::size_t i = 0; i < all.size(); i += stride) cloud.points.push_back(all[i]);
   map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
-  for (Eigen::Vector3f& p : cloud.points) p = (mesh_from_map * p.cast<double>()).cast<float>();
+  cloud.points = transformed(mesh_from_map, cloud.points);
   return cloud;
 }
 

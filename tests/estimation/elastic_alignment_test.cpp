@@ -144,7 +144,7 @@ double largest_gap(const ElasticMotion& a, const ElasticMotion& b) {
 TEST(ElasticAlignment, FindsTheTrueMotionFromPerfectMatches) {
   for (const int segments : {1, 2, 3}) {
     const Scene s = scene(segments, 0.0);
-    const ElasticProblem problem{s.matches, {}, Loss::kCauchy, 0.1, true};
+    const ElasticProblem problem{s.matches, {}, RobustKernel::kCauchy, 0.1, true};
     const auto guess = ElasticMotion::still(pose_of(0.1, 0.0, 0.0, 0, 0, 0.2), segments);
     const auto ours = align_by_gauss_newton(problem, guess, 30, Parallel(1));
     EXPECT_LT(largest_gap(ours, s.truth), 1e-9) << segments;
@@ -155,10 +155,11 @@ TEST(ElasticAlignment, FindsTheTrueMotionFromPerfectMatches) {
 
 TEST(ElasticAlignment, BothSolversFindTheSameMinimumWithEveryTermAndLoss) {
   for (const int segments : {1, 2, 3}) {
-    for (const Loss loss : {Loss::kNone, Loss::kHuber, Loss::kCauchy, Loss::kTukey}) {
+    for (const RobustKernel kernel :
+         {RobustKernel::kNone, RobustKernel::kHuber, RobustKernel::kCauchy, RobustKernel::kTukey}) {
       const Scene s = scene(segments, 0.02, 0.05, true);
-      const double scale = loss == Loss::kTukey ? 0.5 : 0.1;
-      const ElasticProblem problem{s.matches, full_prior(s.truth), loss, scale, true};
+      const double scale = kernel == RobustKernel::kTukey ? 0.5 : 0.1;
+      const ElasticProblem problem{s.matches, full_prior(s.truth), kernel, scale, true};
       const auto ours = align_by_gauss_newton(problem, s.truth, 60, Parallel(1));
       const auto theirs = align_by_ceres(problem, s.truth, 60);
       // Ceres ends when a step lowers the cost by less than 1e-6 of it. A knot's curvature is at
@@ -174,7 +175,7 @@ TEST(ElasticAlignment, BothSolversFindTheSameMinimumWithEveryTermAndLoss) {
 
 TEST(ElasticAlignment, TheMinimumIsOneOfTheCostInEveryDirection) {
   const Scene s = scene(2, 0.02, 0.05, true);
-  const ElasticProblem problem{s.matches, full_prior(s.truth), Loss::kCauchy, 0.1, true};
+  const ElasticProblem problem{s.matches, full_prior(s.truth), RobustKernel::kCauchy, 0.1, true};
   const auto found = align_by_gauss_newton(problem, s.truth, 60, Parallel(1));
   const double least = cost_of(problem, found);
   for (std::size_t knot = 0; knot < found.knots.size(); ++knot) {
@@ -192,20 +193,20 @@ TEST(ElasticAlignment, TheMinimumIsOneOfTheCostInEveryDirection) {
 
 TEST(ElasticAlignment, ALossHoldsOutliersBack) {
   const Scene s = scene(1, 0.01, 0.1);
-  const auto error = [&](Loss loss) {
-    const ElasticProblem problem{s.matches, {}, loss, 0.05, true};
+  const auto error = [&](RobustKernel kernel) {
+    const ElasticProblem problem{s.matches, {}, kernel, 0.05, true};
     return largest_gap(align_by_gauss_newton(problem, s.truth, 30, Parallel(1)), s.truth);
   };
   // 60 of 600 are off by 0.7 m one way: 7 cm without a loss. Cauchy's pull of such an error is
   // 0.05^2 / 0.7 = 3.6 mm, a tenth of all: 0.4 mm, beside noise of 1 cm / sqrt(100) a direction.
-  EXPECT_GT(error(Loss::kNone), 0.05);
-  EXPECT_LT(error(Loss::kCauchy), 0.01);
-  EXPECT_LT(error(Loss::kTukey), error(Loss::kNone) / 5.0);
+  EXPECT_GT(error(RobustKernel::kNone), 0.05);
+  EXPECT_LT(error(RobustKernel::kCauchy), 0.01);
+  EXPECT_LT(error(RobustKernel::kTukey), error(RobustKernel::kNone) / 5.0);
 }
 
 TEST(ElasticAlignment, TheFirstOrderStandInEndsAtTheSamePlaceForASmallTurn) {
   Scene s = scene(1, 0.0);
-  const ElasticProblem exact{s.matches, {}, Loss::kNone, 1.0, true};
+  const ElasticProblem exact{s.matches, {}, RobustKernel::kNone, 1.0, true};
   ElasticProblem first_order = exact;
   first_order.exact_slerp = false;
   const auto guess = ElasticMotion::still(s.truth.begin(), 1);
@@ -217,7 +218,7 @@ TEST(ElasticAlignment, TheFirstOrderStandInEndsAtTheSamePlaceForASmallTurn) {
 
 TEST(ElasticAlignment, IsTheSameBitsOnAnyNumberOfThreads) {
   const Scene s = scene(2, 0.02, 0.05);
-  const ElasticProblem problem{s.matches, full_prior(s.truth), Loss::kCauchy, 0.1, true};
+  const ElasticProblem problem{s.matches, full_prior(s.truth), RobustKernel::kCauchy, 0.1, true};
   const auto one = align_by_gauss_newton(problem, s.truth, 5, Parallel(1));
   const auto three = align_by_gauss_newton(problem, s.truth, 5, Parallel(3));
   for (std::size_t i = 0; i < one.knots.size(); ++i)
@@ -230,12 +231,12 @@ TEST(ElasticAlignment, WhatNothingTellsStaysAsItWas) {
     match.anchor = s.truth.end() * match.point;  // a rigid scan, taken at its end
     match.alpha = 1.0;
   }
-  const ElasticProblem problem{s.matches, {}, Loss::kCauchy, 0.1, true};
+  const ElasticProblem problem{s.matches, {}, RobustKernel::kCauchy, 0.1, true};
   const ElasticMotion guess = ElasticMotion::still(Pose::Identity(), 1);
   const auto ours = align_by_gauss_newton(problem, guess, 20, Parallel(1));
   EXPECT_LT((ours.end().matrix() - s.truth.end().matrix()).norm(), 1e-9);
   EXPECT_LT((ours.begin().matrix() - guess.begin().matrix()).norm(), 1e-9);
-  const ElasticProblem nothing{{}, {}, Loss::kCauchy, 0.1, true};
+  const ElasticProblem nothing{{}, {}, RobustKernel::kCauchy, 0.1, true};
   EXPECT_EQ(largest_gap(align_by_gauss_newton(nothing, guess, 5, Parallel(1)), guess), 0.0);
   EXPECT_EQ(largest_gap(align_by_ceres(nothing, guess, 5), guess), 0.0);
 }

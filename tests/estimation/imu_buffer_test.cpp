@@ -89,5 +89,33 @@ TEST(ImuBuffer, BadSamplesAreRefusedAndCounted) {
   EXPECT_EQ(buffer.refused(), 3U);
 }
 
+TEST(ImuBuffer, AStampFarAheadIsDroppedWhenTheNextSampleShowsThatItWasWrong) {
+  ImuBuffer buffer(0.02);
+  for (const double t : {0.0, 5.0, 10.0}) EXPECT_TRUE(buffer.add({ms(t), {}, {}}));
+  EXPECT_TRUE(buffer.add({ms(900'000.0), {}, {}})) << "nothing speaks against it yet";
+  EXPECT_TRUE(buffer.add({ms(15.0), {}, {}}));
+  EXPECT_EQ(buffer.refused(), 1U);
+  EXPECT_TRUE(buffer.add({ms(20.0), {}, {}}));
+  EXPECT_EQ(buffer.samples(ms(0.0), ms(1e6)).size(), 5U);
+  EXPECT_FALSE(buffer.between(ms(0.0), ms(20.0)).back().gap);
+}
+
+TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
+  ImuBuffer buffer(0.02);
+  const double rates[] = {1.0, 3.0, 3.0, 2.9, 1.5, 1.5};  // rad/s; repeated small ones are quiet
+  double t = 0.0;
+  for (const double rate : rates) buffer.add({ms(t += 5.0), {0.0, rate, 0.0}, {}});
+  const auto intervals = buffer.between(ms(5.0), ms(30.0));
+  ASSERT_EQ(intervals.size(), 5U);
+  for (std::size_t i = 0; i < intervals.size(); ++i) EXPECT_EQ(intervals[i].saturated, i == 1) << i;
+  EXPECT_EQ(count_saturated(intervals), 1U);
+  EXPECT_TRUE(buffer.between(ms(12.0), ms(13.0)).front().saturated) << "also of a part of it";
+
+  ImuBuffer in_g(0.02);
+  in_g.set_accel_scale(9.8);
+  for (const double s : {5.0, 10.0}) in_g.add({ms(s), {}, {0.0, 0.0, 2.5}});
+  EXPECT_EQ(count_saturated(in_g.between(ms(5.0), ms(10.0))), 1U) << "2.5 g";
+}
+
 }  // namespace
 }  // namespace lidarena

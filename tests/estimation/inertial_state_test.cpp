@@ -21,13 +21,13 @@ Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
 
 State random_state(SequentialRandom& random) {
   State state;
-  state.position = random_vector(random, 5.0);
-  state.rotation = so3::exp(random_vector(random, 1.0));
-  state.lidar_rotation = so3::exp(random_vector(random, 1.0));
-  state.lidar_position = random_vector(random, 0.1);
-  state.velocity = random_vector(random, 2.0);
-  state.gyro_bias = random_vector(random, 0.01);
-  state.accel_bias = random_vector(random, 0.1);
+  state.position() = random_vector(random, 5.0);
+  state.rotation() = so3::exp(random_vector(random, 1.0));
+  state.imu_from_lidar.linear() = so3::exp(random_vector(random, 1.0));
+  state.imu_from_lidar.translation() = random_vector(random, 0.1);
+  state.nav.velocity = random_vector(random, 2.0);
+  state.nav.bias.gyro = random_vector(random, 0.01);
+  state.nav.bias.accel = random_vector(random, 0.1);
   state.gravity = so3::exp(random_vector(random, 1.0)) * state.gravity;
   return state;
 }
@@ -114,16 +114,16 @@ TEST(InertialState, PropagationsJacobianIsTheNumericOne) {
 
 TEST(InertialState, FreeFallAndATurnInClosedForm) {
   State state;
-  state.velocity = {1.0, 0.0, 2.0};
-  state.gyro_bias = {0.0, 0.0, 0.1};
+  state.nav.velocity = {1.0, 0.0, 2.0};
+  state.nav.bias.gyro = {0.0, 0.0, 0.1};
   const double dt = 0.005;
   for (int i = 0; i < 200; ++i) {  // 1 s in which the IMU feels nothing but its bias and a turn
     propagate(state, {0.0, 0.0, 0.6}, Eigen::Vector3d::Zero(), dt, Integration::kSecondOrder);
   }
   const double g = 9.80665;
-  EXPECT_LT((state.position - Eigen::Vector3d(1.0, 0.0, 2.0 - 0.5 * g)).norm(), 1e-9);
-  EXPECT_LT((state.velocity - Eigen::Vector3d(1.0, 0.0, 2.0 - g)).norm(), 1e-9);
-  EXPECT_LT((state.rotation - so3::exp({0.0, 0.0, 0.5})).norm(), 1e-9);
+  EXPECT_LT((state.position() - Eigen::Vector3d(1.0, 0.0, 2.0 - 0.5 * g)).norm(), 1e-9);
+  EXPECT_LT((state.nav.velocity - Eigen::Vector3d(1.0, 0.0, 2.0 - g)).norm(), 1e-9);
+  EXPECT_LT((state.rotation() - so3::exp({0.0, 0.0, 0.5})).norm(), 1e-9);
 
   State first_order;
   first_order.velocity = {1.0, 0.0, 2.0};

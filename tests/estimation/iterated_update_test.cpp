@@ -47,11 +47,11 @@ std::vector<Seen> look_around(const State& truth, SequentialRandom& random, doub
 NormalEquations<kPointDof> equations(const std::vector<Seen>& seen, const State& state) {
   NormalEquations<kPointDof> sum;
   for (const Seen& one : seen) {
-    const Eigen::Vector3d in_imu = state.imu_from_lidar() * one.point;
-    const Eigen::Vector3d c = state.rotation.transpose() * one.normal;
+    const Eigen::Vector3d in_imu = state.imu_from_lidar * one.point;
+    const Eigen::Vector3d c = state.rotation().transpose() * one.normal;
     Eigen::Matrix<double, 1, kPointDof> row;
     row << one.normal.transpose(), in_imu.cross(c).transpose(),
-        one.point.cross(state.lidar_rotation.transpose() * c).transpose(), c.transpose();
+        one.point.cross(state.imu_from_lidar.linear().transpose() * c).transpose(), c.transpose();
     const double residual = one.normal.dot(state.world_from_imu() * in_imu) - one.offset;
     sum.add<1>(row, Eigen::Matrix<double, 1, 1>(residual), 1.0);
   }
@@ -60,9 +60,9 @@ NormalEquations<kPointDof> equations(const std::vector<Seen>& seen, const State&
 
 State some_state(SequentialRandom& random) {
   State state;
-  state.position = random_vector(random, 2.0);
-  state.rotation = so3::exp(random_vector(random, 1.0));
-  state.lidar_position = {0.01, 0.02, -0.04};
+  state.position() = random_vector(random, 2.0);
+  state.rotation() = so3::exp(random_vector(random, 1.0));
+  state.imu_from_lidar.translation() = {0.01, 0.02, -0.04};
   return state;
 }
 
@@ -127,7 +127,7 @@ TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
         for (Eigen::Index i = 0; i < 3; ++i) {
           Eigen::Matrix<double, 1, kPointDof> row = Eigen::Matrix<double, 1, kPointDof>::Zero();
           row[i] = 1.0;
-          sum.add<1>(row, Eigen::Matrix<double, 1, 1>(x.position[i] - measured[i]), 1.0);
+          sum.add<1>(row, Eigen::Matrix<double, 1, 1>(x.position()[i] - measured[i]), 1.0);
         }
         return sum;
       },
@@ -171,12 +171,12 @@ TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
 
 TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   Belief prior;
-  prior.state.position = {1.0, 2.0, 3.0};
+  prior.state.position() = {1.0, 2.0, 3.0};
   prior.covariance *= 0.1;
   const auto updated =
       iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
   EXPECT_EQ(updated.points.count, 0U);
-  EXPECT_EQ(updated.belief.state.position, prior.state.position);
+  EXPECT_EQ(updated.belief.state.position(), prior.state.position());
   EXPECT_EQ(updated.belief.covariance, prior.covariance);
 }
 
@@ -201,8 +201,8 @@ std::pair<double, double> normalized_errors(std::uint64_t seed) {
     const Eigen::Vector3d gyro = rate + random_vector(random, noise.gyro_density * white);
     const Eigen::Vector3d accel = force + random_vector(random, noise.accel_density * white);
     propagate(truth, rate, force, kStep, Integration::kSecondOrder);
-    truth.gyro_bias += random_vector(random, noise.gyro_walk * std::sqrt(kStep));
-    truth.accel_bias += random_vector(random, noise.accel_walk * std::sqrt(kStep));
+    truth.nav.bias.gyro += random_vector(random, noise.gyro_walk * std::sqrt(kStep));
+    truth.nav.bias.accel += random_vector(random, noise.accel_walk * std::sqrt(kStep));
     const State::Matrix f = propagate(belief.state, gyro, accel, kStep, Integration::kSecondOrder);
     belief.covariance = f * belief.covariance * f.transpose() + step_noise(noise, kStep);
     if (i % 20 != 0) continue;
@@ -239,29 +239,29 @@ TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
   SequentialRandom random(8, 1);
   Belief prior;
   prior.covariance = some_covariance(random, 0.2);
-  prior.state.velocity = {0.1, -0.2, 0.05};
+  prior.state.nav.velocity = {0.1, -0.2, 0.05};
   constexpr double kSigma = 0.03;
   State::Matrix information = prior.covariance.inverse();
   for (Eigen::Index i = 0; i < 3; ++i) {
     information(State::kVelocity + i, State::kVelocity + i) += 1.0 / (kSigma * kSigma);
   }
   State::Vector gradient = State::Vector::Zero();
-  gradient.segment<3>(State::kVelocity) = prior.state.velocity / (kSigma * kSigma);
+  gradient.segment<3>(State::kVelocity) = prior.state.nav.velocity / (kSigma * kSigma);
   const State::Vector step = -information.inverse() * gradient;
 
   const Belief updated = zero_velocity_update(prior, kSigma);
   EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
   const State::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
-  EXPECT_LT(updated.state.velocity.norm(), prior.state.velocity.norm());
+  EXPECT_LT(updated.state.nav.velocity.norm(), prior.state.nav.velocity.norm());
 }
 
 TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
   SequentialRandom random(9, 1);
   Belief prior;
   prior.covariance = some_covariance(random, 0.2);
-  prior.state.position = {1.0, 2.0, 3.0};
-  prior.state.rotation = so3::exp({0.1, -0.2, 0.7});
+  prior.state.position() = {1.0, 2.0, 3.0};
+  prior.state.rotation() = so3::exp({0.1, -0.2, 0.7});
   constexpr double kShift = 0.03, kTurn = 0.01;
   State::Vector off = State::Vector::Zero();
   off.head<6>() << 0.02, -0.01, 0.03, 0.004, -0.002, 0.003;

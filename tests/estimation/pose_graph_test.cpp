@@ -133,9 +133,9 @@ TEST(PoseGraph, AWrongLoopBendsTheChainUnlessItsKernelIsRobust) {
     return optimize(graph).nodes.back().translation().x();
   };
   EXPECT_NEAR(end_with({}), 20.0 / 21.0, 0.01) << "believed like any step: a 21st of it is left";
-  EXPECT_LT(end_with({RobustLoss::Kind::kHuber, 1.0}), 19.9) << "linear: it still pulls";
-  EXPECT_GT(end_with({RobustLoss::Kind::kCauchy, 1.0}), 19.98);
-  EXPECT_NEAR(end_with({RobustLoss::Kind::kTukey, 5.0}), 20.0, kExact) << "not believed at all";
+  EXPECT_LT(end_with({RobustKernel::kHuber, 1.0}), 19.9) << "linear: it still pulls";
+  EXPECT_GT(end_with({RobustKernel::kCauchy, 1.0}), 19.98);
+  EXPECT_NEAR(end_with({RobustKernel::kTukey, 5.0}), 20.0, kExact) << "not believed at all";
 }
 
 TEST(PoseGraph, ATrueLoopCountsUnderARobustKernel) {
@@ -145,7 +145,7 @@ TEST(PoseGraph, ATrueLoopCountsUnderARobustKernel) {
   PoseGraph graph = chain(truth, along_x(0.02), 1e-3 * Covariance::Identity());
   EXPECT_NEAR(graph.nodes.back().translation().x(), 20.4, 1e-9);
   graph.betweens.push_back(
-      {0, 20, along_x(20.0), 1e-3 * Covariance::Identity(), {RobustLoss::Kind::kCauchy, 3.0}});
+      {0, 20, along_x(20.0), 1e-3 * Covariance::Identity(), {RobustKernel::kCauchy, 3.0}});
   EXPECT_LT(optimize(graph).nodes.back().translation().x(), 20.04);
 }
 

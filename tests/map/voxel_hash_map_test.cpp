@@ -104,7 +104,7 @@ void compare_with_the_slow_map(const VoxelHashMap::Options& options) {
         ASSERT_EQ(static_cast<bool>(found), expected < max_distance);
         if (!found) continue;
         EXPECT_NEAR(std::sqrt(found.squared_distance), expected, 1e-6);  // rounding of float
-        EXPECT_FLOAT_EQ((*found.point - query).squaredNorm(), found.squared_distance);
+        EXPECT_FLOAT_EQ((found.point - query).squaredNorm(), found.squared_distance);
       }
     }
   }
@@ -192,7 +192,7 @@ TEST(VoxelHashMap, CellsOfFewPointsOrOfALineHaveNoShape) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Eigen::Vector3f& p = points[i];
     const Eigen::Vector3f middle(0.5F, 0.5F, 0.5F);
-    if (i < 4) map.insert(middle + p);  // few
+    if (i < 4) map.insert(middle + p);                                               // few
     map.insert(middle + Eigen::Vector3f(3.0F + p.x(), 0.1F * p.y(), 0.1F * p.z()));  // a line
     map.insert(middle + Eigen::Vector3f(6.0F + p.x(), p.y(), 0.1F * p.z()));         // a plane
     map.insert(middle + Eigen::Vector3f(9.0F, 0.0F, 0.0F) + p);                      // a ball
@@ -256,7 +256,7 @@ TEST(VoxelHashMap, NearestFewAreThoseOfTheWholeMapWithinTheRadius) {
         }
         std::sort(expected.begin(), expected.end());
         expected.resize(std::min<std::size_t>(expected.size(), 20));
-        std::array<VoxelHashMap::Neighbor, 20> out;
+        std::array<Neighbor, 20> out;
         const std::size_t count = map.nearest(query, radius, out);
         std::vector<float> found;
         for (std::size_t i = 0; i < count; ++i) {
@@ -270,7 +270,7 @@ TEST(VoxelHashMap, NearestFewAreThoseOfTheWholeMapWithinTheRadius) {
   }
   const Eigen::Vector3f nowhere =
       Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
-  std::array<VoxelHashMap::Neighbor, 3> out;
+  std::array<Neighbor, 3> out;
   EXPECT_EQ(VoxelHashMap(VoxelHashMap::Options{}).nearest(nowhere, 1.0F, out), 0U);
 }
 

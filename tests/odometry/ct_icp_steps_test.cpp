@@ -118,10 +118,10 @@ std::vector<Eigen::Vector3f> plane_points() {
   return points;
 }
 
-std::vector<VoxelHashMap::Neighbor> neighbors_of(const std::vector<Eigen::Vector3f>& points,
-                                                  const Eigen::Vector3f& query) {
-  std::vector<VoxelHashMap::Neighbor> all;
-  for (const auto& point : points) all.push_back({&point, (point - query).squaredNorm()});
+std::vector<Neighbor> neighbors_of(const std::vector<Eigen::Vector3f>& points,
+                                   const Eigen::Vector3f& query) {
+  std::vector<Neighbor> all;
+  for (const auto& point : points) all.push_back({point, (point - query).squaredNorm()});
   return all;
 }
 
@@ -239,7 +239,7 @@ TEST(CtIcpRobust, EachLevelIsFinerLongerAndWider) {
   EXPECT_EQ(second.sampling.max_keypoints, 3200);
   EXPECT_EQ(second.registration.max_iterations, 48);
   EXPECT_EQ(second.registration.inner_iterations, 80);
-  EXPECT_NEAR(second.registration.loss_scale_m, 0.144, 1e-12);
+  EXPECT_NEAR(second.registration.robust_kernel_scale_m, 0.144, 1e-12);
   EXPECT_NEAR(second.registration.max_plane_distance_m, 0.675, 1e-12);
   EXPECT_NEAR(second.registration.translation_threshold_m, 1e-4, 1e-12);
 }

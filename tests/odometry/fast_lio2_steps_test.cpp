@@ -8,7 +8,6 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 #include "lidarena/base/time.hpp"
-#include "lidarena/odometry/fast_lio2/imu_window.hpp"
 #include "lidarena/odometry/fast_lio2/initialization.hpp"
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
@@ -25,53 +24,6 @@ Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
 ImuSample sample_at(double t, const Eigen::Vector3d& gyro = Eigen::Vector3d::Zero(),
                     const Eigen::Vector3d& accel = {0.0, 0.0, 9.80665}) {
   return {from_seconds(t), gyro, accel};
-}
-
-// --- IMU window ---
-
-TEST(FastLio2ImuWindow, InputsCoverTheTimeWithoutHolesAndAverageTheEnds) {
-  ImuWindow window(0.05);
-  // A rate that grows linearly: means of ends are exact.
-  for (int i = 0; i <= 30; ++i) window.add(sample_at(0.01 * i, {0.0, 0.0, 0.01 * i}));
-  std::vector<ImuSample> samples;
-  Time expected{0};
-  for (const double end : {0.105, 0.1999, 0.25}) {
-    double turned = 0.0;
-    const double from = to_seconds(expected);
-    for (const ImuInput& input : window.take_until(from_seconds(end), samples)) {
-      EXPECT_EQ(input.begin, expected);
-      EXPECT_FALSE(input.gap);
-      expected = input.end;
-      turned += input.gyro.z() * input.seconds();
-    }
-    EXPECT_EQ(expected, from_seconds(end));
-    EXPECT_NEAR(turned, 0.5 * (end * end - from * from), 1e-12);
-  }
-  EXPECT_EQ(samples.size(), 26U);
-}
-
-TEST(FastLio2ImuWindow, ASilenceIsAGapAndBadSamplesAreRefused) {
-  ImuWindow window(0.05);
-  EXPECT_TRUE(window.add(sample_at(0.0)));
-  EXPECT_TRUE(window.add(sample_at(0.01)));
-  EXPECT_FALSE(window.add(sample_at(0.01))) << "not later";
-  EXPECT_FALSE(window.add(sample_at(0.005)));
-  EXPECT_FALSE(window.add(sample_at(0.02, {std::nan(""), 0.0, 0.0})));
-  EXPECT_TRUE(window.add(sample_at(0.2)));
-  EXPECT_EQ(window.refused(), 3U);
-  std::vector<ImuSample> samples;
-  const auto inputs = window.take_until(from_seconds(0.1), samples);
-  ASSERT_EQ(inputs.size(), 2U);
-  EXPECT_FALSE(inputs[0].gap);
-  EXPECT_TRUE(inputs[1].gap);
-  EXPECT_EQ(inputs[1].end, from_seconds(0.1));
-}
-
-TEST(FastLio2ImuWindow, WithoutAnySampleThereIsNoInput) {
-  ImuWindow window(0.05);
-  std::vector<ImuSample> samples;
-  EXPECT_TRUE(window.take_until(from_seconds(1.0), samples).empty());
-  EXPECT_TRUE(samples.empty());
 }
 
 // --- Start ---
@@ -101,7 +53,7 @@ TEST(FastLio2Start, GravityAndBiasComeFromTheMeans) {
   const Eigen::Vector3d down = so3::exp({0.1, -0.2, 0.0}).transpose() * Eigen::Vector3d(0, 0, -1);
   EXPECT_LT((start.belief.state.gravity.normalized() - down).norm(), 2e-3);
   EXPECT_NEAR(start.belief.state.gravity.norm(), 9.80665, 1e-9);
-  EXPECT_NEAR(start.belief.state.gyro_bias.x(), 0.01, 1e-3);
+  EXPECT_NEAR(start.belief.state.nav.bias.gyro.x(), 0.01, 1e-3);
 }
 
 TEST(FastLio2Start, AccelerationsInGAreRecognized) {
@@ -126,16 +78,16 @@ TEST(FastLio2Start, AnAccelerometersBiasIsNotTakenForMotion) {
     const std::vector<ImuSample> samples = standing_with(bias * up);
     const InertialState state = start_from(samples, Pose::Identity(), config).belief.state;
     // The mean of 20 samples with 0.01 m/s^2 of noise: 4.5 sigma.
-    EXPECT_LT((state.accel_bias - bias * up).norm(), 0.01);
+    EXPECT_LT((state.nav.bias.accel - bias * up).norm(), 0.01);
     StillDetector detector;
-    EXPECT_TRUE(detector.observe(statistics(samples), state, state.position, config, 1.0));
+    EXPECT_TRUE(detector.observe(statistics(samples), state, state.position(), config, 1.0));
   }
 }
 
 TEST(FastLio2Start, ShakingIsNotStanding) {
   const Start start = start_from(standing(1.0, 0.1), Pose::Identity(), improved_config());
   EXPECT_FALSE(start.still);
-  EXPECT_EQ(start.belief.state.gyro_bias, Eigen::Vector3d::Zero().eval());
+  EXPECT_EQ(start.belief.state.nav.bias.gyro, Eigen::Vector3d::Zero().eval());
   EXPECT_GT(start.belief.covariance(InertialState::kVelocity, InertialState::kVelocity), 1.0);
 }
 
@@ -144,13 +96,13 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   const Config config = improved_config();
   const ImuStatistics imu = statistics(standing(1.0, 1e-3));
   InertialState state;
-  state.gyro_bias = {0.01, 0.0, 0.0};
+  state.nav.bias.gyro = {0.01, 0.0, 0.0};
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   int stood = 0;
   for (int i = 0; i < 20; ++i) {
-    state.position.x() = 0.004 * i;  // 4 cm/s: no IMU feels it
-    state.velocity.x() = 0.04;
-    stood += detector.observe(imu, state, state.position, config, 1.0) ? 1 : 0;
+    state.position().x() = 0.004 * i;  // 4 cm/s: no IMU feels it
+    state.nav.velocity.x() = 0.04;
+    stood += detector.observe(imu, state, state.position(), config, 1.0) ? 1 : 0;
   }
   EXPECT_LT(stood, 19) << "every 3 cm it is found out";
   EXPECT_GT(stood, 10);
@@ -159,20 +111,20 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
 TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
   const Config config = improved_config();
   InertialState state;
-  state.gyro_bias = {0.01, 0.0, 0.0};
+  state.nav.bias.gyro = {0.01, 0.0, 0.0};
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   std::vector<ImuSample> samples = standing(1.0, 1e-3);
   StillDetector detector;
-  EXPECT_TRUE(detector.observe(statistics(samples), state, state.position, config, 1.0));
+  EXPECT_TRUE(detector.observe(statistics(samples), state, state.position(), config, 1.0));
   for (ImuSample& sample : samples) sample.accel.x() += 0.1;
-  EXPECT_FALSE(detector.observe(statistics(samples), state, state.position, config, 1.0))
+  EXPECT_FALSE(detector.observe(statistics(samples), state, state.position(), config, 1.0))
       << "0.1 m/s^2";
 }
 
 // --- Planes ---
 
 Neighbors points_on(const Eigen::Vector3d& normal, double offset, double thickness,
-                     SequentialRandom& random) {
+                    SequentialRandom& random) {
   const auto basis = tangent_basis(normal);
   Neighbors points;
   for (Neighbor& point : points) {
@@ -188,8 +140,8 @@ TEST(FastLio2Planes, AreFoundByBothFits) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
     const Neighbors points = points_on(normal, -3.0, 0.0, random);
-    for (const PlaneFit fit : {PlaneFit::kThroughOrigin, PlaneFit::kPrincipal}) {
-      const auto plane = fit_plane(points, fit, 0.1);
+    for (const PlaneFit fit : {PlaneFit::kUnitOffset, PlaneFit::kPrincipal}) {
+      const auto plane = fit_plane(columns_of(points), fit, 0.1);
       ASSERT_TRUE(plane.has_value());
       EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-4);
       EXPECT_NEAR(std::abs(plane->offset), 3.0, 1e-2);
@@ -203,10 +155,10 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
     const Neighbors points = points_on(normal, 0.0, 0.0, random);
-    const auto plane = fit_plane(points, PlaneFit::kPrincipal, 0.1);
+    const auto plane = fit_plane(columns_of(points), PlaneFit::kPrincipal, 0.1);
     ASSERT_TRUE(plane.has_value());
     EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.999);
-    const auto other = fit_plane(points, PlaneFit::kThroughOrigin, 0.1);
+    const auto other = fit_plane(columns_of(points), PlaneFit::kUnitOffset, 0.1);
     found += other && std::abs(other->normal.dot(normal)) > 0.9 ? 1 : 0;
   }
   EXPECT_LT(found, 25) << "the fault that `principal` cures; noise of 1 cm hides it";
@@ -215,10 +167,10 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
 TEST(FastLio2Planes, ThickOnesAreRefused) {
   SequentialRandom random(5, 1);
   const Neighbors points = points_on({0.0, 0.0, 1.0}, -2.0, 0.5, random);
-  EXPECT_FALSE(fit_plane(points, PlaneFit::kPrincipal, 0.01).has_value());
+  EXPECT_FALSE(fit_plane(columns_of(points), PlaneFit::kPrincipal, 0.01).has_value());
   Neighbors same;
   for (Neighbor& point : same) point.point.setZero();
-  EXPECT_FALSE(fit_plane(same, PlaneFit::kThroughOrigin, 0.1).has_value()) << "not finite";
+  EXPECT_FALSE(fit_plane(columns_of(same), PlaneFit::kUnitOffset, 0.1).has_value()) << "not finite";
 }
 
 /// A cross of arms `length` and `width` in a tilted plane, each point off it by `sigma`.
@@ -245,12 +197,12 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
     double squares = 0.0;
     for (int i = 0; i < kFits; ++i) {
       const auto plane =
-          fit_plane(cross(kLength, width, kSigma, random), PlaneFit::kPrincipal, 0.1);
+          fit_plane(columns_of(cross(kLength, width, kSigma, random)), PlaneFit::kPrincipal, 0.1);
       ASSERT_TRUE(plane.has_value());
       squares += std::pow(plane->normal.dot(end) + plane->offset, 2);
     }
     const Neighbors exact = cross(kLength, width, 0.0, random);
-    const auto plane = fit_plane(exact, PlaneFit::kPrincipal, 0.1);
+    const auto plane = fit_plane(columns_of(exact), PlaneFit::kPrincipal, 0.1);
     const double told = plane_variance(exact, *plane, kSigma * kSigma);
     const double tilt = kSigma * kSigma / (2.0 * width * width);
     EXPECT_NEAR(told, kSigma * kSigma / 5.0 + tilt * kLength * kLength, 1e-3 * told);
@@ -262,7 +214,7 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
 TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
   SequentialRandom random(13, 1);
   const Neighbors line = cross(0.3, 0.0, 0.0, random);
-  const auto plane = fit_plane(line, PlaneFit::kPrincipal, 0.1);
+  const auto plane = fit_plane(columns_of(line), PlaneFit::kPrincipal, 0.1);
   ASSERT_TRUE(plane.has_value());
   EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2, and finite:";
   EXPECT_LT(plane_variance(line, *plane, 1e-3), 1e3);
@@ -272,10 +224,10 @@ TEST(FastLio2Planes, TheJacobianIsTheNumericOne) {
   SequentialRandom random(6, 1);
   for (int i = 0; i < 50; ++i) {
     InertialState state;
-    state.position = random_vector(random, 3.0);
-    state.rotation = so3::exp(random_vector(random, 1.0));
-    state.lidar_rotation = so3::exp(random_vector(random, 1.0));
-    state.lidar_position = random_vector(random, 0.2);
+    state.position() = random_vector(random, 3.0);
+    state.rotation() = so3::exp(random_vector(random, 1.0));
+    state.imu_from_lidar.linear() = so3::exp(random_vector(random, 1.0));
+    state.imu_from_lidar.translation() = random_vector(random, 0.2);
     const Eigen::Vector3d point = random_vector(random, 5.0);
     const Plane plane{random_vector(random, 1.0).normalized(), random.normal()};
     const PointResidual residual = point_residual(point, plane, state, true);
@@ -305,13 +257,13 @@ TEST(FastLio2Planes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
   const Parallel parallel(1);
   PlaneResiduals residuals(points, map, config, parallel);
   InertialState state;
-  state.position.z() = -0.9;
+  state.position().z() = -0.9;
   const auto near = residuals(state, true);
   ASSERT_EQ(near.count, 1U);
   EXPECT_NEAR(near.cost, 0.5 * 0.1 * 0.1, 1e-6);
-  state.position.z() = -0.88;
+  state.position().z() = -0.88;
   EXPECT_EQ(residuals(state, false).count, 0U) << "0.12 m away";
-  state.position.z() = -0.95;
+  state.position().z() = -0.95;
   EXPECT_EQ(residuals(state, false).count, 0U) << "out until the next search";
   EXPECT_EQ(residuals(state, true).count, 1U);
 }

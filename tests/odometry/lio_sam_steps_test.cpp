@@ -207,16 +207,17 @@ TEST(LioSamRegistration, LinesAndPlanesAreFoundWhereThereAreSome) {
   EXPECT_FALSE(fit_line(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 0}})));
 
   const std::vector<Vector3d> wall{{2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {2.01, 0.5, 0.5}};
-  for (const PlaneFit fit : {PlaneFit::kPrincipal, PlaneFit::kThroughOrigin}) {
-    const auto plane = fit_plane(five(wall), fit, 0.2);
+  for (const PlaneFit fit : {PlaneFit::kPrincipal, PlaneFit::kUnitOffset}) {
+    const auto plane = fit_plane(columns_of(five(wall)), fit, 0.2);
     ASSERT_TRUE(plane.has_value());
     EXPECT_NEAR(std::abs(plane->normal.x()), 1.0, 1e-2);
     EXPECT_NEAR(std::abs(plane->offset), 2.0, 2e-2);
   }
-  EXPECT_FALSE(fit_plane(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}}),
-                         PlaneFit::kPrincipal, 0.2));
-  EXPECT_FALSE(fit_plane(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}}),
-                         PlaneFit::kPrincipal, 0.2))
+  EXPECT_FALSE(fit_plane(columns_of(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}})),
+                         PlaneFit::kPrincipal, 0.2, 0.05));
+  EXPECT_FALSE(
+      fit_plane(columns_of(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}})),
+                PlaneFit::kPrincipal, 0.2, 0.05))
       << "on a line, as a single sweep leaves them";
 }
 

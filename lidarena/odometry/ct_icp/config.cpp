@@ -27,7 +27,7 @@ Config improved(const LidarInfo& lidar) {
   registration.initial_motion = InitialMotion::kConstantTwist;
   registration.segments = 3;
   registration.search_again_m = 0.03;
-  registration.loss_scale_m = 0.05;
+  registration.robust_kernel_scale_m = 0.05;
   registration.inner_iterations = 1;
   registration.max_iterations = 30;
   registration.translation_threshold_m = 1e-3;

@@ -92,8 +92,8 @@ struct RegistrationConfig {
   double nearness_weight = 0.1;
   bool gate_distances = false;
   double max_plane_distance_m = 0.3;
-  Loss loss = Loss::kCauchy;
-  double loss_scale_m = 0.1;
+  RobustKernel robust_kernel = RobustKernel::kCauchy;
+  double robust_kernel_scale_m = 0.1;
   int max_residuals = 0;
   int min_residuals = 20;
   bool exact_slerp = true;
@@ -117,8 +117,7 @@ struct RegistrationConfig {
     v("search_again_m", self.search_again_m, "m",
       "neighbors are searched anew once a keypoint moved so far; 0: in each iteration",
       at_least(0));
-    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer is not matched",
-      at_least(3));
+    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer is not matched", at_least(3));
     v("max_neighbors", self.max_neighbors, "", "the nearest so many count", Limits{3, 64});
     v("plane_point", self.plane_point, "",
       "what a plane is laid through: farthest (the public program), nearest or mean of neighbors");
@@ -128,8 +127,9 @@ struct RegistrationConfig {
       "of the exponential of the plane point's distance", at_least(0));
     v("gate_distances", self.gate_distances, "", "matches beyond max_plane_distance_m are dropped");
     v("max_plane_distance_m", self.max_plane_distance_m, "m", "", above(0));
-    v("loss", self.loss, "", "none, huber, cauchy or tukey");
-    v("loss_scale_m", self.loss_scale_m, "m", "of the weighted distance", above(0));
+    v("robust_kernel", self.robust_kernel, "", "none, huber, cauchy or tukey");
+    v("robust_kernel_scale_m", self.robust_kernel_scale_m, "m", "of the weighted distance",
+      above(0));
     v("max_residuals", self.max_residuals, "", "the first so many count; 0: all", at_least(0));
     v("min_residuals", self.min_residuals, "", "with fewer the scan is lost", at_least(1));
     v("exact_slerp", self.exact_slerp, "",

@@ -119,10 +119,7 @@ Pose CtIcp::body_pose(const Pose& map_from_lidar) const {
 }
 
 std::vector<Eigen::Vector3f> CtIcp::map() const {
-  std::vector<Eigen::Vector3f> points = map_.points();
-  for (Eigen::Vector3f& point : points)
-    point = (body_from_lidar_ * point.cast<double>()).cast<float>();
-  return points;
+  return transformed(body_from_lidar_, map_.points());
 }
 
 std::map<std::string, std::uint64_t> CtIcp::memory() const {

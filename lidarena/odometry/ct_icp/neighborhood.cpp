@@ -13,23 +13,23 @@ constexpr double kDistinct = 0.8;            // linearity or planarity from whic
 constexpr double kDistributionWeight = 0.1;  // of neither
 constexpr double kThinnest = 0.02;           // m, least deviation of a distribution: range noise
 
-Eigen::Vector3d anchor_of(std::span<const VoxelHashMap::Neighbor> neighbors,
-                          const Eigen::Vector3d& mean, PlanePoint plane_point) {
+Eigen::Vector3d anchor_of(std::span<const Neighbor> neighbors, const Eigen::Vector3d& mean,
+                          PlanePoint plane_point) {
   if (plane_point == PlanePoint::kMean) return mean;
   const auto [nearest, farthest] = std::minmax_element(
       neighbors.begin(), neighbors.end(),
       [](const auto& a, const auto& b) { return a.squared_distance < b.squared_distance; });
-  return (plane_point == PlanePoint::kNearest ? nearest : farthest)->point->cast<double>();
+  return (plane_point == PlanePoint::kNearest ? nearest : farthest)->point.cast<double>();
 }
 
 }  // namespace
 
-Neighborhood describe(std::span<const VoxelHashMap::Neighbor> neighbors, PlanePoint plane_point) {
-  const Eigen::Vector3f& origin = *neighbors.front().point;
+Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_point) {
+  const Eigen::Vector3f& origin = neighbors.front().point;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   for (const auto& neighbor : neighbors) {
-    const Eigen::Vector3f d = *neighbor.point - origin;  // small, so floats do
+    const Eigen::Vector3f d = neighbor.point - origin;  // small, so floats do
     sum += d;
     squares += d * d.transpose();
   }
@@ -79,8 +79,7 @@ ElasticMatch shape_match(const Neighborhood& neighborhood) {
     // Deviations along the axes, scaled so that the smallest counts in meters as a plane's does.
     const Eigen::Vector3d deviations = neighborhood.eigenvalues.cwiseSqrt().cwiseMax(kThinnest);
     Eigen::Matrix3d axes;
-    axes << neighborhood.normal, neighborhood.line.cross(neighborhood.normal),
-        neighborhood.line;
+    axes << neighborhood.normal, neighborhood.line.cross(neighborhood.normal), neighborhood.line;
     match.rows = 3;
     match.shape = (deviations[0] * deviations.cwiseInverse()).asDiagonal() * axes.transpose();
     match.weight = kDistributionWeight;

@@ -22,7 +22,7 @@ struct Neighborhood {
 };
 
 /// Both measures are 0 when all neighbors coincide.
-Neighborhood describe(std::span<const VoxelHashMap::Neighbor> neighbors, PlanePoint plane_point);
+Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_point);
 
 /// What a keypoint should lie on: the neighborhood's plane, with the weight
 /// c1 planarity^2 + c2 exp(-distance / (gate min_neighbors)) of the public program (c1 + c2 = 1).

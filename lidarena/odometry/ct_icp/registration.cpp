@@ -69,7 +69,7 @@ class Matcher {
   }
 
   std::optional<Neighborhood> search(const Eigen::Vector3f& position) const {
-    std::array<VoxelHashMap::Neighbor, kMostNeighbors> room;
+    std::array<Neighbor, kMostNeighbors> room;
     const std::span near(room.data(), static_cast<std::size_t>(config_.max_neighbors));
     const auto radius = static_cast<float>(config_.search_radius_m);
     const std::size_t count = map_.nearest(position, radius, near);
@@ -121,8 +121,9 @@ Registration register_keypoints(std::span<const TimedPoint> keypoints, const Vox
     if (!result.enough) return result;
     result.observability = observability_of(matches);
     const ElasticMotion before = result.motion;
-    result.motion = aligned({matches, prior, config.loss, config.loss_scale_m, config.exact_slerp},
-                            before, config, parallel);
+    result.motion = aligned(
+        {matches, prior, config.robust_kernel, config.robust_kernel_scale_m, config.exact_slerp},
+        before, config, parallel);
     ++result.iterations;
     const MotionChange change = change_between(before, result.motion);
     if (change.translation_m < config.translation_threshold_m &&

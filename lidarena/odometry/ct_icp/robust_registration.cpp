@@ -27,7 +27,7 @@ Config at_level(Config config, int level) {
     registration.inner_iterations += 30;
     registration.translation_threshold_m /= 10.0;
     registration.rotation_threshold_rad /= 10.0;
-    registration.loss_scale_m *= 1.2;
+    registration.robust_kernel_scale_m *= 1.2;
     registration.max_plane_distance_m *= 1.5;
   }
   return config;

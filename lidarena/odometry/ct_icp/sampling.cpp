@@ -60,18 +60,6 @@ void draw(std::vector<TimedPoint>& points, std::size_t limit) {
 
 }  // namespace
 
-ScanTimes times_of(const Scan& scan, Time usual_duration) {
-  ScanTimes times{scan.stamp, scan.stamp + usual_duration, false};
-  if (scan.points.empty()) return times;
-  const auto [earliest, latest] =
-      std::minmax_element(scan.points.begin(), scan.points.end(),
-                          [](const Point& a, const Point& b) { return a.dt_ns < b.dt_ns; });
-  times.first = time_of(scan, *earliest);
-  times.last = time_of(scan, *latest);
-  times.timed = scan.timed && times.first < times.last;
-  return times;
-}
-
 std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, bool rigid,
                                      const SamplingConfig& config) {
   const auto begin = static_cast<double>((times.first - scan.stamp).count());

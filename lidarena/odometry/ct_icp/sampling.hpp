@@ -6,20 +6,10 @@
 #include <vector>
 
 #include "lidarena/base/scan.hpp"
+#include "lidarena/estimation/scan_times.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 
 namespace lidarena::ct_icp {
-
-/// When a scan was taken.
-struct ScanTimes {
-  Time first{0};       ///< of the earliest point
-  Time last{0};        ///< of the latest point: instant of the pose
-  bool timed = false;  ///< points carry times that tell them apart
-  double seconds() const { return to_seconds(last - first); }
-};
-
-/// An empty scan counts as lasting `usual_duration`, so that its pose's instant lies in the row.
-ScanTimes times_of(const Scan& scan, Time usual_duration);
 
 /// A point and when it was measured.
 struct TimedPoint {

@@ -8,15 +8,10 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/plane_fit.hpp"
 #include "lidarena/map/grid_axes.hpp"
 
 namespace lidarena::fast_lio2 {
-
-/// How a plane is laid through the five neighbors of a point.
-enum class PlaneFit {
-  kThroughOrigin,  ///< a . x = -1 by least squares: has no answer for planes through the origin
-  kPrincipal,      ///< through the centroid, across the direction in which they spread least
-};
 
 /// Where the strength of the IMU's noise comes from.
 enum class NoiseModel {
@@ -39,7 +34,7 @@ struct Config {
   double point_variance_m2 = 1e-3;
   double max_neighbor_m = 2.236;
   double plane_thickness_m = 0.1;
-  PlaneFit plane_fit = PlaneFit::kThroughOrigin;
+  PlaneFit plane_fit = PlaneFit::kUnitOffset;
   bool plane_uncertainty = false;
   bool estimate_extrinsics = false;
 
@@ -91,7 +86,7 @@ struct Config {
       above(0));
     v("plane_thickness_m", self.plane_thickness_m, "m",
       "distance of each neighbor from their plane, at most", above(0));
-    v("plane_fit", self.plane_fit, "", "through_origin or principal (cure)");
+    v("plane_fit", self.plane_fit, "", "unit_offset or, not in the published program, principal");
     v("plane_uncertainty", self.plane_uncertainty, "",
       "cure: a point counts less the less its five neighbors say about their plane's place there, "
       "which is next to nothing when they lie on a line");
@@ -150,13 +145,6 @@ Config preset(const std::string& name, const LidarInfo& lidar);
 }  // namespace lidarena::fast_lio2
 
 namespace lidarena {
-
-template <>
-struct EnumNames<fast_lio2::PlaneFit> {
-  static constexpr std::array names{
-      std::pair{"through_origin", fast_lio2::PlaneFit::kThroughOrigin},
-      std::pair{"principal", fast_lio2::PlaneFit::kPrincipal}};
-};
 
 template <>
 struct EnumNames<fast_lio2::NoiseModel> {

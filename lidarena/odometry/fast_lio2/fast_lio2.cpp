@@ -16,31 +16,8 @@ using State = InertialState;
 constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
 constexpr double kStillShiftSigma = 1e-4;  // m, of "it has not moved yet"
 constexpr double kStillTurnSigma = 1e-5;   // rad
-constexpr double kNoWay = 100.0;           // m/s: no vehicle of ours flies so fast
 constexpr int kLostScans = 15;             // in a row that contradict the map
 constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
-// While the IMU is silent, the vehicle may do as it likes.
-constexpr ImuNoise kCoasting{0.5, 5.0, 1e-3, 1e-2};
-// For rigs that name no noise: a Mid-360's data sheet.
-constexpr ImuNoise kUsualImu{7.85e-5, 9.81e-4, 1e-5, 1e-4};
-
-ImuNoise densities_of(const ImuInfo& imu, double factor) {
-  const auto density = [factor](double given, double usual) {
-    return factor * (given > 0.0 ? given : usual);
-  };
-  return {density(imu.gyro_noise_density, kUsualImu.gyro_density),
-          density(imu.accel_noise_density, kUsualImu.accel_density),
-          density(imu.gyro_bias_walk, kUsualImu.gyro_walk),
-          density(imu.accel_bias_walk, kUsualImu.accel_walk)};
-}
-
-std::vector<Eigen::Vector3f> transformed(const Pose& pose,
-                                         std::span<const Eigen::Vector3f> points) {
-  std::vector<Eigen::Vector3f> moved;
-  moved.reserve(points.size());
-  for (const Eigen::Vector3f& p : points) moved.push_back((pose * p.cast<double>()).cast<float>());
-  return moved;
-}
 
 /// At most `most` of the points, evenly spread over their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
@@ -65,19 +42,20 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       world_from_map_(body_from_imu_ * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
                                                  Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
-      noise_(densities_of(imu, config.imu_noise_factor)),
+      noise_(noise_of(imu, config.imu_noise_factor)),
       parallel_(std::move(parallel)),
-      window_(config.max_imu_gap_s),
+      imu_(config.max_imu_gap_s),
       map_window_(config.map_radius_m),
       sweep_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult FastLio2::register_scan(const Scan& scan) {
   const Time end = end_of_sweep(scan);
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
-  std::vector<ImuSample> samples;
-  const std::vector<ImuInput> inputs = window_.take_until(end, samples);
+  const std::vector<ImuSample> samples = imu_.samples(
+      integrated_until_ ? *integrated_until_ + Time{1} : Time::min(), end);  // since the last scan
+  const std::vector<ImuInterval> intervals = intervals_until(end);
   if (started_) {
-    predict(inputs);
+    predict(intervals);
   } else if (!start(samples) || config_.skip_first_scan) {
     return finish_scan(
         end, scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
@@ -93,8 +71,8 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
                       {config_.max_iterations, config_.convergence, config_.point_variance_m2});
   belief_ = update.belief;
   const bool still =
-      config_.zero_velocity &&
-      still_.observe(statistics(samples), predicted, belief_.state.position, config_, accel_scale_);
+      config_.zero_velocity && still_.observe(statistics(samples), predicted,
+                                              belief_.state.position(), config_, accel_scale_);
   if (still) stand();
   has_moved_ = has_moved_ || !still;
 
@@ -117,6 +95,17 @@ Time FastLio2::end_of_sweep(const Scan& scan) {
   return scan.timed ? scan.stamp + sweep_ : scan.stamp;
 }
 
+std::vector<ImuInterval> FastLio2::intervals_until(Time end) {
+  const bool silent = imu_.empty() || (!integrated_until_ && imu_.first_stamp() > end);
+  const Time begin = silent ? end : integrated_until_.value_or(imu_.first_stamp());
+  std::vector<ImuInterval> intervals = imu_.between(begin, end);
+  if (!silent) integrated_until_ = end;
+  imu_.forget_before(end);
+  longest_gap_s_ = longest_gap_s(intervals);
+  saturated_ = count_saturated(intervals);
+  return intervals;
+}
+
 bool FastLio2::start(const std::vector<ImuSample>& samples) {
   const bool skip = first_scan_ && config_.skip_first_scan;
   first_scan_ = false;
@@ -124,12 +113,12 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   if (start_samples_.size() < static_cast<std::size_t>(config_.init_samples)) return false;
   const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
   belief_ = begin.belief;
-  belief_.state.rotation = map_from_start_ * belief_.state.rotation;
+  belief_.state.rotation() = map_from_start_ * belief_.state.rotation();
   belief_.state.gravity = map_from_start_ * belief_.state.gravity;
   accel_scale_ = begin.accel_scale;
   first_pose_ = belief_.state.world_from_imu();
   started_ = true;
-  window_.set_accel_scale(accel_scale_);
+  imu_.set_accel_scale(accel_scale_);
   start_samples_ = {};
   return true;
 }
@@ -140,33 +129,33 @@ void FastLio2::stand() {
   belief_ = pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
 }
 
-void FastLio2::predict(const std::vector<ImuInput>& inputs) {
+void FastLio2::predict(const std::vector<ImuInterval>& intervals) {
   State& state = belief_.state;
   track_.clear();
   const Integration integration =
       config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
-  for (const ImuInput& input : inputs) {
-    Eigen::Vector3d accel = accel_scale_ * input.accel;
-    if (input.gap) {  // on with the velocity it has
-      accel = state.accel_bias - state.rotation.transpose() * state.gravity;
+  for (const ImuInterval& interval : intervals) {
+    Eigen::Vector3d accel = accel_scale_ * interval.accel;
+    if (interval.gap) {  // on with the velocity it has
+      accel = state.nav.bias.accel - state.rotation().transpose() * state.gravity;
     }
     const Eigen::Vector3d acceleration =
-        state.rotation * (accel - state.accel_bias) + state.gravity;
-    track_.push_back({input.begin, state.world_from_imu(), state.velocity, acceleration,
-                      input.gyro - state.gyro_bias});
-    const State::Matrix f = propagate(state, input.gyro, accel, input.seconds(), integration);
-    belief_.covariance =
-        f * belief_.covariance * f.transpose() + step_noise(noise_over(input), input.seconds());
+        state.rotation() * (accel - state.nav.bias.accel) + state.gravity;
+    track_.push_back({interval.begin, state.world_from_imu(), state.nav.velocity, acceleration,
+                      interval.gyro - state.nav.bias.gyro});
+    const State::Matrix f = propagate(state, interval.gyro, accel, interval.seconds(), integration);
+    belief_.covariance = f * belief_.covariance * f.transpose() +
+                         step_noise(noise_over(interval), interval.seconds());
   }
-  state.rotation = orthonormal(state.rotation);
-  state.lidar_rotation = orthonormal(state.lidar_rotation);
+  state.rotation() = orthonormal(state.rotation());
+  state.imu_from_lidar.linear() = orthonormal(state.imu_from_lidar.linear());
 }
 
-ImuNoise FastLio2::noise_over(const ImuInput& input) const {
-  if (input.gap || (config_.tell_clipping && input.clipped)) return kCoasting;
+ImuNoise FastLio2::noise_over(const ImuInterval& interval) const {
+  if (interval.gap || (config_.tell_clipping && interval.saturated)) return kCoastingNoise;
   if (config_.noise_model == NoiseModel::kDensity) return noise_;
   // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
-  const auto density = [&](double variance) { return std::sqrt(variance * input.seconds()); };
+  const auto density = [&](double variance) { return std::sqrt(variance * interval.seconds()); };
   return {density(config_.gyro_variance), density(config_.accel_variance),
           density(config_.gyro_bias_variance), density(config_.accel_bias_variance)};
 }
@@ -182,8 +171,8 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
     const float squared = scan.points[i].position.squaredNorm();
     if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
   }
-  std::vector<Eigen::Vector3f> at_end = deskew(used, track_, belief_.state.imu_from_lidar(),
-                                               belief_.state.world_from_imu(), parallel_);
+  std::vector<Eigen::Vector3f> at_end =
+      deskew(used, track_, belief_.state.imu_from_lidar, belief_.state.world_from_imu(), parallel_);
   for (std::size_t i = 0; !config_.deskew_first_instant && i < at_end.size(); ++i) {
     if (used.points[i].dt_ns == 0) at_end[i] = used.points[i].position;
   }
@@ -201,8 +190,8 @@ void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
 
 ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResiduals& residuals) {
   const State& state = belief_.state;
-  if (!state.position.allFinite() || !state.rotation.allFinite() ||
-      !(state.velocity.norm() < kNoWay)) {
+  if (!state.position().allFinite() || !state.rotation().allFinite() ||
+      !(state.nav.velocity.norm() < kMaxPlausibleSpeed)) {
     return ScanStatus::kDiverged;
   }
   if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
@@ -232,9 +221,9 @@ ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
   result.estimate = {end, body_pose(belief_.state.world_from_imu())};
   result.status = status;
   if (started_) result.covariance = body_covariance();
-  counters["imu_gap_s"] = window_.longest_gap_s();
-  counters["imu_clipped"] = static_cast<double>(window_.clipped());
-  counters["imu_refused"] = static_cast<double>(window_.refused());
+  counters["imu_gap_s"] = longest_gap_s_;
+  counters["imu_clipped"] = static_cast<double>(saturated_);
+  counters["imu_refused"] = static_cast<double>(imu_.refused());
   counters["scans_refused"] = static_cast<double>(scans_refused_);
   counters["accel_scale"] = accel_scale_;
   result.counters = std::move(counters);
@@ -252,7 +241,7 @@ Eigen::Matrix<double, 6, 6> FastLio2::body_covariance() const {
   Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
   by_state.topLeftCorner<3, 3>() = world_from_map_.linear();
   by_state.topRightCorner<3, 3>() =
-      -world_from_map_.linear() * state.rotation * so3::hat(imu_from_body.translation());
+      -world_from_map_.linear() * state.rotation() * so3::hat(imu_from_body.translation());
   by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
   return by_state * belief_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
 }
@@ -271,7 +260,7 @@ std::map<std::string, std::uint64_t> FastLio2::memory() const {
   return {{"map", map_.memory_bytes()},
           {"scan_buffer", archive_.size() * sizeof(ArchivedPoint) +
                               registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", window_.memory_bytes()},
+          {"backlog", imu_.memory_bytes()},
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 

@@ -3,15 +3,16 @@
 
 #include <array>
 #include <deque>
+#include <optional>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/imu_buffer.hpp"
 #include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/map/kd_tree.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
-#include "lidarena/odometry/fast_lio2/imu_window.hpp"
 #include "lidarena/odometry/fast_lio2/initialization.hpp"
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
@@ -27,7 +28,7 @@ class FastLio2 : public Odometry {
   FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
   OdometryTraits traits() const override { return {.needs_imu = true}; }
-  void register_imu(const ImuSample& sample) override { window_.add(sample); }
+  void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override { return Trajectory(poses_, "fast_lio2"); }
   std::vector<Eigen::Vector3f> map() const override;
@@ -37,13 +38,15 @@ class FastLio2 : public Odometry {
  private:
   /// Instant of the scan's last firing; for a scan without points, where it should have been.
   Time end_of_sweep(const Scan& scan);
+  /// What the IMU measured since the last scan's end, or since its first sample.
+  std::vector<ImuInterval> intervals_until(Time end);
   /// Takes samples in until they are enough to start from; whether they are now.
   bool start(const std::vector<ImuSample>& samples);
   /// The IMU says that the sensor stands.
   void stand();
   /// Carries the belief over the inputs and lays down the track to de-skew along.
-  void predict(const std::vector<ImuInput>& inputs);
-  ImuNoise noise_over(const ImuInput& input) const;
+  void predict(const std::vector<ImuInterval>& intervals);
+  ImuNoise noise_over(const ImuInterval& interval) const;
   /// The points that are used, seen from the LiDAR at the scan's end.
   std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
   /// Adds the points to the map and lets go of what lies far behind.
@@ -64,7 +67,10 @@ class FastLio2 : public Odometry {
   ImuNoise noise_;
   Parallel parallel_;
 
-  ImuWindow window_;
+  ImuBuffer imu_;
+  std::optional<Time> integrated_until_;  ///< none until there are samples
+  double longest_gap_s_ = 0.0;            ///< of the IMU, in the last scan
+  std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
   bool first_scan_ = true;
   bool started_ = false;

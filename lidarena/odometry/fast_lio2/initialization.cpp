@@ -52,11 +52,11 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
   start.still = stands(imu, config.gravity, start.accel_scale);
   State& state = start.belief.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
-  if (start.still || config.initial_sigma > 0.0) state.gyro_bias = imu.mean_gyro;
+  if (start.still || config.initial_sigma > 0.0) state.nav.bias.gyro = imu.mean_gyro;
   if (start.still && !config.always_scale_accel)  // else the scale takes it
-    state.accel_bias = accel_bias_along(imu, config.gravity, start.accel_scale);
-  state.lidar_rotation = imu_from_lidar.linear();
-  state.lidar_position = imu_from_lidar.translation();
+    state.nav.bias.accel = accel_bias_along(imu, config.gravity, start.accel_scale);
+  state.imu_from_lidar.linear() = imu_from_lidar.linear();
+  state.imu_from_lidar.translation() = imu_from_lidar.translation();
   start.belief.covariance = covariance_of(config, start.still);
   return start;
 }
@@ -65,11 +65,11 @@ bool StillDetector::observe(const ImuStatistics& imu, const InertialState& predi
                             const Eigen::Vector3d& position, const Config& config,
                             double accel_scale) {
   const Eigen::Vector3d at_rest =
-      predicted.accel_bias - predicted.rotation.transpose() * predicted.gravity;
+      predicted.nav.bias.accel - predicted.rotation().transpose() * predicted.gravity;
   const bool is_still = stands(imu, config.gravity, accel_scale) &&
-                        (imu.mean_gyro - predicted.gyro_bias).norm() < kRestRate &&
+                        (imu.mean_gyro - predicted.nav.bias.gyro).norm() < kRestRate &&
                         (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
-                        predicted.velocity.norm() < kStillSpeed &&
+                        predicted.nav.velocity.norm() < kStillSpeed &&
                         (scans_ == 0 || (position - anchor_).norm() < kStillDrift);
   if (is_still && scans_ == 0) anchor_ = position;
   scans_ = is_still ? scans_ + 1 : 0;

@@ -8,45 +8,12 @@
 namespace lidarena::fast_lio2 {
 namespace {
 
-using Columns = Eigen::Matrix<double, 3, kNeighbors>;
-
-/// a . x = -1 in the sense of least squares.
-Plane through_origin(const Columns& points) {
-  const Eigen::Matrix<float, kNeighbors, 3> rows = points.transpose().cast<float>();
-  const Eigen::Vector3f a =
-      rows.colPivHouseholderQr().solve(Eigen::Matrix<float, kNeighbors, 1>::Constant(-1.0F));
-  const double length = a.cast<double>().norm();
-  return {a.cast<double>() / length, 1.0 / length};
-}
-
-/// Across the direction in which the points spread least.
-Plane principal(const Columns& points) {
-  const Eigen::Vector3d center = points.rowwise().mean();
-  const Columns centered = points.colwise() - center;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
-  spread.computeDirect(centered * centered.transpose());
-  const Eigen::Vector3d normal = spread.eigenvectors().col(0);
-  return {normal, -normal.dot(center)};
-}
-
 /// Whether the residual is small for the point's range: 0.11 m at 1 m, 0.35 m at 10 m.
 bool is_near(double distance, double range) {
   return 1.0 - 0.9 * std::abs(distance) / std::sqrt(range) > 0.9;
 }
 
 }  // namespace
-
-std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness) {
-  Columns columns;
-  for (std::size_t i = 0; i < kNeighbors; ++i) {
-    columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
-  }
-  const Plane plane = fit == PlaneFit::kPrincipal ? principal(columns) : through_origin(columns);
-  const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
-  // Not "greater than": a fit that failed is not finite.
-  if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
-  return plane;
-}
 
 double plane_variance(const Neighbors& points, const Plane& plane, double point_variance) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
@@ -67,15 +34,16 @@ double plane_variance(const Neighbors& points, const Plane& plane, double point_
 
 PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
                              const InertialState& state, bool extrinsics) {
-  const Eigen::Vector3d in_imu = state.lidar_rotation * point + state.lidar_position;
-  const Eigen::Vector3d in_world = state.rotation * in_imu + state.position;
-  const Eigen::Vector3d normal_in_imu = state.rotation.transpose() * plane.normal;
+  const Eigen::Vector3d in_imu =
+      state.imu_from_lidar.linear() * point + state.imu_from_lidar.translation();
+  const Eigen::Vector3d in_world = state.rotation() * in_imu + state.position();
+  const Eigen::Vector3d normal_in_imu = state.rotation().transpose() * plane.normal;
   PointResidual residual{plane.normal.dot(in_world) + plane.offset, {}};
   residual.row << plane.normal.transpose(), in_imu.cross(normal_in_imu).transpose(),
       Eigen::Matrix<double, 1, 6>::Zero();
   if (extrinsics) {
     residual.row.tail<6>()
-        << point.cross(state.lidar_rotation.transpose() * normal_in_imu).transpose(),
+        << point.cross(state.imu_from_lidar.linear().transpose() * normal_in_imu).transpose(),
         normal_in_imu.transpose();
   }
   return residual;
@@ -86,11 +54,11 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Kd
     : points_(points), map_(map), config_(config), parallel_(parallel), matches_(points.size()) {}
 
 void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
-  match.found =
-      map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
+  match.found = map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
   match.plane.reset();
   if (match.found == kNeighbors) {
-    match.plane = fit_plane(match.neighbors, config_.plane_fit, config_.plane_thickness_m);
+    match.plane =
+        fit_plane(columns_of(match.neighbors), config_.plane_fit, config_.plane_thickness_m);
   }
   match.near_plane = match.plane.has_value();
   if (!match.plane || !config_.plane_uncertainty) return;

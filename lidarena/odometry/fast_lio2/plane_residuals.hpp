@@ -10,6 +10,7 @@
 #include "lidarena/estimation/inertial_state.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/estimation/least_squares.hpp"
+#include "lidarena/estimation/plane_fit.hpp"
 #include "lidarena/map/kd_tree.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
 
@@ -17,15 +18,6 @@ namespace lidarena::fast_lio2 {
 
 inline constexpr std::size_t kNeighbors = 5;
 using Neighbors = std::array<Neighbor, kNeighbors>;
-
-/// normal . x + offset = 0, with a unit normal.
-struct Plane {
-  Eigen::Vector3d normal;
-  double offset = 0.0;
-};
-
-/// The plane through five points (m), if all lie within `thickness` of it.
-std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness);
 
 /// How far (m^2) the plane may be off within the reach of its five points, which are off it by
 /// `point_variance` (m^2): s^2 / 5 of the centroid, and over the distance of the farthest of them

@@ -16,15 +16,6 @@ VoxelHashMap::Options map_options(const Config& config) {
           config.cell_rounding, config.plane_thinness.value_or(0.0)};
 }
 
-std::vector<Eigen::Vector3f> transformed(const Pose& pose,
-                                         std::span<const Eigen::Vector3f> points) {
-  std::vector<Eigen::Vector3f> moved;
-  moved.reserve(points.size());
-  for (const Eigen::Vector3f& point : points)
-    moved.push_back((pose * point.cast<double>()).cast<float>());
-  return moved;
-}
-
 double mean_range(std::span<const Eigen::Vector3f> points) {
   double sum = 0.0;
   for (const Eigen::Vector3f& point : points) sum += point.cast<double>().norm();
@@ -55,7 +46,7 @@ KissIcp::KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult KissIcp::register_scan(const Scan& scan) {
-  const ScanTimes times = times_of(scan, scan_duration_, config_.pose_instant);
+  const ScanTimes times = times_of(scan, scan_duration_);
   if (times.timed) scan_duration_ = times.last - times.first;
   registered_scan_.clear();
   ScanResult result;
@@ -69,7 +60,7 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
 }
 
 ScanResult KissIcp::register_slice(const Scan& slice) {
-  const ScanTimes times = times_of(slice, scan_duration_, config_.pose_instant);
+  const ScanTimes times = times_of(slice, scan_duration_);
   const se3::Vector6 before = twist_within(times, motion_, motion_seconds_, config_);
   const TimedPoints points = preprocess(slice, times, before, config_, parallel_);
 
@@ -94,7 +85,7 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
   advance(pose, times, status);
   for (const auto& p : transformed(body_from_lidar_ * pose, deskewed(points, twist, parallel_)))
     registered_scan_.push_back(p);
-  return {{times.reference, body_pose(pose)},
+  return {{reference_of(times), body_pose(pose)},
           status,
           std::nullopt,
           {{"points", points.size()},
@@ -124,12 +115,12 @@ Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& 
 }
 
 Departure KissIcp::departure(const ScanTimes& times, const se3::Vector6& before) const {
-  return {map_from_lidar_, instant_ ? to_seconds(times.reference - *instant_) : 0.0, before};
+  return {map_from_lidar_, instant_ ? to_seconds(reference_of(times) - *instant_) : 0.0, before};
 }
 
 Pose KissIcp::predicted_motion(const ScanTimes& times) const {
   if (!config_.motion_per_second || !instant_) return motion_;
-  const double seconds = to_seconds(times.reference - *instant_);
+  const double seconds = to_seconds(reference_of(times) - *instant_);
   return se3::exp(se3::log(motion_) * (seconds / motion_seconds_));
 }
 
@@ -142,11 +133,11 @@ ScanStatus KissIcp::status_of(const Registration& registration, std::size_t poin
 
 void KissIcp::advance(const Pose& pose, const ScanTimes& times, ScanStatus status) {
   motion_ = map_from_lidar_.inverse() * pose;
-  if (instant_) motion_seconds_ = to_seconds(times.reference - *instant_);
+  if (instant_) motion_seconds_ = to_seconds(reference_of(times) - *instant_);
   if (status == ScanStatus::kTooFewPoints)
     motion_ = se3::exp(config_.motion_kept_when_lost * se3::log(motion_));
   map_from_lidar_ = pose;
-  instant_ = times.reference;
+  instant_ = reference_of(times);
 }
 
 std::vector<StampedPose> KissIcp::motion_within(const ScanTimes& times,
@@ -155,7 +146,7 @@ std::vector<StampedPose> KissIcp::motion_within(const ScanTimes& times,
   if (twist.isZero(0.0)) return motion;
   for (int step = 0; step <= kMotionSteps; ++step) {
     const Time instant = times.first + (times.last - times.first) * step / kMotionSteps;
-    const double seconds = to_seconds(instant - times.reference);
+    const double seconds = to_seconds(instant - reference_of(times));
     motion.push_back({instant, body_pose(map_from_lidar_ * se3::exp(twist * seconds))});
   }
   return motion;

@@ -34,6 +34,7 @@ class KissIcp : public Odometry {
   /// register_points from the predicted pose, the start of the map mended before if it is time.
   Registration registered(const TimedPoints& keypoints, const Departure& departure,
                           const Pose& guess);
+  Time reference_of(const ScanTimes& times) const { return pose_time(times, config_.pose_instant); }
   /// Where the lidar comes from, with the twist `before`.
   Departure departure(const ScanTimes& times, const se3::Vector6& before) const;
   /// The lidar's motion until now, if it goes on as before.

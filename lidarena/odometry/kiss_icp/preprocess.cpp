@@ -7,23 +7,13 @@
 
 namespace lidarena::kiss_icp {
 
-ScanTimes times_of(const Scan& scan, Time usual_duration, PoseInstant instant) {
-  ScanTimes times{scan.stamp, scan.stamp + usual_duration, {}, false};
-  if (!scan.points.empty()) {
-    const auto [earliest, latest] =
-        std::minmax_element(scan.points.begin(), scan.points.end(),
-                            [](const Point& a, const Point& b) { return a.dt_ns < b.dt_ns; });
-    times.first = time_of(scan, *earliest);
-    times.last = time_of(scan, *latest);
-    times.timed = scan.timed && times.first < times.last;
-  }
-  times.reference =
-      instant == PoseInstant::kScanEnd ? times.last : times.first + (times.last - times.first) / 2;
-  return times;
+Time pose_time(const ScanTimes& times, PoseInstant instant) {
+  return instant == PoseInstant::kScanEnd ? times.last
+                                          : times.first + (times.last - times.first) / 2;
 }
 
 std::vector<Scan> sliced(const Scan& scan, int count) {
-  const ScanTimes times = times_of(scan, Time{0}, PoseInstant::kScanEnd);
+  const ScanTimes times = times_of(scan, Time{0});
   const std::int64_t duration = (times.last - times.first).count();
   if (count == 1 || !times.timed || duration < count) return {scan};
   std::vector<Scan> slices(static_cast<std::size_t>(count), Scan{scan.stamp, {}, true});
@@ -50,9 +40,9 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
   const bool lost = scan.timed && !times.timed && config.deskew && !config.equal_times_are_no_times;
   if (lost) return {};
   const bool estimated = times.timed && config.deskew && config.own_motion > 0.0;
+  const Time reference = pose_time(times, config.pose_instant);
   const std::vector<Eigen::Vector3f> positions =
-      estimated ? lidarena::positions(scan)
-                : deskew(scan, twist_per_second, times.reference, parallel);
+      estimated ? lidarena::positions(scan) : deskew(scan, twist_per_second, reference, parallel);
   TimedPoints kept;
   kept.positions.reserve(positions.size());
   if (estimated) kept.seconds.reserve(positions.size());
@@ -62,7 +52,7 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
     kept.positions.push_back(positions[i]);
     if (!estimated) continue;
     kept.seconds.push_back(
-        static_cast<float>(to_seconds(time_of(scan, scan.points[i]) - times.reference)));
+        static_cast<float>(to_seconds(time_of(scan, scan.points[i]) - reference)));
   }
   return kept;
 }

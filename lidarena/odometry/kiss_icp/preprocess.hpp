@@ -7,22 +7,14 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/scan.hpp"
 #include "lidarena/base/se3.hpp"
+#include "lidarena/estimation/scan_times.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
 
 namespace lidarena::kiss_icp {
 
-/// When a scan was taken.
-struct ScanTimes {
-  Time first{0};       ///< of the earliest point
-  Time last{0};        ///< of the latest point
-  Time reference{0};   ///< instant of the pose
-  bool timed = false;  ///< points carry times that tell them apart
-  double seconds() const { return to_seconds(last - first); }
-};
-
-/// An empty scan counts as lasting `usual_duration`, so that its pose's instant lies in the row.
-ScanTimes times_of(const Scan& scan, Time usual_duration, PoseInstant instant);
+/// Instant of the scan that its pose belongs to.
+Time pose_time(const ScanTimes& times, PoseInstant instant);
 
 /// The scan cut into `count` parts of equal duration, in order of time, those without points left
 /// out. A scan without times, or too short to cut, comes back whole.

@@ -100,7 +100,7 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
                          kernel_weight(distance.squaredNorm(), kernel));
         return;
       }
-      const auto [error, jacobian] = point_to_point(point, match.point->cast<double>(), center);
+      const auto [error, jacobian] = point_to_point(point, match.point.cast<double>(), center);
       const double weight = match.shapeless ? config.shapeless_weight : 1.0;
       equations.add<3>(share * jacobian, error,
                        weight * kernel_weight(error.squaredNorm(), kernel));

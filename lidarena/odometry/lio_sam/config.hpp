@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/plane_fit.hpp"
 #include "lidarena/loop/config.hpp"
 #include "lidarena/map/grid_axes.hpp"
 
@@ -17,12 +18,6 @@ namespace lidarena::lio_sam {
 enum class Columns {
   kAzimuth,  ///< a direction: the first point of each cell stays
   kArrival,  ///< a place in the order of firing within the ring: for patterns that do not repeat
-};
-
-/// How a plane is laid through the five neighbors of a point.
-enum class PlaneFit {
-  kThroughOrigin,  ///< a . x = -1 by least squares: has no answer for planes through the origin
-  kPrincipal,      ///< through the centroid, across the direction in which they spread least
 };
 
 /// What a direction must have to be updated by the scan.
@@ -59,7 +54,7 @@ struct Config {
   double turn_tolerance_rad = 8.7e-4;
   double shift_tolerance_m = 5e-4;
   double search_step_m = 0.0;
-  PlaneFit plane_fit = PlaneFit::kThroughOrigin;
+  PlaneFit plane_fit = PlaneFit::kUnitOffset;
   double plane_thickness_m = 0.2;
   Degeneracy degeneracy = Degeneracy::kEigenvalue;
 
@@ -122,7 +117,7 @@ struct Config {
     v("shift_tolerance_m", self.shift_tolerance_m, "m", "likewise", above(0));
     v("search_step_m", self.search_step_m, "m",
       "after a smaller step the correspondences stay; 0: searched in each iteration", at_least(0));
-    v("plane_fit", self.plane_fit, "", "through_origin or principal (cure)");
+    v("plane_fit", self.plane_fit, "", "unit_offset or, not in the published program, principal");
     v("plane_thickness_m", self.plane_thickness_m, "m",
       "distance of each neighbor from their plane, at most", above(0));
     v("degeneracy", self.degeneracy, "", "eigenvalue or share (cure)");
@@ -184,12 +179,6 @@ template <>
 struct EnumNames<lio_sam::Columns> {
   static constexpr std::array names{std::pair{"azimuth", lio_sam::Columns::kAzimuth},
                                     std::pair{"arrival", lio_sam::Columns::kArrival}};
-};
-
-template <>
-struct EnumNames<lio_sam::PlaneFit> {
-  static constexpr std::array names{std::pair{"through_origin", lio_sam::PlaneFit::kThroughOrigin},
-                                    std::pair{"principal", lio_sam::PlaneFit::kPrincipal}};
 };
 
 template <>

@@ -15,22 +15,10 @@ constexpr std::size_t kStartSamples = 10;    // of the IMU
 constexpr Time kStartMemory{1'000'000'000};  // samples that a start may look back on
 constexpr double kMaxSpeed = 30.0;           // m/s; beyond these the smoother has failed
 constexpr double kMaxBias = 1.0;             // m/s^2, rad/s
-constexpr double kNoWay = 100.0;             // m/s: no vehicle of ours flies so fast
-// While the IMU is silent, the vehicle may do as it likes.
-constexpr ImuNoise kCoasting{0.5, 5.0, 1e-3, 1e-2};
-// For rigs that name no noise: a Mid-360's data sheet.
-constexpr ImuNoise kUsualImu{7.85e-5, 9.81e-4, 1e-5, 1e-4};
 
-ImuNoise noise_of(const ImuInfo& imu, const Config& config) {
-  if (config.imu_noise_factor <= 0.0)
-    return {config.gyro_noise, config.accel_noise, config.gyro_walk, config.accel_walk};
-  const auto density = [&](double given, double usual) {
-    return config.imu_noise_factor * (given > 0.0 ? given : usual);
-  };
-  return {density(imu.gyro_noise_density, kUsualImu.gyro_density),
-          density(imu.accel_noise_density, kUsualImu.accel_density),
-          density(imu.gyro_bias_walk, kUsualImu.gyro_walk),
-          density(imu.accel_bias_walk, kUsualImu.accel_walk)};
+ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
+  if (config.imu_noise_factor > 0.0) return noise_of(imu, config.imu_noise_factor);
+  return {config.gyro_noise, config.accel_noise, config.gyro_walk, config.accel_walk};
 }
 
 Pose rotation_of(const Pose& pose) {
@@ -44,7 +32,7 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       body_from_imu_(imu.body_from_imu),
       body_from_lidar_(lidar.body_from_lidar),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
-      noise_(noise_of(imu, config)),
+      noise_(configured_noise(imu, config)),
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       sweep_(from_seconds(1.0 / lidar.rate_hz)),
@@ -146,7 +134,7 @@ void LioSam::integrate(const std::vector<ImuInterval>& intervals, const NavState
                         rotation * (accel - state.bias.accel) + gravity,
                         interval.gyro - state.bias.gyro});
     }
-    sum.integrate(interval.gyro, accel, interval.seconds(), interval.gap ? kCoasting : noise_);
+    sum.integrate(interval.gyro, accel, interval.seconds(), interval.gap ? kCoastingNoise : noise_);
   }
 }
 
@@ -176,7 +164,8 @@ Registration LioSam::match(const Features& features, const Pose& guess, Time sta
 }
 
 ScanStatus LioSam::status_of(const Registration& found, const Features& features) const {
-  if (!found.map_from_lidar.matrix().allFinite() || !(smoother_.latest().velocity.norm() < kNoWay))
+  if (!found.map_from_lidar.matrix().allFinite() ||
+      !(smoother_.latest().velocity.norm() < kMaxPlausibleSpeed))
     return ScanStatus::kDiverged;
   if (features.surfaces.empty()) return ScanStatus::kTooFewPoints;
   if (keyframes_.empty()) return ScanStatus::kInitializing;
@@ -309,10 +298,8 @@ Trajectory LioSam::trajectory() const {
 std::vector<Eigen::Vector3f> LioSam::map() const {
   std::vector<Eigen::Vector3f> points;
   for (const Keyframe& keyframe : keyframes_) {
-    for (const auto* part : {&keyframe.features.edges, &keyframe.features.surfaces}) {
-      for (const Eigen::Vector3f& p : *part)
-        points.push_back((keyframe.world_from_lidar * p.cast<double>()).cast<float>());
-    }
+    append_transformed(keyframe.world_from_lidar, keyframe.features.edges, points);
+    append_transformed(keyframe.world_from_lidar, keyframe.features.surfaces, points);
   }
   return points;
 }

@@ -10,39 +10,14 @@ namespace lidarena::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
-using Columns3 = Eigen::Matrix<double, 3, kNeighbors>;
 
 constexpr double kPlaneRatio = 0.05;        // spread of a plane's narrow side by its wide one
-constexpr float kMaxNeighbor = 1.0F;       // m, the fifth
+constexpr float kMaxNeighbor = 1.0F;        // m, the fifth
 constexpr double kLineRatio = 3.0;          // spread along by spread across
 constexpr double kLeastWeight = 0.1;        // of a match that counts
 constexpr std::size_t kLeastMatches = 50;   // fewer tell nothing
 constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's
 constexpr double kLeastShare = 0.003;       // of all; 1/6 if all alike
-
-Columns3 columns_of(const Neighbors& points) {
-  Columns3 columns;
-  for (std::size_t i = 0; i < kNeighbors; ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = points[i].point.cast<double>();
-  return columns;
-}
-
-/// Eigenvectors of the spread about the center, the smallest first.
-Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread_of(const Columns3& points,
-                                                         const Vector3d& center) {
-  const Columns3 centered = points.colwise() - center;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
-  spread.computeDirect(centered * centered.transpose());
-  return spread;
-}
-
-Plane through_origin(const Columns3& points) {
-  const Eigen::Matrix<float, kNeighbors, 3> rows = points.transpose().cast<float>();
-  const Vector3d a = rows.colPivHouseholderQr()
-                         .solve(Eigen::Matrix<float, kNeighbors, 1>::Constant(-1.0F))
-                         .cast<double>();
-  return {a / a.norm(), 1.0 / a.norm()};
-}
 
 PointResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
                              double weight) {
@@ -97,7 +72,8 @@ class Matcher {
       search(
           features_.surfaces, map_.surfaces, pose, parallel_,
           [&](const Neighbors& near) {
-            return fit_plane(near, config_.plane_fit, config_.plane_thickness_m);
+            return fit_plane(columns_of(near), config_.plane_fit, config_.plane_thickness_m,
+                             kPlaneRatio);
           },
           planes_);
     }
@@ -125,30 +101,9 @@ double lever_of(const std::vector<Eigen::Vector3f>& points) {
 }  // namespace
 
 std::optional<Line> fit_line(const Neighbors& points) {
-  const Columns3 columns = columns_of(points);
-  const Vector3d center = columns.rowwise().mean();
-  const auto spread = spread_of(columns, center);
-  if (!(spread.eigenvalues()[2] > kLineRatio * spread.eigenvalues()[1])) return std::nullopt;
-  return Line{center, spread.eigenvectors().col(2)};
-}
-
-std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness) {
-  const Columns3 columns = columns_of(points);
-  Plane plane;
-  if (fit == PlaneFit::kThroughOrigin) {
-    plane = through_origin(columns);
-  } else {
-    const Vector3d center = columns.rowwise().mean();
-    const auto spread = spread_of(columns, center);
-    // on a line, as the sweeps of one scan leave them, they hold no plane
-    if (spread.eigenvalues()[1] < kPlaneRatio * spread.eigenvalues()[2]) return std::nullopt;
-    plane.normal = spread.eigenvectors().col(0);
-    plane.offset = -plane.normal.dot(center);
-  }
-  const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
-  // Not "greater than": a fit that failed is not finite.
-  if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
-  return plane;
+  const PrincipalAxes principal = principal_axes(columns_of(points));
+  if (!(principal.spread[2] > kLineRatio * principal.spread[1])) return std::nullopt;
+  return Line{principal.center, principal.axes.col(2)};
 }
 
 std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& line,

@@ -9,6 +9,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/least_squares.hpp"
+#include "lidarena/estimation/plane_fit.hpp"
 #include "lidarena/map/kd_tree.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
 #include "lidarena/odometry/lio_sam/features.hpp"
@@ -24,16 +25,8 @@ struct Line {
   Eigen::Vector3d center;
   Eigen::Vector3d direction;  ///< unit
 };
-/// normal . x + offset = 0, with a unit normal.
-struct Plane {
-  Eigen::Vector3d normal;
-  double offset = 0.0;
-};
-
 /// The line through points that spread three times as much along it as across.
 std::optional<Line> fit_line(const Neighbors& points);
-/// The plane through points that all lie within `thickness` (m) of it.
-std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thickness);
 
 /// A point's distance (m, not negative) from its line or plane and how it grows with the pose's
 /// errors, both times the weight of the match; nothing when that is too small.

@@ -178,23 +178,6 @@ Target trajectories() {
           }};
 }
 
-/// A room whose meta.json is broken.
-Target room_meta() {
-  const fs::path room = scratch() / "room";
-  written(room / "scans.txt", "0 100.0 100.1\n");
-  written(room / "imu.txt", "100.0 0 0 0 0 0 9.8\n100.05 0 0 0 0 0 9.8\n");
-  written(room / "gt.tum", "100.0 0 0 0 0 0 0 1\n100.1 0 0 0 0 0 0 1\n");
-  const double point[5] = {1, 2, 3, 100.01, 4};
-  written(room / "scans" / "000000.bin", {reinterpret_cast<const char*>(point), sizeof point});
-  return {"room",
-          {R"({"columns": ["x", "y", "z", "t", "ring"], "time": "absolute seconds",)"
-           R"( "truth": "lidar frame", "body_from_lidar": [0, 0, 0.1, 0, 0, 0, 1]})"},
-          [room](std::string_view bytes) {
-            written(room / "meta.json", bytes);
-            read_dataset(room);
-          }};
-}
-
 /// Dataset folders whose manifest.json is broken.
 Target manifests() {
   const fs::path recorded = scratch() / "recorded";
@@ -275,7 +258,6 @@ const std::vector<Target>& targets() {
       clouds("ply"),
       raw_sweeps(),
       trajectories(),
-      room_meta(),
       manifests(),
       configurations(),
       messages()};
