@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Builds the module and the program with CMake and puts both, with configs/, into the package.
+"""Builds the module and the program with CMake and adds them and configs/ to the package.
 
 The build folder is build/pip, or $LIDARENA_BUILD: `LIDARENA_BUILD=build/release pip install ...`
-goes on from what ./run or ./test has built.
+reuses what ./run or ./test has built.
 """
 import os
 import pathlib
@@ -18,7 +18,7 @@ ROOT = pathlib.Path(__file__).parent.resolve()
 
 
 class BinaryDistribution(Distribution):
-    """A wheel of one platform and one Python."""
+    """A wheel for one platform and one Python version."""
 
     def has_ext_modules(self):
         return True

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Everything outside the project, found once. Debian's packages are named in cmake/setup.sh.
+# Finds all external dependencies. cmake/setup.sh lists the Debian packages.
 find_package(Threads REQUIRED)
 find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(Ceres REQUIRED)
@@ -17,9 +17,10 @@ pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(lzf REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(md REQUIRED IMPORTED_TARGET libmd)
 find_package(ZLIB REQUIRED)
-find_package(BZip2 QUIET)  # for reading old bags
+find_package(BZip2 QUIET)  # reads ROS 1 bags with bz2 chunks
 
-# Embree 4 where there is one, else 3 (one .cpp of ours knows the difference), else our own tree.
+# Embree 4 if found, else Embree 3 (a single .cpp file handles the differences), else the built-in
+# bounding volume hierarchy.
 set(LIDARENA_EMBREE_MAJOR 0)
 if(LIDARENA_WITH_EMBREE)
   foreach(major IN ITEMS 4 3)
@@ -31,7 +32,7 @@ if(LIDARENA_WITH_EMBREE)
   endforeach()
 endif()
 
-find_package(nanoflann QUIET)  # for benchmarks alone
+find_package(nanoflann QUIET)  # benchmarks only
 
 set(LIDARENA_HAVE_SDF OFF)
 if(LIDARENA_WITH_SDF)
@@ -39,8 +40,8 @@ if(LIDARENA_WITH_SDF)
   set(LIDARENA_HAVE_SDF ${sdformat12_FOUND})
 endif()
 
-# The pages' scripts come from npm: `npm ci --prefix viewer` (cmake/setup.sh does it) fetches them,
-# configuring and building never reach out.
+# The HTML pages' JavaScript libraries come from npm: `npm ci --prefix viewer` downloads them
+# (cmake/setup.sh runs it). Configuring and building never access the network.
 set(LIDARENA_HAVE_VIEWER OFF)
 if(LIDARENA_WITH_VIEWER)
   find_program(LIDARENA_NODE NAMES node nodejs)
@@ -48,13 +49,13 @@ if(LIDARENA_WITH_VIEWER)
     set(LIDARENA_HAVE_VIEWER ON)
   endif()
 endif()
-# The small server of `lidarena view`; without it the view is written to a file.
+# HTTP server of `lidarena view`; without it the view is written to a file.
 pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
 
 if(LIDARENA_EMBREE_MAJOR)
   set(LIDARENA_RAY_CASTER "Embree ${LIDARENA_EMBREE_MAJOR}")
 else()
-  set(LIDARENA_RAY_CASTER "our own tree, slower than Embree")
+  set(LIDARENA_RAY_CASTER "built-in, slower than Embree")
 endif()
 
 function(lidarena_print_summary)

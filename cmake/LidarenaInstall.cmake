@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# What `cmake --install` lays down, in components: program (the command and its data), development
-# (headers, libraries, find_package) and python; and the Debian packages that CPack makes of them.
+# What `cmake --install` installs, in components: program (the command and its data), development
+# (headers, libraries, find_package) and python; and the Debian packages that CPack builds from
+# them.
 include(CMakePackageConfigHelpers)
 
 get_property(lidarena_modules GLOBAL PROPERTY LIDARENA_MODULES)
@@ -50,7 +51,7 @@ was scanned.")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME liblidarena-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The C++ library: headers, static libraries and the files of find_package(lidarena).")
-# what the exported targets name; libraries that this build went without are left out
+# dependencies of the exported targets; optional libraries that this build does not use are left out
 set(needed libeigen3-dev libtbb-dev libassimp-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev
            robin-map-dev libzstd-dev zlib1g-dev libpng-dev liblz4-dev liblzf-dev libmd-dev libceres-dev pkg-config)
 if(LIDARENA_EMBREE_MAJOR)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# How a module and a test are declared. Flags for us only (warnings, sanitizers) stay PRIVATE.
+# Functions that declare a module and a test. Compiler flags for our own build only (warnings,
+# sanitizers) are PRIVATE.
 add_library(lidarena_flags INTERFACE)
 target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-psabi)
 if(LIDARENA_WARNINGS_AS_ERRORS)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs what is missing from Debian's packages. Asks for root only when something is missing.
+# Installs the Debian packages that are missing. Needs root (by sudo) only if one is missing.
 # usage: cmake/setup.sh run|test
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -10,32 +10,32 @@ packages=(g++ cmake ninja-build pkg-config ca-certificates
           nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
           liblz4-dev liblzf-dev libmd-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev
           dpkg-dev file)
-# Debian 12 has sdformat 12; later suites dropped it, and SDF worlds are then switched off. Without
-# libbz2 old bags with bz2 chunks are not read; without nanoflann its rows are missing from benchmarks.
-# The Python module needs pybind11 and NumPy.
+# Debian 12 has sdformat 12; later releases dropped it, which disables SDF worlds. Without libbz2,
+# ROS 1 bags with bz2 chunks cannot be read; without nanoflann, benchmarks leave out the comparison
+# with it. The Python module needs pybind11 and NumPy.
 optional=(libsdformat-dev libbz2-dev libnanoflann-dev python3-dev pybind11-dev python3-numpy)
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 
 missing=()
 for p in "${packages[@]}"; do installed "$p" || missing+=("$p"); done
-# the pages' scripts are bundled by an npm package; a Node.js from elsewhere serves as well
+# an npm package bundles the HTML pages' scripts; a Node.js from another source works as well
 command -v node >/dev/null || missing+=(nodejs)
 command -v npm >/dev/null || missing+=(npm)
 if [ "${1:-run}" = test ]; then
   command -v python3 >/dev/null || missing+=(python3)
-  # tests of the Python module and of the schemas, and the documentation's site
+  # tests of the Python module and of the schemas, and the documentation site
   optional+=(python3-pytest python3-jsonschema python3-yaml mkdocs)
-  # looks at the pages; without it the tests of the view are reported as skipped
+  # browser for tests of the HTML pages; without it the tests of the view are reported as skipped
   optional+=(chromium)
-  # ROS 1's own reader of bags; without it the test that needs it is reported as skipped
+  # ROS 1's own bag reader; without it the test that needs it is reported as skipped
   optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
 fi
 absent_optional=()
 for p in "${optional[@]}"; do installed "$p" || absent_optional+=("$p"); done
 
 if [ "${#missing[@]}" -eq 0 ] && [ "${#absent_optional[@]}" -gt 0 ] && [ "$(id -u)" != 0 ]; then
-  echo "set-up: optional, not installed: ${absent_optional[*]} (what needs them stays switched off)"
+  echo "set-up: optional, not installed: ${absent_optional[*]} (features that need them are disabled)"
 elif [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
   as_root=()
   if [ "$(id -u)" != 0 ]; then
@@ -49,7 +49,7 @@ elif [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
   echo "set-up: installing ${missing[*]} ${absent_optional[*]}"
   "${as_root[@]}" apt-get update -qq
   available=()
-  without() { echo "set-up: optional, cannot be installed here: $1 (what needs it stays switched off)"; }
+  without() { echo "set-up: optional, cannot be installed here: $1 (features that need it are disabled)"; }
   for p in "${absent_optional[@]}"; do
     if [ -n "$(apt-cache madison "$p" 2>/dev/null)" ]; then available+=("$p"); else without "$p"; fi
   done
@@ -63,7 +63,8 @@ elif [ "${#missing[@]}" -gt 0 ] || [ "${#absent_optional[@]}" -gt 0 ]; then
   fi
 fi
 
-# npm_packages FOLDER WHAT WITHOUT: what FOLDER/package-lock.json names, once
+# npm_packages FOLDER WHAT CONSEQUENCE: installs the packages of FOLDER/package-lock.json unless that
+# is done already; WHAT they are and the CONSEQUENCE of a failure are for messages
 npm_packages() {
   local lock=$1/package-lock.json mark=$1/node_modules/.lock-installed
   if cmp -s "$lock" "$mark"; then return; fi
@@ -71,12 +72,12 @@ npm_packages() {
   if npm ci --prefix "$1" --no-audit --no-fund --loglevel=error; then
     cp "$lock" "$mark"
   else
-    echo "set-up: they could not be installed; $3"
+    echo "set-up: $2 could not be installed; $3"
   fi
 }
 
 npm_packages viewer "the libraries of the 3D view and the charts" \
-  "the build goes without the view, and the report without charts"
+  "the build leaves out the 3D view, and reports have no charts"
 if [ "${1:-run}" = test ]; then
   npm_packages tests/dataset/mcap_official "independent readers of recordings" \
     "the tests that need them will be reported as skipped"

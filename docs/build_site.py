@@ -4,8 +4,8 @@
 
 usage: build_site.py PROGRAM FOLDER; the page to open is FOLDER/site/index.html
 
-Pages are those of docs/, the algorithms' READMEs, and a page for each kind of YAML, made from the
-schemas that PROGRAM prints. Exits 77 (skipped) without mkdocs.
+The pages are those of docs/, the algorithms' READMEs, and a page for each kind of YAML file,
+generated from the schemas that PROGRAM prints. Exits with 77 (skipped) without mkdocs.
 """
 import json
 import pathlib
@@ -22,7 +22,7 @@ def limits(field):
     if "enum" in field:
         return ", ".join(field["enum"])
     if "anyOf" in field:
-        return limits(field["anyOf"][0]) + ", or nothing"
+        return limits(field["anyOf"][0]) + ", or unset"
     if field["type"] == "array":
         count = f"{field['minItems']} of " if "minItems" in field else ""
         return "list of " + count + limits(field["items"])
@@ -36,7 +36,7 @@ def limits(field):
 
 
 def group_of(field):
-    """The keys below a group, a list of groups, or a group that may be left out."""
+    """The keys of a group, a list of groups or an optional group; None for other fields."""
     for inner in (field, field.get("items", {}), *field.get("anyOf", [])):
         if "properties" in inner:
             return inner["properties"]
@@ -63,9 +63,9 @@ def write_reference(program, pages):
     subprocess.run([program, "schema", "--out", pages.parent / "schemas"], check=True)
     folder = pages / "reference"
     folder.mkdir()
-    index = ["# Every key of every YAML", "",
-             "Made from the lists of fields that the program itself reads by. `lidarena schema KIND` "
-             "gives the same to editors.", ""]
+    index = ["# All configuration keys", "",
+             "Generated from the field lists that the program reads its files with. "
+             "`lidarena schema KIND` prints the same as a JSON schema, for editors.", ""]
     for file in sorted((pages.parent / "schemas").glob("*.schema.json")):
         name = file.name.replace(".schema.json", "").replace("+", "_with_")
         document = json.loads(file.read_text())
@@ -75,19 +75,19 @@ def write_reference(program, pages):
 
 
 def unlinked_outside(text):
-    """READMEs link to neighbors in the source tree, which the site does not have."""
+    """`text` without its links to files of the source tree, which the site does not contain."""
     return re.sub(r"\[([^\]]+)\]\((?!https?:|#)[^)]+\)", r"\1", text)
 
 
 def linked_inside(page):
-    """In the source tree an algorithm's page is its README."""
+    """Changes links to an algorithm's README in the source tree to its page on the site."""
     text = page.read_text()
     page.write_text(re.sub(r"\.\./lidarena/odometry/(\w+)/README\.md", r"algorithms/\1.md", text))
 
 
 def main():
     if shutil.which("mkdocs") is None:
-        print("skipped: there is no mkdocs")
+        print("skipped: mkdocs not found")
         return 77
     program, out = sys.argv[1], pathlib.Path(sys.argv[2]).resolve()
     for made in ("pages", "schemas", "site"):

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws what each sensor looks at, as docs/images/sensor_NAME.png. usage: draw_sensors.py
+"""Draws each sensor's shots by direction as docs/images/sensor_NAME.png. usage: draw_sensors.py
 
 Azimuth 180 to -180 deg from left to right, elevation 90 to -90 deg from top to bottom, half a degree
-a pixel; above after 0.1 s, below after 1 s; the darker, the more shots.
+per pixel; top: the first 0.1 s, bottom: the first 1 s; the darker a pixel, the more shots.
 """
 import pathlib
 import struct
@@ -13,11 +13,11 @@ import numpy as np
 
 import lidarena
 
-STEP = 0.5  # deg a pixel
+STEP = 0.5  # deg per pixel
 
 
 def panel(lidar, seconds):
-    """Shots in each pixel, as gray values."""
+    """Gray values from the number of shots in each pixel."""
     scans = max(1, round(seconds * 1e9 / lidar.period))
     counts = np.zeros((int(180 / STEP), int(360 / STEP)))
     for index in range(scans):
@@ -44,7 +44,7 @@ def write_png(file, gray):
 images = pathlib.Path(__file__).parent / "images"
 for name in lidarena.configs.names("sensors"):
     if name.endswith(("_paper", "_full")) or "1024x20" in name or "512" in name:
-        continue  # these look where their plain namesakes do
+        continue  # same pattern, or a thinned one, as a sensor that is drawn
     lidar = lidarena.Lidar(lidarena.load_sensor(name))
     picture = np.vstack([panel(lidar, 0.1), panel(lidar, 1.0)])
     write_png(images / f"sensor_{name}.png", picture)

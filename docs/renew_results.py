@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Brings docs/results up to a study's report.
+"""Updates docs/results from a study's report.
 
 usage: renew_results.py STUDY [--as PREFIX]
 
-Each file that docs/results/tables, docs/results/figures and docs/results itself already hold is taken
-anew from the report in STUDY; to take one more, make an empty file of its name first. With --as only
-those called PREFIX-... are (a study beside the main one), and its results.csv stays behind. Then the
-tables in docs/results/index.md are renewed: what stands between the lines `<!-- tables/NAME.md -->` and
-`<!-- end -->` becomes that table, in the names that people use.
+Replaces each file that exists in docs/results/tables and docs/results/figures, and results.csv, by
+the file of the same name from the report in STUDY; to add a file, create an empty one of its name
+first. With --as only the tables named PREFIX-... are replaced (a study other than the main one).
+Then updates the tables in docs/results/index.md: the text between the lines
+`<!-- tables/NAME.md -->` and `<!-- end -->` becomes that table, with display names.
 """
 import argparse
 import pathlib
@@ -28,12 +28,12 @@ NAMES = {
     "lio_sam": "LIO-SAM",
     "fast_lio2": "FAST-LIO2",
 }
-BESIDE = ("brisk-", "timing-")  # studies whose tables stand beside the main one's
+BESIDE = ("brisk-", "timing-")  # prefixes of other studies' tables
 MARK = re.compile(r"(<!-- tables/(\S+)\.md -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
 def take(source, target, prefix):
-    """Renews the files of `target` that are the prefix's; returns the names that `source` lacks."""
+    """Replaces the files PREFIX* of `target`; returns the names that `source` lacks."""
     missing = []
     for old in sorted(target.iterdir()):
         if not old.is_file() or not old.name.startswith(prefix):
@@ -47,13 +47,13 @@ def take(source, target, prefix):
 
 
 def table_of(markdown):
-    """The rows alone, without title and note, in people's names."""
+    """Only the rows, without title and note, with display names."""
     rows = "".join(line + "\n" for line in markdown.splitlines() if line.startswith("|"))
     return re.sub(r"\b(%s)\b" % "|".join(NAMES), lambda name: NAMES[name[1]], rows)
 
 
 def with_tables(page):
-    """`page` with each marked table as its file has it now."""
+    """`page` with each marked table replaced by the content of its file."""
     def renewed(found):
         table = table_of((RESULTS / "tables" / (found[2] + ".md")).read_text())
         return f"{found[1]}\n{table}\n{found[3]}"
@@ -67,7 +67,7 @@ def main():
     arguments = parser.parse_args()
     prefix = arguments.prefix + "-" if arguments.prefix else ""
     if not (arguments.study / "tables").is_dir():
-        sys.exit(f"{arguments.study} holds no report: lidarena report {arguments.study}")
+        sys.exit(f"{arguments.study} contains no report; run: lidarena report {arguments.study}")
     missing = take(arguments.study / "tables", RESULTS / "tables", prefix)
     if not prefix:
         missing += take(arguments.study / "figures", RESULTS / "figures", prefix)
@@ -75,7 +75,7 @@ def main():
     index = RESULTS / "index.md"
     index.write_text(with_tables(index.read_text()))
     if missing:
-        sys.exit("not in this report, left as they were: " + ", ".join(missing))
+        sys.exit("not in this report, left unchanged: " + ", ".join(missing))
 
 
 if __name__ == "__main__":

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Cast rays into a world: what is around a point of the House? usage: example_01_cast_rays
+// Cast rays into a world: distances around a point in the House. usage: example_01_cast_rays
 #include <cmath>
 #include <cstdio>
 #include <numbers>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Fly a Mid-360 through the House and write what it sees. usage: example_02_simulate_flight
-// [FOLDER]
+// Fly a Mid-360 through the House and write its data. usage: example_02_simulate_flight [FOLDER]
 #include <cstdio>
 
 #include "lidarena/study/config_folder.hpp"
@@ -20,7 +19,7 @@ int main(int argc, char** argv) {
   std::printf("%zu scans, %zu points, %zu IMU samples along %.2f m, in %s\n", done.scans,
               done.points, done.imu_samples, done.path_m, folder.c_str());
 
-  // Anything that reads a dataset sees them in order, each scan after its IMU samples.
+  // Events are read in order, each scan after the IMU samples that span it.
   Dataset dataset = open_dataset(folder);
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);

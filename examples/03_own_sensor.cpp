@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A sensor of your own: eight lasers on a spinning head, in a room of 6 m.
+// Define a sensor: eight lasers on a spinning head, in a cube of 6 m.
 // usage: example_03_own_sensor
 #include <cmath>
 #include <cstdio>
@@ -10,7 +10,7 @@
 
 namespace {
 
-/// A sensor that hangs where it is.
+/// A flight that stays at the origin.
 class Still : public lidarena::Flight {
  public:
   lidarena::Motion at(lidarena::Time) const override { return {}; }
@@ -42,7 +42,7 @@ int main() {
     squares += std::pow(static_cast<double>(scan.points[i].position.norm() - truth[i].range), 2);
   }
   const double rms = std::sqrt(squares / static_cast<double>(truth.size()));
-  std::printf("%zu of %d shots came back, ranges off by %.2f cm\n", scan.points.size(), 8 * 360,
-              100.0 * rms);
+  std::printf("%zu of %d shots gave a return, RMS range error %.2f cm\n", scan.points.size(),
+              8 * 360, 100.0 * rms);
   return std::abs(rms - sensor.range_noise_m) < 0.001 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A mesh of your own, a field of waves 20 m wide, made, written and read back; load_world() takes
-// any OBJ, PLY, STL, DAE, glTF or SDF. usage: example_04_own_mesh [FOLDER]
+// Use your own mesh: a wavy surface 20 m wide is generated, written and read back; load_world()
+// reads any OBJ, PLY, STL, DAE, glTF or SDF. usage: example_04_own_mesh [FOLDER]
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -47,7 +47,7 @@ int main(int argc, char** argv) {
   world.cast({&down, 1}, 10.0, {&hit, 1});
   const double found = 5.0 - static_cast<double>(hit.range);
   const double wanted = height(1.234, -4.321);
-  std::printf("%zu triangles; below the ray the waves are %.4f m high, the mesh %.4f m\n",
+  std::printf("%zu triangles; height below the ray: %.4f m by the formula, %.4f m by the mesh\n",
               world.mesh().triangles.size(), wanted, found);
-  return std::abs(found - wanted) < 0.3 * 0.25 * 0.25 / 4.0 ? 0 : 1;  // chord of a wave's bend
+  return std::abs(found - wanted) < 0.3 * 0.25 * 0.25 / 4.0 ? 0 : 1;  // chord to curve
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Run an odometry on your bag. usage: example_05_odometry_on_a_bag [BAG_OR_MCAP [ALGORITHM]]
-// Without a bag (or with a folder), one is made first: 3 s of the House, as a ROS 1 bag.
+// Without a bag (or with a folder) it first simulates one: 3 s in the House, as a ROS 1 bag.
 #include <cstdio>
 #include <filesystem>
 

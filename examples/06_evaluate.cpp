@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Score anyone's trajectory and map. usage: example_06_evaluate [ESTIMATE TRUTH [MAP MESH]]
+// Score the trajectory and map of any program.
+// usage: example_06_evaluate [ESTIMATE TRUTH [MAP MESH]]
 // Trajectories are TUM, KITTI or EuRoC files; the map is PLY or PCD in the estimate's frame.
-// Without files, an estimate with a drift of 1 % is made up, so that the figure is known.
+// Without files it uses a generated estimate with a drift of 1 %, so that the result is known.
 #include <cmath>
 #include <cstdio>
 
@@ -14,7 +15,7 @@ namespace {
 
 using namespace lidarena;
 
-/// Along a circle of 5 m radius, scaled about its start.
+/// Along a circle of 5 m radius, scaled about its first pose.
 Trajectory circle(double scale) {
   std::vector<StampedPose> poses;
   for (int i = 0; i < 400; ++i) {
@@ -34,7 +35,7 @@ int main(int argc, char** argv) {
   const Trajectory truth = given ? read_trajectory(argv[2]) : circle(1.0);
   const Json metrics = evaluate_trajectory(estimate, truth);
   const Json one_meter = metrics.at("rpe").at("1m").at("translation");
-  std::printf("relative error over 1 m: %.2f cm RMSE over %d pieces\n",
+  std::printf("relative error over 1 m: %.2f cm RMSE of %d pieces\n",
               100.0 * one_meter.at("rmse_m").get<double>(), one_meter.at("count").get<int>());
   if (argc > 4) {
     const Cloud map = read_cloud(argv[3]);
@@ -44,6 +45,6 @@ int main(int argc, char** argv) {
                 error.points, 100.0 * error.distance_m.mean, error.outliers_percent);
   }
   if (given) return 0;
-  // 1 % of a chord of 1 m
+  // 1 % of a piece of 1 m
   return std::abs(one_meter.at("rmse_m").get<double>() - 0.01) < 2e-4 ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A study of your own: two sensors and one algorithm in your own room, every cell in a process of
-// its own; called again, it goes on with what is missing. `lidarena report FOLDER` makes its page.
+// Define a study: two sensors and one algorithm in your own room, each run in its own process; when
+// called again, it does only the missing runs. `lidarena report FOLDER` writes the report.
 // usage: example_07_own_study [FOLDER]
 #include <cstdio>
 #include <fstream>
@@ -29,7 +29,7 @@ int main(int argc, char** argv) {
   for (const PlannedRun& cell : plan(spec, configs)) {
     const Json metrics = read_json(folder / "runs" / cell.name / "metrics.json");
     const Json& error = metrics.at("live").at("rpe").at("1s").at("translation");
-    std::printf("%-16s %.2f cm in a second\n", cell.sensor.c_str(),
+    std::printf("%-16s %.2f cm RPE over 1 s\n", cell.sensor.c_str(),
                 100.0 * error.at("rmse_m").get<double>());
   }
   return outcome.runs == 2 && outcome.failed == 0 ? 0 : 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Add an odometry: planes of cells, matched without a search; translation alone. To have it in the
-// factory's table (`lidarena run NAME`), give it a folder in lidarena/odometry and a row in
+// Add an odometry: it matches planes of grid cells, without a search, and estimates translation
+// only. To add yours to `lidarena run NAME`, give it a folder in lidarena/odometry and a row in
 // factory.cpp. usage: example_08_add_odometry
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
@@ -24,13 +24,13 @@ constexpr double kCell = 1.0;  // m
 constexpr int kIterations = 5;
 using Key = std::array<int, 3>;
 
-/// Points of one cell: their number, sum, and sum of squares.
+/// Points of one cell: their number, sum, and sum of outer products.
 struct Cell {
   int count = 0;
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   Eigen::Vector3d mean() const { return sum / count; }
-  /// The plane's normal; zero when the points (at least ten) are not flat.
+  /// Normal of the points' plane; zero if there are fewer than ten or they do not lie in a plane.
   Eigen::Vector3d normal() const {
     if (count < 10) return Eigen::Vector3d::Zero();
     const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> e(squares / count -
@@ -54,7 +54,7 @@ std::map<Key, Cell> cells_of(const std::vector<Eigen::Vector3d>& points,
   return cells;
 }
 
-/// Each scan's cells are laid onto the planes of the first scan's.
+/// Aligns the cells of each scan with the planes of the first scan's cells.
 class CellPlanes : public Odometry {
  public:
   explicit CellPlanes(const LidarInfo& lidar) : body_from_lidar_(lidar.body_from_lidar) {}
@@ -85,7 +85,7 @@ class CellPlanes : public Odometry {
   }
 
  private:
-  /// Least squares of the distances along the planes' normals.
+  /// The translation that minimizes the squared distances along the planes' normals.
   Eigen::Vector3d step(const std::vector<Eigen::Vector3d>& points) const {
     Eigen::Matrix3d a = 1e-9 * Eigen::Matrix3d::Identity();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
@@ -132,7 +132,7 @@ int main() {
   const auto poses = result.files.trajectory.poses();
   const Eigen::Vector3d moved = poses.back().world_from_body.translation();
   const Eigen::Vector3d wanted = flight.at(poses.back().stamp).world_from_body.translation();
-  std::printf("moved %.3f %.3f %.3f m, in truth %.3f %.3f %.3f\n", moved.x(), moved.y(), moved.z(),
-              wanted.x(), wanted.y(), wanted.z());
+  std::printf("estimated translation %.3f %.3f %.3f m, true %.3f %.3f %.3f\n", moved.x(), moved.y(),
+              moved.z(), wanted.x(), wanted.y(), wanted.z());
   return (moved - wanted).norm() < 0.25 * wanted.norm() ? 0 : 1;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Add a metric: how straight are the floor and walls of a map? A metric is a function of what a run
-// leaves (trajectory, map) and of the truth (trajectory, mesh). usage: example_09_add_metric
+// Add a metric: how flat are the floor and walls of a map? A metric is a function of a run's
+// results (trajectory, map) and of the truth (trajectory, mesh). usage: example_09_add_metric
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <cstdio>
@@ -14,8 +14,8 @@ namespace {
 
 using namespace lidarena;
 
-/// RMS distance (m) of points to the plane that fits them best, face by face. `cloud` is in the
-/// mesh's frame; points within `reach` meters of a face count, and faces with `least` points.
+/// RMS distance (m) of points to the best-fit plane of each face. `cloud` is in the mesh's frame;
+/// uses points within `reach` meters of a face, and faces that have `least` points or more.
 double flatness(const std::vector<Eigen::Vector3d>& cloud, const World& world, double reach = 0.2,
                 std::size_t least = 100) {
   std::vector<ClosestPoint> nearest(cloud.size());

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figure 3 of Vultaggio et al. 2023 made anew: a Livox Mid-360 on the axis of a cylinder, as the
-// official Gazebo plugin shows it (every range too short by the minimum range, so the wall bulges)
-// and as it is. Prints the radius found in bands of elevation, beside the closed form R - m
-// cos(phi), and draws both clouds in section. usage: example_10_official_plugin [FILE.svg]
+// Reproduces figure 3 of Vultaggio et al. 2023: a Livox Mid-360 on the axis of a cylinder,
+// simulated as by the official Gazebo plugin (every range too short by the minimum range, so the
+// wall appears to bulge) and correctly. Prints the measured radius in bands of elevation, beside
+// the closed form R - m cos(phi) (R radius, m minimum range, phi elevation), and draws a cross
+// section of both clouds. usage: example_10_official_plugin [FILE.svg]
 #include <fmt/format.h>
 
 #include <array>
@@ -21,14 +22,14 @@ namespace {
 
 using namespace lidarena;
 
-constexpr double kRadius = 0.55;  // m, of the enclosure that the paper's authors tried
+constexpr double kRadius = 0.55;  // m, radius of the cylinder in the paper's experiment
 constexpr double kHeight = 3.0;
 constexpr double kMinRange = 0.1;  // m, of the Mid-360
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kBandWidth = 10;  // deg of elevation
 constexpr int kBands = 6;       // -10 .. 50 deg
 
-/// A sensor that hangs where it is.
+/// A flight that stays at the origin.
 class Still : public Flight {
  public:
   Motion at(Time) const override { return {}; }
@@ -48,7 +49,7 @@ Scan look_at_cylinder(const World& world, ScanMode mode) {
 double radius(const Point& point) { return point.position.head<2>().norm(); }
 double elevation(const Point& point) { return std::atan2(point.position.z(), radius(point)); }
 
-/// Mean radius in each band, m; the second of each pair counts its points.
+/// Mean radius (m) and number of points of each band.
 std::array<std::pair<double, int>, kBands> radii(const Scan& scan) {
   std::array<std::pair<double, int>, kBands> bands{};
   for (const Point& point : scan.points) {
@@ -61,7 +62,7 @@ std::array<std::pair<double, int>, kBands> radii(const Scan& scan) {
   return bands;
 }
 
-/// One cloud in section: radius to both sides, height up; the wall as lines.
+/// Cross section of one cloud as SVG: radius to both sides, height up; the wall as lines.
 std::string panel(const Scan& scan, const std::string& title, double x0) {
   constexpr double kScale = 190.0;  // pixels a meter
   const auto px = [&](double r) { return x0 + 160.0 + kScale * r; };
@@ -92,7 +93,7 @@ void draw(const std::string& file, const Scan& official, const Scan& ours) {
       << "<rect width='660' height='290' fill='white'/>\n"
       << panel(official, "official plugin", 0) << panel(ours, "Lidarena", 330)
       << "<text x='330' y='280' text-anchor='middle' font-size='12'>a Mid-360 (red) "
-         "in a cylinder of radius 0.55 m (gray), in section</text>\n</svg>\n";
+         "in a cylinder of radius 0.55 m (gray), cross section</text>\n</svg>\n";
 }
 
 }  // namespace
@@ -102,7 +103,7 @@ int main(int argc, char** argv) {
   const Scan official = look_at_cylinder(world, ScanMode::kOfficial);
   const Scan ours = look_at_cylinder(world, ScanMode::kRolling);
 
-  fmt::print("radius found, m (true: {})\n", kRadius);
+  fmt::print("measured radius, m (true: {})\n", kRadius);
   fmt::print("elevation deg   official   R - m cos(phi)   Lidarena\n");
   bool as_expected = true;
   const auto official_radii = radii(official);
@@ -110,11 +111,11 @@ int main(int argc, char** argv) {
   for (int i = 0; i < kBands; ++i) {
     const auto band = static_cast<std::size_t>(i);
     const double low = (i - 1) * kBandWidth;
-    // The official shots start m ahead, so that their points are seen at the same elevation.
+    // `official` shortens ranges along the ray, so points keep their elevation.
     const double expected = kRadius - kMinRange * std::cos((low + 0.5 * kBandWidth) * kDegree);
     fmt::print("{:4.0f} .. {:2.0f}       {:8.4f}   {:14.4f}   {:8.4f}\n", low, low + kBandWidth,
                official_radii[band].first, expected, our_radii[band].first);
-    // Facets lie up to 0.7 mm inside the circle; points are not spread evenly over a band.
+    // Tolerances: facets lie up to 0.7 mm inside the circle; points are unevenly spread in a band.
     as_expected = as_expected && std::abs(official_radii[band].first - expected) < 0.008 &&
                   std::abs(our_radii[band].first - kRadius) < 0.0008;
   }

@@ -13,7 +13,7 @@
 
 namespace lidarena {
 
-/// A fresh folder that goes away with the object.
+/// A new temporary folder, deleted together with the object.
 class TemporaryFolder {
  public:
   TemporaryFolder() {
@@ -31,7 +31,7 @@ class TemporaryFolder {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Writes `text` as path()/name, making folders on the way; returns that path.
+  /// Writes `text` as path()/name, creating its parent folders; returns that path.
   std::filesystem::path write(const std::filesystem::path& name, std::string_view text) const {
     const std::filesystem::path file = path_ / name;
     std::filesystem::create_directories(file.parent_path());

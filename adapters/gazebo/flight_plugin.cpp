@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plugin of a <model>: flies it along a recorded trajectory, whatever the physics says.
+// A plugin of a <model>: moves it along a recorded trajectory, regardless of the physics.
 #include <gazebo/common/CommonIface.hh>
 #include <gazebo/common/Console.hh>
 #include <gazebo/common/Events.hh>
@@ -23,10 +23,10 @@ struct FlightPluginConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("trajectory", self.trajectory, "",
-      "TUM file (t x y z qx qy qz qw) of the model's frame, sought in GAZEBO_RESOURCE_PATH too; "
-      "its first pose is at simulated time 0");
+      "TUM file (t x y z qx qy qz qw) of the model's frame, also searched in "
+      "GAZEBO_RESOURCE_PATH; its first pose is at simulated time 0");
     v("thin_s", self.thin_s, "s",
-      "poses nearer to the one before are left out: the rounding of dense ones would shake the IMU",
+      "minimum time between poses, closer ones are left out: their rounding would disturb the IMU",
       at_least(0));
   }
 };
@@ -49,7 +49,7 @@ class FlightPlugin : public ::gazebo::ModelPlugin {
       const std::string& file = found.empty() ? config.trajectory : found;
       flight_.emplace(thinned(read_recording(file), config.thin_s), file);
     } catch (const Error& error) {
-      gzerr << "lidarena: " << error.what() << "; " << model->GetName() << " stays where it is\n";
+      gzerr << "lidarena: " << error.what() << "; " << model->GetName() << " does not move\n";
       return;
     }
     model_ = model;

@@ -23,12 +23,12 @@ namespace {
 Vector3d to_vector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 Vector3d to_vector(const msgs::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// The pose of a plane z = 0 whose normal this is.
+/// Pose of a plane z = 0 with this normal.
 Pose facing(const Vector3d& normal) {
   return make_pose(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal), Vector3d::Zero());
 }
 
-/// All triangles of a mesh file, or of one of its parts, in their own coordinates.
+/// All triangles of a mesh file, or of one of its sub-meshes, in mesh coordinates.
 TriangleMesh triangles_of(const ::gazebo::common::Mesh& mesh, const std::string& submesh,
                           bool centered) {
   TriangleMesh out;
@@ -82,7 +82,7 @@ std::shared_ptr<MovingWorld> GazeboScene::rebuilt_if_changed() {
     models_.push_back({model.get(), model->WorldPose(), model->IsStatic()});
     add_model(model);
   }
-  gzmsg << "lidarena: sees " << shapes_.size() << " shapes, of which " << moving_.size()
+  gzmsg << "lidarena: the sensor sees " << shapes_.size() << " shapes, of which " << moving_.size()
         << " may move\n";
   return std::make_shared<MovingWorld>(std::move(shapes_));
 }
@@ -111,7 +111,7 @@ void GazeboScene::add_model(const physics::ModelPtr& model) {
 void GazeboScene::add(const physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
                       ShapePtr shape, const std::string& name) {
   if (!shape) {
-    gzwarn << "lidarena: does not see " << name << ", whose kind of shape it does not know\n";
+    gzwarn << "lidarena: the sensor does not see " << name << ": unsupported kind of shape\n";
     return;
   }
   PlacedShape placed;
@@ -148,7 +148,7 @@ void GazeboScene::add_collisions(const physics::LinkPtr& link, bool is_static) {
 
 void GazeboScene::add_visuals(const physics::LinkPtr& link, bool is_static) {
   msgs::Link message;
-  link->FillMsg(message);  // the server's own list of what would be drawn
+  link->FillMsg(message);  // the server's own list of visual shapes
   for (const auto& visual : message.visual()) {
     if (!visual.has_geometry()) continue;
     const msgs::Geometry& geometry = visual.geometry();
@@ -181,7 +181,7 @@ ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, b
   if (!is_new) return entry->second;
   const auto* loaded = ::gazebo::common::MeshManager::Instance()->Load(file);
   if (loaded == nullptr) {
-    gzerr << "lidarena: there is no mesh " << uri << "\n";
+    gzerr << "lidarena: no mesh found at " << uri << "\n";
     return nullptr;
   }
   TriangleMesh scaled;

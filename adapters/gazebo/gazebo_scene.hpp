@@ -17,22 +17,22 @@ Pose to_pose(const ignition::math::Pose3d& pose);
 
 /// The shapes of a Gazebo world as a MovingWorld, without a rendering engine: planes, boxes,
 /// spheres, cylinders, and meshes with their scale, sub-mesh and centering. Others (heightmaps,
-/// polylines) are named on Gazebo's console and left out. To be used within the world's update.
+/// polylines) are reported on Gazebo's console and left out. Use only within the world's update.
 class GazeboScene {
  public:
-  /// `carrier`: the link that carries the sensor, which does not see it.
+  /// `carrier`: the link that carries the sensor; the sensor does not see it.
   GazeboScene(::gazebo::physics::WorldPtr world, Geometry geometry,
               const ::gazebo::physics::Link* carrier);
 
-  /// The world of now when models came or went, or a static one was moved; else nullptr.
+  /// A new MovingWorld if models were added or removed or a static one was moved; else nullptr.
   std::shared_ptr<MovingWorld> rebuilt_if_changed();
-  /// Of the shapes that move, as MovingWorld::move() takes them.
+  /// Poses of the shapes that may move, as MovingWorld::move() takes them.
   std::vector<Pose> poses() const;
 
  private:
   struct Standing {
     const ::gazebo::physics::Model* model;
-    ignition::math::Pose3d pose;  ///< as it was built in
+    ignition::math::Pose3d pose;  ///< when the world was built
     bool is_static;
   };
   struct Moving {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plugin of a <sensor type="ray">: our sensor in its place.
+// A plugin of a <sensor type="ray">: replaces it by a Lidarena sensor.
 #include <time.h>
 #include <gazebo/common/Console.hh>
 #include <gazebo/common/Events.hh>
@@ -44,7 +44,7 @@ SensorElement describe(const ::gazebo::sensors::Sensor& sensor, const sdf::Eleme
   SensorElement element;
   element.update_rate = sensor.UpdateRate();
   element.body_from_sensor = to_pose(sensor.Pose());
-  // The Livox plugins have a <ray> of their own inside <plugin>.
+  // The Livox plugins have their own <ray> inside <plugin>.
   for (const sdf::ElementPtr& owner : {plugin->GetParent(), plugin}) {
     if (!owner || !owner->HasElement("ray")) continue;
     const auto ray = owner->GetElement("ray");
@@ -69,9 +69,9 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     try {
       load(*sensor, sdf, place);
     } catch (const Error& error) {
-      gzerr << "lidarena: " << error.what() << "; the sensor stays off\n";
+      gzerr << "lidarena: " << error.what() << "; the sensor is switched off\n";
     }
-    sensor->SetActive(false);  // the simulator's own rays are not needed
+    sensor->SetActive(false);  // Gazebo's own rays are not needed
   }
 
  private:
@@ -82,7 +82,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     world_ = ::gazebo::physics::get_world(sensor.WorldName());
     link_ = boost::dynamic_pointer_cast<::gazebo::physics::Link>(
         world_->EntityByName(sensor.ParentName()));
-    if (!link_) throw InputError(place, "the sensor is on no link");
+    if (!link_) throw InputError(place, "the sensor does not belong to a link");
     const Rig rig = make_rig({sensor_config_});
     if (!config_.record.empty()) outputs_.push_back(make_recorder(config_, rig));
     if (config_.gazebo) outputs_.push_back(make_gazebo_output(config_, rig));
@@ -94,7 +94,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     update_ = ::gazebo::event::Events::ConnectWorldUpdateEnd([this] { step(); });
   }
 
-  /// After every physics step: what moved, and where, goes to the sensor.
+  /// Called after every physics step: passes the poses to the sensor.
   void step() {
     if (is_done_) return;
     const StampedPose pose{to_time(world_->SimTime()), to_pose(link_->WorldPose())};
@@ -115,7 +115,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
         config_.record_seconds > 0.0 && pose.stamp - start_ >= from_seconds(config_.record_seconds);
     if (!ends) return;
     finish();
-    if (config_.stop) std::raise(SIGINT);  // as Ctrl-C: the server closes down in order
+    if (config_.stop) std::raise(SIGINT);  // like Ctrl-C: the server shuts down cleanly
   }
 
   void measure(const StampedPose& pose, MovingWorld& world, const std::vector<Pose>& moved) {
@@ -150,9 +150,10 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     gzmsg << "lidarena: " << sensor_config_.name << " cast " << sensor_->rays() << " rays in "
           << seconds << " simulated seconds. CPU: "
           << 1e9 * cast_seconds_ / static_cast<double>(sensor_->rays())
-          << " ns a ray; a simulated second took " << cast_seconds_ / seconds << " s to cast, "
-          << (output_seconds_ - cast_seconds_) / seconds << " s to write and publish, the process "
-          << (process_cpu_seconds() - start_cpu_) / seconds << " s in all. Real-time factor "
+          << " ns per ray; per simulated second " << cast_seconds_ / seconds << " s to cast, "
+          << (output_seconds_ - cast_seconds_) / seconds
+          << " s to write and publish, whole process "
+          << (process_cpu_seconds() - start_cpu_) / seconds << " s. Real-time factor "
           << seconds / wall << "\n";
   }
 
@@ -169,7 +170,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
   bool is_done_ = false;
   std::chrono::steady_clock::time_point start_wall_;
   double start_cpu_ = 0.0;
-  double cast_seconds_ = 0.0, output_seconds_ = 0.0;  ///< CPU; the second holds the first
+  double cast_seconds_ = 0.0, output_seconds_ = 0.0;  ///< CPU; the second includes the first
   std::optional<StepThread> thread_;
   ::gazebo::event::ConnectionPtr update_;
 };

@@ -11,27 +11,29 @@
 
 namespace lidarena::gazebo_plugin {
 
-/// Where the measurements of a plugin go.
+/// Destination of the measurements of a plugin.
 class Output {
  public:
   virtual ~Output() = default;
   virtual void write(const Event& event) = 0;
-  /// True pose of the link that carries the sensor, at every step.
+  /// True pose of the link that carries the sensor; called at every step.
   virtual void write_truth(const StampedPose&) {}
-  /// Completes what is written; nothing comes after.
+  /// Completes the output; no further calls follow.
   virtual void finish() {}
 };
 
-/// A dataset folder, or a file .bag or .mcap, with no ROS. Throws InputError when it cannot be
-/// made.
+/// Writes a dataset folder, or a .bag or .mcap file, without ROS. Throws InputError if it cannot be
+/// created.
 std::unique_ptr<Output> make_recorder(const PluginConfig& config, const Rig& rig);
-/// ROS 1 topics; nullptr, with a line on the console, where the build has no roscpp. Starts ROS if
-/// nobody did. Bytes are those that the recorder writes into bags.
+/// Publishes ROS 1 topics. nullptr if the plugin was built without roscpp or no master is running.
+/// Initializes ROS if that has not been done. The messages are byte for byte those that the
+/// recorder writes into bags.
 std::unique_ptr<Output> make_ros_output(const PluginConfig& config, const Rig& rig);
-/// Ignition transport: ignition.msgs.PointCloudPacked (x y z intensity t ring) and IMU.
+/// Publishes through ignition transport: ignition.msgs.PointCloudPacked (x y z intensity t ring)
+/// and IMU.
 std::unique_ptr<Output> make_gazebo_output(const PluginConfig& config, const Rig& rig);
 
-/// The topics of a plugin's one LiDAR and of its IMU.
+/// Topics of the plugin's LiDAR and of its IMU.
 std::string points_topic(const PluginConfig& config, const Rig& rig);
 std::string imu_topic(const PluginConfig& config, const Rig& rig);
 

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The folder of sensors: of the environment, or that of the build.
+/// Folder of sensor files: $LIDARENA_SENSORS, or that of the build.
 fs::path sensor_folder() {
   const char* folder = std::getenv("LIDARENA_SENSORS");
   return folder != nullptr ? folder : LIDARENA_SENSOR_FOLDER;
@@ -25,11 +25,11 @@ SensorConfig named_sensor(const std::string& name, const std::string& place) {
   if (fs::is_regular_file(name)) return load_sensor(name);
   const fs::path file = sensor_folder() / (name + ".yaml");
   if (fs::is_regular_file(file)) return load_sensor(file);
-  throw InputError(place, "there is no sensor '" + name + "' in " + sensor_folder().string(),
-                   "name one of that folder or a file, or set LIDARENA_SENSORS");
+  throw InputError(place, "no sensor '" + name + "' in " + sensor_folder().string(),
+                   "give a name from that folder or the path of a file, or set LIDARENA_SENSORS");
 }
 
-/// The sensor whose pattern a table of the maker holds, by the table's name.
+/// Name of the sensor whose Livox table has this file name; empty if unknown.
 std::string sensor_of_table(const std::string& file) {
   std::string name = fs::path(file).filename().string();
   std::transform(name.begin(), name.end(), name.begin(),
@@ -48,8 +48,8 @@ SensorConfig table_sensor(const PluginConfig& config, const SensorElement& eleme
   const std::string known = sensor_of_table(config.csv_file_name);
   if (!fs::is_regular_file(config.csv_file_name)) {
     if (!known.empty()) return named_sensor(known, place);
-    throw InputError(place, "there is no file " + config.csv_file_name,
-                     "give the table's full path, or <sensor> the name of a sensor");
+    throw InputError(place, "no file " + config.csv_file_name,
+                     "give the table's full path, or the name of a sensor in <sensor>");
   }
   SensorConfig sensor;
   sensor.name = fs::path(config.csv_file_name).stem().string();
@@ -67,7 +67,7 @@ SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
                        const std::string& place) {
   SensorConfig sensor = config.csv_file_name.empty() ? named_sensor(config.sensor, place)
                                                      : table_sensor(config, element, place);
-  if (!config.csv_file_name.empty()) {  // the file describes the sensor only here
+  if (!config.csv_file_name.empty()) {  // only here the SDF file describes the sensor
     if (element.min_range > 0.0) sensor.min_range_m = element.min_range;
     if (element.max_range > 0.0) sensor.max_range_m = element.max_range;
   }
@@ -76,7 +76,7 @@ SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
   if (!config.id.empty()) sensor.name = config.id;
   if (!config.imu) sensor.imu.reset();
   sensor.body_from_lidar = element.body_from_sensor;
-  make_pattern(sensor, place);  // the model must have this mode
+  make_pattern(sensor, place);  // throws if the model does not have this mode
   return sensor;
 }
 

@@ -9,7 +9,7 @@
 
 namespace lidarena::gazebo_plugin {
 
-/// Which shapes of the world rays are cast at.
+/// Kind of shapes that the rays hit.
 enum class Geometry { kCollision, kVisual };
 
 }  // namespace lidarena::gazebo_plugin
@@ -24,7 +24,7 @@ struct EnumNames<gazebo_plugin::Geometry> {
 
 namespace lidarena::gazebo_plugin {
 
-/// The elements inside <plugin>, by their names.
+/// The elements inside <plugin>; fields have their names.
 struct PluginConfig {
   std::string sensor = "livox_mid360";
   std::string set;
@@ -52,46 +52,48 @@ struct PluginConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("sensor", self.sensor, "", "name of a file of configs/sensors, or a path of one");
-    v("set", self.set, "", "key=value pairs of the sensor, spaces between");
-    v("id", self.id, "", "name in topics, recordings and noise; that of `sensor` if empty");
-    v("seed", self.seed, "", "of the noise");
-    v("noise", self.noise, "", "off: exact ranges, perfect IMU");
-    v("imu", self.imu, "", "the IMU inside the sensor, if it has one");
-    v("geometry", self.geometry, "", "shapes that are seen");
-    v("threads", self.threads, "", "0: cast within the world's update; 1: on a thread beside it",
+    v("sensor", self.sensor, "", "name of a file in configs/sensors, or a path");
+    v("set", self.set, "", "key=value pairs that override the sensor file, separated by spaces");
+    v("id", self.id, "",
+      "name in topics and recordings, key of the noise; that of `sensor` if empty");
+    v("seed", self.seed, "", "seed of the noise");
+    v("noise", self.noise, "", "off: exact ranges, error-free IMU");
+    v("imu", self.imu, "", "simulate the IMU inside the sensor, if it has one");
+    v("geometry", self.geometry, "", "shapes that the rays hit");
+    v("threads", self.threads, "", "0: cast within the world's update; 1: on a separate thread",
       between(0, 1));
-    v("record", self.record, "", "folder of a dataset, or a file .bag or .mcap");
-    v("record_seconds", self.record_seconds, "s", "simulated time to record, 0 = till the end",
+    v("record", self.record, "", "dataset folder, or .bag or .mcap file, to write");
+    v("record_seconds", self.record_seconds, "s", "simulated time to record, 0 = until the end",
       at_least(0));
-    v("stop", self.stop, "", "ends the simulator when the recording is done");
-    v("dialect", self.dialect, "", "si, or the layouts of the sensor's driver");
+    v("stop", self.stop, "", "exit the simulator after record_seconds");
+    v("dialect", self.dialect, "",
+      "si, or driver: units and message layouts of the sensor's ROS driver");
     v("ros", self.ros, "", "publish through ROS 1, if the plugin was built with it");
     v("gazebo", self.gazebo, "", "publish through ignition transport");
-    v("topic", self.topic, "", "of the points; /ID/points if empty");
-    v("imu_topic", self.imu_topic, "", "/ID/imu if empty");
+    v("topic", self.topic, "", "topic of the points; /ID/points if empty");
+    v("imu_topic", self.imu_topic, "", "topic of the IMU; /ID/imu if empty");
     v("frame", self.frame, "", "frame_id of the points; ID_lidar if empty");
-    // What the Livox plugins for Gazebo are given, so that their models need another file name
-    // only.
-    v("csv_file_name", self.csv_file_name, "", "Livox's table; its own patterns need no file");
-    v("samples", self.samples, "", "rays a scan, with csv_file_name", at_least(0));
-    v("downsample", self.downsample, "", "1 alone: every row is fired", between(1, 1));
+    // Elements of the Livox plugins for Gazebo, so that their models need only another file name.
+    v("csv_file_name", self.csv_file_name, "",
+      "Livox's table of rays; not needed for sensors with a built-in pattern");
+    v("samples", self.samples, "", "rays per scan, with csv_file_name", at_least(0));
+    v("downsample", self.downsample, "", "must be 1: every row is fired", between(1, 1));
     v("ros_topic", self.ros_topic, "", "the same as topic");
     v("publish_pointcloud_type", self.publish_pointcloud_type, "",
       "0 to 2: a PointCloud2; 3: Livox's CustomMsg", between(-1, 3));
-    v("visualize", self.visualize, "", "accepted, and ignored");
+    v("visualize", self.visualize, "", "ignored");
   }
 };
 
-/// What the surrounding <sensor> and its <ray> say; 0 where they say nothing.
+/// Values of the surrounding <sensor> and its <ray>; 0 if not given.
 struct SensorElement {
   double update_rate = 0.0;
   double min_range = 0.0, max_range = 0.0;
   Pose body_from_sensor = Pose::Identity();
 };
 
-/// The sensor that the plugin is to be. Throws InputError (place: the plugin's name) when the
-/// configuration names something that is not there.
+/// Configuration of the sensor to simulate. Throws InputError (place: the plugin's name) if the
+/// configuration names a sensor or file that does not exist.
 SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
                        const std::string& place);
 

@@ -16,7 +16,7 @@ namespace lidarena::gazebo_plugin {
 #ifdef LIDARENA_HAVE_ROS
 namespace {
 
-/// A topic of any type, given the message's bytes.
+/// Publisher for a message type given by name; takes serialized messages.
 class BytesPublisher {
  public:
   BytesPublisher(::ros::NodeHandle& node, const std::string& topic, std::string_view type) {
@@ -90,7 +90,7 @@ std::unique_ptr<Output> make_ros_output(const PluginConfig& config, const Rig& r
     int no_arguments = 0;
     ::ros::init(no_arguments, nullptr, "lidarena", ::ros::init_options::NoSigintHandler);
   }
-  if (!::ros::master::check()) return nullptr;  // nobody to publish to, and waiting would block
+  if (!::ros::master::check()) return nullptr;  // no ROS master; waiting for one would block
   return std::make_unique<RosOutput>(config, rig);
 }
 #else

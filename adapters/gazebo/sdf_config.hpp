@@ -11,12 +11,12 @@
 
 namespace lidarena::gazebo_plugin {
 
-/// The elements inside a <plugin>, read as a configuration file would be, with its errors: a
-/// misspelt element is named, with the nearest one there is. Elements of other elements (<ray>,
-/// <noise>) are left out.
+/// Reads the elements inside a <plugin> like a configuration file, with the same errors: for an
+/// unknown element the most similar known one is named. Elements that contain others (<ray>,
+/// <noise>) are skipped.
 template <class Config>
 Config read_sdf_config(const sdf::ElementPtr& plugin, const std::string& place) {
-  std::vector<std::string> truths;  // which SDF makes 0 and 1
+  std::vector<std::string> truths;  // names of boolean fields: SDF converts their values to 0 and 1
   Config config;
   Config::visit(config, [&](const char* name, auto& field, auto&&...) {
     if (std::is_same_v<decltype(field), bool&>) truths.emplace_back(name);

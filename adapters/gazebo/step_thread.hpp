@@ -10,8 +10,8 @@
 
 namespace lidarena::gazebo_plugin {
 
-/// Does jobs one after the other on a thread of its own. Who hands them in waits when too many are
-/// open, so nothing is lost and memory stays bounded.
+/// Executes jobs one after the other on a thread of its own. add() blocks while too many jobs are
+/// pending, so no job is dropped and memory stays bounded.
 class StepThread {
  public:
   StepThread() : thread_([this] { run(); }) {}
@@ -36,14 +36,14 @@ class StepThread {
   }
 
  private:
-  static constexpr std::size_t kMostOpen = 200;  // steps
+  static constexpr std::size_t kMostOpen = 200;  // jobs (steps)
 
   void run() {
     std::unique_lock lock(mutex_);
     for (;;) {
       changed_.wait(lock, [this] { return ends_ || !jobs_.empty(); });
       if (jobs_.empty()) return;
-      const std::function<void()>& job = jobs_.front();  // it stays until it is done
+      const std::function<void()>& job = jobs_.front();  // remains in the queue until it is done
       lock.unlock();
       job();
       lock.lock();

@@ -1,12 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A very small LiDAR odometry, to show how a program of yours enters the tables.
+"""A very small LiDAR odometry, to show how a study runs a program of yours.
 
 usage: tiny_icp.py SWEEPS OUTPUT
 
-SWEEPS is a folder of one LiDAR's sweeps (000000.pcd ... and times.txt), OUTPUT gets trajectory.tum
-(pose of the LiDAR at each sweep's stamp) and map.ply. Point-to-point ICP of each sweep, thinned to a
-point a voxel, against all sweeps before; motion is guessed to go on as it was. Needs numpy alone.
+SWEEPS is a folder of one LiDAR's sweeps (000000.pcd ... and times.txt); trajectory.tum (pose of
+the LiDAR at each sweep's stamp) and map.ply are written to the folder OUTPUT. Point-to-point ICP
+of each sweep, downsampled to one point per voxel, to all earlier sweeps, with a constant-velocity
+prediction. Needs only numpy.
 """
 import pathlib
 import sys
@@ -14,12 +15,12 @@ import sys
 import numpy as np
 
 VOXEL = 0.4  # m
-NEAR = 1.0  # m, farthest match
+NEAR = 1.0  # m, maximum distance of a match
 ITERATIONS = 15
 
 
 def read_pcd(path):
-    """Positions (N, 3) of a binary PCD that has x y z as float32."""
+    """Positions (N, 3) from a binary PCD with x y z as float32."""
     data = path.read_bytes()
     end = data.index(b"DATA binary\n") + len(b"DATA binary\n")
     header = dict(line.split(" ", 1) for line in data[:end].decode().splitlines() if " " in line)
@@ -38,7 +39,7 @@ def thinned(points, voxel):
 
 
 class VoxelMap:
-    """One point a voxel; the nearest is sought in the 27 voxels around."""
+    """One point per voxel; nearest neighbors are searched in the 27 voxels around a point."""
 
     def __init__(self, voxel):
         self.voxel, self.points = voxel, {}
@@ -66,7 +67,7 @@ class VoxelMap:
 
 
 def rigid_fit(source, target):
-    """The motion that lays source on target best (Arun, Huang and Blostein 1987)."""
+    """The rigid transform that best aligns source with target (Arun, Huang and Blostein 1987)."""
     a, b = source.mean(axis=0), target.mean(axis=0)
     u, _, vt = np.linalg.svd((source - a).T @ (target - b))
     turn = vt.T @ np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
@@ -76,7 +77,7 @@ def rigid_fit(source, target):
 
 
 def quaternion(turn):
-    """x y z w of a rotation matrix, by its largest component."""
+    """Quaternion x y z w of a rotation matrix, computed from its largest component."""
     four = np.array([1 + turn[0, 0] - turn[1, 1] - turn[2, 2], 1 - turn[0, 0] + turn[1, 1] - turn[2, 2],
                      1 - turn[0, 0] - turn[1, 1] + turn[2, 2], 1 + np.trace(turn)])
     rows = np.array([[four[0], turn[0, 1] + turn[1, 0], turn[0, 2] + turn[2, 0], turn[2, 1] - turn[1, 2]],
@@ -117,6 +118,6 @@ if __name__ == "__main__":
     if len(sys.argv) != 3:
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[1])
-    # A dataset of sweeps holds a folder for each sensor; ours was recorded with one.
+    # A dataset of sweeps contains a folder for each sensor; here there is only one.
     inside = [f.parent for f in folder.glob("*/times.txt")]
     main(inside[0] if inside else folder, pathlib.Path(sys.argv[2]))

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Cast rays into a world: what is around a point of the House? usage: 01_cast_rays.py"""
+"""Cast rays into a world: distances around a point in the House. usage: 01_cast_rays.py"""
 import numpy as np
 
 import lidarena

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Fly a Mid-360 through the House and write what it sees. usage: 02_simulate_flight.py [FOLDER]"""
+"""Fly a Mid-360 through the House and write its data. usage: 02_simulate_flight.py [FOLDER]"""
 import sys
 
 import lidarena
@@ -10,7 +10,7 @@ done = lidarena.simulate_dataset("house", "house", ["livox_mid360"], folder, see
 print(f"{done['scans']} scans, {done['points']} points, {done['imu_samples']} IMU samples along "
       f"{done['path_m']:.2f} m, in {folder}")
 
-# Anything that reads a dataset sees them in order, each scan after its IMU samples.
+# Events are read in order, each scan after the IMU samples that span it.
 dataset = lidarena.open_dataset(folder)
 for sensor_id, data in dataset:
     if isinstance(data, lidarena.Scan):

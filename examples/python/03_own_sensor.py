@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A sensor of your own: eight lasers on a spinning head. usage: 03_own_sensor.py [FOLDER]"""
+"""Define a sensor: eight lasers on a spinning head. usage: 03_own_sensor.py [FOLDER]"""
 import pathlib
 import sys
 
@@ -30,6 +30,6 @@ world = lidarena.load_world("house")
 flight = lidarena.make_flight("house", world)
 scan, truth = lidarena.Lidar(sensor).measure(world, flight, 5, truth=True)
 error = np.linalg.norm(scan.positions, axis=1) - truth["range"]
-print(f"{len(scan)} of {8 * 360} shots came back, ranges off by {error.std() * 100:.2f} cm")
+print(f"{len(scan)} of {8 * 360} shots gave a return, range error {error.std() * 100:.2f} cm")
 assert set(scan.points["ring"]) == set(range(8))
-assert abs(error.std() - 0.01) < 0.001  # what the file says
+assert abs(error.std() - 0.01) < 0.001  # the file's range_noise_m

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Run an odometry on your bag. usage: 05_odometry_on_a_bag.py [BAG_OR_MCAP [ALGORITHM]]
 
-Without a bag, one is made first: 3 s of the House, as a ROS 1 bag.
+Without a bag it first simulates one: 3 s in the House, as a ROS 1 bag.
 """
 import pathlib
 import sys

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Score anyone's trajectory and map. usage: 06_evaluate.py [ESTIMATE TRUTH [MAP MESH]]
+"""Score the trajectory and map of any program. usage: 06_evaluate.py [ESTIMATE TRUTH [MAP MESH]]
 
 Trajectories are TUM, KITTI or EuRoC files; the map is PLY or PCD in the estimate's frame. Without
-files, an estimate with a drift of 1 % and its map are made up, so that the figures are known.
+files it uses a generated estimate with a drift of 1 % and a map, so that the results are known.
 """
 import sys
 
@@ -34,11 +34,11 @@ for warning in metrics["warnings"]:
     print("warning:", warning)
 one_meter = metrics["live"]["rpe"]["1m"]["translation"]
 print(f"relative error over 1 m: {100 * one_meter['rmse_m']:.2f} cm RMSE "
-      f"over {one_meter['count']} pieces")
+      f"of {one_meter['count']} pieces")
 if cloud is not None:
     figures, distances = lidarena.map_error(cloud, world)
     print(f"map: {len(distances)} points, {100 * np.nanmean(distances):.2f} cm from the mesh on "
           f"average, {figures['outliers_percent']:.1f} % beyond 20 cm")
 if len(sys.argv) < 3:
-    assert 0.002 < one_meter["rmse_m"] < 0.011  # 1 % of at most a meter of chord
-    assert np.nanmax(distances) < 1e-5  # the mesh's own corners
+    assert 0.002 < one_meter["rmse_m"] < 0.011  # 1 % of at most 1 m, the chord of a piece
+    assert np.nanmax(distances) < 1e-5  # the map consists of the mesh's vertices

@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""A study of your own: which voxel size suits which sensor here? usage: 07_own_study.py [FOLDER]
+"""Define a study: which voxel size suits which sensor? usage: 07_own_study.py [FOLDER]
 
-`lidarena study` does matrices of names, with pages and statistics; here the axis is a parameter.
+`lidarena study` runs matrices of worlds, sensors and algorithms, with a report and statistics; this
+example varies a parameter.
 """
 import pathlib
 import sys
@@ -27,6 +28,6 @@ for name in ("livox_mid360", "velodyne_vlp16"):
         metrics = lidarena.evaluate(result.trajectory, truth)
         error = metrics["live"]["rpe"]["1s"]["translation"]["rmse_m"]
         rows.append((name, voxel, 100 * error, result.summary["compute_seconds"]))
-        print(f"{name:16} voxel {voxel:.1f} m: {100 * error:6.2f} cm in a second, "
-              f"{rows[-1][3]:.2f} s of computing")
+        print(f"{name:16} voxel {voxel:.1f} m: {100 * error:6.2f} cm RPE over 1 s, "
+              f"{rows[-1][3]:.2f} s of computing time")
 assert len(rows) == 4 and np.isfinite([row[2:] for row in rows]).all()

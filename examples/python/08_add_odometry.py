@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Add an odometry: planes of cells, matched without a search. usage: 08_add_odometry.py
+"""Add an odometry: it matches planes of grid cells, without a search. usage: 08_add_odometry.py
 
-In a study it stands as a program: lidarena.external.main(lambda rig: CellPlanes(rig)), and
+To use it in a study as a program, call lidarena.external.main(lambda rig: CellPlanes(rig)), and add
 `external: - {name: mine, command: python3 mine.py {input} {output}, pose_of: body}`.
 """
 import numpy as np
@@ -14,13 +14,13 @@ ITERATIONS = 5
 
 
 def keys_of(points):
-    """One number for the cell of each point."""
+    """The cell of each point, as one integer."""
     cells = np.floor(points / CELL).astype(np.int64) + (1 << 20)
     return (cells[:, 0] << 42) | (cells[:, 1] << 21) | cells[:, 2]
 
 
 def planes(points):
-    """(keys, centroids, normals) of the cells whose points (ten or more) lie in a plane."""
+    """(keys, centroids, normals) of the cells with ten or more points that lie in a plane."""
     keys, cell, count = np.unique(keys_of(points), return_inverse=True, return_counts=True)
     means = np.stack([np.bincount(cell, points[:, i]) for i in range(3)], axis=1) / count[:, None]
     away = points - means[cell]
@@ -32,7 +32,7 @@ def planes(points):
 
 
 class CellPlanes(lidarena.Odometry):
-    """Translation alone: each scan's cells are laid onto the planes of the first scan's."""
+    """Translation only: aligns the cells of each scan with the planes of the first scan's cells."""
 
     def __init__(self, rig):
         super().__init__()
@@ -80,5 +80,5 @@ if __name__ == "__main__":
     events = lidarena.simulate(house, flight, [sensor], seconds=1.5)
     result = lidarena.run(CellPlanes(lidarena.make_rig([sensor])), events)
     moved = result.trajectory.positions[-1] - result.trajectory.positions[0]
-    print(f"moved {moved.round(3)} m of 0.2 m along x; {result.summary['statuses']}")
-    assert np.linalg.norm(moved - [0.2, 0, 0]) < 0.05  # a quarter of what standing still is off
+    print(f"moved {moved.round(3)} m, true motion 0.2 m along x; {result.summary['statuses']}")
+    assert np.linalg.norm(moved - [0.2, 0, 0]) < 0.05  # a quarter of the true translation

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Add a metric: how straight are the floor and walls of a map? usage: 09_add_metric.py
+"""Add a metric: how flat are the floor and walls of a map? usage: 09_add_metric.py
 
-A metric is a function of what a run leaves (trajectory, map) and of the truth (trajectory, mesh).
-This one: RMS of a plane fitted to the map points nearest to each large triangle, in meters.
+A metric is a function of a run's results (trajectory, map) and of the truth (trajectory, mesh).
+This one fits a plane to the map points nearest to each triangle; RMS distance in meters.
 """
 import numpy as np
 
@@ -11,10 +11,10 @@ import lidarena
 
 
 def flatness(cloud, world, reach=0.2, least=100):
-    """RMS distance (m) of points to the plane that fits them best, face by face.
+    """RMS distance (m) of points to the best-fit plane of each face.
 
-    `cloud` (N, 3) in the mesh's frame; only points within `reach` meters of a face count, and faces
-    with at least `least` points. Returns NaN where there is none.
+    `cloud` (N, 3) is in the mesh's frame; uses points within `reach` meters of a face, and faces
+    that have `least` points or more. Returns NaN if there is no such face.
     """
     nearest = world.closest_points(cloud, max_distance=reach)
     faces = nearest["triangle"]

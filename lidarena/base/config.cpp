@@ -51,10 +51,10 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
-/// YAML lets lists and maps be keys; here a key is a word.
+/// YAML allows lists and maps as keys; here a key must be a single word.
 std::string key_text(const YAML::Node& key, const std::string& file) {
   if (!key.IsScalar()) {
-    throw InputError(place(file, key.Mark()), "a key is no single word", "write 'key: value'");
+    throw InputError(place(file, key.Mark()), "a key must be a single word", "write 'key: value'");
   }
   return key.Scalar();
 }
@@ -95,7 +95,7 @@ std::optional<ConfigNode> ConfigNode::find(std::string_view key) const {
     if (key_text(entry.first, impl_->file) != name) continue;
     if (found)
       throw InputError(place(impl_->file, entry.first.Mark()),
-                       "the key '" + name + "' stands here a second time");
+                       "the key '" + name + "' is given a second time");
     const std::string path = impl_->key.empty() ? name : impl_->key + "." + name;
     found = ConfigNode(std::make_shared<const Impl>(Impl{entry.second, impl_->file, path}));
   }
@@ -133,7 +133,7 @@ bool ConfigNode::as_bool() const {
   const std::string value = text();
   if (value == "true" || value == "on" || value == "yes") return true;
   if (value == "false" || value == "off" || value == "no") return false;
-  throw InputError(where(), "'" + value + "' is not a truth value", "use true or false");
+  throw InputError(where(), "'" + value + "' is not a boolean", "use true or false");
 }
 
 double ConfigNode::as_double() const {
@@ -179,7 +179,8 @@ void ConfigNode::check(double value, const Limits& limits) const {
 }
 
 void ConfigNode::reject_choice(const std::vector<std::string>& allowed) const {
-  throw InputError(where(), "'" + text() + "' is not known here", "use one of " + joined(allowed));
+  throw InputError(where(), "'" + text() + "' is not a valid value",
+                   "use one of " + joined(allowed));
 }
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
@@ -212,8 +213,8 @@ std::vector<double> numbers(const ConfigNode& node, std::size_t count, const Lim
   std::vector<double> values;
   read_value(node, values, limits);
   if (values.size() != count) {
-    throw InputError(node.where(), std::to_string(values.size()) + " numbers stand here",
-                     "write " + std::to_string(count) + ": " + meaning);
+    throw InputError(node.where(), std::to_string(values.size()) + " numbers are given here",
+                     "write " + std::to_string(count) + " numbers: " + meaning);
   }
   return values;
 }

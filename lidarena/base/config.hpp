@@ -47,7 +47,7 @@ concept ConfigStruct = std::is_class_v<T> && requires(T& t) {
   T::visit(t, [](auto&&...) {});
 };
 
-/// A parsed YAML value that knows its place in the file (yaml-cpp stays in config.cpp).
+/// A parsed YAML value with its place in the file (only config.cpp uses yaml-cpp).
 class ConfigNode {
  public:
   /// Throws InputError naming file and line when the file is missing or is not YAML.
@@ -70,11 +70,11 @@ class ConfigNode {
   double as_double() const;
   std::int64_t as_integer() const;
 
-  /// Throws InputError when this map has a key that is not among `known`, naming the nearest one.
+  /// Throws InputError with the nearest known key when this map has a key that is not in `known`.
   void reject_unknown(const std::vector<std::string>& known) const;
   /// Throws InputError when `value` is outside `limits`.
   void check(double value, const Limits& limits) const;
-  /// Throws InputError listing what is allowed.
+  /// Throws InputError that lists the allowed values.
   [[noreturn]] void reject_choice(const std::vector<std::string>& allowed) const;
 
   struct Impl;
@@ -84,7 +84,7 @@ class ConfigNode {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Words nearest to `word` by edit distance; empty if none is near.
+/// The word nearest to `word` by edit distance; empty if none is near.
 std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
 
 void read_value(const ConfigNode& node, bool& out, const Limits&);
@@ -144,10 +144,10 @@ void read_value(const ConfigNode& node, std::vector<T>& out, const Limits& limit
   }
 }
 
-/// Overwrites those fields of `config` that the map `node` names.
+/// Overwrites the fields of `config` that the map `node` contains.
 template <ConfigStruct C>
 void read_config(const ConfigNode& node, C& config) {
-  if (node.is_null()) return;  // an empty file is a file of defaults
+  if (node.is_null()) return;  // an empty file means all defaults
   if (!node.is_map()) throw InputError(node.where(), "a map (key: value) is expected here");
   std::vector<std::string> known;
   C::visit(config, [&](std::string_view name, auto& member, std::string_view, std::string_view,
@@ -163,7 +163,7 @@ void read_value(const ConfigNode& node, C& out, const Limits&) {
   read_config(node, out);
 }
 
-/// Defaults, overwritten by what the file names.
+/// The defaults, overwritten by the keys that the file contains.
 template <ConfigStruct C>
 C load_config(const std::filesystem::path& file) {
   C config;

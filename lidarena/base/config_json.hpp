@@ -5,7 +5,7 @@
 
 #include "lidarena/base/config.hpp"
 
-/// Configuration structs as JSON, which is YAML too: what is written here, read_config() reads.
+/// Configuration structs as JSON. JSON is valid YAML, so read_config() reads the output back.
 namespace lidarena {
 
 using Json = nlohmann::ordered_json;

@@ -6,14 +6,15 @@
 
 #include "lidarena/base/config_json.hpp"
 
-/// Configuration structs as JSON Schema (draft 2020-12), from the same list of fields that reads
-/// them: what an editor needs to complete keys and to mark what read_config() would refuse.
+/// Configuration structs as JSON Schema (draft 2020-12), from the same lists of fields that
+/// read_config() uses. Editors use it to complete keys and to mark what read_config() would reject.
 namespace lidarena {
 
 template <class T>
 Json schema_of_value(const T& value, const Limits& limits);
 
-/// The schema of one struct's map: its keys with units, meanings, defaults and limits; no others.
+/// JSON Schema of one struct: its keys with units, descriptions, defaults and limits; other keys
+/// are not allowed.
 template <ConfigStruct C>
 Json schema_of(const C& config = {}) {
   Json properties = Json::object();
@@ -57,7 +58,7 @@ inline Json numbers(std::size_t count, const Limits& limits) {
 
 }  // namespace schema
 
-/// `value` only says the type (and a struct's defaults).
+/// Schema of one value; only the type of `value` matters (and the defaults, if it is a struct).
 template <class T>
 Json schema_of_value(const T& value, const Limits& limits) {
   if constexpr (std::is_enum_v<T>) {
@@ -88,7 +89,7 @@ Json schema_of_value(const T& value, const Limits& limits) {
   }
 }
 
-/// As a document of its own.
+/// The schema of a struct as a complete document with `title`.
 template <ConfigStruct C>
 Json schema_document(const std::string& title, const C& config = {}) {
   Json document{{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};

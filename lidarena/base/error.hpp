@@ -7,13 +7,13 @@
 
 namespace lidarena {
 
-/// The work could not be done (exit code 1 on the command line).
+/// An operation failed (exit code 1 on the command line).
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// Bad input from outside (exit code 2): reads "place: what is wrong; remedy".
+/// Bad input from outside (exit code 2). Its text is "place: what is wrong; remedy".
 class InputError : public Error {
  public:
   /// `place` is a file, "file:line", or the name of what was given; `remedy` may be empty.

@@ -7,8 +7,8 @@ namespace lidarena {
 
 enum class LogLevel { kInfo, kWarning };
 
-/// Where the library's messages and progress go. Nothing is global: whoever starts work hands a
-/// sink down. The default implementation discards everything.
+/// Receives the library's messages and progress. There is no global sink: callers pass one to the
+/// functions that report. The default implementation discards everything.
 class LogSink {
  public:
   virtual ~LogSink() = default;

@@ -8,7 +8,7 @@
 namespace lidarena {
 namespace {
 
-/// What stands behind the colon of the first line of `file` that begins with `key`.
+/// Text after the colon of the first line of `file` that begins with `key`; empty if there is none.
 std::string entry(const char* file, const std::string& key) {
   std::ifstream lines(file);
   for (std::string line; std::getline(lines, line);) {

@@ -5,10 +5,10 @@
 
 namespace lidarena {
 
-/// What figures of time were taken on.
+/// The computer on which run times were measured.
 struct Machine {
-  std::string processor = "a processor of unknown name";
-  int cores = 1;            ///< logical ones
+  std::string processor = "unknown processor";
+  int cores = 1;            ///< number of logical cores
   double memory_gib = 0.0;  ///< 0 if unknown
 };
 

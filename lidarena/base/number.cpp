@@ -14,7 +14,7 @@ std::optional<double> parse_number(std::string_view text) {
 #if defined(__cpp_lib_to_chars)
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
-#else  // GCC 10 reads no floating point numbers there
+#else  // GCC 10's from_chars does not read floating-point numbers
   static const locale_t plain = newlocale(LC_ALL_MASK, "C", nullptr);
   const std::string copy(text);
   if (copy.empty() || copy.find_first_of(" \t\n+xX") == 0) return std::nullopt;

@@ -6,8 +6,8 @@
 
 namespace lidarena {
 
-/// The number that `text` is, whole, with a point whatever the locale; nothing for anything else.
-/// Infinities and NaN count as numbers.
+/// Parses all of `text` as a number with a decimal point, whatever the locale; nullopt if it is
+/// anything else. Infinities and NaN count as numbers.
 std::optional<double> parse_number(std::string_view text);
 
 }  // namespace lidarena

@@ -12,8 +12,8 @@ namespace lidarena {
 
 struct Parallel::Arena {
   explicit Arena(int threads) : arena(threads) {
-    // oneTBB starts no more workers than the machine has cores unless it is allowed to. Raising
-    // the ceiling changes nothing for other arenas, which keep their own limit.
+    // By default oneTBB starts at most one worker per core. Raising this limit does not affect
+    // other arenas, which keep their own limits.
     const auto cores = static_cast<int>(std::thread::hardware_concurrency());
     if (threads > cores) {
       ceiling.emplace(tbb::global_control::max_allowed_parallelism,

@@ -9,9 +9,9 @@
 
 namespace lidarena {
 
-/// Parallel loops with a thread limit of their own (nothing process-wide). Work is cut into blocks
-/// of a fixed size, and partial results are joined in block order, so results are the same bits on
-/// any number of threads. Copies share the same workers.
+/// Parallel loops with their own thread limit (nothing is process-wide). Work is divided into
+/// blocks of a fixed size, and partial results are joined in block order, so results are
+/// bit-identical for any number of threads. Copies share the same workers.
 class Parallel {
  public:
   /// `threads` workers, 0 = one per hardware thread.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Parallel for builds without oneTBB (adapters/gazebo/core): all on the calling thread. The results
-// are the same bits, as they are on any number of threads.
+// Parallel for builds without oneTBB (adapters/gazebo/core): everything runs on the calling thread.
+// Results are bit-identical to those of parallel.cpp.
 #include "lidarena/base/parallel.hpp"
 
 namespace lidarena {

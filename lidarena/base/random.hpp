@@ -11,9 +11,9 @@ namespace lidarena {
 std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                     std::array<std::uint32_t, 2> key);
 
-/// Random numbers by counter: a value depends on (seed, stream, index, draw) alone, so any worker
-/// can ask for any of them in any order. `stream` tells apart sensors and purposes, `index` is
-/// e.g. the ray's running number.
+/// Counter-based random numbers: a value depends only on (seed, stream, index, draw), so threads
+/// can compute them in any order. `stream` separates sensors and purposes; `index` is e.g. the
+/// number of the ray.
 class CounterRandom {
  public:
   explicit CounterRandom(std::uint64_t seed, std::uint32_t stream = 0);
@@ -29,8 +29,8 @@ class CounterRandom {
   std::array<std::uint32_t, 2> key_;
 };
 
-/// The same numbers one after the other, for code that is sequential by nature (world generators,
-/// one IMU's stream).
+/// The same numbers one after the other, for sequential code (world generators, the samples of one
+/// IMU).
 class SequentialRandom {
  public:
   explicit SequentialRandom(std::uint64_t seed, std::uint32_t stream = 0) : random_(seed, stream) {}

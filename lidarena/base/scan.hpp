@@ -20,7 +20,7 @@ struct Point {
 };
 static_assert(sizeof(Point) == 24);
 
-/// One sweep. Every shot that gave no return is left out.
+/// One sweep. Shots without a return are left out.
 struct Scan {
   Time stamp{0};              ///< instant of the sweep's first firing; `dt_ns` counts from here
   std::vector<Point> points;  ///< in firing order

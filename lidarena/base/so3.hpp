@@ -12,13 +12,13 @@ using Vector3 = Eigen::Vector3d;
 
 /// Skew matrix: hat(a) * b == a.cross(b).
 Matrix3 hat(const Vector3& v);
-/// Inverse of hat, of the antisymmetric part of `m`.
+/// Inverse of hat, applied to the antisymmetric part of `m`.
 Vector3 vee(const Matrix3& m);
 /// Rotation matrix of the rotation vector `v` (Rodrigues).
 Matrix3 exp(const Vector3& v);
 /// Rotation vector of `r`, length in [0, pi]; accurate near 0 and near pi.
 Vector3 log(const Matrix3& r);
-/// Angle of `r` in [0, pi], by atan2, so that 1e-9 rad is still resolved.
+/// Angle of `r` in [0, pi], computed with atan2, so that 1e-9 rad is still resolved.
 double angle(const Matrix3& r);
 /// exp(v + d) ~ exp(left_jacobian(v) * d) * exp(v).
 Matrix3 left_jacobian(const Vector3& v);

@@ -14,7 +14,7 @@ using Time = std::chrono::nanoseconds;
 /// Nearest nanosecond to `s` seconds.
 inline Time from_seconds(double s) { return Time{std::llround(s * 1e9)}; }
 
-/// Seconds; exact to 0.24 us for absolute times of today's epoch, so use it on differences.
+/// Seconds; rounded to 0.24 us for present-day times since 1970, so use it for differences.
 inline double to_seconds(Time t) { return static_cast<double>(t.count()) * 1e-9; }
 
 }  // namespace lidarena

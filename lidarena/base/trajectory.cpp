@@ -13,10 +13,10 @@ Trajectory::Trajectory(std::vector<StampedPose> poses, std::string name)
     const std::string place = name + ": pose " + std::to_string(i + 1);
     if (!poses_[i].world_from_body.matrix().allFinite()) {
       throw InputError(place, "is not finite (NaN or infinity)",
-                       "the estimator diverged there; cut the file before it");
+                       "the estimator has diverged there; cut the file before this pose");
     }
     if (i > 0 && poses_[i].stamp <= poses_[i - 1].stamp) {
-      throw InputError(place, "its time is not later than the one before",
+      throw InputError(place, "its time is not later than that of the pose before",
                        "sort the poses by time and remove duplicates");
     }
   }

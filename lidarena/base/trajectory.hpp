@@ -16,7 +16,7 @@ struct StampedPose {
   Pose world_from_body = Pose::Identity();
 };
 
-/// Poses at strictly increasing instants; used for truth and for estimates alike.
+/// Poses at strictly increasing instants, for ground truth and estimates.
 class Trajectory {
  public:
   Trajectory() = default;
@@ -35,7 +35,7 @@ class Trajectory {
   /// First and last stamp; the trajectory must not be empty.
   Time begin_time() const { return poses_.front().stamp; }
   Time end_time() const { return poses_.back().stamp; }
-  /// Sum of the straight steps between poses, m.
+  /// Sum of the straight-line distances between successive poses, m.
   double path_length() const;
 
  private:

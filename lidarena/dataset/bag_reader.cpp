@@ -49,15 +49,15 @@ struct BagReader::Impl {
   std::uint64_t index_position = 0;  ///< 0: the bag was never closed
   std::uint32_t connection_count = 0;
   std::uint32_t chunk_count = 0;
-  std::uint32_t chunk_infos = 0;       ///< met in the index
-  std::uint64_t messages_indexed = 0;  ///< counted by these
+  std::uint32_t chunk_infos = 0;       ///< chunk info records in the index
+  std::uint64_t messages_indexed = 0;  ///< sum of their message counts
 
   std::vector<std::byte> header;
   std::vector<std::byte> data;
   std::vector<std::byte> unpacked;  ///< of a compressed chunk
-  ByteReader chunk{Bytes{}};        ///< what is left of the current chunk
+  ByteReader chunk{Bytes{}};        ///< unread rest of the current chunk
 
-  std::map<std::uint32_t, std::size_t> connections;  ///< id -> topic in `met`
+  std::map<std::uint32_t, std::size_t> connections;  ///< id -> index in met.topics
   RecordingInfo met;
 
   std::string at(std::uint64_t byte) const { return fmt::format("{}: byte {}", place, byte); }
@@ -83,8 +83,7 @@ BagReader::Impl::Impl(const std::filesystem::path& file)
   in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
   if (magic != bag::kMagic) {
     if (is_bag(magic)) {
-      throw InputError(place, "is a bag of another version than 2.0",
-                       "convert it with 'rosbag fix'");
+      throw InputError(place, "is a bag, but not of version 2.0", "convert it with 'rosbag fix'");
     }
     throw InputError(place, "is not a ROS 1 bag: it does not start with '#ROSBAG V2.0'",
                      "give a .bag file");
@@ -93,25 +92,25 @@ BagReader::Impl::Impl(const std::filesystem::path& file)
   try {
     read_bag_header();
   } catch (const std::out_of_range&) {
-    damaged("the bag header is broken");
+    damaged("the bag header is damaged");
   }
 }
 
 void BagReader::Impl::cut_off() const {
   throw InputError(at(file_size),
                    fmt::format("the bag is cut off after {} messages", met.message_count),
-                   "the messages before are sound; the recording was stopped, copied in part, or "
-                   "the disk was full");
+                   "the messages before this byte are intact; the recording was stopped, copied in "
+                   "part, or the disk was full");
 }
 
 void BagReader::Impl::damaged(std::string_view what) const {
   throw InputError(at(record_offset),
                    fmt::format("{} (after {} messages)", what, met.message_count),
-                   "the messages before are sound; copy the file anew");
+                   "the messages before this byte are intact; copy the file again");
 }
 
 void BagReader::Impl::read(std::span<std::byte> bytes) {
-  if (bytes.size() > file_size - offset) cut_off();  // before anything is believed
+  if (bytes.size() > file_size - offset) cut_off();  // before any size in the file is trusted
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   if (!in) throw InputError(at(offset), "cannot be read", "check the disk");
   offset += bytes.size();
@@ -124,7 +123,7 @@ std::uint32_t BagReader::Impl::read_length() {
   return length;
 }
 
-/// Reads one top-level record: its data are in `data`.
+/// Reads one top-level record: returns its header fields and leaves its data in `data`.
 Fields BagReader::Impl::read_record() {
   record_offset = offset;
   header.resize(read_length());
@@ -136,7 +135,7 @@ Fields BagReader::Impl::read_record() {
 
 void BagReader::Impl::read_bag_header() {
   const Fields fields = read_record();
-  if (fields.op() != Op::kBagHeader) damaged("the first record is no bag header");
+  if (fields.op() != Op::kBagHeader) damaged("the first record is not a bag header");
   if (fields.has("encryptor") && !fields.text("encryptor").empty()) {
     throw InputError(place, "is encrypted", "decrypt it with 'rosbag decrypt'");
   }
@@ -152,8 +151,8 @@ void BagReader::Impl::add_connection(const Fields& fields, Bytes description) {
   if (is_new) {
     met.topics.push_back({topic, ros::ros2_name(Fields(description).text("type")), "ros1", 0});
   } else if (met.topics[entry->second].topic != topic) {
-    damaged(
-        fmt::format("connection {} is both {} and {}", id, met.topics[entry->second].topic, topic));
+    damaged(fmt::format("connection {} is declared for both {} and {}", id,
+                        met.topics[entry->second].topic, topic));
   }
 }
 
@@ -169,7 +168,7 @@ void BagReader::Impl::open_chunk(const Fields& fields) {
     }
     records = unpacked;
   }
-  if (records.size() != size) damaged("the chunk has another size than stated");
+  if (records.size() != size) damaged("the chunk's size differs from the stated size");
   chunk = ByteReader(records);
   ++met.chunk_count;
 }
@@ -188,7 +187,7 @@ RecordedMessage BagReader::Impl::message(const Fields& fields, Bytes content) {
   return {topic.topic, topic.type, Encoding::kRos1, time, content};
 }
 
-/// Deals with one record, of the file or of a chunk; a message is returned.
+/// Handles one record of the file or of a chunk; returns the message if it is one.
 std::optional<RecordedMessage> BagReader::Impl::take(const Fields& fields, Bytes content) {
   switch (fields.op()) {
     case Op::kMessage:
@@ -208,7 +207,7 @@ std::optional<RecordedMessage> BagReader::Impl::take(const Fields& fields, Bytes
     case Op::kIndex:
       break;  // reading in order does not need it
     default:
-      damaged(fmt::format("a record is of the unknown kind {}", static_cast<int>(fields.op())));
+      damaged(fmt::format("a record has the unknown opcode {}", static_cast<int>(fields.op())));
   }
   return std::nullopt;
 }
@@ -219,7 +218,7 @@ void BagReader::Impl::check_end() const {
                      fmt::format("the bag was never closed: it has no index and may lack messages "
                                  "after the {} it holds",
                                  met.message_count),
-                     "the messages before are sound; 'rosbag reindex' makes a whole bag of them");
+                     "these messages are intact; 'rosbag reindex' makes a complete bag of them");
   }
   if (chunk_infos < chunk_count || connections.size() < connection_count) cut_off();
   if (met.chunk_count != chunk_count || messages_indexed != met.message_count) {
@@ -257,7 +256,7 @@ std::optional<RecordedMessage> BagReader::next() {
       if (message) return message;
     }
   } catch (const std::out_of_range&) {
-    r.damaged("a record is shorter than it says");
+    r.damaged("a record is shorter than stated");
   }
   return std::nullopt;
 }
@@ -268,7 +267,7 @@ bool is_bag(std::string_view beginning) { return beginning.starts_with("#ROSBAG 
 
 namespace {
 
-/// Records from `offset` to the end of the file, each handed to `visit`.
+/// Calls `visit` with each record from `offset` to the end of the file.
 template <class Visit>
 void read_index(std::ifstream& in, std::uint64_t offset, std::uint64_t file_size, Visit&& visit) {
   if (offset > file_size) throw std::out_of_range("the index lies beyond the file");
@@ -279,7 +278,7 @@ void read_index(std::ifstream& in, std::uint64_t offset, std::uint64_t file_size
   for (ByteReader rest(bytes); !rest.empty();) visit(next_record(rest));
 }
 
-/// Empty when the bag has no index. Throws std::out_of_range when it is broken.
+/// Empty when the bag has no index. Throws std::out_of_range when the index is damaged.
 std::optional<RecordingInfo> info_from_index(const std::filesystem::path& file) {
   std::ifstream in(file, std::ios::binary);
   std::vector<std::byte> start(bag::kMagic.size() + bag::kBagHeaderBytes);
@@ -333,11 +332,11 @@ RecordingInfo info_from_reading(const std::filesystem::path& file) {
 }  // namespace
 
 RecordingInfo read_bag_info(const std::filesystem::path& file) {
-  const BagReader reader(file);  // says so if this is no bag
+  const BagReader reader(file);  // throws if this is not a bag
   try {
     if (auto info = info_from_index(file)) return *std::move(info);
   } catch (const std::out_of_range&) {
-    // A damaged index: reading everything finds what is wrong.
+    // The index is damaged: reading the whole bag finds out where.
   }
   return info_from_reading(file);
 }

@@ -10,22 +10,22 @@
 
 namespace lidarena {
 
-/// Whether a file that starts with these bytes is a ROS bag, of whatever version.
+/// Whether a file that starts with these bytes is a ROS bag, of any version.
 bool is_bag(std::string_view beginning);
 
-/// Reads a ROS 1 bag, version 2.0 (chunks stored, lz4 or, where the library was there at build
-/// time, bz2; with or without index) from front to back, in file order, one chunk in memory. Bags
-/// have no check sums but those of their compressed chunks; sizes and counts are verified.
+/// Reads a ROS 1 bag, version 2.0 (chunks uncompressed, lz4 or, if built with libbz2, bz2; with or
+/// without index) from front to back, in file order, with one chunk in memory. Bags have no
+/// checksums except inside compressed chunks; sizes and counts are verified.
 class BagReader : public RecordingReader {
  public:
-  /// Throws InputError when the file is missing, is no bag, is encrypted or of another version.
+  /// Throws InputError when the file is missing, is not a bag, is encrypted or of another version.
   explicit BagReader(const std::filesystem::path& file);
   ~BagReader() override;
 
   /// Throws InputError naming file and byte when the bag is cut off, was never closed or is
   /// damaged.
   std::optional<RecordedMessage> next() override;
-  /// What was met so far.
+  /// Topics, counts and times read so far.
   RecordingInfo info() const;
 
  private:
@@ -33,8 +33,8 @@ class BagReader : public RecordingReader {
   std::unique_ptr<Impl> impl_;
 };
 
-/// Takes the answer from the index where there is a sound one, else from reading all of the bag.
-/// Throws InputError when the file is missing or is no bag.
+/// Reads only the index if the bag has a valid one, else the whole bag. Throws InputError when the
+/// file is missing or is not a bag.
 RecordingInfo read_bag_info(const std::filesystem::path& file);
 
 }  // namespace lidarena

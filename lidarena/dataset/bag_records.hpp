@@ -10,11 +10,12 @@
 #include "lidarena/dataset/byte_stream.hpp"
 
 /// Records of ROS 1 bags, version 2.0 (wiki.ros.org/Bags/Format/2.0). A record is a header of
-/// NAME=VALUE fields and data, each behind its length (uint32).
+/// NAME=VALUE fields and data, each preceded by its length (uint32).
 namespace lidarena::bag {
 
 inline constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
-/// Header and padding of the first record together, so that it can be completed in place.
+/// Header and padding of the first record together: fixed, so that the record can be overwritten in
+/// place when the bag is closed.
 inline constexpr std::size_t kBagHeaderBytes = 4096;
 
 enum class Op : std::uint8_t {
@@ -26,14 +27,14 @@ enum class Op : std::uint8_t {
   kConnection = 7,
 };
 
-/// The fields of a header, values as they lie in the file.
+/// The fields of a record header, with values as stored in the file.
 class Fields {
  public:
-  /// Throws std::out_of_range when the bytes are no header.
+  /// Throws std::out_of_range when the bytes are not a header.
   explicit Fields(Bytes header);
   Op op() const { return static_cast<Op>(number<std::uint8_t>("op")); }
   bool has(std::string_view name) const { return values_.contains(name); }
-  /// Both throw std::out_of_range when the field is missing or too short.
+  /// These throw std::out_of_range when the field is missing or too short.
   std::string text(std::string_view name) const;
   template <class T>
   T number(std::string_view name) const {
@@ -46,7 +47,7 @@ class Fields {
   std::map<std::string_view, Bytes> values_;
 };
 
-/// Builds a record: fields first, then finish() with the data.
+/// Builds a record: add the fields, then call append_to() with the data.
 class Record {
  public:
   explicit Record(Op op) { number("op", static_cast<std::uint8_t>(op)); }
@@ -61,9 +62,9 @@ class Record {
   std::size_t header_size() const { return header_.size(); }
   /// Appends the whole record.
   void append_to(ByteWriter& out, Bytes data) const;
-  /// The header's fields alone, as the data of a connection has them.
+  /// The serialized fields only, as needed for the data of a connection record.
   Bytes fields() const { return header_.bytes(); }
-  /// A header without a kind, for such data.
+  /// Fields without an op, for such data.
   static Record without_op() { return Record(); }
 
  private:

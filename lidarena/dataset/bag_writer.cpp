@@ -29,7 +29,7 @@ struct ChunkSummary {
   std::uint64_t position = 0;  ///< of the chunk's record in the file
   Time start{0};
   Time end{0};
-  std::map<std::uint32_t, std::uint32_t> counts;  ///< messages by connection
+  std::map<std::uint32_t, std::uint32_t> counts;  ///< number of messages by connection
 };
 
 }  // namespace
@@ -47,16 +47,16 @@ struct BagWriter::Impl {
   BagWriterOptions options;
   RecordingInfo written;
   std::vector<ByteWriter> connections;  ///< their records, by id
-  std::set<std::uint16_t> declared;     ///< connections that are in the file
+  std::set<std::uint16_t> declared;     ///< connections already written
   std::vector<ChunkSummary> chunks;
 
-  ByteWriter chunk;  ///< records of the chunk in the making
+  ByteWriter chunk;  ///< records of the chunk being built
   std::map<std::uint32_t, std::vector<IndexEntry>> chunk_index;
   Time chunk_start{0};
   Time chunk_end{0};
   std::vector<std::byte> compressed;
 
-  /// An index position of 0 says that the bag was never closed.
+  /// An index position of 0 means that the bag was never closed.
   ByteWriter bag_header(std::uint64_t index_position) const {
     bag::Record header(Op::kBagHeader);
     header.number("index_pos", index_position)
@@ -153,8 +153,8 @@ void BagWriter::write(std::uint16_t topic, Time log_time, Time /*publish_time*/,
   Impl& w = *impl_;
   constexpr std::chrono::seconds kLast{std::numeric_limits<std::uint32_t>::max()};
   if (log_time < Time{0} || log_time >= kLast) {
-    throw InputError(w.place, "a message before the epoch or beyond 2106 cannot be stored",
-                     "shift the recording to times from 0 on");
+    throw InputError(w.place, "a message before the epoch (1970) or after 2106 cannot be stored",
+                     "shift the times so that none is negative");
   }
   if (w.declared.insert(topic).second) w.chunk.put(w.connections[topic].bytes());
   const bool first_of_chunk = w.chunk_index.empty();

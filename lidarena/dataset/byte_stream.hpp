@@ -15,7 +15,7 @@
 namespace lidarena {
 
 static_assert(std::endian::native == std::endian::little,
-              "the byte streams copy numbers as they lie in memory");
+              "the byte streams need little endian as the native byte order");
 
 using Bytes = std::span<const std::byte>;
 
@@ -45,8 +45,8 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// The reverse. Throws std::out_of_range when the bytes end too early; whoever knows the file turns
-/// that into an InputError.
+/// Reads what ByteWriter writes. Throws std::out_of_range when the bytes end too early; callers
+/// that know the file turn that into an InputError.
 class ByteReader {
  public:
   explicit ByteReader(Bytes bytes) : rest_(bytes) {}

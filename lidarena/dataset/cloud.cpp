@@ -17,13 +17,13 @@ void append_float(std::string& bytes, float value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Header and rows, x y z [intensity] [distance] each, as one file.
+/// Writes a file of `header` and one binary float32 row x y z [intensity] [distance] per point.
 void write_rows(const std::filesystem::path& file, const Cloud& cloud, std::string_view header) {
   assert(cloud.intensity.empty() || cloud.intensity.size() == cloud.points.size());
   assert(cloud.distance.empty() || cloud.distance.size() == cloud.points.size());
   PartFile out(file);
   out.write(header);
-  constexpr std::size_t kBlock = 1 << 16;  // bytes handed over at a time
+  constexpr std::size_t kBlock = 1 << 16;  // bytes per write
   std::string rows;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     for (int axis = 0; axis < 3; ++axis) append_float(rows, cloud.points[i][axis]);

@@ -8,11 +8,11 @@
 
 namespace lidarena {
 
-/// A map: points in the world frame (m) and, where known, a value for each.
+/// A map: points in the world frame (m), optionally with intensity and distance.
 struct Cloud {
   std::vector<Eigen::Vector3f> points;
-  std::vector<float> intensity;  ///< empty or one a point
-  std::vector<float> distance;   ///< empty or one a point: to the mesh, m; NaN where there is none
+  std::vector<float> intensity;  ///< empty or one per point
+  std::vector<float> distance;   ///< empty or one per point: to the mesh, m; NaN if there is none
 };
 
 /// Reads .ply (ascii, binary little endian) or .pcd (ascii, binary, binary_compressed). Every point

@@ -22,8 +22,9 @@ struct DeleteLz4 {
   void operator()(LZ4F_dctx* context) const { LZ4F_freeDecompressionContext(context); }
 };
 
-/// Calls `step(output, input)`, which uses up some of both and returns true at the end of a frame,
-/// until the input is used up. The output doubles, so a damaged size cannot claim all memory.
+/// Calls `step(output, input)`, which consumes part of both and returns true at the end of a frame,
+/// until the input is consumed. The output grows by doubling, so that a damaged `size` cannot cause
+/// a huge allocation.
 template <class Step>
 void decompress_stream(Bytes input, std::uint64_t size, std::vector<std::byte>& output,
                        const Step& step) {
@@ -40,10 +41,10 @@ void decompress_stream(Bytes input, std::uint64_t size, std::vector<std::byte>& 
     frame_ended = step(room, input);
     used += room_before - room.size();
     const bool stuck = input.size() == input_before && room.size() == room_before;
-    if (stuck && used == size) throw std::runtime_error("holds more than it says");
-    if (stuck) throw std::runtime_error("does not unpack");
+    if (stuck && used == size) throw std::runtime_error("holds more bytes than stated");
+    if (stuck) throw std::runtime_error("cannot be decompressed");
   }
-  while (!frame_ended && used < size) {  // all input taken, output still inside the decompressor
+  while (!frame_ended && used < size) {  // all input consumed, output still in the decompressor
     if (used == output.size()) output.resize(std::min<std::uint64_t>(size, 2 * used));
     std::span<std::byte> room = std::span(output).subspan(used);
     const std::size_t room_before = room.size();
@@ -51,7 +52,7 @@ void decompress_stream(Bytes input, std::uint64_t size, std::vector<std::byte>& 
     if (room.size() == room_before) break;
     used += room_before - room.size();
   }
-  if (!frame_ended || used != size) throw std::runtime_error("holds less than it says");
+  if (!frame_ended || used != size) throw std::runtime_error("holds fewer bytes than stated");
 }
 
 void decompress_zstd(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
@@ -93,13 +94,13 @@ void decompress_bz2(Bytes input, std::uint64_t size, std::vector<std::byte>& out
   if (BZ2_bzDecompressInit(&state, 0, 0) != BZ_OK) throw std::bad_alloc();
   const std::unique_ptr<bz_stream, EndBzip2> stream(&state);
   decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
-    // the library takes its input as char*, but reads it only
+    // the library takes its input as char*, but does not modify it
     stream->next_in = reinterpret_cast<char*>(const_cast<std::byte*>(rest.data()));
     stream->avail_in = static_cast<unsigned>(rest.size());
     stream->next_out = reinterpret_cast<char*>(room.data());
     stream->avail_out = static_cast<unsigned>(room.size());
     const int result = BZ2_bzDecompress(stream.get());
-    if (result != BZ_OK && result != BZ_STREAM_END) throw std::runtime_error("is no sound bz2");
+    if (result != BZ_OK && result != BZ_STREAM_END) throw std::runtime_error("is not valid bz2");
     rest = rest.last(stream->avail_in);
     room = room.last(stream->avail_out);
     return result == BZ_STREAM_END;
@@ -107,7 +108,8 @@ void decompress_bz2(Bytes input, std::uint64_t size, std::vector<std::byte>& out
 }
 #else
 void decompress_bz2(Bytes, std::uint64_t, std::vector<std::byte>&) {
-  throw std::runtime_error("is compressed by bz2, which this build lacks: use 'rosbag decompress'");
+  throw std::runtime_error(
+      "is compressed with bz2, which this build lacks: use 'rosbag decompress'");
 }
 #endif
 
@@ -159,7 +161,7 @@ void decompress(std::string_view method, Bytes input, std::uint64_t size,
   if (method == "zstd") return decompress_zstd(input, size, output);
   if (method == "lz4") return decompress_lz4(input, size, output);
   if (method == "bz2") return decompress_bz2(input, size, output);
-  throw std::runtime_error("is compressed by the unknown method '" + std::string(method) + "'");
+  throw std::runtime_error("is compressed with the unknown method '" + std::string(method) + "'");
 }
 
 }  // namespace lidarena

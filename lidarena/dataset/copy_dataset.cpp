@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The truth beside a dataset, handed out in step with its events.
+/// The ground truth of a dataset, copied in time order together with its events.
 class TruthBeside {
  public:
   explicit TruthBeside(const Dataset& in) : path_(load_truth(in.path)) {
@@ -22,7 +22,7 @@ class TruthBeside {
     }
   }
 
-  /// Poses up to `time`.
+  /// Copies the poses up to `time`.
   void write_path(Time time, DatasetWriter& out, CopySummary& summary) {
     if (!path_) return;
     for (; next_ < path_->size() && path_->poses()[next_].stamp <= time; ++next_) {
@@ -31,7 +31,7 @@ class TruthBeside {
     }
   }
 
-  /// What the points of a scan hit.
+  /// Copies the ground truth of the points of the next scan.
   void write_hits(const std::string& id, DatasetWriter& out, CopySummary& summary) {
     const auto source = hits_.find(id);
     if (source == hits_.end()) return;
@@ -42,7 +42,7 @@ class TruthBeside {
   }
 
  private:
-  /// Foreign data have their LiDARs named by us, and no truth.
+  /// Third-party data have no ground truth of points (and LiDAR ids made up by the reader).
   static bool may_have_hits(const Dataset& in) {
     if (fs::is_directory(in.path)) return fs::exists(in.path / layout::kManifest);
     return recording_format_of(in.path) &&
@@ -54,7 +54,7 @@ class TruthBeside {
   std::map<std::string, std::unique_ptr<ScanTruthSource>> hits_;
 };
 
-/// The manifest's keys that are not about how the measurements are stored.
+/// The keys of the manifest that do not describe how the measurements are stored.
 Json manifest_of(const Json& manifest) {
   Json kept = Json::object();
   if (!manifest.is_object()) return kept;
@@ -73,7 +73,8 @@ void check_apart(const fs::path& in, const fs::path& out) {
       fs::exists(out) && (fs::equivalent(in, out, error) ||
                           fs::equivalent(fs::absolute(in).parent_path(), out, error));
   if (into_itself) {
-    throw InputError(out.string(), "is what is to be converted", "name another place for it");
+    throw InputError(out.string(), "is the dataset that is to be converted",
+                     "choose another output path");
   }
 }
 

@@ -15,42 +15,41 @@
 
 namespace lidarena {
 
-/// How to read folders of raw sweeps whose layout no file states.
+/// What to read, and values that the data themselves may not state.
 struct ReadOptions {
-  std::string sensor;  ///< id of the one LiDAR wanted; empty = all
-  std::string layout;  ///< of raw float32 binaries: xyz, xyzi, xyzt, xyztr; empty = must be clear
-  std::optional<Pose> body_from_lidar;  ///< overrides what the dataset says
-  double rate_hz = 10.0;                ///< sweeps per second where the folder gives no times
+  std::string sensor;  ///< id of the only LiDAR to read; empty = all
+  std::string layout;  ///< of raw .bin files: xyz, xyzi, xyzt, xyztr; empty = inferred
+  std::optional<Pose> body_from_lidar;  ///< overrides the mounting in the dataset
+  double rate_hz = 10.0;                ///< sweep rate, for folders without times
 };
 
-/// An opened dataset: what an estimator may see. The truth is apart, see load_truth().
+/// An opened dataset: all that an estimator may use. Ground truth is separate, see load_truth().
 struct Dataset {
   std::filesystem::path path;
   Rig rig;
-  std::optional<std::size_t> scan_count;  ///< of the chosen sensor, where known beforehand
-  Json manifest;                          ///< manifest.json of the folder; null for foreign data
-  std::vector<std::string> notes;         ///< what was inferred, not stated: to be shown
+  std::optional<std::size_t> scan_count;  ///< of the chosen LiDAR, if known before reading
+  Json manifest;                   ///< manifest.json of the folder; null for third-party data
+  std::vector<std::string> notes;  ///< assumptions and damage, to be shown to the user
   std::unique_ptr<EventSource> events;
 };
 
-/// Opens a dataset folder of ours, a single .mcap or ROS 1 .bag, a bag folder of rosbag2 with one
-/// .mcap, or a folder of PCD/PLY/bin sweeps. In recordings of others,
-/// topics are found by type: the first with scans (PointCloud2, Livox CustomMsg) or that of
-/// `options.sensor` (topic or id), and the first Imu, whose accelerations may be in g. Throws
-/// InputError naming file, place and remedy.
+/// Opens a Lidarena dataset folder, a single .mcap or ROS 1 .bag, a rosbag2 folder with one .mcap,
+/// or a folder of PCD/PLY/bin sweeps. In third-party recordings,
+/// topics are found by type: the first topic with scans (PointCloud2, Livox CustomMsg), or the one
+/// named by `options.sensor` (topic or id), and the first Imu topic, whose accelerations may be in
+/// m/s^2 or g. Throws InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// True motion of the body where the dataset carries one (truth.tum).
-/// For evaluation; nothing that estimates may call it.
+/// Ground-truth trajectory of the body if the dataset has one (truth.tum). For evaluation only: estimators must not call it.
 std::optional<Trajectory> load_truth(const std::filesystem::path& dataset);
 
-/// What the points of the LiDAR `sensor` (empty = the only one) hit, scan after scan; null when the
-/// dataset does not carry it. For evaluation; nothing that estimates may call it. Throws InputError
-/// for a sensor that the dataset lacks; next() throws it where the file is broken.
+/// Ground truth of the points of the LiDAR `sensor` (empty = the only one), scan by scan; null when
+/// the dataset has none. For evaluation only: estimators must not call it. Throws InputError for a
+/// sensor that the dataset lacks; next() throws it where the file is damaged.
 std::unique_ptr<ScanTruthSource> open_scan_truth(const std::filesystem::path& dataset,
                                                  const std::string& sensor = {});
 
-/// The world's mesh beside the dataset (world.ply), if there.
+/// The world mesh in the dataset folder (world.ply), if it exists.
 std::optional<std::filesystem::path> find_world_mesh(const std::filesystem::path& dataset);
 
 /// Comment at the head of truth.tum.
@@ -58,8 +57,9 @@ inline constexpr const char* kTruthHeader =
     "truth: pose of the body in the world (world_from_body) at the stamped instant\n"
     "time[s] x y z[m] qx qy qz qw";
 
-/// How measurements are stored: one recording, or a folder /ID for each sensor with a file a sweep
-/// (000000.pcd, .ply, or velodyne/000000.bin: x y z intensity alone), times.txt and imu.txt.
+/// How measurements are stored: in one recording (MCAP, bag), or in a folder ID for each sensor
+/// with one file per sweep (000000.pcd, .ply, or velodyne/000000.bin with only x y z intensity),
+/// times.txt and imu.txt.
 enum class DatasetFormat { kMcap, kBag, kPcd, kPly, kKitti };
 template <>
 struct EnumNames<DatasetFormat> {
@@ -71,7 +71,7 @@ struct EnumNames<DatasetFormat> {
 
 enum class Dialect {
   kSi,      ///< SI units, one layout for all sensors
-  kDriver,  ///< the units and layouts of the sensor's own driver, where it is known
+  kDriver,  ///< the units and layouts of the manufacturer's driver, if it is known
 };
 template <>
 struct EnumNames<Dialect> {
@@ -82,43 +82,45 @@ struct EnumNames<Dialect> {
 struct WriteOptions {
   DatasetFormat format = DatasetFormat::kMcap;
   Dialect dialect = Dialect::kSi;  ///< of recordings; sweeps are always in SI
-  bool compress = false;           ///< chunks of MCAP by zstd; those of bags always are, by LZ4
+  bool compress = false;  ///< MCAP chunks, by zstd; bag chunks are always compressed, by LZ4
 };
 
-/// Whether a dataset folder holds its measurements; else it is a manifest alone, to be flown.
+/// Whether a dataset folder holds measurements; without them it holds only a manifest, from which
+/// they are simulated.
 bool has_measurements(const std::filesystem::path& folder);
 
-/// Writes a dataset folder: data.mcap, truth.tum, metadata.yaml (so that `ros2 bag play` takes the
-/// folder), manifest.json; world.ply is the caller's. Files appear under their names only once
-/// complete, manifest.json last: a folder without one is unfinished. An older dataset in the folder
+/// Writes a dataset folder: data.mcap, truth.tum, metadata.yaml (so that `ros2 bag play` accepts
+/// the folder) and manifest.json; the caller writes world.ply. Files get their names only when
+/// complete, manifest.json last: a folder without it is unfinished. An older dataset in the folder
 /// is replaced.
 ///
-/// data.mcap holds /ID/points and /ID/imu (an IMU may share its LiDAR's id), /truth/odometry, /tf
-/// (world to body) and /tf_static (body to ID_lidar and ID_imu). A scan's header.stamp is its first
-/// firing; its publish time the last, when a driver could send it. The log time of a measurement is
-/// its publish time, or that of the measurement before if that is later, so the order of the events
-/// survives readers that sort by log time. The rig and the topics are in the metadata record
-/// "lidarena".
+/// data.mcap holds /ID/points and /ID/imu (an IMU may have the id of its LiDAR), /truth/odometry,
+/// /tf (world to body) and /tf_static (body to ID_lidar and ID_imu). A scan's header.stamp is the
+/// time of its first firing; its publish time is that of its last firing, when a driver could send
+/// it. The log time of a measurement is its publish time, or the log time of the previous
+/// measurement if that is later, so that readers that sort by log time keep the order of the
+/// events. The rig and the topics are in the metadata record "lidarena".
 class DatasetWriter : public EventSink, public ScanTruthSink {
  public:
-  /// `path` is the folder; or, where it ends in .mcap or .bag, a single file of that format,
-  /// without anything beside it. Throws InputError when it cannot be made or two LiDARs (or IMUs)
-  /// have one id.
+  /// `path` is a folder or, if it ends in .mcap or .bag, a single file of that format with no other
+  /// files. Throws InputError when it cannot be created or two LiDARs (or two IMUs) have the same
+  /// id.
   DatasetWriter(const std::filesystem::path& path, const Rig& rig,
                 const WriteOptions& options = {});
   ~DatasetWriter() override;
-  /// In the order of EventSource. Throws InputError for a sensor that the rig lacks, a negative
-  /// time, or a point before its scan's stamp; Error when the disk is full.
+  /// Events must come in the order of EventSource. Throws InputError for a sensor that the rig
+  /// lacks, a negative time, or a point earlier than its scan's stamp; Error when the disk is full.
   void write(const Event& event) override;
-  /// What a scan's points hit, before or after the scan: /truth/ID/hits. Throws InputError for a
-  /// LiDAR that the rig lacks.
+  /// Ground truth of a scan's points, given before or after the scan; stored as /truth/ID/hits.
+  /// Throws InputError for a LiDAR that the rig lacks.
   void write(const ScanTruth& truth) override;
-  /// True body pose, at the full rate, in order of time; also written as /truth/odometry and /tf.
+  /// Ground-truth body pose at the full rate, in time order; also written as /truth/odometry and
+  /// /tf.
   void write_truth(const StampedPose& pose);
-  /// Completes all files. The keys of `manifest` are added to those of manifest.json that every
-  /// dataset has: format, format_version, rig, topics, message_counts, start_ns, end_ns.
+  /// Completes all files. The keys of `manifest` are added to those that every manifest.json has:
+  /// format, format_version, rig, topics, message_counts, start_ns, end_ns.
   void finish(const Json& manifest);
-  /// finish() without further keys, if that was not called.
+  /// Calls finish() without further keys, unless it was called already.
   void close() override;
 
  private:
@@ -126,19 +128,19 @@ class DatasetWriter : public EventSink, public ScanTruthSink {
   std::unique_ptr<Impl> impl_;
 };
 
-/// What copy_dataset() carried over.
+/// Counts of what copy_dataset() copied.
 struct CopySummary {
   std::size_t scans = 0;
   std::size_t points = 0;
   std::size_t imu_samples = 0;
-  std::size_t poses = 0;        ///< of the truth
-  std::size_t truth_scans = 0;  ///< whose points' truth came along
+  std::size_t poses = 0;        ///< of the ground-truth trajectory
+  std::size_t truth_scans = 0;  ///< scans with ground truth of their points
 };
 
-/// Writes an opened dataset anew to `out`, a folder or a file as DatasetWriter takes it: events,
-/// the rig, the truth of path and points where `in.path` has one, and from folder to folder the
-/// world and the manifest's other keys. Throws InputError where the input is broken (what was
-/// written stays unfinished) or `out` is the input itself; Error when the disk is full.
+/// Copies an opened dataset to `out`, a folder or a file as for DatasetWriter: events, the rig,
+/// ground truth of trajectory and points if `in.path` has them and, from folder to folder, the
+/// world mesh and the other keys of the manifest. Throws InputError when the input is damaged (the
+/// copy then stays unfinished) or `out` is the input itself; Error when the disk is full.
 CopySummary copy_dataset(Dataset& in, const std::filesystem::path& out,
                          const WriteOptions& options = {});
 

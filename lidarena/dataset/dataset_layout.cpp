@@ -8,7 +8,7 @@ namespace {
 
 void add(std::map<std::string, std::string>& topics, const std::string& id, const char* kind) {
   if (!topics.emplace("/" + id + "/" + kind, id).second) {
-    throw InputError("rig", "two sensors of one kind have the id '" + id + "'", "rename one");
+    throw InputError("rig", "two sensors of the same kind have the id '" + id + "'", "rename one");
   }
 }
 

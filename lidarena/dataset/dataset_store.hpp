@@ -13,8 +13,8 @@
 
 namespace lidarena {
 
-/// Where the measurements of a dataset go: one recording, or a folder of sweeps. Sensors are those
-/// of the rig; the caller has checked it.
+/// Stores the measurements of a dataset, in one recording or in a folder of sweeps. The caller
+/// makes sure that all sensors are in the rig.
 class DatasetStore {
  public:
   virtual ~DatasetStore() = default;
@@ -22,16 +22,17 @@ class DatasetStore {
   virtual void write(const std::string& lidar_id, const Scan& scan) = 0;
   virtual void write(const ScanTruth& truth) = 0;
   virtual void write_truth(const StampedPose& pose) = 0;
-  /// Completes the files and returns what manifest.json is to say of them.
+  /// Completes the files and returns the keys of manifest.json that describe them.
   virtual Json finish() = 0;
 };
 
-/// A recording `file`; with `is_folder`, metadata.yaml for `ros2 bag play` comes beside it.
+/// Stores to the recording `file`; with `is_folder`, also writes metadata.yaml next to it, for
+/// `ros2 bag play`.
 std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& file,
                                                    const Rig& rig, const WriteOptions& options,
                                                    bool is_folder);
 
-/// A folder of sweeps, IMU rows and times for each sensor. The folder exists.
+/// Stores sweeps, times and IMU rows, one subfolder per sensor. `folder` must exist.
 std::unique_ptr<DatasetStore> make_sweep_store(const std::filesystem::path& folder, const Rig& rig,
                                                DatasetFormat format);
 

@@ -21,16 +21,16 @@ void prepare(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw InputError(folder.string(), "cannot be created: " + error.message());
-  // What an earlier dataset left must not vouch for this one, nor pass for its truth.
+  // Files of an earlier dataset must not be taken for files of this one.
   for (const char* stale : {layout::kManifest, layout::kTruth, layout::kTruthPart, layout::kData,
                             layout::kBag, layout::kRosbagMetadata}) {
     fs::remove(folder / stale, error);
   }
-  // Until the manifest is whole, the folder is unfinished.
+  // Marks the folder as unfinished until the manifest is complete.
   std::ofstream(folder / layout::kManifestPart);
 }
 
-/// Options whose format is that of a file's name, if it has one.
+/// `options` with the format given by the file name (.mcap or .bag), if any.
 WriteOptions named(const fs::path& path, WriteOptions options) {
   if (const auto format = recording_format_of(path)) {
     options.format = *format == RecordingFormat::kBag ? DatasetFormat::kBag : DatasetFormat::kMcap;
@@ -51,7 +51,7 @@ bool has_imu(const Rig& rig, const std::string& id) {
 struct DatasetWriter::Impl {
   Impl(const fs::path& path, const Rig& r, const WriteOptions& o)
       : place(path), rig(r), options(named(path, o)), is_folder(!recording_format_of(path)) {
-    layout::topics_of(rig);  // says so if two sensors have one id
+    layout::topics_of(rig);  // throws if two sensors have the same id
     if (!is_folder) {
       store = make_recording_store(path, rig, options, false);
       return;
@@ -69,8 +69,8 @@ struct DatasetWriter::Impl {
 
   void check(bool is_known, const std::string& id) const {
     if (is_known) return;
-    throw InputError(place.string(), "'" + id + "' is not among the sensors of the rig",
-                     "name every sensor in the rig");
+    throw InputError(place.string(), "'" + id + "' is not a sensor of the rig",
+                     "add it to the rig");
   }
 
   void write(const std::string& id, const ImuSample& sample) const {

@@ -28,12 +28,13 @@ std::uint8_t as_byte(float value) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 255.0F)));
 }
 
-/// Instant of shot `index` of `count` in one scan, ns since its stamp.
+/// Firing time of shot `index` of `count` in one scan, ns since the scan's stamp.
 std::int64_t instant_of(std::int64_t index, std::int64_t count, double rate_hz) {
   return std::llround(static_cast<double>(index) / static_cast<double>(count) * 1e9 / rate_hz);
 }
 
-/// Which of `count` equally spaced shots of a scan was fired at `dt_ns`; empty if none was.
+/// Index of the shot, among `count` equally spaced ones of a scan, that was fired at `dt_ns`; empty
+/// if there is none.
 std::optional<std::size_t> shot_at(std::int32_t dt_ns, std::int64_t count, double rate_hz) {
   const auto index =
       std::llround(static_cast<double>(dt_ns) * 1e-9 * rate_hz * static_cast<double>(count));
@@ -44,12 +45,12 @@ std::optional<std::size_t> shot_at(std::int32_t dt_ns, std::int64_t count, doubl
 
 void check_times(const Scan& scan, std::string_view place) {
   if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {
-    throw InputError(place, "a point lies before its scan's stamp",
-                     "a scan's stamp is its first firing");
+    throw InputError(place, "a point is earlier than its scan's stamp",
+                     "set the stamp to the time of the first firing");
   }
 }
 
-/// What a Livox driver passes on of one shot.
+/// One shot as a Livox driver publishes it.
 struct LivoxShot {
   std::uint32_t offset_ns = 0;
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
@@ -63,8 +64,8 @@ LivoxShot livox_shot(const Point& point, std::uint8_t tag) {
           static_cast<std::uint8_t>(point.ring)};
 }
 
-/// All shots of a scan, those without a return as zeros; empty when the times do not tell which
-/// they were.
+/// All shots of a scan, those without a return as zeros; empty when the times of the points do not
+/// match the shots.
 std::vector<LivoxShot> all_shots(const Scan& scan, const LidarInfo& lidar, std::uint8_t tag) {
   const std::int64_t count = std::int64_t{lidar.rows} * lidar.columns;
   if (!scan.timed || count == 0) return {};
@@ -107,22 +108,22 @@ void store_position(const Eigen::Vector3f& position, std::byte* at) {
   }
 }
 
-/// One pixel of an Ouster, empty or with a return.
+/// One pixel of an Ouster scan, with or without a return.
 struct OusterPixel {
   const Point* point = nullptr;
   std::uint32_t t = 0;
   std::uint16_t ring = 0;
-  std::uint16_t column = 0;  ///< in which it was fired
+  std::uint16_t column = 0;  ///< column of its firing
 };
 
 struct OusterImage {
   std::size_t rows = 1;
   std::vector<OusterPixel> pixels;            ///< row by row
-  std::vector<Eigen::Vector3d> beam_origins;  ///< m, by column; empty when columns are not known
+  std::vector<Eigen::Vector3d> beam_origins;  ///< m, by column; empty if columns are unknown
 };
 
-/// Where the beams start that are fired `t_ns` after the scan's begin: beside the axis, where the
-/// head points then.
+/// Origin (m) of the beams fired `t_ns` after the start of the scan: off the rotation axis, in the
+/// direction in which the head then points.
 Eigen::Vector3d ouster_beam_origin(std::int64_t t_ns, const LidarInfo& lidar) {
   const double turn = static_cast<double>(t_ns) * 1e-9 * lidar.rate_hz;
   const double encoder = 2.0 * M_PI * (1.0 - turn);
@@ -134,7 +135,7 @@ bool has_geometry(const LidarInfo& lidar) {
          lidar.pixel_shifts.size() == static_cast<std::size_t>(lidar.rows);
 }
 
-/// The pixels of a scan that gave none, destaggered.
+/// The destaggered image of a scan without returns.
 OusterImage empty_image(const LidarInfo& lidar) {
   OusterImage image{static_cast<std::size_t>(lidar.rows), {}, {}};
   std::vector<std::uint32_t> instants;
@@ -155,7 +156,8 @@ OusterImage empty_image(const LidarInfo& lidar) {
   return image;
 }
 
-/// Empty when a point's time or ring is not one of the sensor's.
+/// The destaggered image of a scan; empty when the time or ring of a point does not match the
+/// sensor.
 std::optional<OusterImage> destaggered(const Scan& scan, const LidarInfo& lidar) {
   if (!scan.timed || !has_geometry(lidar)) return std::nullopt;
   OusterImage image = empty_image(lidar);
@@ -163,7 +165,7 @@ std::optional<OusterImage> destaggered(const Scan& scan, const LidarInfo& lidar)
   std::optional<std::size_t> column;
   std::int32_t column_dt = -1;
   for (const Point& point : scan.points) {
-    if (point.dt_ns != column_dt) {  // a column's points follow each other
+    if (point.dt_ns != column_dt) {  // points of one column are consecutive
       column = shot_at(point.dt_ns, lidar.columns, lidar.rate_hz);
       column_dt = point.dt_ns;
     }
@@ -184,8 +186,8 @@ OusterImage in_one_row(const Scan& scan) {
   return image;
 }
 
-/// As the sensor counts it, mm: along the beam from its origin, and the origin's distance to the
-/// axis.
+/// Range as the sensor defines it, mm: distance from the beam's origin to the point, plus the
+/// distance of the origin from the axis.
 std::uint32_t ouster_range_mm(const OusterPixel& pixel, const OusterImage& image,
                               const LidarInfo& lidar) {
   const Eigen::Vector3d origin = image.beam_origins.empty()

@@ -16,8 +16,8 @@ struct Event {
   std::variant<ImuSample, Scan> data;
 };
 
-/// Measurements in order: IMU samples by time, and a scan only after every IMU sample up to its
-/// last point has been delivered. Simulator, files and bags all look like this.
+/// Measurements in order: IMU samples by time, and each scan only after every IMU sample up to the
+/// scan's last point. Implemented by the simulator and by all dataset readers.
 class EventSource {
  public:
   virtual ~EventSource() = default;
@@ -29,8 +29,8 @@ class EventSink {
  public:
   virtual ~EventSink() = default;
   virtual void write(const Event& event) = 0;
-  /// Completes what is written; without it a file stays recognizably unfinished. Throws Error when
-  /// the disk is full.
+  /// Completes the output, which otherwise stays recognizable as unfinished. Throws Error when the
+  /// disk is full.
   virtual void close() = 0;
 };
 

@@ -23,7 +23,7 @@ std::vector<ImuSample> read_imu_text(const std::filesystem::path& file) {
                        {number(1), number(2), number(3)},
                        {number(4), number(5), number(6)}});
     if (samples.size() > 1 && samples.back().stamp <= samples[samples.size() - 2].stamp) {
-      throw InputError(place, "the time is not later than that of the row before",
+      throw InputError(place, "the time is not later than that of the previous row",
                        "sort the rows by time and remove duplicates");
     }
   }

@@ -9,11 +9,11 @@
 
 namespace lidarena {
 
-/// Rows t wx wy wz ax ay az (s, rad/s, m/s^2), times strictly increasing. Throws InputError naming
-/// file and line.
+/// Reads rows t wx wy wz ax ay az (s, rad/s, m/s^2) with strictly increasing times. Throws
+/// InputError naming file and line.
 std::vector<ImuSample> read_imu_text(const std::filesystem::path& file);
 
-/// Writes such rows; every number comes back to the last bit.
+/// Writes such rows; reading them back gives exactly the same numbers.
 class ImuTextWriter {
  public:
   explicit ImuTextWriter(const std::filesystem::path& file);

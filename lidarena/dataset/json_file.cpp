@@ -13,7 +13,7 @@ Json read_json(const std::filesystem::path& file) {
     return Json::parse(text);
   } catch (const Json::parse_error& error) {
     throw InputError(file.string() + ": byte " + std::to_string(error.byte), "is not valid JSON",
-                     "the file is broken or cut short; write it anew");
+                     "the file is damaged or incomplete; write it again");
   }
 }
 

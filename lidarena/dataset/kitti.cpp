@@ -29,7 +29,7 @@ std::int64_t frame_number(std::string_view word, const std::string& place) {
   const auto frame = parse_integer(word);
   if (!frame || *frame < 0 || *frame > kMaxFrame) {
     throw InputError(place, fmt::format("'{}' is not a frame number", word),
-                     "the first of 13 columns counts frames from zero");
+                     "the first of 13 columns is the frame number, counted from zero");
   }
   return *frame;
 }
@@ -45,7 +45,7 @@ Trajectory read_kitti_rows(const std::filesystem::path& file, const TimeOfFrame&
     if (words.size() != 12 && words.size() != 13) {
       throw InputError(place, fmt::format("holds {} columns, not 12", words.size()),
                        "rows are r11 r12 r13 tx r21 r22 r23 ty r31 r32 r33 tz, "
-                       "with the frame number before them or not");
+                       "optionally preceded by the frame number");
     }
     const std::size_t skip = words.size() - 12;
     Eigen::Matrix<double, 3, 4> matrix;
@@ -67,7 +67,7 @@ void check_euroc_header(std::string_view row, const std::string& place) {
   }
 }
 
-/// The header row is a comment to TextRows: read it from the text itself.
+/// TextRows skips the header row as a comment, so it is taken from the text itself.
 std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
 
 }  // namespace
@@ -78,8 +78,8 @@ std::vector<Time> read_times(const std::filesystem::path& file) {
   while (const auto row = rows.next()) {
     const Time time = seconds_at(*row, rows.place());
     if (!times.empty() && time <= times.back()) {
-      throw InputError(rows.place(), "the time is not later than the one before",
-                       "times.txt holds one strictly later time a sweep");
+      throw InputError(rows.place(), "the time is not later than the previous one",
+                       "times.txt must hold one time per sweep, strictly increasing");
     }
     times.push_back(time);
   }
@@ -91,7 +91,7 @@ Trajectory read_kitti_poses(const std::filesystem::path& file, const std::vector
     if (static_cast<std::size_t>(frame) >= times.size()) {
       throw InputError(
           place, fmt::format("frame {} has no time, only {} times are given", frame, times.size()),
-          "give the times of this very sequence");
+          "give the times of the same sequence");
     }
     return times[static_cast<std::size_t>(frame)];
   });
@@ -99,7 +99,7 @@ Trajectory read_kitti_poses(const std::filesystem::path& file, const std::vector
 
 Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz) {
   if (!(rate_hz >= 0.01 && rate_hz <= 1e6)) {
-    throw InputError(file.string(), fmt::format("{} Hz is no frame rate", rate_hz));
+    throw InputError(file.string(), fmt::format("{} Hz is not a valid frame rate", rate_hz));
   }
   return read_kitti_rows(file, [&](std::int64_t frame, const std::string&) {
     return from_seconds(static_cast<double>(frame) / rate_hz);

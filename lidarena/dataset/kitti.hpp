@@ -8,13 +8,13 @@
 
 namespace lidarena {
 
-/// Seconds, one a row (times.txt of KITTI), exact to the nanosecond. Throws InputError naming file
-/// and line unless they strictly increase.
+/// Reads times in seconds, one per row (times.txt of KITTI), exact to the nanosecond. Throws
+/// InputError naming file and line unless they strictly increase.
 std::vector<Time> read_times(const std::filesystem::path& file);
 
-/// KITTI odometry poses: rows of 12 numbers, the 3x4 matrix [R t] row by row (m). Row i has the
-/// time `times[i]`. A 13th, leading number is the frame, counted from zero, and picks the time.
-/// Rotations are made orthonormal. Throws InputError naming file and line.
+/// Reads KITTI odometry poses: rows of 12 numbers, the 3x4 matrix [R t] row by row (m). Row i has
+/// the time `times[i]`; if rows have 13 numbers, the first one is i, counted from zero. Rotations
+/// are made orthonormal. Throws InputError naming file and line.
 Trajectory read_kitti_poses(const std::filesystem::path& file, const std::vector<Time>& times);
 /// The same with frame i at i / rate_hz seconds.
 Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz = 10.0);
@@ -22,12 +22,12 @@ Trajectory read_kitti_poses(const std::filesystem::path& file, double rate_hz = 
 /// Writes such rows of 12 numbers with 9 significant digits; the times are not in the file, see
 /// write_times(). Throws Error when the disk is full.
 void write_kitti_poses(const std::filesystem::path& file, const Trajectory& trajectory);
-/// Seconds with 9 decimals, one a row.
+/// Writes seconds with 9 decimals, one per row.
 void write_times(const std::filesystem::path& file, const std::vector<Time>& times);
 
-/// EuRoC ground truth: a header row naming the columns, then comma-separated rows: ns, position
-/// (m), quaternion w x y z, and more columns, which are left alone. Throws InputError naming file
-/// and line.
+/// Reads EuRoC ground truth: a header row naming the columns, then comma-separated rows: ns,
+/// position (m), quaternion w x y z, and further columns, which are ignored. Throws InputError
+/// naming file and line.
 Trajectory read_euroc_csv(const std::filesystem::path& file);
 
 }  // namespace lidarena

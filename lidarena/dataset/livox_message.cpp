@@ -16,7 +16,7 @@ bool is_livox_type(std::string_view type) {
 }
 
 Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
-  constexpr std::size_t kLeastPointBytes = 19;  // without the padding behind the last
+  constexpr std::size_t kLeastPointBytes = 19;  // without padding, which the last point lacks
   MessageReader in(message, place, encoding);
   Scan scan;
   scan.stamp = ros::get_header(in).stamp;
@@ -28,7 +28,7 @@ Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto offset_time = in.get<std::uint32_t>();
     if (offset_time > std::uint32_t{std::numeric_limits<std::int32_t>::max()}) {
-      throw InputError(place, "a scan is longer than 2.1 s", "cut it into sweeps");
+      throw InputError(place, "a scan is longer than 2.1 s", "split it into shorter scans");
     }
     Point point;
     point.dt_ns = static_cast<std::int32_t>(offset_time);

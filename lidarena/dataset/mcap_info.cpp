@@ -16,8 +16,8 @@ namespace {
 
 using mcap::Opcode;
 
-/// Everything below throws std::out_of_range when the file does not hold what it should, and the
-/// caller then reads the whole file instead.
+/// This class and the functions below throw std::out_of_range when the file lacks the expected
+/// content; the caller then reads the whole file instead.
 class SummaryFile {
  public:
   explicit SummaryFile(const std::filesystem::path& file)
@@ -49,7 +49,7 @@ Record next_record(ByteReader& in) {
   return {opcode, in.take(in.get<std::uint64_t>())};
 }
 
-/// The bytes from the start of the summary to the footer's check sum, verified; empty if the file
+/// The bytes from the start of the summary to the footer's checksum, verified; empty if the file
 /// has no summary.
 std::vector<std::byte> read_summary(SummaryFile& file) {
   constexpr std::uint64_t kEnd = mcap::kRecordHeadBytes + mcap::kFooterBytes + mcap::kMagic.size();
@@ -110,7 +110,7 @@ std::optional<McapInfo> info_from_summary(const std::filesystem::path& path) {
       info.metadata[index.name] = mcap::decode_metadata(next_record(at).content).values;
     }
   }
-  // Without counts the summary does not answer the question.
+  // A summary without message counts is not enough.
   if (!statistics ||
       (statistics->message_count > 0 && statistics->channel_message_counts.empty())) {
     return std::nullopt;
@@ -137,12 +137,12 @@ McapInfo info_from_reading(const std::filesystem::path& path) {
 }  // namespace
 
 McapInfo read_mcap_info(const std::filesystem::path& file) {
-  const McapReader reader(file);  // says so if this is no MCAP file
+  const McapReader reader(file);  // throws if this is not an MCAP file
   std::optional<McapInfo> info;
   try {
     info = info_from_summary(file);
   } catch (const std::out_of_range&) {
-    // A damaged summary: fall through to reading everything, which finds what is wrong.
+    // The summary is damaged: reading the whole file finds out where.
   }
   if (!info) info = info_from_reading(file);
   info->header = reader.header();

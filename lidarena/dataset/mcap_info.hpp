@@ -13,13 +13,13 @@
 
 namespace lidarena {
 
-/// What is in a file; its topics are its channels, in the order of their ids.
+/// Contents of an MCAP file; its topics are its channels, in the order of their ids.
 struct McapInfo : RecordingInfo {
   mcap::Header header;
 };
 
-/// Takes the answer from the summary where there is a sound one (a few reads, any file size), else
-/// from reading all of the file. Throws InputError when the file is missing or is not MCAP.
+/// Reads only the summary if the file has a valid one (a few reads, for any file size), else the
+/// whole file. Throws InputError when the file is missing or is not MCAP.
 McapInfo read_mcap_info(const std::filesystem::path& file);
 
 }  // namespace lidarena

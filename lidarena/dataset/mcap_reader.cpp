@@ -16,7 +16,7 @@ using mcap::Opcode;
 
 namespace {
 bool may_be_in_chunk(Opcode opcode) {
-  constexpr auto kFirstExtension = static_cast<Opcode>(0x80);  // the application's own, skipped
+  constexpr auto kFirstExtension = static_cast<Opcode>(0x80);  // of applications, skipped
   return (opcode >= Opcode::kSchema && opcode <= Opcode::kMessage) || opcode >= kFirstExtension;
 }
 
@@ -36,12 +36,12 @@ struct McapReader::Impl {
   std::uint64_t offset = 0;         ///< of the next byte to read
   std::uint64_t record_offset = 0;  ///< of the top-level record being read
   std::uint32_t crc = 0;            ///< of the section up to the last record
-  std::uint64_t summary_start = 0;  ///< where the data section ended; 0 before that
+  std::uint64_t summary_start = 0;  ///< end of the data section; 0 until it is reached
   bool at_end = false;
 
   std::vector<std::byte> record;    ///< content of the top-level record
   std::vector<std::byte> unpacked;  ///< of a compressed chunk
-  ByteReader chunk{Bytes{}};        ///< what is left of the current chunk
+  ByteReader chunk{Bytes{}};        ///< unread rest of the current chunk
 
   mcap::Header header;
   std::map<std::uint16_t, mcap::Schema> schemas;
@@ -72,31 +72,33 @@ McapReader::Impl::Impl(const std::filesystem::path& file)
   std::array<std::byte, mcap::kMagic.size()> start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   if (!std::ranges::equal(start, mcap::magic())) {
-    throw InputError(place, "is not an MCAP file (version 0): its first eight bytes are others",
-                     "give a .mcap file");
+    throw InputError(
+        place, "is not an MCAP file (version 0): it does not start with the magic bytes of MCAP",
+        "give a .mcap file");
   }
   offset = start.size();
   crc = crc32_of(start);
 }
 
-/// A record reaches beyond the end of the file. If the file has its proper end, then it is the
-/// record's length that is wrong.
+/// Called when a record reaches beyond the end of the file. If the file ends with the magic bytes,
+/// the length of the record is wrong; else the file is cut off.
 void McapReader::Impl::cut_off() {
   std::array<std::byte, mcap::kMagic.size()> end{};
   in.seekg(-static_cast<std::streamoff>(end.size()), std::ios::end);
   in.read(reinterpret_cast<char*>(end.data()), end.size());
   const bool has_end = file_size > 2 * end.size() && std::ranges::equal(end, mcap::magic());
-  if (has_end && offset < file_size) damaged("a record claims to reach beyond the end of the file");
+  if (has_end && offset < file_size)
+    damaged("the length of a record reaches beyond the end of the file");
   throw InputError(at(file_size),
                    fmt::format("the file is cut off after {} messages", counted.message_count),
-                   "the messages before are sound; the recording was stopped, copied in part, or "
-                   "the disk was full");
+                   "the messages before this byte are intact; the recording was stopped, copied in "
+                   "part, or the disk was full");
 }
 
 void McapReader::Impl::damaged(std::string_view what) const {
   throw InputError(at(record_offset),
                    fmt::format("{} (after {} messages)", what, counted.message_count),
-                   "the messages before are sound; copy the file anew");
+                   "the messages before this byte are intact; copy the file again");
 }
 
 void McapReader::Impl::read(std::span<std::byte> bytes) {
@@ -106,7 +108,8 @@ void McapReader::Impl::read(std::span<std::byte> bytes) {
   offset += bytes.size();
 }
 
-/// Reads one top-level record into `record`, leaving the check sum before it in `crc`.
+/// Reads one top-level record into `record` and adds it to `crc`, unless it is a DataEnd or Footer:
+/// these hold the checksum of what precedes them.
 Opcode McapReader::Impl::read_record() {
   record_offset = offset;
   std::array<std::byte, mcap::kRecordHeadBytes> head{};
@@ -134,9 +137,9 @@ void McapReader::Impl::open_chunk(const mcap::Chunk& content) {
     records = unpacked;
   }
   if (records.size() != content.uncompressed_size)
-    damaged("the chunk has another size than stated");
+    damaged("the chunk's size differs from the stated size");
   if (content.uncompressed_crc != 0 && crc32_of(records) != content.uncompressed_crc) {
-    damaged("the chunk's check sum (CRC) is wrong");
+    damaged("the chunk's checksum (CRC) is wrong");
   }
   chunk = ByteReader(records);
   ++counted.chunk_count;
@@ -161,13 +164,13 @@ McapMessage McapReader::Impl::message(const mcap::Message& content) {
 void McapReader::Impl::add_channel(mcap::Channel channel) {
   const auto [place_of, added] = channels.try_emplace(channel.id, channel);
   if (!added && place_of->second.topic != channel.topic) {
-    damaged(fmt::format("channel {} is both {} and {}", channel.id, place_of->second.topic,
-                        channel.topic));
+    damaged(fmt::format("channel {} is declared for both {} and {}", channel.id,
+                        place_of->second.topic, channel.topic));
   }
 }
 
 void McapReader::Impl::check_data_crc(std::uint32_t expected) {
-  if (expected != 0 && expected != crc) damaged("the data section's check sum (CRC) is wrong");
+  if (expected != 0 && expected != crc) damaged("the data section's checksum (CRC) is wrong");
   summary_start = offset;
   crc = 0;
 }
@@ -181,12 +184,11 @@ void McapReader::Impl::check_statistics(const mcap::Statistics& claimed) const {
 void McapReader::Impl::finish(const mcap::Footer& footer) {
   if (footer.summary_start != 0 && footer.summary_crc != 0) {
     if (footer.summary_start != summary_start)
-      damaged("the summary does not start where it should");
-    ByteWriter covered;  // the check sum covers the footer up to itself
+      damaged("the summary does not start where the footer says");
+    ByteWriter covered;  // the checksum covers the footer up to the checksum itself
     append(covered, footer);
     const Bytes head = covered.bytes().first(covered.size() - sizeof footer.summary_crc);
-    if (crc32_of(head, crc) != footer.summary_crc)
-      damaged("the summary's check sum (CRC) is wrong");
+    if (crc32_of(head, crc) != footer.summary_crc) damaged("the summary's checksum (CRC) is wrong");
   }
   std::array<std::byte, mcap::kMagic.size()> end{};
   read(end);
@@ -194,7 +196,7 @@ void McapReader::Impl::finish(const mcap::Footer& footer) {
   at_end = true;
 }
 
-/// Deals with one record, of the file or of a chunk; a Message is returned.
+/// Handles one record of the file or of a chunk; returns the message if it is one.
 std::optional<McapMessage> McapReader::Impl::take(Opcode opcode, Bytes content) {
   switch (opcode) {
     case Opcode::kHeader:
@@ -232,14 +234,14 @@ std::optional<McapMessage> McapReader::Impl::take(Opcode opcode, Bytes content) 
       finish(mcap::decode_footer(content));
       break;
     default:
-      break;  // indexes, which reading in order does not need, and what later versions add
+      break;  // indexes, not needed to read in order, and records of later versions
   }
   return std::nullopt;
 }
 
 McapReader::McapReader(const std::filesystem::path& file) : impl_(std::make_unique<Impl>(file)) {
   try {
-    if (impl_->read_record() != Opcode::kHeader) impl_->damaged("the first record is no Header");
+    if (impl_->read_record() != Opcode::kHeader) impl_->damaged("the first record is not a Header");
     impl_->take(Opcode::kHeader, impl_->record);
   } catch (const std::out_of_range&) {
     impl_->damaged("the Header is too short");
@@ -269,7 +271,7 @@ std::optional<McapMessage> McapReader::next() {
       if (message) return message;
     }
   } catch (const std::out_of_range&) {
-    r.damaged("a record is shorter than it says");
+    r.damaged("a record is shorter than stated");
   }
   return std::nullopt;
 }

@@ -4,8 +4,8 @@
 namespace lidarena::mcap {
 namespace {
 
-/// Frames what `content` writes, and `to_follow` bytes after it: the length is known only
-/// afterwards.
+/// Writes opcode, length and what `content` writes. The length, filled in at the end, includes
+/// `to_follow` bytes that the caller appends.
 template <class Content>
 void append_record_head(ByteWriter& out, Opcode opcode, std::uint64_t to_follow,
                         const Content& content) {
@@ -187,7 +187,7 @@ void append_data_end(ByteWriter& out, std::uint32_t data_crc) {
   append_record(out, Opcode::kDataEnd, [&] { out.put(data_crc); });
 }
 
-// The members of a braced list are evaluated in order, so they read as the record does.
+// Members of a braced list are evaluated in order, so they are read in the order of the record.
 
 Header decode_header(Bytes content) {
   ByteReader in(content);

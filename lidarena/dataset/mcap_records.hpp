@@ -71,7 +71,7 @@ struct Message {
   std::uint32_t sequence = 0;
   std::uint64_t log_time = 0;      ///< ns
   std::uint64_t publish_time = 0;  ///< ns
-  Bytes data;                      ///< in the record that was decoded
+  Bytes data;                      ///< view into the decoded record
 };
 
 struct Chunk {
@@ -80,7 +80,7 @@ struct Chunk {
   std::uint64_t uncompressed_size = 0;
   std::uint32_t uncompressed_crc = 0;  ///< 0 = not given
   std::string compression;             ///< "", "zstd" or "lz4"
-  Bytes records;                       ///< in the record that was decoded
+  Bytes records;                       ///< view into the decoded record
 };
 
 struct MessageIndex {
@@ -136,8 +136,8 @@ void append(ByteWriter& out, const Schema& schema);
 void append(ByteWriter& out, const Channel& channel);
 void append(ByteWriter& out, const Message& message);
 void append(ByteWriter& out, const Chunk& chunk);
-/// The same without the message's data, or the chunk's records of `size` bytes, which are to
-/// follow.
+/// The same without the message's data, or without the chunk's records of `size` bytes: the caller
+/// appends these.
 void append_head(ByteWriter& out, const Message& message);
 void append_head(ByteWriter& out, const Chunk& chunk, std::uint64_t size);
 void append(ByteWriter& out, const MessageIndex& index);

@@ -24,7 +24,7 @@ struct McapWriter::Impl {
   std::optional<ZstdCompressor> compressor;
   std::uint32_t crc = 0;  ///< of the data section, then of the summary
 
-  std::vector<mcap::Schema> schemas;    ///< id i + 1 at i
+  std::vector<mcap::Schema> schemas;    ///< id i + 1 at index i
   std::vector<mcap::Channel> channels;  ///< likewise
   std::set<std::uint16_t> schemas_written;
   std::set<std::uint16_t> channels_written;
@@ -32,7 +32,7 @@ struct McapWriter::Impl {
   std::vector<mcap::ChunkIndex> chunk_indexes;
   std::vector<mcap::MetadataIndex> metadata_indexes;
 
-  ByteWriter chunk;   ///< records of the chunk in the making
+  ByteWriter chunk;   ///< records of the chunk being built
   ByteWriter record;  ///< scratch
   std::map<std::uint16_t, mcap::MessageIndex> chunk_messages;
   std::uint64_t chunk_start_time = 0;
@@ -43,7 +43,7 @@ struct McapWriter::Impl {
     file.write(bytes);
   }
 
-  /// The same for bytes whose own check sum is known.
+  /// The same for bytes whose checksum is known.
   void write(Bytes bytes, std::uint32_t crc_of_bytes) {
     crc = crc32_joined(crc, crc_of_bytes, bytes.size());
     file.write(bytes);
@@ -56,7 +56,7 @@ struct McapWriter::Impl {
     write(record.bytes());
   }
 
-  /// Appends a channel, and its schema before it, if they are not in the file yet.
+  /// Appends a channel, preceded by its schema, if they are not in the file yet.
   void declare(std::uint16_t channel_id, ByteWriter& out) {
     if (!channels_written.insert(channel_id).second) return;
     const mcap::Channel& channel = channels[channel_id - 1U];
@@ -65,7 +65,7 @@ struct McapWriter::Impl {
     append(out, channel);
   }
 
-  /// Stores the chunk, `tail` being the end of its last record: bytes that need not be copied.
+  /// Writes the chunk. `tail` is the end of its last record, passed separately to avoid a copy.
   void close_chunk(Bytes tail = {}) {
     if (chunk_messages.empty()) return;
     const std::uint64_t size = chunk.size() + tail.size();
@@ -105,7 +105,7 @@ struct McapWriter::Impl {
     chunk_messages.clear();
   }
 
-  /// One group of the summary: records of one kind, and where they lie.
+  /// Writes one group of the summary, records of one kind, and appends its position to `offsets`.
   template <class Records>
   void write_group(mcap::Opcode opcode, const Records& records,
                    std::vector<mcap::SummaryOffset>& offsets) {
@@ -156,7 +156,7 @@ void McapWriter::add_metadata(const std::string& name, const mcap::StringMap& va
 void McapWriter::write(std::uint16_t channel_id, Time log_time, Time publish_time, Bytes data) {
   if (log_time < Time{0} || publish_time < Time{0}) {
     throw InputError(impl_->place, "a message before the epoch (negative time) cannot be stored",
-                     "shift the recording to times from 0 on");
+                     "shift the times so that none is negative");
   }
   Impl& w = *impl_;
   const auto time = static_cast<std::uint64_t>(log_time.count());
@@ -199,7 +199,7 @@ void McapWriter::Impl::write_summary() {
   write_group(mcap::Opcode::kChunkIndex, chunk_indexes, offsets);
   footer.summary_offset_start = file.size();
   for (const mcap::SummaryOffset& offset : offsets) write_record(offset);
-  // The CRC covers the footer up to itself.
+  // The CRC covers the footer up to the CRC itself.
   record.clear();
   append(record, footer);
   footer.summary_crc =

@@ -47,7 +47,7 @@ MessageReader::MessageReader(Bytes message, std::string_view place, Encoding enc
   if (encoding_ != Encoding::kCdr) return;
   const std::size_t header = kLittleEndianCdr.size();
   if (message.size() < header) throw InputError(place_, "a message is empty");
-  // The two option bytes may hold the padding at the end; they change nothing for the reader.
+  // The two option bytes may state the padding at the end, which the reader does not need.
   if (message[0] != kLittleEndianCdr[0] || message[1] != kLittleEndianCdr[1]) {
     throw InputError(place_, "a message is not in little-endian plain CDR",
                      "record on a little-endian machine with CDR version 1");
@@ -61,8 +61,8 @@ void MessageReader::align(std::size_t size) {
 
 Bytes MessageReader::take(std::size_t size) {
   if (offset_ > message_.size() || size > message_.size() - offset_) {
-    throw InputError(place_, "a message is shorter than its type asks for",
-                     "the schema and the messages do not belong together");
+    throw InputError(place_, "a message is shorter than its type requires",
+                     "the schema does not match the messages");
   }
   const Bytes taken = message_.subspan(offset_, size);
   offset_ += size;
@@ -71,7 +71,7 @@ Bytes MessageReader::take(std::size_t size) {
 
 std::string MessageReader::get_string() {
   const auto length = get<std::uint32_t>();
-  if (length == 0) return {};  // some writers leave out the zero of an empty string
+  if (length == 0) return {};  // some writers omit the terminating zero of an empty string
   const Bytes text = take(length);
   const std::size_t closing = encoding_ == Encoding::kCdr ? 1 : 0;
   return {reinterpret_cast<const char*>(text.data()), length - closing};
@@ -85,8 +85,8 @@ Bytes MessageReader::get_octets() {
 std::uint32_t MessageReader::get_length(std::size_t element_bytes) {
   const auto length = get<std::uint32_t>();
   if (std::uint64_t{length} * element_bytes > message_.size() - offset_) {
-    throw InputError(place_, "a message claims more elements than it has room for",
-                     "the schema and the messages do not belong together");
+    throw InputError(place_, "a message states more elements than it can hold",
+                     "the schema does not match the messages");
   }
   return length;
 }

@@ -9,19 +9,19 @@
 
 #include "lidarena/dataset/byte_stream.hpp"
 
-/// How ROS messages become bytes: their members in order, little endian.
+/// Serialization of ROS messages: their members in order, little endian.
 namespace lidarena {
 
 enum class Encoding {
   /// Plain CDR, version 1 (OMG CORBA 3.0 chapter 15.3; DDS-XTypes 1.3, 7.4.1), as ROS 2 writes it:
   /// four bytes of encapsulation header; a number of N bytes starts at a multiple of N, counted
-  /// from behind the header; a string's length counts its closing zero.
+  /// from the end of the header; a string's length includes its terminating zero.
   kCdr,
-  /// ROS 1: without header, padding and closing zeros.
+  /// ROS 1: without header, padding and terminating zeros.
   kRos1,
 };
 
-/// Serializes one message after another into the same memory.
+/// Serializes one message after another into the same buffer.
 class MessageWriter {
  public:
   explicit MessageWriter(Encoding encoding = Encoding::kCdr) : encoding_(encoding) { clear(); }
@@ -37,10 +37,10 @@ class MessageWriter {
     append(std::as_bytes(std::span(&value, 1)));
   }
   void put(std::string_view text);
-  /// A sequence of bytes: length, then the bytes. The span returned is where they are to be put; it
-  /// is zero until then.
+  /// Appends a sequence of bytes: its length, then `size` zeros. Returns a span of these, for the
+  /// caller to fill in.
   std::span<std::byte> put_octets(std::size_t size);
-  /// `count` times the same number, as a fixed array has them (without a length).
+  /// Appends the same number `count` times, as an array of fixed size (without a length).
   void put_repeated(double value, std::size_t count);
 
   Bytes bytes() const { return bytes_; }
@@ -53,8 +53,8 @@ class MessageWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Reads one message. Throws InputError (place `place`) when the encoding is another one or the
-/// message is shorter than its type.
+/// Reads one message. Throws InputError (place `place`) when the message has another encoding or is
+/// shorter than its type.
 class MessageReader {
  public:
   MessageReader(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
@@ -69,8 +69,8 @@ class MessageReader {
   }
   std::string get_string();
   Bytes get_octets();
-  /// Length of a sequence; each of its elements takes at least `element_bytes`, so a damaged length
-  /// is found before it is believed.
+  /// Length of a sequence; each of its elements takes at least `element_bytes`, so that a damaged
+  /// length is detected before memory is allocated.
   std::uint32_t get_length(std::size_t element_bytes);
   void skip_doubles(std::size_t count);
 
@@ -79,7 +79,7 @@ class MessageReader {
   Bytes take(std::size_t size);
 
   Encoding encoding_;
-  Bytes message_;  ///< behind the header
+  Bytes message_;  ///< without the header
   std::size_t offset_ = 0;
   std::string place_;
 };

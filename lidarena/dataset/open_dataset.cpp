@@ -24,7 +24,7 @@ std::string ids_of(const Rig& rig) {
   return ids;
 }
 
-/// Leaves the wanted LiDAR alone in rig and topics, and mounts it as asked.
+/// Keeps only the chosen LiDAR in rig and topics, and applies options.body_from_lidar.
 void apply(const ReadOptions& options, const std::string& place, layout::Description& dataset) {
   choose_lidar(options, place, dataset.rig);
   std::erase_if(dataset.sensors.lidars,
@@ -68,7 +68,7 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
                      "read it with the version of the program that wrote it");
   }
   if (!manifest.contains("rig")) {
-    throw InputError(place, "lacks \"rig\"", "write the dataset anew");
+    throw InputError(place, "lacks \"rig\"", "write the dataset again");
   }
   if (is_sweep_dataset(manifest)) {
     Rig rig = layout::rig_from_json(manifest["rig"], place);
@@ -76,11 +76,12 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
   }
   const auto file = data_file(folder);
   if (!file) {
-    throw InputError(folder.string(), "has a manifest but no data: it is flown when used",
-                     "simulate it from its manifest");
+    throw InputError(folder.string(),
+                     "has a manifest but no measurements (as written with --no-data)",
+                     "simulate the measurements from its manifest");
   }
   if (!manifest.contains("topics")) {
-    throw InputError(place, "lacks \"topics\"", "write the dataset anew");
+    throw InputError(place, "lacks \"topics\"", "write the dataset again");
   }
   layout::Description description{layout::rig_from_json(manifest["rig"], place),
                                   layout::sensors_from_json(manifest["topics"], place)};
@@ -108,8 +109,9 @@ std::string list_of(const std::vector<RecordedTopic>& topics) {
   return text.empty() ? "nothing" : text;
 }
 
-/// A file of others: the first scans and the first IMU, or the LiDAR named by topic or id. Nothing
-/// is known of the mounting, so body, LiDAR and IMU are taken to be one frame.
+/// Guesses the sensors of a third-party recording: the first topic with scans, or the one named by
+/// topic or id, and the first IMU topic. The mounting is unknown: body, LiDAR and IMU frames are
+/// assumed to coincide.
 layout::Description guess(const fs::path& file, const RecordingInfo& info,
                           const ReadOptions& options, std::vector<std::string>& notes) {
   layout::Description guessed;
@@ -122,14 +124,15 @@ layout::Description guess(const fs::path& file, const RecordingInfo& info,
     if (is_scan_type(topic) && is_wanted && topic.message_count > 0) {
       guessed.sensors.lidars[topic.topic] = id;
       guessed.rig.lidars.emplace_back().id = id;
-      notes.push_back("scans are those of " + topic.topic);
+      notes.push_back("scans are read from " + topic.topic);
     } else if (is_imu_type(topic) && guessed.rig.imus.empty() && topic.message_count > 0) {
       guessed.sensors.imus[topic.topic] = id;
       guessed.rig.imus.emplace_back().id = id;
-      notes.push_back("the IMU is that of " + topic.topic);
+      notes.push_back("IMU samples are read from " + topic.topic);
       if (is_in_g(file, topic.topic)) {
         guessed.sensors.imus_in_g.insert(id);
-        notes.push_back("its accelerations are taken to be in g, by their size");
+        notes.push_back(
+            "accelerations of the IMU are taken to be in g, judging by their magnitude");
       }
     }
   }
@@ -141,7 +144,7 @@ layout::Description guess(const fs::path& file, const RecordingInfo& info,
   }
   if (!options.body_from_lidar) {
     notes.push_back(
-        "the file does not say how the LiDAR is mounted; it is taken to be in the body "
+        "the file does not state how the LiDAR is mounted; its frame is taken to be the body "
         "frame");
   }
   return guessed;
@@ -155,7 +158,7 @@ Dataset open_recording_file(const fs::path& file, const ReadOptions& options) {
   std::vector<std::string> notes;
   layout::Description guessed = guess(file, info, options, notes);
   ReadOptions mounting = options;
-  mounting.sensor.clear();  // chosen already, maybe by its topic
+  mounting.sensor.clear();  // already chosen, possibly by its topic
   Dataset dataset = from_recording(file, file, info, std::move(guessed), mounting);
   dataset.notes.insert(dataset.notes.end(), notes.begin(), notes.end());
   return dataset;
@@ -168,7 +171,7 @@ bool is_unfinished(const fs::path& folder) {
          is_there(std::string(layout::kBag) + ".part");
 }
 
-/// The data file of a bag folder that rosbag2 wrote; empty for any other folder.
+/// The data file of a rosbag2 folder; empty for any other folder.
 std::optional<fs::path> rosbag_file(const fs::path& folder) {
   if (!fs::exists(folder / layout::kRosbagMetadata)) return std::nullopt;
   std::vector<fs::path> files;
@@ -198,7 +201,7 @@ std::optional<Trajectory> truth_in_recording(const fs::path& file) {
   return Trajectory(std::move(poses), file.string() + ": " + layout::kTruthTopic);
 }
 
-/// The topic of the truth of `sensor`'s points in a file; empty when there is none.
+/// Topic with the ground truth of the points of `sensor` in a file; empty when there is none.
 std::optional<std::string> find_truth_topic(const fs::path& file, const std::string& sensor) {
   const RecordingInfo info = read_recording_info(file);
   const auto ours = layout::description_in(info, file.string());
@@ -253,7 +256,7 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
     return open_sweep_folder(path, options);
   }
   if (path.extension() == ".db3") {
-    throw InputError(path.string(), "is a bag in a format that is not read",
+    throw InputError(path.string(), "is a bag in SQLite format, which is not supported",
                      "convert it with 'ros2 bag convert' to the storage mcap");
   }
   return recording_format_of(path) ? open_recording_file(path, options)

@@ -13,7 +13,7 @@
 
 namespace lidarena {
 namespace {
-constexpr std::size_t kBufferBytes = 256 * 1024;  // a few system calls a megabyte
+constexpr std::size_t kBufferBytes = 256 * 1024;  // a few system calls per megabyte
 
 std::string reason(int error_number) { return std::generic_category().message(error_number); }
 }  // namespace
@@ -23,7 +23,7 @@ PartFile::PartFile(std::filesystem::path file) : file_(std::move(file)), part_(f
   descriptor_ = ::open(part_.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (descriptor_ < 0) {
     throw InputError(part_.string(), "cannot be created: " + reason(errno),
-                     "choose a folder that exists and may be written");
+                     "choose an existing folder with write permission");
   }
   buffer_.reserve(kBufferBytes);
 }

@@ -11,9 +11,9 @@
 
 namespace lidarena {
 
-/// A file in the making. Bytes go to NAME.part; commit() makes sure they are on the disk and only
-/// then gives the file its name. Destroyed without commit, NAME.part stays, so what is unfinished
-/// never looks whole.
+/// A file being written. Bytes go to NAME.part; commit() makes sure that they are on the disk and
+/// only then renames it to NAME. Without commit() NAME.part remains, so that an unfinished file is
+/// never taken for a complete one.
 class PartFile {
  public:
   /// Creates or empties NAME.part. Throws InputError when the folder is missing or read-only.
@@ -25,13 +25,15 @@ class PartFile {
   /// Appends; throws Error naming the file when the disk is full.
   void write(std::span<const std::byte> bytes);
   void write(std::string_view text);
-  /// Replaces bytes that were written before; throws Error when that fails.
+  /// Replaces bytes already written; throws Error when that fails.
   void overwrite(std::uint64_t offset, std::span<const std::byte> bytes);
-  /// Hands what is buffered to the system, so that a crash of this process does not lose it.
+  /// Passes buffered bytes to the operating system, so that a crash of this process does not lose
+  /// them.
   void flush();
   /// Bytes written so far.
   std::uint64_t size() const { return size_; }
-  /// Flushes to the disk and renames; throws Error when either fails. Nothing may be written after.
+  /// Flushes to the disk and renames; throws Error when either fails. Nothing may be written
+  /// afterwards.
   void commit();
 
  private:
@@ -45,7 +47,7 @@ class PartFile {
   std::uint64_t size_ = 0;
 };
 
-/// Writes `text` as the whole of `file`, by way of a PartFile.
+/// Writes `file` with the content `text`, through a PartFile.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
 }  // namespace lidarena

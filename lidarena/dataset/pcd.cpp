@@ -15,7 +15,8 @@
 namespace lidarena {
 namespace {
 
-/// Values of one point under one name; no sensor has more, and products stay small.
+/// Upper limit on the values of one field (COUNT): more than any sensor has, small enough that
+/// products do not overflow.
 constexpr std::size_t kMaxFieldCount = 1 << 16;
 
 struct HeaderLine {
@@ -40,7 +41,7 @@ HeaderLines header_lines(FileText& text) {
     constexpr std::string_view kKeys =
         " VERSION FIELDS SIZE TYPE COUNT WIDTH HEIGHT VIEWPOINT POINTS DATA ";
     if (kKeys.find(" " + key + " ") == std::string_view::npos) {
-      throw InputError(text.place(), fmt::format("'{}' is no PCD keyword", key),
+      throw InputError(text.place(), fmt::format("'{}' is not a PCD keyword", key),
                        "give a .pcd file, version 0.7");
     }
     words.erase(words.begin());
@@ -67,7 +68,7 @@ ScalarType type_of(std::string_view kind, std::string_view size, const std::stri
   for (const auto& [name, type] : kTypes) {
     if (name == wanted) return type;
   }
-  throw InputError(place, fmt::format("TYPE {} with SIZE {} is no PCD type", kind, size),
+  throw InputError(place, fmt::format("TYPE {} with SIZE {} is not a PCD type", kind, size),
                    "types are I, U of 1, 2, 4, 8 bytes and F of 4, 8");
 }
 
@@ -86,7 +87,7 @@ std::vector<Field> header_fields(const HeaderLines& lines, const std::string& fi
     const std::size_t count =
         counts == lines.end() ? 1 : parse_count(counts->second.values[i], counts->second.place);
     if (count == 0 || count > kMaxFieldCount) {
-      throw InputError(counts->second.place, fmt::format("COUNT {} is out of reason", count));
+      throw InputError(counts->second.place, fmt::format("COUNT {} is out of range", count));
     }
     fields.push_back({lower_case(names.values[i]),
                       type_of(types.values[i], sizes.values[i], types.place), count});
@@ -98,7 +99,8 @@ std::optional<std::size_t> header_count(const HeaderLines& lines, std::string_vi
   const auto found = lines.find(key);
   if (found == lines.end()) return std::nullopt;
   const HeaderLine& line = found->second;
-  if (line.values.size() != 1) throw InputError(line.place, fmt::format("{} is one number", key));
+  if (line.values.size() != 1)
+    throw InputError(line.place, fmt::format("{} must be a single number", key));
   return parse_count(line.values[0], line.place);
 }
 
@@ -122,8 +124,8 @@ Header parse_header(FileText& text) {
   Header header{header_fields(lines, text.name()), header_points(lines, text.name()), ""};
   if (data.values.size() == 1) header.data = data.values[0];
   if (header.data != "ascii" && header.data != "binary" && header.data != "binary_compressed") {
-    throw InputError(data.place, fmt::format("DATA '{}' is not read", header.data),
-                     "DATA is ascii, binary or binary_compressed");
+    throw InputError(data.place, fmt::format("DATA '{}' is not supported", header.data),
+                     "use ascii, binary or binary_compressed");
   }
   return header;
 }
@@ -146,7 +148,7 @@ PointTable read_compressed(FileText& text, const Header& header) {
     throw InputError(
         text.name(),
         fmt::format("the compressed data are not {} points of {} bytes", header.points, row),
-        "the file is broken; copy or write it anew");
+        "the file is damaged; copy or write it again");
   }
   PointTable table{text.name(), std::move(*bytes), header.points, {}};
   std::size_t offset = 0;

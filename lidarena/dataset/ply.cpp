@@ -18,7 +18,7 @@ namespace {
 struct Property {
   std::string name;
   ScalarType type;                       ///< of each value
-  std::optional<ScalarType> count_type;  ///< of a list
+  std::optional<ScalarType> count_type;  ///< of the length of a list; empty for a scalar
 };
 
 struct Element {
@@ -49,7 +49,7 @@ std::optional<ScalarType> type_named(std::string_view name) {
 
 ScalarType type_at(std::string_view name, const std::string& place) {
   if (const auto type = type_named(name)) return *type;
-  throw InputError(place, fmt::format("'{}' is no PLY type", name),
+  throw InputError(place, fmt::format("'{}' is not a PLY type", name),
                    "types are char, uchar, short, ushort, int, uint, float, double");
 }
 
@@ -57,7 +57,7 @@ bool parse_format(const std::vector<std::string_view>& words, const std::string&
   const std::string_view format = words.size() >= 2 ? words[1] : "";
   if (format == "ascii") return true;
   if (format == "binary_little_endian") return false;
-  throw InputError(place, fmt::format("PLY format '{}' is not read", format),
+  throw InputError(place, fmt::format("PLY format '{}' is not supported", format),
                    "save it as ascii or binary_little_endian");
 }
 
@@ -84,18 +84,18 @@ Header parse_header(FileText& text) {
       if (words.size() != 3) throw InputError(place, "is not a PLY element");
       header.elements.push_back({std::string(words[1]), parse_count(words[2], place), {}});
     } else if (key == "property") {
-      if (header.elements.empty()) throw InputError(place, "a property stands before any element");
+      if (header.elements.empty()) throw InputError(place, "a property precedes the first element");
       header.elements.back().properties.push_back(parse_property(words, place));
     } else if (key == "end_header") {
-      if (!has_format) throw InputError(place, "the header names no format");
+      if (!has_format) throw InputError(place, "the header has no format line");
       return header;
     } else if (key != "comment" && key != "obj_info") {
-      throw InputError(place, fmt::format("'{}' is no PLY keyword", key));
+      throw InputError(place, fmt::format("'{}' is not a PLY keyword", key));
     }
   }
 }
 
-/// Length of a binary list whose count stands at the front of what is left.
+/// Reads the length of a binary list at the current position.
 std::size_t take_list_count(FileText& text, ScalarType type) {
   PointTable one;
   one.bytes = std::string(text.take(size_of(type)));
@@ -105,7 +105,7 @@ std::size_t take_list_count(FileText& text, ScalarType type) {
   return static_cast<std::size_t>(count);
 }
 
-/// Passes over an element that stands before the vertices.
+/// Skips an element that precedes the vertices.
 void skip_element(FileText& text, const Element& element, bool ascii) {
   for (std::size_t i = 0; i < element.count; ++i) {
     if (ascii) {
@@ -126,7 +126,7 @@ std::vector<Field> vertex_fields(const Element& vertex, const std::string& place
   for (const Property& property : vertex.properties) {
     if (property.count_type) {
       throw InputError(place, fmt::format("vertices have a list property '{}'", property.name),
-                       "write plain values only");
+                       "write scalar properties only");
     }
     fields.push_back({property.name, property.type, 1});
   }

@@ -10,10 +10,10 @@
 namespace lidarena {
 
 /// The vertices of a PLY file (ascii, or binary little endian) with all their properties; other
-/// elements are passed over. Bytes after the vertices are not looked at. Throws InputError naming
-/// the file and the line or byte.
+/// elements are skipped. Bytes after the vertices are ignored. Throws InputError naming the file
+/// and the line or byte.
 PointTable read_ply_table(const std::filesystem::path& file);
-/// The same from the bytes of a file, which `name` names in messages.
+/// The same from the bytes of a file; `name` is the file's name in messages.
 PointTable parse_ply_table(std::string_view bytes, const std::string& name);
 
 }  // namespace lidarena

@@ -16,7 +16,7 @@
 namespace lidarena::ros {
 namespace {
 
-/// How a Point lies in memory. Its last byte is padding, written as 0.
+/// Memory layout of Point. Its last byte is padding, written as 0.
 const std::vector<PointField>& own_fields(bool timed) {
   static_assert(offsetof(Point, intensity) == 12 && offsetof(Point, dt_ns) == 16 &&
                 offsetof(Point, ring) == 20 && offsetof(Point, echo) == 22);
@@ -47,7 +47,7 @@ double load(const std::byte* at) {
   return static_cast<double>(value);
 }
 
-/// A field of the point at `point`; every type but float64 is exact in a double.
+/// Value of a field of the point at `point`; a double holds every field type exactly.
 double value_of(const PointField& field, const std::byte* point) {
   const std::byte* at = point + field.offset;
   switch (field.type) {
@@ -71,7 +71,7 @@ double value_of(const PointField& field, const std::byte* point) {
   return 0.0;
 }
 
-/// The first of `names` that is there, in the order of `names`.
+/// The field with the first of `names` that exists; nullptr if none does.
 const PointField* find(const PointCloud2& cloud, std::initializer_list<std::string_view> names) {
   for (const std::string_view name : names) {
     for (const PointField& field : cloud.fields) {
@@ -87,7 +87,7 @@ std::string list_of_fields(const PointCloud2& cloud) {
   return names.empty() ? "none" : names;
 }
 
-/// Reads our own layout.
+/// Reads the layout that put_cloud() writes.
 Scan own_scan(Time stamp, const PointCloud2& cloud, bool timed) {
   Scan scan{stamp, std::vector<Point>(std::size_t{cloud.width} * cloud.height), timed};
   if (!scan.points.empty()) {
@@ -96,10 +96,10 @@ Scan own_scan(Time stamp, const PointCloud2& cloud, bool timed) {
   return scan;
 }
 
-/// What a float time field counts.
+/// Unit and origin of a float time field.
 struct TimeUnit {
-  std::int64_t ns = 1;    ///< of one unit
-  bool absolute = false;  ///< since the epoch; else since header.stamp
+  std::int64_t ns = 1;    ///< nanoseconds per unit
+  bool absolute = false;  ///< true: since the epoch; false: since header.stamp
 };
 
 /// ns since header.stamp. Whole units are converted as integers: an absolute time in ns exceeds the
@@ -111,7 +111,8 @@ std::int64_t since_stamp(double value, const TimeUnit& unit, Time stamp) {
   return unit.absolute ? ns - stamp.count() : ns;
 }
 
-/// Units (ns) in which a sweep may take `duration`: all of them if its returns share one instant.
+/// Units (ns) in which `duration` can be that of a sweep; all units if all returns have the same
+/// time.
 std::vector<std::int64_t> units_of(double duration) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   if (duration == 0.0) return {kSecond, 1'000, 1};
@@ -122,8 +123,8 @@ std::vector<std::int64_t> units_of(double duration) {
 }
 
 /// Unit and origin of a float time field with values `low` to `high` in one scan. A sweep takes
-/// between 1 ms and 10 s, so its duration tells the unit; times since the stamp are then small, and
-/// absolute ones lie near the stamp.
+/// between 1 ms and 10 s, so its duration determines the unit; times since the stamp are then
+/// small, and absolute times are close to the stamp.
 std::optional<TimeUnit> guess_unit(const PointField& field, double low, double high, Time stamp) {
   constexpr double kNearNs = 10e9;
   for (const std::int64_t unit_ns : units_of(high - low)) {
@@ -131,7 +132,7 @@ std::optional<TimeUnit> guess_unit(const PointField& field, double low, double h
     const bool may_be_relative = std::max(std::abs(low), std::abs(high)) * ns < kNearNs;
     const bool may_be_absolute = std::abs(low * ns - static_cast<double>(stamp.count())) < kNearNs;
     if (!may_be_relative && !may_be_absolute) continue;
-    // Both are possible near time 0 alone; there the name decides.
+    // Both are possible only near time 0; there the name of the field decides.
     const bool absolute = may_be_absolute && (!may_be_relative || field.name == "timestamp");
     return TimeUnit{unit_ns, absolute};
   }
@@ -156,10 +157,10 @@ std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<s
   if (is_float(field->type)) unit = guess_unit(*field, low, high, stamp);
   if (!unit) {
     throw InputError(place,
-                     fmt::format("field '{}' runs from {} to {} in one scan, which is no time near "
-                                 "the stamp {} ns in s, us or ns",
+                     fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
+                                 "near the stamp {} ns in s, us or ns",
                                  field->name, low, high, stamp.count()),
-                     "record with a driver whose times are documented");
+                     "record with a driver that writes times in s, us or ns");
   }
   std::vector<std::int64_t> times(values.size());
   std::ranges::transform(values, times.begin(),
@@ -189,12 +190,12 @@ std::uint16_t as_ring(double value) {
   return value >= 0.0 && value <= kLast ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
 }
 
-/// Sets stamp and dt_ns so that no point lies before the stamp, and sorts by time.
+/// Sets stamp and dt_ns so that no point is earlier than the stamp, and sorts by time.
 void set_times(Scan& scan, const std::vector<std::int64_t>& times, std::string_view place) {
   const auto [low, high] = std::ranges::minmax(times);
   const std::int64_t shift = std::min<std::int64_t>(low, 0);
   if (high - shift > std::numeric_limits<std::int32_t>::max()) {
-    throw InputError(place, "a scan is longer than 2.1 s", "cut it into sweeps");
+    throw InputError(place, "a scan is longer than 2.1 s", "split it into shorter scans");
   }
   scan.stamp += Time{shift};
   for (std::size_t i = 0; i < times.size(); ++i) {
@@ -237,8 +238,8 @@ std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size
 
 void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out) {
   if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {
-    throw InputError(place, "a point lies before its scan's stamp",
-                     "a scan's stamp is its first firing");
+    throw InputError(place, "a point is earlier than its scan's stamp",
+                     "set the stamp to the time of the first firing");
   }
   const std::span<std::byte> data =
       put_layout(1, scan.points.size(), sizeof(Point), own_fields(scan.timed), out);
@@ -256,8 +257,9 @@ void put_truth_cloud(const std::vector<PointTruth>& points, MessageWriter& out) 
 
 std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_view place) {
   if (cloud.point_step != sizeof(PointTruth) || cloud.fields != truth_fields()) {
-    throw InputError(place, "is no truth of points; it has: " + list_of_fields(cloud),
-                     "its fields are x y z range nx ny nz triangle");
+    throw InputError(place,
+                     "is not a cloud of ground-truth points; it has: " + list_of_fields(cloud),
+                     "the fields must be x y z range nx ny nz triangle");
   }
   std::vector<PointTruth> points(std::size_t{cloud.width} * cloud.height);
   if (!points.empty()) {
@@ -276,13 +278,14 @@ PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
     field.name = in.get_string();
     field.offset = in.get<std::uint32_t>();
     field.type = static_cast<FieldType>(in.get<std::uint8_t>());
-    in.get<std::uint32_t>();  // count: the first element is the one that counts
+    in.get<std::uint32_t>();  // count: only the first element is used
   }
   const bool is_big_endian = in.get<std::uint8_t>() != 0;
   cloud.point_step = in.get<std::uint32_t>();
   cloud.row_step = in.get<std::uint32_t>();
   cloud.data = in.get_octets();
-  if (is_big_endian) throw InputError(place, "its points are big endian", "record them otherwise");
+  if (is_big_endian)
+    throw InputError(place, "its points are big endian", "record them as little endian");
   for (const PointField& field : cloud.fields) {
     const bool known = field.type >= FieldType::kInt8 && field.type <= FieldType::kFloat64;
     if (!known || std::uint64_t{field.offset} + size_of(field.type) > cloud.point_step) {
@@ -293,7 +296,7 @@ PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
     }
   }
   const std::uint64_t rows = std::uint64_t{cloud.height} * cloud.width;
-  // Divided, not multiplied: the product of three damaged numbers may wrap around.
+  // Divided, not multiplied: the product of three damaged numbers may overflow.
   const bool fits = rows == 0 ? cloud.data.empty()
                               : cloud.point_step > 0 && cloud.data.size() % rows == 0 &&
                                     cloud.data.size() / rows == cloud.point_step;

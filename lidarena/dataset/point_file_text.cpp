@@ -12,10 +12,10 @@
 namespace lidarena {
 namespace {
 
-constexpr std::string_view kCutShort = "the file is cut short; copy or write it anew";
+constexpr std::string_view kCutShort = "the file is cut short; copy or write it again";
 
-/// Throws InputError when a row holds nothing but rows are promised (else a count alone could ask
-/// for any amount of work).
+/// Throws InputError when the header announces rows without fields: a damaged count alone could
+/// otherwise cause any amount of work.
 void check_fields(const FileText& text, const std::vector<Field>& fields, std::size_t rows) {
   if (row_size(fields) == 0 && rows > 0) throw InputError(text.name(), "points have no fields");
 }
@@ -35,10 +35,10 @@ std::string_view FileText::line() {
 
 std::string_view FileText::take(std::size_t count, std::size_t size) {
   if (size > 0 && count > rest_.size() / size) {
-    throw InputError(
-        fmt::format("{}: byte {}", name_, size_ - rest_.size()),
-        fmt::format("{} times {} bytes are promised, {} bytes are left", count, size, rest_.size()),
-        kCutShort);
+    throw InputError(fmt::format("{}: byte {}", name_, size_ - rest_.size()),
+                     fmt::format("{} times {} bytes are announced, but {} bytes are left", count,
+                                 size, rest_.size()),
+                     kCutShort);
   }
   const std::string_view bytes = rest_.substr(0, count * size);
   rest_.remove_prefix(bytes.size());
@@ -94,7 +94,7 @@ PointTable read_ascii_rows(FileText& text, const std::vector<Field>& fields, std
     if (words.size() != types.size()) {
       throw InputError(text.place(),
                        fmt::format("holds {} values, not {}", words.size(), types.size()),
-                       "write one point a line");
+                       "write one point per line");
     }
     for (std::size_t i = 0; i < words.size(); ++i) {
       if (!append_scalar(table.bytes, types[i], words[i])) {

@@ -7,23 +7,23 @@
 
 #include "lidarena/dataset/point_table.hpp"
 
-/// What PLY and PCD files have in common: a header of lines, then rows of values.
+/// Common parts of PLY and PCD files: a header of text lines, then rows of values.
 namespace lidarena {
 
-/// A cursor over a file that begins with text and may go on in binary. Nothing is read past the
-/// end: what is short throws InputError.
+/// A cursor over a file that begins with text and may continue in binary. Throws InputError instead
+/// of reading past the end.
 class FileText {
  public:
   /// `bytes` must outlive this object; `name` is the file, for messages.
   FileText(std::string_view bytes, std::string name)
       : rest_(bytes), size_(bytes.size()), name_(std::move(name)) {}
 
-  /// The next line without outer blanks. Throws InputError at the end of the file.
+  /// The next line without leading and trailing blanks. Throws InputError at the end of the file.
   std::string_view line();
   /// The next `count * size` bytes. Throws InputError when there are fewer.
   std::string_view take(std::size_t count, std::size_t size = 1);
   const std::string& name() const { return name_; }
-  /// "file:line" of the line last given.
+  /// "file:line" of the line last returned.
   std::string place() const { return name_ + ":" + std::to_string(line_); }
 
  private:
@@ -33,7 +33,7 @@ class FileText {
   std::size_t line_ = 0;
 };
 
-/// `count` values of one type under one name, one after the other.
+/// `count` consecutive values of one type under one name.
 struct Field {
   std::string name;
   ScalarType type = ScalarType::kFloat32;
@@ -46,7 +46,7 @@ std::size_t parse_count(std::string_view word, const std::string& place);
 
 /// Bytes of one row.
 std::size_t row_size(const std::vector<Field>& fields);
-/// Columns of rows stored one after the other; of a field of several values, the first.
+/// Columns of consecutive rows; for a field of several values, the column of the first.
 std::vector<Column> row_columns(const std::vector<Field>& fields);
 
 /// The next `rows` rows of packed little-endian values.

@@ -61,7 +61,7 @@ bool parse_scalar(std::string_view word, T& out) {
     const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), out);
     if (error == std::errc{} && end == word.data() + word.size()) return true;
     const auto value = parse_double(word);
-    // digits of T are exact in a double here: wider integers are taken as text alone
+    // a double holds every T of up to 4 bytes exactly; wider integers must be written as integers
     if (sizeof(T) > 4 || !value || *value != std::floor(*value) ||
         *value < static_cast<double>(std::numeric_limits<T>::min()) ||
         *value > static_cast<double>(std::numeric_limits<T>::max())) {
@@ -124,7 +124,7 @@ PointTable read_point_table(const std::filesystem::path& file) {
   const std::string ending = file.extension().string();
   if (ending == ".ply") return read_ply_table(file);
   if (ending == ".pcd") return read_pcd_table(file);
-  throw InputError(file.string(), fmt::format("'{}' is no point format we read", ending),
+  throw InputError(file.string(), fmt::format("'{}' is not a supported point format", ending),
                    "give a .ply or .pcd file");
 }
 

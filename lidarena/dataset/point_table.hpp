@@ -34,7 +34,7 @@ struct Column {
   std::size_t stride = 0;
 };
 
-/// Points of a file as it stores them (little endian), whatever its columns.
+/// Points as a file stores them (little endian), with any columns.
 struct PointTable {
   std::string file;   ///< for messages
   std::string bytes;  ///< holds every value of every column
@@ -43,18 +43,18 @@ struct PointTable {
 
   /// The first of `names` that is a column; nullptr if none is.
   const Column* find(std::initializer_list<std::string_view> names) const;
-  /// The column `name`; throws InputError listing what there is.
+  /// The column `name`; throws InputError listing the existing columns if there is none.
   const Column& require(std::string_view name) const;
   double number(const Column& column, std::size_t row) const;
-  /// Exact, of a column of integers.
+  /// Exact value in a column of integers.
   std::int64_t integer(const Column& column, std::size_t row) const;
 };
 
-/// Appends `word` in the binary form of `type`; false if it is no such number (NaN and infinity are
-/// numbers for floats).
+/// Appends `word` in the binary form of `type`; false if it is not a number of that type (NaN and
+/// infinity are valid floats).
 bool append_scalar(std::string& bytes, ScalarType type, std::string_view word);
 
-/// Reads .ply or .pcd, chosen by the ending. Throws InputError naming file, place and remedy.
+/// Reads .ply or .pcd, chosen by the extension. Throws InputError naming file, place and remedy.
 PointTable read_point_table(const std::filesystem::path& file);
 
 }  // namespace lidarena

@@ -12,31 +12,32 @@
 
 namespace lidarena {
 
-/// What a simulated return really hit, 32 bytes. For evaluation alone: it travels beside the
-/// measurements (topic /truth/SENSOR/hits), never inside what an odometry is given.
+/// Ground truth of one simulated return: the surface point that was hit; 32 bytes. For evaluation
+/// only: stored apart from the measurements (topic /truth/SENSOR/hits), never passed to an
+/// estimator.
 struct PointTruth {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m, world frame, on the surface
-  float range = 0.0F;                                  ///< m, true, counted as the sensor's range
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();    ///< unit, world frame, towards the sensor
-  std::uint32_t triangle = 0;                          ///< index into the world's mesh
+  float range = 0.0F;  ///< m, true value, by the sensor's definition of range
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, world frame, towards the sensor
+  std::uint32_t triangle = 0;                        ///< index in the world mesh
 };
 static_assert(sizeof(PointTruth) == 32);
 
-/// Truth of one scan: as many points as the scan has, in the same order.
+/// Ground truth of one scan: as many points as the scan has, in the same order.
 struct ScanTruth {
   std::string sensor_id;
-  Time stamp{0};  ///< the scan's
+  Time stamp{0};  ///< of the scan
   std::vector<PointTruth> points;
 };
 
-/// Truth of scan after scan; empty at the end.
+/// Ground truth scan by scan; next() is empty at the end.
 class ScanTruthSource {
  public:
   virtual ~ScanTruthSource() = default;
   virtual std::optional<ScanTruth> next() = 0;
 };
 
-/// Takes the truth of each scan as it is made.
+/// Receives the ground truth of each scan when the scan is simulated.
 class ScanTruthSink {
  public:
   virtual ~ScanTruthSink() = default;

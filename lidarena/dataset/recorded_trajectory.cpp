@@ -16,8 +16,8 @@ namespace lidarena {
 namespace {
 
 constexpr std::string_view kTransformStamped = "geometry_msgs/msg/TransformStamped";
-/// Header, and pose or transform (three numbers and a quaternion x y z w), with the child's name
-/// between the two or not.
+/// A message type that consists of a header and a pose or transform (three numbers and a quaternion
+/// x y z w), with child_frame_id between them if `names_child`.
 struct PoseType {
   std::string_view name;
   bool names_child;
@@ -43,8 +43,9 @@ std::string chosen_topic(const std::filesystem::path& file, const std::string& a
     if (topic.topic == asked) return asked;
   }
   if (topics.empty()) {
-    throw InputError(file.string(), "has no topic with poses",
-                     "they are Odometry, PoseStamped, PoseWithCovarianceStamped, TransformStamped");
+    throw InputError(
+        file.string(), "has no topic with poses",
+        "supported types are Odometry, PoseStamped, PoseWithCovarianceStamped, TransformStamped");
   }
   if (!asked.empty()) {
     throw InputError(file.string(), "has no poses on topic '" + asked + "'", "it has: " + list);
@@ -58,7 +59,8 @@ std::string chosen_topic(const std::filesystem::path& file, const std::string& a
 double finite(MessageReader& in, const std::string& place) {
   const auto value = in.get<double>();
   if (!std::isfinite(value)) {
-    throw InputError(place, "the pose is not finite", "what wrote it had diverged there");
+    throw InputError(place, "the pose is not finite",
+                     "the program that wrote it had diverged there");
   }
   return value;
 }

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kMetadataFile = "metadata.yaml";
-/// Bags have no records for metadata: they are a message of text.
+/// End of the topic on which a bag, which has no metadata records, holds them as a string message.
 constexpr std::string_view kDescriptionEnding = "/description";
 
 RecordingFormat format_by_content(const fs::path& file) {
@@ -100,8 +100,8 @@ class McapRecordingWriter final : public RecordingWriter {
     return info;
   }
 
-  /// The bag's description twice, as rosbag2 itself writes it: beside the file and in it. Without
-  /// the latter, newer versions misread the QoS.
+  /// Writes rosbag2's metadata twice, as rosbag2 does: next to the file and in it. Without the
+  /// latter, newer versions misread the QoS.
   void close() override {
     const RecordingInfo written = info();
     for (std::size_t i = 0; i < topics_.size(); ++i) {
@@ -119,15 +119,14 @@ class McapRecordingWriter final : public RecordingWriter {
   bool metadata_beside_;
   McapWriter mcap_;
   std::map<std::string, std::uint16_t> schemas_;
-  std::vector<RosbagTopic> topics_;  ///< by channel id - 1
+  std::vector<RosbagTopic> topics_;  ///< at index channel id - 1
 };
 
-/// A bag that describes itself in its first message.
+/// Writes a bag whose first message holds the description of RecordingOptions.
 class BagRecordingWriter final : public RecordingWriter {
  public:
   BagRecordingWriter(const fs::path& file, const RecordingOptions& options)
-      : bag_(file),
-        description_(Json(options.description).dump()) {
+      : bag_(file), description_(Json(options.description).dump()) {
     if (options.name.empty()) return;
     topic_ =
         bag_.add_topic("/" + options.name + std::string(kDescriptionEnding), ros::kString, true);
@@ -160,7 +159,7 @@ class BagRecordingWriter final : public RecordingWriter {
   std::optional<std::uint16_t> topic_;  ///< of the description, until it is written
 };
 
-/// The descriptions among the messages of a bag: on topics /NAME/description.
+/// Reads the descriptions among the messages of a bag, on topics /NAME/description.
 void add_metadata(const fs::path& file, RecordingInfo& info) {
   const auto is_description = [](std::string_view topic, std::string_view type) {
     return type == ros::kString && topic.starts_with('/') && topic.ends_with(kDescriptionEnding);

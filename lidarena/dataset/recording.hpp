@@ -13,7 +13,7 @@
 #include "lidarena/base/time.hpp"
 #include "lidarena/dataset/message_stream.hpp"
 
-/// Recordings of ROS messages: MCAP files and ROS 1 bags look the same from here.
+/// Recordings of ROS messages: one interface to MCAP files and ROS 1 bags.
 namespace lidarena {
 
 using StringMap = std::map<std::string, std::string>;
@@ -22,14 +22,14 @@ using StringMap = std::map<std::string, std::string>;
 struct RecordedTopic {
   std::string topic;
   std::string type;              ///< as ROS 2 spells it, e.g. sensor_msgs/msg/Imu
-  std::string message_encoding;  ///< cdr, ros1, or another that is not read
+  std::string message_encoding;  ///< cdr, ros1, or another, which is not supported
   std::uint64_t message_count = 0;
 };
 
 /// How the messages of a topic can be decoded; empty when they cannot.
 std::optional<Encoding> encoding_of(const RecordedTopic& topic);
 
-/// What is in a recording.
+/// Contents of a recording.
 struct RecordingInfo {
   std::vector<RecordedTopic> topics;
   std::uint64_t message_count = 0;
@@ -37,14 +37,14 @@ struct RecordingInfo {
   Time end{0};
   std::uint64_t chunk_count = 0;
   std::map<std::string, StringMap> metadata;  ///< records by name
-  bool from_summary = false;  ///< false: there was none, so the whole file was read and verified
-  std::string damage;         ///< why a reading without summary ended early; empty if it did not
+  bool from_summary = false;  ///< false: no valid summary; whole file read and verified
+  std::string damage;         ///< why reading the whole file ended early; empty if it did not
 
-  /// Messages of all channels named `topic`.
+  /// Number of messages of all channels named `topic`.
   std::uint64_t count_of(const std::string& topic) const;
 };
 
-/// A message as it lies in the file; all is valid until the next one is read.
+/// A message as stored in the file; valid until the next one is read.
 struct RecordedMessage {
   std::string_view topic;
   std::string_view type;  ///< as ROS 2 spells it
@@ -56,47 +56,49 @@ struct RecordedMessage {
 class RecordingReader {
  public:
   virtual ~RecordingReader() = default;
-  /// The next message in file order, of an encoding we know; empty at the end. Throws InputError
-  /// where the file is cut off or damaged; what was given out before is sound.
+  /// The next message in file order with a supported encoding; empty at the end. Throws InputError
+  /// where the file is cut off or damaged; the messages returned before are intact.
   virtual std::optional<RecordedMessage> next() = 0;
 };
 
-/// Takes messages in the order they come. What is not closed stays recognizably unfinished.
+/// Writes messages in the given order. Without close() the file stays recognizable as unfinished.
 class RecordingWriter {
  public:
   virtual ~RecordingWriter() = default;
-  /// In which messages are to be handed over.
+  /// Encoding of the messages to pass to write().
   virtual Encoding encoding() const = 0;
-  /// `type` as ROS 2 spells it. A latched topic is given to late listeners too.
+  /// `type` as ROS 2 spells it. Messages of a latched topic also reach subscribers that connect
+  /// later.
   virtual std::uint16_t add_topic(const std::string& name, std::string_view type,
                                   bool latched = false) = 0;
   /// Throws InputError when a time is negative, Error when the disk is full.
   virtual void write(std::uint16_t topic, Time log_time, Time publish_time, Bytes message) = 0;
-  /// What was written so far: topics in the order of their adding, counts and times.
+  /// What was written so far: topics in the order in which they were added, counts and times.
   virtual RecordingInfo info() const = 0;
   virtual void close() = 0;
 };
 
 enum class RecordingFormat { kMcap, kBag };
 
-/// Whether the name ends in .mcap or .bag (a ".part" behind that does no harm).
+/// The format by the ending of the name, .mcap or .bag (a further ".part" is ignored); empty for
+/// others.
 std::optional<RecordingFormat> recording_format_of(const std::filesystem::path& file);
 
-/// Both tell the format by the first bytes of the file. They throw InputError when it is missing or
-/// is neither.
+/// Both detect the format by the first bytes of the file. They throw InputError when it is missing
+/// or has neither format.
 std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& file);
 RecordingInfo read_recording_info(const std::filesystem::path& file);
 
-/// Creates FILE.part. `description` is kept under `name` in RecordingInfo::metadata. With
-/// `metadata_beside`, an MCAP file gets rosbag2's metadata.yaml into its folder. Throws InputError
-/// when the file cannot be created.
+/// Options of create_recording(). The description is found again in RecordingInfo::metadata, under
+/// `name`.
 struct RecordingOptions {
   RecordingFormat format = RecordingFormat::kMcap;
-  bool metadata_beside = false;
-  bool compress = false;  ///< chunks of MCAP by zstd; those of bags always are, by LZ4
+  bool metadata_beside = false;  ///< MCAP: write rosbag2's metadata.yaml to the file's folder
+  bool compress = false;         ///< MCAP chunks, by zstd; bag chunks are always compressed, by LZ4
   std::string name;
   StringMap description;
 };
+/// Creates FILE.part, renamed by close(). Throws InputError when it cannot be created.
 std::unique_ptr<RecordingWriter> create_recording(const std::filesystem::path& file,
                                                   const RecordingOptions& options);
 

@@ -40,7 +40,7 @@ class RecordedEvents final : public EventSource {
     return ids;
   }
 
-  /// Takes one message. At the end, and where the file breaks off, the scans that wait come first.
+  /// Reads one message. At the end of the file, or where it is damaged, releases the waiting scans.
   void read_on() {
     if (const auto message = next_message()) return deliver(*message);
     finished_ = true;
@@ -99,7 +99,7 @@ std::unique_ptr<EventSource> open_recorded_events(const std::filesystem::path& f
 }
 
 bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic) {
-  constexpr int kSamples = 100;  // half a second, also of a vehicle that shakes
+  constexpr int kSamples = 100;  // half a second at 200 Hz: averages out vibration
   const auto reader = open_recording(file);
   double sum = 0.0;
   int count = 0;
@@ -112,7 +112,7 @@ bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic) {
       ++count;
     }
   } catch (const InputError&) {
-    // What was read before the damage has to do.
+    // Decide by the samples before the damage.
   }
   const double mean = count > 0 ? sum / count : 0.0;
   return mean > 0.5 && mean < 2.0;

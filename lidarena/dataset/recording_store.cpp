@@ -26,14 +26,16 @@ RecordingOptions recording_options(const Rig& rig, const RecordedSensors& sensor
           layout::kDescription, layout::describe({rig, sensors})};
 }
 
-/// The driver whose layouts a LiDAR's messages, and those of the IMU inside it, are to have.
+/// The driver whose message layouts are used for a LiDAR and for its built-in IMU, which has the
+/// same id.
 Driver driver_of(const std::string& id, const Rig& rig, const WriteOptions& options) {
   if (options.dialect == Dialect::kSi) return Driver::kUnknown;
   const auto lidar = std::ranges::find(rig.lidars, id, &LidarInfo::id);
   return lidar == rig.lidars.end() ? Driver::kUnknown : lidarena::driver_of(*lidar);
 }
 
-/// Where the measurements are to be found again: of a Livox, in its own message.
+/// The topics from which the measurements are read back: for a Livox in Dialect::kDriver, its
+/// CustomMsg.
 RecordedSensors sensors_of(const Rig& rig, const WriteOptions& options) {
   RecordedSensors sensors = layout::topics_of(rig);
   for (const LidarInfo& lidar : rig.lidars) {
@@ -132,7 +134,7 @@ class RecordingStore final : public DatasetStore {
   }
 
  private:
-  /// The mounting of the sensors, once, at the time of the first message.
+  /// Writes the mounting of the sensors, once, with the time of the first message.
   void write_mounting(Time time) {
     if (mounting_written_) return;
     mounting_written_ = true;
@@ -147,8 +149,8 @@ class RecordingStore final : public DatasetStore {
     recording_->write(tf_static_, time, time, message_.bytes());
   }
 
-  /// Measurements leave in the order they came: a message never has an earlier log time than the
-  /// measurement before it, so readers that sort by log time keep the order of EventSource.
+  /// Writes a measurement. Its log time is never earlier than that of the previous measurement, so
+  /// that readers that sort by log time keep the order of EventSource.
   void write_measurement(std::uint16_t topic, Time published) {
     latest_ = std::max(latest_, published);
     recording_->write(topic, latest_, published, message_.bytes());
@@ -158,7 +160,7 @@ class RecordingStore final : public DatasetStore {
     LidarInfo info;
     Driver driver = Driver::kUnknown;
     std::uint16_t points = 0;
-    std::uint16_t custom = 0;  ///< of a Livox
+    std::uint16_t custom = 0;  ///< CustomMsg of a Livox
   };
   struct ImuTopic {
     Driver driver = Driver::kUnknown;
@@ -170,13 +172,13 @@ class RecordingStore final : public DatasetStore {
   std::unique_ptr<RecordingWriter> recording_;
   std::map<std::string, LidarTopics> lidars_;  ///< by sensor id
   std::map<std::string, ImuTopic> imus_;
-  std::map<std::string, std::uint16_t> hits_;  ///< truth of the points
+  std::map<std::string, std::uint16_t> hits_;  ///< ground truth of points, by sensor id
   std::uint16_t tf_static_ = 0;
   std::uint16_t tf_ = 0;
   std::optional<std::uint16_t> odometry_;
   MessageWriter message_;
   bool mounting_written_ = false;
-  Time latest_{0};  ///< log time of the measurement last written
+  Time latest_{0};  ///< log time of the last measurement written
 };
 
 }  // namespace

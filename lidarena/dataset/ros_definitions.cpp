@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Message definitions (members only), as common_interfaces, geometry2 and Livox's drivers have
-// them.
+// Message definitions (members only), as in common_interfaces, geometry2 and Livox's drivers.
 #include <algorithm>
 #include <array>
 #include <string>
@@ -15,9 +14,9 @@ namespace lidarena::ros {
 namespace {
 
 struct Definition {
-  std::string_view name;  ///< as types refer to it
+  std::string_view name;  ///< as other definitions refer to it
   std::string_view members;
-  std::string_view ros1_members = members;  ///< where they differ
+  std::string_view ros1_members = members;  ///< if they differ
 };
 
 constexpr std::string_view kLivoxPoint =
@@ -84,7 +83,7 @@ const Definition* find_definition(std::string_view name) {
 
 const Definition& definition_named(std::string_view name) {
   if (const Definition* definition = find_definition(name)) return *definition;
-  throw InputError(name, "is not among the message types that are written");
+  throw InputError(name, "is not one of the message types that can be written");
 }
 
 std::string_view members_of(const Definition& definition, Encoding encoding) {
@@ -93,7 +92,7 @@ std::string_view members_of(const Definition& definition, Encoding encoding) {
 
 struct Member {
   std::string_view line;
-  const Definition* type;  ///< nullptr: a number, a text or a constant
+  const Definition* type;  ///< nullptr: a number, a string or a constant
   std::string_view name;
 };
 

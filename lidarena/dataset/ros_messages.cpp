@@ -45,7 +45,7 @@ Pose get_pose(MessageReader& in) {
 
 void put_header(Time stamp, std::string_view frame_id, MessageWriter& out) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(stamp);
-  const bool is_ros1 = out.encoding() == Encoding::kRos1;  // whose seconds have no sign
+  const bool is_ros1 = out.encoding() == Encoding::kRos1;  // has unsigned seconds
   const std::int64_t least = is_ros1 ? 0 : std::numeric_limits<std::int32_t>::min();
   if (seconds.count() > std::numeric_limits<std::int32_t>::max() || seconds.count() < least) {
     throw InputError(frame_id, "a time does not fit into the 32-bit seconds of ROS messages");
@@ -92,7 +92,7 @@ void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWrite
   out.clear();
   put_header(sample.stamp, frame_id, out);
   for (const double value : {0.0, 0.0, 0.0, 1.0}) out.put(value);
-  // without an orientation the first element says so, and the others say nothing
+  // orientation_covariance: -1 in the first element means that there is no orientation
   out.put(variances.orientation);
   out.put_repeated(0.0, kCovariance3 - 1);
   put_vector(sample.gyro, out);

@@ -8,7 +8,7 @@
 namespace lidarena {
 namespace {
 
-/// A YAML scalar that survives any content: a JSON string.
+/// A JSON string, which is a valid YAML scalar for any content.
 std::string quoted(const std::string& text) { return Json(text).dump(); }
 
 }  // namespace
@@ -16,7 +16,7 @@ std::string quoted(const std::string& text) { return Json(text).dump(); }
 std::string default_qos() { return ""; }
 
 std::string latched_qos() {
-  // rmw's numbers: history keep last, reliable, transient local; liveliness automatic; no
+  // Numeric values of rmw: history keep last, reliable, transient local; liveliness automatic; no
   // deadlines.
   constexpr const char* kForever = "{sec: 9223372036, nsec: 854775807}";
   return fmt::format(

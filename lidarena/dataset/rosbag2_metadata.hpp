@@ -9,7 +9,7 @@
 
 namespace lidarena {
 
-/// What rosbag2 wants to know of a topic.
+/// Metadata of a topic for rosbag2.
 struct RosbagTopic {
   std::string name;
   std::string type;
@@ -18,12 +18,12 @@ struct RosbagTopic {
 };
 
 /// Offered QoS, in the integer form that every rosbag2 from Humble on reads. Empty means the
-/// default (reliable, volatile); a latched topic (reliable, transient local, depth 1) is what
-/// listeners to /tf_static ask for.
+/// default (reliable, volatile); latched (reliable, transient local, depth 1) is what subscribers
+/// to /tf_static request.
 std::string default_qos();
 std::string latched_qos();
 
-/// metadata.yaml of a bag folder with the one MCAP file `file`, so that `ros2 bag play` takes it:
+/// metadata.yaml of a bag folder with the one MCAP file `file`, so that `ros2 bag play` accepts it:
 /// metadata version 5 (Humble), which later versions read too.
 std::string rosbag2_metadata(const std::string& file, const std::vector<RosbagTopic>& topics,
                              Time start, Time end);

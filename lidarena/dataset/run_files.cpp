@@ -54,7 +54,7 @@ std::vector<ResourceRow> read_resources(const fs::path& file) {
   const auto header = rows.next();
   if (!header || *header != kResourceHeader) {
     throw InputError(file.string() + ":1", "is not the header of resources.csv",
-                     fmt::format("it reads {}", kResourceHeader));
+                     fmt::format("it must be {}", kResourceHeader));
   }
   std::vector<ResourceRow> resources;
   while (const auto row = rows.next()) {
@@ -75,7 +75,7 @@ void write_run(const fs::path& folder, const RunFiles& run) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot be created: " + error.message());
-  // what an earlier run left must not vouch for this one while it is being written
+  // files of an earlier run must not be taken for files of this one while it is being written
   for (const char* stale : {"manifest.json", "metrics.json", "resources.json"})
     fs::remove(folder / stale, error);
   write_tum(folder / "trajectory.tum", run.trajectory, std::string(kFinalHeader));
@@ -94,7 +94,7 @@ RunFiles read_run(const fs::path& folder) {
   }
   if (!fs::exists(folder / "map.ply")) {
     throw InputError(folder.string(), "has no map.ply: a study with 'keep_maps: false' removes it",
-                     "what was scored is in metrics.json; for the maps run it again");
+                     "the scores are in metrics.json; run it again to get the maps");
   }
   RunFiles run;
   run.manifest = read_json(manifest);

@@ -14,11 +14,11 @@ namespace lidarena {
 
 /// One row of resources.csv: state after one scan.
 struct ResourceRow {
-  double t_sensor_s = 0.0;  ///< end of the scan since the first scan's stamp
-  double latency_s = 0.0;   ///< wall time that register_scan took
+  double t_sensor_s = 0.0;  ///< end of the scan, since the first scan's stamp
+  double latency_s = 0.0;   ///< wall time of register_scan
   std::uint64_t rss_bytes = 0;
   std::uint64_t pss_bytes = 0;
-  std::uint64_t map_bytes = 0;  ///< the algorithm's own parts
+  std::uint64_t map_bytes = 0;  ///< this and the next two: as reported by the algorithm
   std::uint64_t scan_buffer_bytes = 0;
   std::uint64_t backlog_bytes = 0;
 };
@@ -27,16 +27,16 @@ struct ResourceRow {
 /// manifest.json (and, after evaluation, metrics.json).
 struct RunFiles {
   Trajectory trajectory;  ///< after finish()
-  Trajectory live;        ///< as known at each scan
-  Cloud map;              ///< what the program publishes
-  Cloud reprojected;      ///< scored returns with the continuous estimate, first of a 2 cm voxel
+  Trajectory live;        ///< pose at each scan as estimated at that time
+  Cloud map;              ///< the map that the program publishes
+  Cloud reprojected;  ///< scored returns placed by the estimated trajectory, first per 2 cm voxel
   std::vector<ResourceRow> resources;
   Json manifest;
 };
 
-/// Writes the folder; manifest.json last, so a folder without one is not whole.
+/// Writes the folder; manifest.json last, so that a folder without it is incomplete.
 void write_run(const std::filesystem::path& folder, const RunFiles& run);
-/// Reads it back; throws InputError when manifest.json is missing or a file is broken.
+/// Reads it back; throws InputError when manifest.json is missing or a file is damaged.
 RunFiles read_run(const std::filesystem::path& folder);
 /// Reads a resources.csv alone; throws InputError naming file and line.
 std::vector<ResourceRow> read_resources(const std::filesystem::path& file);

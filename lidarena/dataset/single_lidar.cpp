@@ -12,7 +12,7 @@ Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& optio
   lidar.id = "lidar";
   if (!options.sensor.empty() && options.sensor != lidar.id) {
     throw InputError(path.string(), fmt::format("has no LiDAR '{}'", options.sensor),
-                     fmt::format("its only one is '{}'", lidar.id));
+                     fmt::format("its only LiDAR is '{}'", lidar.id));
   }
   lidar.body_from_lidar = options.body_from_lidar.value_or(Pose::Identity());
   Rig rig;
@@ -32,7 +32,7 @@ void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig
   }
   if (!options.body_from_lidar) return;
   if (lidars.size() != 1) {
-    throw InputError(place, "has several LiDARs, and body_from_lidar is for one",
+    throw InputError(place, "has several LiDARs, but body_from_lidar applies to one",
                      "name the sensor");
   }
   lidars.front().body_from_lidar = *options.body_from_lidar;

@@ -7,13 +7,14 @@
 
 namespace lidarena {
 
-/// Rig of foreign data with one LiDAR, named "lidar", mounted as `options.body_from_lidar` says, or
-/// else in the body frame. Throws InputError (place `path`) when options.sensor names another one.
+/// Rig of third-party data with one LiDAR, named "lidar", mounted at `options.body_from_lidar`
+/// (identity if empty). Throws InputError (place `path`) when options.sensor
+/// names another one.
 Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options);
 
-/// Leaves the LiDAR `options.sensor` alone in the rig (empty = all) and mounts it as
-/// `options.body_from_lidar` says. Throws InputError (place `place`) when there is none such, or
-/// when several are left to be mounted.
+/// Keeps only the LiDAR `options.sensor` in the rig (empty = all) and mounts it at
+/// `options.body_from_lidar`, if given. Throws InputError (place `place`) when there is no such
+/// LiDAR, or when body_from_lidar is given and several LiDARs are left.
 void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig);
 
 }  // namespace lidarena

@@ -37,9 +37,9 @@ std::optional<Event> StreamMerge::pop() {
 
 void StreamMerge::fail_backwards(const Event& event, Time previous, Time stamp) const {
   throw InputError(place_,
-                   fmt::format("time does not go on: '{}' has {} s after {} s", event.sensor_id,
+                   fmt::format("times do not increase: '{}' has {} s after {} s", event.sensor_id,
                                format_seconds(stamp), format_seconds(previous)),
-                   "the file holds several recordings, or a clock was set; cut it there");
+                   "the file holds several recordings, or a clock was set; split it there");
 }
 
 void StreamMerge::push_imu(Event event) {
@@ -65,7 +65,7 @@ void StreamMerge::push_scan(Event event) {
       std::ranges::min_element(covered_, {}, [](const auto& imu) { return imu.second; });
   throw InputError(
       place_,
-      fmt::format("IMU '{}' has no sample from {} s on, while scans go on to {} s", late->first,
+      fmt::format("IMU '{}' has no sample from {} s on, while scans continue to {} s", late->first,
                   format_seconds(waiting_.front().first), format_seconds(end)),
       "cut the recording there, or leave out the IMU's topic");
 }

@@ -13,14 +13,15 @@
 
 namespace lidarena {
 
-/// Keeps the promise of EventSource for measurements that come in whatever order a file has them:
-/// a scan is given out only once each of the IMUs has given a sample at or after the scan's last
-/// point. IMU samples pass at once; scans wait, and leave in the order they came. What already
-/// keeps the promise passes unchanged. At the end (finish()) the scans that still wait are given
-/// out: there is no later sample to wait for.
+/// Brings measurements, in whatever order a file stores them, into the order that EventSource
+/// guarantees: a scan is released only once each of the IMUs has delivered a sample at or after the
+/// scan's last point. IMU samples are released immediately; scans wait, and are released in the
+/// order of their arrival. Input that is already in this order stays unchanged. finish() releases
+/// the scans that still wait: there is no later sample to wait for.
 ///
-/// Throws InputError when a sensor's time does not increase (IMU samples may repeat a stamp), and
-/// when an IMU lags more than `kLongestGap` behind the scans: waiting on would fill the memory.
+/// Throws InputError when the times of a sensor do not increase (IMU samples may repeat a stamp),
+/// and when an IMU lags more than `kLongestGap` behind the scans: waiting longer would fill the
+/// memory.
 class StreamMerge {
  public:
   static constexpr Time kLongestGap = std::chrono::seconds(5);
@@ -31,7 +32,7 @@ class StreamMerge {
   void push(Event event);
   /// No more events will come.
   void finish();
-  /// The next event that may be given out; empty if more must be pushed first.
+  /// The next released event; empty if more must be pushed first.
   std::optional<Event> pop();
 
  private:
@@ -41,11 +42,11 @@ class StreamMerge {
   void fail_backwards(const Event& event, Time previous, Time stamp) const;
 
   std::string place_;
-  std::map<std::string, Time> covered_;  ///< latest sample of each IMU waited for
+  std::map<std::string, Time> covered_;  ///< time of the latest sample of each IMU waited for
   // An IMU may have the id of the LiDAR it is built into.
   std::map<std::string, Time> latest_imu_;
   std::map<std::string, Time> latest_scan_;
-  std::deque<std::pair<Time, Event>> waiting_;  ///< scans and their last points' times
+  std::deque<std::pair<Time, Event>> waiting_;  ///< scans with the times of their last points
   std::deque<Event> ready_;
 };
 

@@ -50,19 +50,19 @@ DatasetFormat format_of(const Json& manifest) {
   return DatasetFormat::kMcap;
 }
 
-/// What the manifest counts of a sensor; 0 where it says nothing.
+/// The count `key` of a sensor in the manifest; 0 if the manifest has none.
 std::size_t count_in(const Json& manifest, const char* key, const std::string& id,
                      const std::string& place) {
   const auto counts = manifest.find(key);
   if (counts == manifest.end() || !counts->is_object() || !counts->contains(id)) return 0;
   const Json& count = (*counts)[id];
   if (!count.is_number_unsigned()) {
-    throw InputError(place, fmt::format("{} of '{}' is no count", key, id));
+    throw InputError(place, fmt::format("{} of '{}' is not a count", key, id));
   }
   return count.get<std::size_t>();
 }
 
-/// Sweeps of one LiDAR, read one ahead.
+/// Sweeps of one LiDAR; reads one sweep ahead.
 class Sweeps {
  public:
   Sweeps(fs::path folder, std::string id, DatasetFormat format, std::size_t count)
@@ -73,14 +73,14 @@ class Sweeps {
       throw InputError(
           file.string(),
           fmt::format("holds {} times, but the manifest counts {} scans", stamps_.size(), count),
-          "the folder is cut or mixed with another; write it anew");
+          "the folder is incomplete or mixed with another; write it again");
     }
   }
 
   const std::string& id() const { return id_; }
   std::size_t count() const { return stamps_.size(); }
 
-  /// When the sweep to come ends; empty if there is none.
+  /// End time of the next sweep; empty if there is none.
   std::optional<Time> end() {
     if (!scan_ && next_ < stamps_.size()) {
       scan_ = read_sweep(layout::sweep_path(folder_, id_, format_, next_), stamps_[next_],
@@ -138,7 +138,7 @@ class SweepDatasetSource final : public EventSource {
     return ids;
   }
 
-  /// Takes the sample that is next, or the scan that ends before it.
+  /// Pushes the next IMU sample, or the next scan if it ends before that sample.
   void read_on() {
     ImuRows* imu = nullptr;
     for (ImuRows& candidate : imus_) {
@@ -199,7 +199,7 @@ void write_hits(const fs::path& file, const std::vector<PointTruth>& points) {
       "COUNT 1 1 1 1 1 1 1 1\nWIDTH {}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {}\n"
       "DATA binary\n",
       fmt::join(kHitFields, " "), points.size(), points.size());
-  // fields as they lie in a PointTruth
+  // the memory layout of PointTruth
   text.append(reinterpret_cast<const char*>(points.data()), points.size() * sizeof(PointTruth));
   write_text_file(file, text);
 }
@@ -244,7 +244,7 @@ Dataset open_sweep_dataset(const fs::path& folder, Rig rig, Json manifest,
     imus.push_back({imu.id, read_imu_text(file)});
     if (imus.back().samples.size() != count_in(manifest, "imu_counts", imu.id, place)) {
       throw InputError(file.string(), "holds another number of samples than the manifest counts",
-                       "the folder is cut or mixed with another; write it anew");
+                       "the folder is incomplete or mixed with another; write it again");
     }
   }
   Dataset dataset;
@@ -263,7 +263,7 @@ std::unique_ptr<ScanTruthSource> open_sweep_truth(const fs::path& folder, const 
   const Rig rig = layout::rig_from_json(manifest["rig"], place);
   const LidarInfo* lidar = rig.find_lidar(sensor);
   if (lidar == nullptr) {
-    throw InputError(place, "has no LiDAR '" + sensor + "', or several", "name the sensor");
+    throw InputError(place, "has no LiDAR '" + sensor + "', or has several", "name the sensor");
   }
   const std::size_t count = count_in(manifest, "hit_counts", lidar->id, place);
   return count == 0 ? nullptr : std::make_unique<SweepTruth>(folder, lidar->id, count);

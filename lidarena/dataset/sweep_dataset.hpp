@@ -9,16 +9,16 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/dataset.hpp"
 
-/// Dataset folders whose measurements are a file a sweep: what writer and reader agree on.
+/// Dataset folders with one file per sweep: names and functions shared by writer and reader.
 namespace lidarena {
 
 namespace layout {
 
 inline constexpr const char* kTimes = "times.txt";
 inline constexpr const char* kImu = "imu.txt";
-inline constexpr const char* kHits = "hits";  ///< truth of the points, a PCD a sweep
+inline constexpr const char* kHits = "hits";  ///< ground truth of points, a PCD per sweep
 
-/// FOLDER/ID/000012.pcd, or FOLDER/ID/velodyne/000012.bin of KITTI.
+/// FOLDER/ID/000012.pcd (or .ply), or for KITTI FOLDER/ID/velodyne/000012.bin.
 std::filesystem::path sweep_path(const std::filesystem::path& folder, const std::string& lidar_id,
                                  DatasetFormat format, std::size_t index);
 /// FOLDER/ID/hits/000012.pcd.
@@ -27,13 +27,15 @@ std::filesystem::path hits_path(const std::filesystem::path& folder, const std::
 
 }  // namespace layout
 
-/// Truth of points as binary PCD: x y z range normal_x normal_y normal_z float32, triangle uint32.
+/// Ground truth of points as binary PCD: x y z range normal_x normal_y normal_z float32, triangle
+/// uint32.
 void write_hits(const std::filesystem::path& file, const std::vector<PointTruth>& points);
 std::vector<PointTruth> read_hits(const std::filesystem::path& file);
 
-/// Whether a manifest speaks of sweeps.
+/// Whether a manifest describes a dataset stored as sweeps.
 bool is_sweep_dataset(const Json& manifest);
-/// Throws InputError naming the file that is missing or broken; a missing sweep is found by next().
+/// Throws InputError naming the file that is missing or broken; a missing sweep is reported by
+/// next().
 Dataset open_sweep_dataset(const std::filesystem::path& folder, Rig rig, Json manifest,
                            const ReadOptions& options);
 /// As open_scan_truth().

@@ -14,10 +14,10 @@
 namespace lidarena {
 namespace {
 
-/// A float time beyond this is nanoseconds: as seconds it lies after the year 2286.
+/// Float times beyond this are nanoseconds: as seconds they would be after the year 2286.
 constexpr double kLastSeconds = 1e10;
 
-/// Reads instants of points: absolute ns, or ns from the sweep's stamp.
+/// Reads times of points: absolute ns, or ns from the sweep's stamp.
 class TimeReader {
  public:
   TimeReader(const PointTable& table, const Column& column) : table_(table), column_(column) {}
@@ -36,8 +36,8 @@ class TimeReader {
   }
 
  private:
-  /// Absolute seconds keep the 0.2 us a double resolves; whole seconds go apart so that the product
-  /// loses nothing more.
+  /// Absolute seconds in a double have a resolution of 0.2 us; whole seconds are converted
+  /// separately so that the multiplication loses no more.
   static std::int64_t seconds_to_ns(double seconds) {
     const double whole = std::floor(seconds);
     return static_cast<std::int64_t>(whole) * 1'000'000'000 + std::llround((seconds - whole) * 1e9);
@@ -54,19 +54,19 @@ T small_integer(const PointTable& table, const Column& column, std::size_t row) 
   const double value = table.number(column, row);
   if (!(value >= 0.0 && value <= static_cast<double>(std::numeric_limits<T>::max()))) {
     throw InputError(table.file, fmt::format("point {} has the {} {}", row + 1, column.name, value),
-                     fmt::format("it counts from 0 to {}", std::numeric_limits<T>::max()));
+                     fmt::format("it must be within 0 to {}", std::numeric_limits<T>::max()));
   }
   return static_cast<T>(value);
 }
 
-/// Stamps the scan with its first instant and gives each point its offset; both in firing order.
+/// Sets the stamp of the scan and the offsets of its points, and sorts the points in firing order.
 void set_times(Scan& scan, const std::vector<std::int64_t>& times, bool absolute,
                const std::string& file) {
   if (times.empty()) return;
   const auto [first, last] = std::minmax_element(times.begin(), times.end());
   const std::int64_t base = absolute ? 0 : scan.stamp.count();
-  // an offset from a given stamp may start late (no returns) or, with driver stamps at the end,
-  // early
+  // relative times may begin after the given stamp (no returns yet) or, if the driver stamps the
+  // end of the scan, before it
   const std::int64_t begin = absolute ? *first : std::min<std::int64_t>(*first, 0);
   std::int64_t stamp = 0;
   std::int64_t span = 0;
@@ -90,9 +90,9 @@ PointTable read_raw_table(const std::filesystem::path& file, const std::string& 
   PointTable table{file.string(), read_bytes(file), 0, {}};
   if (table.bytes.size() % stride != 0) {
     throw InputError(table.file,
-                     fmt::format("its {} bytes are no whole number of {} points of {} bytes",
+                     fmt::format("its {} bytes are not a whole number of {} points of {} bytes",
                                  table.bytes.size(), layout, stride),
-                     fmt::format("choose the layout among {}", fmt::join(raw_layouts(), ", ")));
+                     fmt::format("choose one of the layouts {}", fmt::join(raw_layouts(), ", ")));
   }
   table.size = table.bytes.size() / stride;
   for (std::size_t i = 0; i < layout.size(); ++i) {
@@ -129,8 +129,8 @@ std::vector<std::string> raw_layouts() { return {"xyz", "xyzi", "xyzt", "xyztr"}
 std::size_t raw_point_size(const std::string& layout) {
   const auto known = raw_layouts();
   if (std::find(known.begin(), known.end(), layout) == known.end()) {
-    throw InputError("layout", fmt::format("'{}' is no layout of raw sweeps", layout),
-                     fmt::format("choose among {}", fmt::join(known, ", ")));
+    throw InputError("layout", fmt::format("'{}' is not a layout of raw sweeps", layout),
+                     fmt::format("choose one of {}", fmt::join(known, ", ")));
   }
   return layout.size() * sizeof(float);
 }
@@ -168,7 +168,7 @@ Scan starting_at(Scan scan, Time begin, const std::string& file) {
     throw InputError(file,
                      fmt::format("its points begin at {} s, the scan at {} s",
                                  format_seconds(scan.stamp), format_seconds(begin)),
-                     "points follow the beginning of their scan within two seconds");
+                     "points must lie within two seconds after the beginning of their scan");
   }
   scan.stamp = begin;
   for (Point& point : scan.points) point.dt_ns += static_cast<std::int32_t>(shift);

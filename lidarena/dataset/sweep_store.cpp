@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Makes the folder of a sensor and takes away the sweeps that an older dataset left there.
+/// Creates the folder of a sensor and removes the sweeps of an older dataset from it.
 void prepare(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
@@ -59,7 +59,8 @@ class SweepStore final : public DatasetStore {
   void write(const std::string& id, const Scan& scan) override {
     Sweeps& sweeps = sweeps_.at(id);
     if (sweeps.count > 0 && scan.stamp <= sweeps.latest) {
-      throw InputError(folder_.string(), "a scan of '" + id + "' is not later than the one before");
+      throw InputError(folder_.string(),
+                       "a scan of '" + id + "' is not later than the previous one");
     }
     const fs::path file = layout::sweep_path(folder_, id, format_, sweeps.count);
     if (format_ == DatasetFormat::kPcd) write_sweep_pcd(file, scan);
@@ -70,7 +71,8 @@ class SweepStore final : public DatasetStore {
     ++sweeps.count;
   }
 
-  /// Truth is numbered as the scans are, so every scan has to have it, in their order.
+  /// Ground-truth files are numbered like the scans, so every scan must have one, in the same
+  /// order.
   void write(const ScanTruth& truth) override {
     Sweeps& sweeps = sweeps_.at(truth.sensor_id);
     if (sweeps.hits == 0) {
@@ -79,7 +81,7 @@ class SweepStore final : public DatasetStore {
     write_hits(layout::hits_path(folder_, truth.sensor_id, sweeps.hits++), truth.points);
   }
 
-  void write_truth(const StampedPose&) override {}  // truth.tum is the caller's
+  void write_truth(const StampedPose&) override {}  // the caller writes truth.tum
 
   Json finish() override {
     Json scans = Json::object();
@@ -90,8 +92,9 @@ class SweepStore final : public DatasetStore {
       scans[id] = sweeps.count;
       if (sweeps.hits == 0) continue;
       if (sweeps.hits != sweeps.count) {
-        throw InputError(folder_.string(), "not every scan of '" + id + "' has its points' truth",
-                         "give the truth of all scans or of none");
+        throw InputError(folder_.string(),
+                         "not every scan of '" + id + "' has ground truth of its points",
+                         "write the ground truth of all scans or of none");
       }
       hits[id] = sweeps.hits;
     }

@@ -27,7 +27,7 @@ bool is_sweep_name(const fs::path& file) {
   return std::find(kEndings.begin(), kEndings.end(), ending) != kEndings.end();
 }
 
-/// The run of digits at the front of `text`, cut off it.
+/// Removes the leading digits from `text` and returns them.
 std::string_view take_digits(std::string_view& text) {
   const auto end = std::find_if_not(text.begin(), text.end(), is_digit);
   const std::string_view run = text.substr(0, static_cast<std::size_t>(end - text.begin()));
@@ -39,7 +39,7 @@ std::string_view without_leading_zeros(std::string_view digits) {
   return digits.substr(std::min(digits.find_first_not_of('0'), digits.size()));
 }
 
-/// Sweep files right in `folder`, in natural order.
+/// Sweep files directly in `folder`, in natural order.
 std::vector<fs::path> sweeps_in(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -62,7 +62,7 @@ void check_one_kind(const fs::path& place, const std::vector<fs::path>& files) {
   }
 }
 
-/// Stamps from names of 19 digits; empty unless all are.
+/// Stamps from file names of 19 digits; empty unless all names are such.
 std::vector<Time> stamps_of_names(const std::vector<fs::path>& files) {
   std::vector<Time> stamps;
   for (const fs::path& file : files) {
@@ -85,8 +85,8 @@ std::vector<Time> stamps_at_rate(std::size_t count, double rate_hz) {
   return stamps;
 }
 
-/// Stamps of the sweeps; adds to `notes` when nothing tells them. (64-bit times of points, known
-/// only once a sweep is read, replace them.)
+/// Stamps of the sweeps; adds to `notes` if neither times.txt nor the names state them. (64-bit
+/// times of points, known only when a sweep is read, replace them.)
 std::vector<Time> stamps_of(const std::vector<fs::path>& files,
                             const std::optional<fs::path>& times_file, double rate_hz,
                             std::vector<std::string>& notes) {
@@ -95,20 +95,20 @@ std::vector<Time> stamps_of(const std::vector<fs::path>& files,
     if (stamps.size() != files.size()) {
       throw InputError(times_file->string(),
                        fmt::format("holds {} times for {} sweeps", stamps.size(), files.size()),
-                       "it holds one time a sweep; complete it or take it away");
+                       "it must hold one time per sweep; complete or remove it");
     }
     return stamps;
   }
   auto stamps = stamps_of_names(files);
   if (!stamps.empty()) return stamps;
   notes.push_back(
-      fmt::format("no times.txt and no stamps in names: sweeps are taken to come at {} "
-                  "Hz, unless their points carry absolute times",
+      fmt::format("no times.txt and no stamps in file names: a sweep rate of {} Hz is assumed, "
+                  "unless points have absolute times",
                   rate_hz));
   return stamps_at_rate(files.size(), rate_hz);
 }
 
-/// The layouts that divide the sizes of all files, as words.
+/// Names of the layouts whose point size divides the sizes of all files.
 std::vector<std::string> fitting_layouts(const std::vector<fs::path>& files) {
   std::vector<std::string> fitting = raw_layouts();
   for (const fs::path& file : files) {
@@ -119,7 +119,7 @@ std::vector<std::string> fitting_layouts(const std::vector<fs::path>& files) {
   return fitting;
 }
 
-/// The layout of raw sweeps; adds to `notes` when it follows from the sizes alone.
+/// The layout of raw sweeps; adds to `notes` when it is inferred from the file sizes.
 std::string layout_of(const std::vector<fs::path>& files, const ReadOptions& options,
                       std::vector<std::string>& notes) {
   if (!options.layout.empty()) {
@@ -129,20 +129,21 @@ std::string layout_of(const std::vector<fs::path>& files, const ReadOptions& opt
   const auto fitting = fitting_layouts(files);
   if (fitting.size() == 1) {
     notes.push_back(
-        fmt::format("raw sweeps taken as {}: the only known layout that divides the "
-                    "sizes of all {} files",
+        fmt::format("raw sweeps are taken as {}: the only known layout whose point size divides "
+                    "the sizes of all {} files",
                     fitting.front(), files.size()));
     return fitting.front();
   }
   const std::string fits = fitting.empty() ? "none" : fmt::format("{}", fmt::join(fitting, ", "));
-  throw InputError(files.front().string(),
-                   fmt::format("no file states the layout of these raw sweeps, and by size {} of "
-                               "the known ones fit",
-                               fits),
-                   fmt::format("say --layout {}", fmt::join(raw_layouts(), "|")));
+  throw InputError(
+      files.front().string(),
+      fmt::format(
+          "no file states the layout of these raw sweeps; the layouts that fit their sizes: {}",
+          fits),
+      fmt::format("choose one with --layout {}", fmt::join(raw_layouts(), "|")));
 }
 
-/// Sweeps per second of increasing stamps.
+/// Mean sweep rate (Hz) by the stamps; `otherwise` if they do not give one.
 double mean_rate(const std::vector<Time>& stamps, double otherwise) {
   if (stamps.size() < 2 || stamps.back() <= stamps.front()) return otherwise;
   return static_cast<double>(stamps.size() - 1) / to_seconds(stamps.back() - stamps.front());
@@ -161,9 +162,9 @@ class SweepSource : public EventSource {
     if (next_ == files_.size()) return std::nullopt;
     Scan scan = read_sweep(files_[next_], stamps_[next_], layout_);
     if (next_ > 0 && scan.stamp <= last_stamp_) {
-      throw InputError(files_[next_].string(),
-                       "its stamp is not later than that of the sweep before",
-                       "check the names, times.txt, and that 64-bit times of points are absolute");
+      throw InputError(
+          files_[next_].string(), "its stamp is not later than that of the previous sweep",
+          "check the file names, times.txt, and that 64-bit times of points are absolute");
     }
     last_stamp_ = scan.stamp;
     ++next_;
@@ -182,7 +183,7 @@ class SweepSource : public EventSource {
 Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
                    const std::optional<fs::path>& times_file, const ReadOptions& options) {
   if (!(options.rate_hz > 0.0 && options.rate_hz <= 1e6)) {
-    throw InputError("rate_hz", fmt::format("{} is no rate of sweeps", options.rate_hz));
+    throw InputError("rate_hz", fmt::format("{} is not a valid sweep rate", options.rate_hz));
   }
   check_one_kind(place, files);
   Dataset dataset;
@@ -192,8 +193,7 @@ Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
   auto stamps = stamps_of(files, times_file, options.rate_hz, dataset.notes);
   if (!options.body_from_lidar) {
     dataset.notes.push_back(
-        "nothing says how the LiDAR is mounted; it is taken to be in the body "
-        "frame");
+        "no file states how the LiDAR is mounted; its frame is taken to be the body frame");
   }
   dataset.rig = single_lidar_rig(place, options);
   dataset.rig.lidars.front().rate_hz = mean_rate(stamps, options.rate_hz);
@@ -252,7 +252,7 @@ Dataset open_sweep_files(const std::vector<fs::path>& files, const ReadOptions& 
   if (files.empty()) throw InputError("sweeps", "no file is given");
   for (const fs::path& file : files) {
     if (!fs::is_regular_file(file) || !is_sweep_name(file)) {
-      throw InputError(file.string(), "is no sweep file", "give .pcd, .ply or .bin files");
+      throw InputError(file.string(), "is not a sweep file", "give .pcd, .ply or .bin files");
     }
   }
   return open_files(files.front(), files, std::nullopt, options);

@@ -29,7 +29,8 @@ struct Decimal {
   long point = 0;
 };
 
-/// Digits with at most one point among them, from the front of `word`, which it shortens.
+/// Removes digits with at most one decimal point from the front of `word`; false if there is no
+/// digit.
 bool take_digits(std::string_view& word, Decimal& out) {
   bool any = false;
   bool after_point = false;
@@ -94,7 +95,7 @@ std::string read_bytes(const std::filesystem::path& file) {
   while (const std::size_t count = std::fread(buffer, 1, sizeof(buffer), stream.get())) {
     bytes.append(buffer, count);
   }
-  if (std::ferror(stream.get()) != 0) throw InputError(file.string(), "cannot be read to its end");
+  if (std::ferror(stream.get()) != 0) throw InputError(file.string(), "cannot be read completely");
   return bytes;
 }
 
@@ -153,8 +154,9 @@ double finite_number(std::string_view word, const std::string& place) {
   const auto value = parse_double(word);
   if (!value) throw InputError(place, fmt::format("'{}' is not a number", word));
   if (!std::isfinite(*value)) {
-    throw InputError(place, fmt::format("'{}' is not finite", word),
-                     "what wrote the file had diverged there; cut it before this line");
+    throw InputError(
+        place, fmt::format("'{}' is not finite", word),
+        "the program that wrote the file had diverged there; remove this and all later lines");
   }
   return *value;
 }
@@ -163,7 +165,7 @@ std::optional<Time> parse_seconds(std::string_view word) {
   const auto decimal = parse_decimal(word);
   if (!decimal) return std::nullopt;
   if (decimal->digits.empty()) return Time{0};
-  const long kept = decimal->point + 9;  // digits before the point, in nanoseconds
+  const long kept = decimal->point + 9;  // digits before the decimal point, in nanoseconds
   if (kept < 0) return Time{0};
   if (kept > 19) return std::nullopt;
   const auto digit = [&](long i) {
@@ -184,7 +186,7 @@ std::optional<Time> parse_seconds(std::string_view word) {
 std::string format_seconds(Time time) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const std::int64_t ns = time.count();
-  // remainders first: the magnitude of the smallest integer does not fit
+  // divided before negated: the magnitude of the smallest integer does not fit
   const std::int64_t whole = ns / kSecond;
   const std::int64_t rest = ns % kSecond;
   return fmt::format("{}{}.{:09}", ns < 0 ? "-" : "", whole < 0 ? -whole : whole,
@@ -194,11 +196,12 @@ std::string format_seconds(Time time) {
 Time seconds_at(std::string_view word, const std::string& place) {
   const auto time = parse_seconds(word);
   const double value = time ? 0.0 : std::abs(parse_double(word).value_or(0.0));
-  if (value > 1e10 && value < 1e20) {  // today in milliseconds is 1.7e12, in nanoseconds 1.7e18
+  if (value > 1e10 && value < 1e20) {  // present-day times are 1.7e12 ms or 1.7e18 ns
     const char* unit = value < 1e14   ? "milliseconds"
                        : value < 1e17 ? "microseconds"
                                       : "nanoseconds";
-    throw InputError(place, fmt::format("'{}' is no time in seconds: it looks like {}", word, unit),
+    throw InputError(place,
+                     fmt::format("'{}' is not a time in seconds: it looks like {}", word, unit),
                      "write decimal seconds");
   }
   if (!time) {

@@ -15,17 +15,17 @@ namespace lidarena {
 std::string read_bytes(const std::filesystem::path& file);
 
 /// The rows of a text file: a byte order mark, blank lines, '#' comments, blanks at either end and
-/// carriage returns are left out.
+/// carriage returns are skipped.
 class TextRows {
  public:
   /// Throws InputError like read_bytes().
   explicit TextRows(const std::filesystem::path& file);
-  /// Rows of `text`; `name` stands in for the file in messages.
+  /// Rows of `text`; `name` is the file's name in messages.
   TextRows(std::string text, std::string name);
 
   /// The next row, empty at the end; valid as long as this object.
   std::optional<std::string_view> next();
-  /// "file:line" of the row last given.
+  /// "file:line" of the row last returned.
   std::string place() const { return name_ + ":" + std::to_string(line_); }
   const std::string& name() const { return name_; }
 
@@ -47,13 +47,13 @@ std::optional<double> parse_double(std::string_view word);
 /// A finite number; throws InputError (place `place`) otherwise.
 double finite_number(std::string_view word, const std::string& place);
 
-/// Decimal seconds as integer nanoseconds, exactly (half a nanosecond rounds away from zero);
-/// exponents are understood. Empty if `word` is no number or beyond 292 years.
+/// Decimal seconds, also with an exponent, as integer nanoseconds, exactly (half a nanosecond
+/// rounds away from zero). Empty if `word` is not a number or is beyond 292 years.
 std::optional<Time> parse_seconds(std::string_view word);
 /// Seconds with 9 decimals, exactly.
 std::string format_seconds(Time time);
 
-/// An instant in seconds; throws InputError (place `place`) otherwise.
+/// A time in seconds; throws InputError (place `place`) otherwise.
 Time seconds_at(std::string_view word, const std::string& place);
 
 }  // namespace lidarena

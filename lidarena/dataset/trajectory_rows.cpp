@@ -12,8 +12,8 @@
 namespace lidarena {
 namespace {
 
-/// Largest departure of a quaternion's norm from 1, and of R R' from the identity, that rounding
-/// in files explains.
+/// Maximum deviation of a quaternion's norm from 1, and of R R' from the identity, that is accepted
+/// as rounding in files.
 constexpr double kRotationTolerance = 1e-3;
 
 }  // namespace
@@ -22,7 +22,7 @@ void TrajectoryRows::add(Time stamp, const Pose& pose, const std::string& place)
   if (!poses_.empty() && stamp <= poses_.back().stamp) {
     const bool same = stamp == poses_.back().stamp;
     throw InputError(place,
-                     fmt::format("the time {} {} the row before ({})", format_seconds(stamp),
+                     fmt::format("the time {} {} the previous row ({})", format_seconds(stamp),
                                  same ? "repeats that of" : "is earlier than that of",
                                  format_seconds(poses_.back().stamp)),
                      "sort the rows by time and remove duplicates");
@@ -32,7 +32,7 @@ void TrajectoryRows::add(Time stamp, const Pose& pose, const std::string& place)
 
 Trajectory TrajectoryRows::finish(const std::string& file) {
   if (poses_.empty()) {
-    throw InputError(file, "holds no pose", "check that what wrote it came to an end");
+    throw InputError(file, "holds no pose", "check that the program that wrote it finished");
   }
   return Trajectory(std::move(poses_), file);
 }
@@ -42,7 +42,7 @@ Pose pose_from_row(const Eigen::Vector3d& position, const Eigen::Quaterniond& ro
   const double norm = rotation.norm();
   if (!(std::abs(norm - 1.0) <= kRotationTolerance)) {
     throw InputError(place, fmt::format("the quaternion's norm is {:.6g}, not 1", norm),
-                     "check the order of the columns and that the rotation is known");
+                     "check the order of the columns and that every row has a rotation");
   }
   return make_pose(rotation, position);
 }

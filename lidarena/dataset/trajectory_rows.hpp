@@ -9,10 +9,10 @@
 
 namespace lidarena {
 
-/// Gathers the poses of a trajectory file; errors name the file's line.
+/// Collects the poses of a trajectory file; errors name the line of the file.
 class TrajectoryRows {
  public:
-  /// Throws InputError (place `place`) unless `stamp` is later than the one before.
+  /// Throws InputError (place `place`) unless `stamp` is later than the previous one.
   void add(Time stamp, const Pose& pose, const std::string& place);
   bool empty() const { return poses_.empty(); }
   /// Throws InputError (place `file`) when there is no pose.
@@ -22,13 +22,13 @@ class TrajectoryRows {
   std::vector<StampedPose> poses_;
 };
 
-/// Pose of a quaternion as files have it: normalized here when its norm is within 1e-3 of one (six
-/// digits leave 1e-6, averaged ones up to 1e-4), else InputError.
+/// Pose from a quaternion as read from a file, which is normalized here; throws InputError unless
+/// its norm is within 1e-3 of one (rounding to six digits causes 1e-6, averaging up to 1e-4).
 Pose pose_from_row(const Eigen::Vector3d& position, const Eigen::Quaterniond& rotation,
                    const std::string& place);
 
-/// Pose of a 3x4 matrix [R t]: R is replaced by the nearest rotation when R R' is within 1e-3 of
-/// the identity, else InputError.
+/// Pose from a 3x4 matrix [R t]: R is replaced by the nearest rotation; throws InputError unless R
+/// R' is within 1e-3 of the identity.
 Pose pose_from_row(const Eigen::Matrix<double, 3, 4>& matrix, const std::string& place);
 
 }  // namespace lidarena

@@ -72,12 +72,12 @@ void TumWriter::write(const StampedPose& pose) {
     throw InputError(place_,
                      fmt::format("a pose at {} s comes after one at {} s",
                                  format_seconds(pose.stamp), format_seconds(*latest_)),
-                     "poses are written in order of time, each instant once");
+                     "write poses in time order, one per time");
   }
   if (!pose.world_from_body.matrix().allFinite()) {
     throw InputError(place_,
                      fmt::format("the pose at {} s is not finite", format_seconds(pose.stamp)),
-                     "what gave it had diverged");
+                     "the estimate has diverged");
   }
   latest_ = pose.stamp;
   std::string row;

@@ -10,31 +10,32 @@
 
 namespace lidarena {
 
-/// Whether a file without a row is an empty trajectory or an error.
+/// Whether a file without rows is an empty trajectory or an error.
 enum class EmptyTrajectory { kError, kAllowed };
 
-/// Reads "t x y z qx qy qz qw" rows (seconds, meters), '#' comments. Times are read as decimal
-/// text, so nanoseconds survive; blank lines, tabs, a byte order mark, CRLF and blanks at the ends
-/// do no harm. Quaternions are normalized. Throws InputError naming file and line: not 8 numbers,
-/// a value that is not finite, a norm off 1 by more than 1e-3, a time not later than the one
-/// before, no row at all (unless `empty` allows it: a run that never gave a pose).
+/// Reads "t x y z qx qy qz qw" rows (seconds, meters), '#' comments. Times are parsed as decimal
+/// text, so that nanoseconds are kept; blank lines, tabs, a byte order mark, CRLF and outer blanks
+/// are accepted. Quaternions are normalized. Throws InputError naming file and line: not 8 numbers,
+/// a value that is not finite, a quaternion norm that differs from 1 by more than 1e-3, a time not
+/// later than the previous one, no row at all (unless `empty` allows it, for runs without any
+/// pose).
 Trajectory read_tum(const std::filesystem::path& file,
                     EmptyTrajectory empty = EmptyTrajectory::kError);
 
 /// Writes 9 decimals of time and 9 significant digits elsewhere, qw >= 0; `header` lines become
-/// comments (they name the frames and the instant). Throws Error when the disk is full.
+/// comments (they state the frames and the time of the poses). Throws Error when the disk is full.
 void write_tum(const std::filesystem::path& file, const Trajectory& trajectory,
                const std::string& header);
 
-/// Writes the same file row by row, as the poses come: nothing of it stays in memory.
+/// Writes the same format row by row, without keeping poses in memory.
 class TumWriter {
  public:
   /// Throws InputError when the file cannot be created.
   TumWriter(const std::filesystem::path& file, const std::string& header);
-  /// Throws InputError (place: the file) when the stamp is not later than the one before or the
+  /// Throws InputError (place: the file) when the stamp is not later than the previous one or the
   /// pose is not finite; Error when the disk is full.
   void write(const StampedPose& pose);
-  /// Gives the file its name.
+  /// Completes the file and renames it from NAME.part.
   void close();
 
  private:

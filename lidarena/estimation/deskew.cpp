@@ -8,9 +8,8 @@
 namespace lidarena {
 
 namespace {
-constexpr double kStraight =
-    1e-9;  // rad/s; a meter of path then departs 0.5 nm a second from its chord
-constexpr std::size_t kGrain = 2048;  // points a task: some 0.1 ms of work
+constexpr double kStraight = 1e-9;    // rad/s; below counts as straight: 0.5 nm error per m and s
+constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
 }  // namespace
 
 ConstantTwist::ConstantTwist(const se3::Vector6& twist_per_second)
@@ -29,7 +28,7 @@ Pose ConstantTwist::at(double seconds) const {
   if (rate_ < kStraight) return se3::exp(twist_ * seconds);
   const double sine = std::sin(rate_ * seconds);
   const double cosine = std::cos(rate_ * seconds);
-  // Rodrigues, and the left Jacobian times rho split along and across the axis
+  // Rodrigues' formula, and the left Jacobian times rho, split along and across the axis
   return make_pose(Eigen::Matrix3d::Identity() + sine * skew_ + (1.0 - cosine) * skew_squared_,
                    sine * across_ + seconds * along_ + (1.0 - cosine) * turned_);
 }

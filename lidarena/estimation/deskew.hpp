@@ -12,7 +12,7 @@
 namespace lidarena {
 
 /// Motion with a constant body twist (m/s, rad/s): after t seconds the pose is exp(t * twist). The
-/// closed form is laid out once, so that an instant costs one sine and one cosine.
+/// coefficients of the closed form are computed once, so that a pose costs one sine and one cosine.
 class ConstantTwist {
  public:
   explicit ConstantTwist(const se3::Vector6& twist_per_second);
@@ -30,13 +30,13 @@ class ConstantTwist {
   Eigen::Matrix3d skew_squared_;
 };
 
-/// Positions (m) of all points of `scan`, in order, seen from the lidar as it stood at `reference`,
-/// while it moved with the constant `twist_per_second` (m/s, rad/s, lidar frame). Untimed scans
-/// come back as they are, and so do points that are not finite.
+/// Positions (m) of all points of `scan`, in order, in the lidar frame at time `reference`, for a
+/// lidar that moves with the constant `twist_per_second` (m/s, rad/s, lidar frame). Untimed scans
+/// are returned unchanged; points that are not finite stay so.
 std::vector<Eigen::Vector3f> deskew(const Scan& scan, const se3::Vector6& twist_per_second,
                                     Time reference, const Parallel& parallel);
 
-/// The positions as they were measured.
+/// The positions as measured, without de-skewing.
 std::vector<Eigen::Vector3f> positions(const Scan& scan);
 
 }  // namespace lidarena

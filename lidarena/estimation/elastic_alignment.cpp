@@ -13,12 +13,13 @@ namespace lidarena {
 
 namespace {
 
-constexpr double kConverged = 1e-9;  // m and rad, of the whole step
-// Share of the largest diagonal element that is added to all: far above rounding, so that what no
-// match tells of stays as it was, and far below what any match tells.
+constexpr double kConverged = 1e-9;  // m and rad, norm of the whole step
+// Damping: this share of the largest diagonal element is added to all. It is far above rounding, so
+// that directions without information from matches stay unchanged, and far below the information of
+// any match.
 constexpr double kDamping = 1e-10;
 
-/// Normal equations of a motion's knots, from those of its segments.
+/// Normal equations of the knots of a motion, kept per segment.
 struct MotionEquations {
   std::vector<NormalEquations<12>> segments;
 
@@ -61,14 +62,16 @@ MotionEquations equations_of(const ElasticProblem& problem, const ElasticTrack& 
       [](MotionEquations& total, const MotionEquations& part) { total += part; });
 }
 
-/// One vector term of the prior: its error, and its derivative by the knots' increments.
+/// One vector term of the prior: its error, and its derivative with respect to the increments of
+/// the knots.
 struct PriorTerm {
   double weight;
   Eigen::Vector3d error;
   Eigen::Matrix<double, 3, Eigen::Dynamic> jacobian;
 };
 
-/// Rotation vector in world from one knot to another, and its derivative by their increments.
+/// Rotation vector in the world frame from one knot to another, and its derivatives with respect to
+/// their increments.
 struct Turn {
   Eigen::Vector3d vector;
   Eigen::Matrix3d by_from;
@@ -119,7 +122,7 @@ class PriorTerms {
     position(0, -1.0, term);
     position(last_, 1.0, term);
   }
-  /// Second differences at an inner knot.
+  /// Adds the second differences at an inner knot.
   void add_bends(const MotionPrior& prior, Eigen::Index i) {
     if (prior.bend > 0.0) {
       PriorTerm& term = open(prior.bend, knot(i - 1).translation() - 2.0 * knot(i).translation() +
@@ -143,7 +146,7 @@ class PriorTerms {
   std::vector<PriorTerm> terms_;
 };
 
-/// The step of all knots: (translation, rotation) of each.
+/// The Gauss-Newton step: (translation, rotation) of each knot.
 Eigen::VectorXd step_of(const ElasticProblem& problem, const ElasticMotion& motion,
                         const Parallel& parallel) {
   const auto unknowns = static_cast<Eigen::Index>(6 * motion.knots.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The same cost as in elastic_alignment.cpp; the prior is written a second time, for automatic
-// derivatives.
+// Minimizes the same cost as elastic_alignment.cpp; the prior is written a second time, for
+// automatic differentiation.
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
@@ -51,11 +51,12 @@ bool put(double weight, const Vector3<T>& error, T* residual) {
   return true;
 }
 
-/// A point's error, with the derivative of ElasticSegment: automatic ones cost ten times as much.
+/// A point's error, with the analytic derivative of ElasticSegment: automatic differentiation takes
+/// ten times as long.
 template <int kRows>
 class MatchCost : public ceres::SizedCostFunction<kRows, kKnot, kKnot> {
  public:
-  /// `a`: where in the segment.
+  /// `a`: position in the segment, 0 to 1.
   MatchCost(const ElasticMatch& match, double a) : match_(match), a_(a) {}
 
   bool Evaluate(double const* const* knots, double* residual, double** jacobians) const override {
@@ -80,8 +81,9 @@ class MatchCost : public ceres::SizedCostFunction<kRows, kKnot, kKnot> {
   static Pose pose_of(const double* knot) {
     return make_pose(rotation_of(knot).toRotationMatrix(), Eigen::Vector3d(position_of(knot)));
   }
-  /// A derivative by the rotation vector on the left as one by x y z w. The manifold's increment d
-  /// makes of q the product (d, 1) q, whose derivative G has orthonormal columns, and turns by 2 d.
+  /// Converts a derivative with respect to a rotation vector on the left to one with respect to x y
+  /// z w. The manifold's increment d maps q to the product (d, 1) q, which rotates by 2 d; its
+  /// derivative G has orthonormal columns.
   static Eigen::RowVector4d by_quaternion(const Eigen::RowVector3d& by_rotation,
                                           const double* knot) {
     const Eigen::Vector3d v(knot[0], knot[1], knot[2]);
@@ -148,7 +150,7 @@ struct AngularBendCost {
   }
 };
 
-/// An ElasticProblem in Ceres' terms, about knots that lie in `knots`.
+/// An ElasticProblem as a Ceres problem that changes `knots` in place.
 class Adjustment {
  public:
   Adjustment(const ElasticProblem& problem, std::vector<Knot>& knots)
@@ -190,7 +192,7 @@ class Adjustment {
     adjustment_.AddResidualBlock(cost, loss_.get(), knots_[first].data(), knots_[first + 1].data());
   }
 
-  /// One term of the prior over the knots with these indices; none if it weighs nothing.
+  /// Adds one term of the prior over the knots with these indices, unless its weight is zero.
   template <class Cost, class... Blocks>
   void add_term(double weight, Cost cost, Blocks... knots) {
     if (!(weight > 0.0)) return;

@@ -9,9 +9,9 @@
 namespace lidarena {
 
 namespace {
-constexpr double kStraight = 1e-9;  // rad; below, a segment does not turn
+constexpr double kStraight = 1e-9;  // rad; below this, a segment counts as not rotating
 // Below this angle (rad) quotients of canceling terms are replaced by the first term of their
-// series; the next one is smaller by the square.
+// series; the next term is smaller by the square of the angle.
 constexpr double kSmall = 1e-4;
 }  // namespace
 
@@ -61,14 +61,15 @@ Eigen::Vector3d ElasticSegment::place(const Eigen::Vector3d& point, double a) co
          a * step_;
 }
 
-// With K = hat(axis), K^3 = -K, the slerp's rotation at a changes by (I - A) of the first knot's
-// increment and A of the second's, A = a J_l(a angle) J_l(angle)^-1 (left Jacobians of SO(3), Sola
-// et al. 2018, eq. 145 and 146): both factors are polynomials in K, and so is A.
+// With K = hat(axis), K^3 = -K, the rotation of the slerp at a changes by (I - A) times the first
+// knot's increment plus A times the second's, A = a J_l(a angle) J_l(angle)^-1 (left Jacobians of
+// SO(3), Sola et al. 2018, eq. 145 and 146): both factors are polynomials in K, and so is A.
 ElasticSegment::Row ElasticSegment::row(const Eigen::Vector3d& point, double a,
                                         const Eigen::Vector3d& direction) const {
   const double turn = a * angle_;
   const double sine = std::sin(turn);
   const double versine = 1.0 - std::cos(turn);
+  // Coefficients of these polynomials:
   const double u = turn < kSmall ? 0.5 * turn : versine / turn;            // of K in J_l
   const double v = turn < kSmall ? turn * turn / 6.0 : 1.0 - sine / turn;  // of K^2 in J_l
   const double h = 0.5 * angle_;                                           // J_l^-1: -h K

@@ -9,9 +9,10 @@
 
 namespace lidarena {
 
-/// A motion through one scan by poses at equal steps of time from its first to its last instant, at
-/// least two. Between neighbors: linear in position, spherical-linear in rotation. With two knots
-/// it is the elastic scan of Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP" (ICRA 2022, III-B).
+/// Motion during one scan: at least two poses (knots) at equal time steps from its first to its
+/// last instant. Between neighbors: linear in position, spherical-linear in rotation. With two
+/// knots it is the elastic scan of Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP" (ICRA 2022,
+/// III-B).
 struct ElasticMotion {
   std::vector<Pose> knots;
 
@@ -20,34 +21,36 @@ struct ElasticMotion {
   std::size_t segments() const { return knots.size() - 1; }
   const Pose& begin() const { return knots.front(); }
   const Pose& end() const { return knots.back(); }
-  /// Pose at `alpha` in [0, 1] of the scan.
+  /// Pose at `alpha`: 0 first, 1 last instant of the scan.
   Pose at(double alpha) const;
 };
 
-/// How a motion differs from another one: sums over first and last knot.
+/// Difference between two motions: sums over first and last knot.
 struct MotionChange {
   double translation_m = 0.0;
   double rotation_rad = 0.0;
 };
 MotionChange change_between(const ElasticMotion& a, const ElasticMotion& b);
 
-/// The motion between two neighboring knots, laid out so that placing a point costs one sine and
-/// one cosine. `a` in [0, 1] goes from one knot to the next.
+/// The motion between two neighboring knots, with precomputed coefficients, so that transforming a
+/// point costs one sine and one cosine. `a` in [0, 1] goes from one knot to the next.
 class ElasticSegment {
  public:
   using Row = Eigen::Matrix<double, 1, 12>;
 
   ElasticSegment(const Pose& from, const Pose& to);
 
-  /// World position of a point measured at `a`.
+  /// World position of a point (lidar frame) measured at `a`.
   Eigen::Vector3d place(const Eigen::Vector3d& point, double a) const;
 
-  /// Derivative of direction . place(point, a) by left increments (translation, rotation about the
-  /// knot's own position) of the two knots, in this order. Exact, with the Jacobian of the slerp.
+  /// Derivative of direction . place(point, a) with respect to left increments (translation,
+  /// rotation about the knot's own position) of the two knots, in this order. Exact, with the
+  /// Jacobian of the slerp.
   Row row(const Eigen::Vector3d& point, double a, const Eigen::Vector3d& direction) const;
 
-  /// Likewise with the first-order stand-in of the public program, good for small turns: the
-  /// rotation's increment is (1 - a) that of one knot and a that of the other.
+  /// The same with the first-order approximation of the published program, valid for small
+  /// rotations: the rotation increment is (1 - a) times that of one knot plus a times that of the
+  /// other.
   Row first_order_row(const Eigen::Vector3d& point, double a,
                       const Eigen::Vector3d& direction) const;
 
@@ -61,7 +64,7 @@ class ElasticSegment {
   double half_cotangent_;  ///< 1 - angle / 2 cot(angle / 2)
 };
 
-/// The segments of a motion, and the way from a scan's alpha to one of them.
+/// The segments of a motion, and the lookup of the segment for an alpha of the scan.
 class ElasticTrack {
  public:
   explicit ElasticTrack(const ElasticMotion& motion);
@@ -73,7 +76,7 @@ class ElasticTrack {
   Place locate(double alpha) const;
   const ElasticSegment& segment(std::size_t index) const { return segments_[index]; }
   std::size_t size() const { return segments_.size(); }
-  /// World position of a point measured at `alpha` of the scan.
+  /// World position of a point (lidar frame) measured at `alpha` of the scan.
   Eigen::Vector3d place(const Eigen::Vector3d& point, double alpha) const;
 
  private:

@@ -10,12 +10,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A quiet vehicle: ten times the white noise of a cheap IMU at 200 Hz.
+// Limits for a vehicle at rest. Sigmas: ten times the white noise of a low-cost IMU at 200 Hz.
 constexpr double kStillGyroSigma = 0.02;  // rad/s
 constexpr double kStillAccelSigma = 0.2;  // m/s^2
-constexpr double kStillRate = 0.05;       // rad/s: 3 deg/s of first bias
-constexpr double kStillForce = 0.3;       // m/s^2 of bias, off gravity's length
-constexpr double kAccelInG = 3.0;         // means below this are in units of g
+constexpr double kStillRate = 0.05;       // rad/s: a turn-on bias of 3 deg/s
+constexpr double kStillForce = 0.3;       // m/s^2: bias along gravity
+constexpr double kAccelInG = 3.0;         // mean accelerations of a norm below this are in g
 
 }  // namespace
 

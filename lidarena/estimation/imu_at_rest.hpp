@@ -7,9 +7,9 @@
 
 #include "lidarena/base/imu_sample.hpp"
 
-/// What an IMU at rest tells an odometry at its start (leveling: P. D. Groves, "Principles of
-/// GNSS, Inertial, and Multisensor Integrated Navigation Systems", 2nd ed., 2013, section 5.6; that
-/// a LiDAR-inertial odometry begins so: W. Xu, F. Zhang, "FAST-LIO", IEEE RA-L 2021). The mean rate
+/// Initialization of an odometry by an IMU at rest (leveling: P. D. Groves, "Principles of GNSS,
+/// Inertial, and Multisensor Integrated Navigation Systems", 2nd ed., 2013, section 5.6; as the
+/// start of a LiDAR-inertial odometry: W. Xu, F. Zhang, "FAST-LIO", IEEE RA-L 2021). The mean rate
 /// is the gyro's bias; the mean specific force points up.
 namespace lidarena {
 
@@ -21,23 +21,24 @@ struct ImuStatistics {
   double gyro_sigma = 0.0;   ///< rad/s, root of the mean square over three axes
   double accel_sigma = 0.0;  ///< likewise, in the unit of the accelerations
 };
-/// Zeros without samples.
+/// All zeros if there are no samples.
 ImuStatistics statistics(const std::vector<ImuSample>& samples);
 
-/// What brings the accelerations to m/s^2: `gravity` (m/s^2) if by their size they are in units of
-/// g, as Livox's drivers give them, else 1.
+/// Factor that converts the accelerations to m/s^2: `gravity` (m/s^2) if their size shows that they
+/// are in units of g, as from Livox's drivers, else 1.
 double accel_scale_of(const ImuStatistics& imu, double gravity);
 
-/// Whether the samples, three or more, show a sensor that stands: no spread beyond a quiet
-/// vehicle's, no turning beyond a gyro's first bias, and a force as long as `gravity` (m/s^2). A
-/// steady push across gravity, which hardly makes the force longer, is not seen.
+/// Whether the samples, at least three, are of a sensor at rest: a spread within that of a vehicle
+/// at rest, a mean rate within a gyro's turn-on bias, and a mean force as long as `gravity`
+/// (m/s^2). A constant horizontal acceleration is not detected, because it hardly changes the
+/// length of the force.
 bool stands(const ImuStatistics& imu, double gravity, double accel_scale);
 
-/// Of the accelerometer's bias at rest the part along gravity (m/s^2, IMU frame): what the mean
-/// force is longer than `gravity` by. The part across looks like a lean.
+/// The accelerometer's bias along gravity at rest (m/s^2, IMU frame): by how much the mean force is
+/// longer than `gravity`. The horizontal bias cannot be distinguished from a tilt.
 Eigen::Vector3d accel_bias_along(const ImuStatistics& imu, double gravity, double accel_scale);
 
-/// The rotation without yaw that turns `up`, a direction of the body of any length, to z.
+/// The rotation without yaw that maps `up` (body frame, any length) to the direction of z.
 Eigen::Matrix3d upright(const Eigen::Vector3d& up);
 
 }  // namespace lidarena

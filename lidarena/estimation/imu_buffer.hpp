@@ -10,13 +10,13 @@
 
 namespace lidarena {
 
-/// Rate and specific force between two instants, held constant: the mean of those at both.
+/// Rate and specific force between two instants, held constant: the mean of the values at both.
 struct ImuInterval {
   Time begin{0};
   Time end{0};
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
-  bool gap = false;                                 ///< too far from any sample to be trusted
+  bool gap = false;                                 ///< too far from any sample to be reliable
   bool saturated = false;  ///< one of its samples is at the end of its range
   double seconds() const { return to_seconds(end - begin); }
 };
@@ -29,23 +29,23 @@ std::size_t count_saturated(const std::vector<ImuInterval>& intervals);
 /// `accel_scale` converts the samples' accelerations to m/s^2.
 bool is_saturated(const ImuSample& previous, const ImuSample& sample, double accel_scale);
 
-/// The IMU's last samples, which can be asked for any span of time, and again.
+/// The most recent IMU samples, which can be queried repeatedly for any span of time.
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s) : max_gap_(from_seconds(max_gap_s)) {}
 
-  /// Refuses samples that are not finite or not later than the previous one; true if it was taken.
+  /// Adds a sample. Returns false if it is rejected: not finite, or not later than the one before.
   /// A stamp far ahead of all others is dropped when the next sample shows that it was wrong.
   bool add(const ImuSample& sample);
   /// Factor that converts accelerations to m/s^2; used for judging saturation alone.
   void set_accel_scale(double scale) { accel_scale_ = scale; }
-  /// Intervals without gap between them from `begin` to `end`, cut at the samples. What lies
-  /// between samples is interpolated; the first and the last sample hold beyond. Empty without
-  /// samples, and unless begin < end.
+  /// Consecutive intervals that cover `begin` to `end`, cut at the samples. Values between samples
+  /// are interpolated; before the first and after the last sample, the values of that sample are
+  /// used. Empty without samples, and unless begin < end.
   std::vector<ImuInterval> between(Time begin, Time end) const;
   /// The samples themselves in [begin, end].
   std::vector<ImuSample> samples(Time begin, Time end) const;
-  /// Forgets what no question about `t` or later needs.
+  /// Removes the samples that queries for `t` or later do not need.
   void forget_before(Time t);
 
   bool empty() const { return samples_.empty(); }

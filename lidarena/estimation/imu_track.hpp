@@ -22,13 +22,14 @@ struct ImuStep {
 /// The steps of one scan, in time order.
 using ImuTrack = std::vector<ImuStep>;
 
-/// Pose at `t` by the last step that begins at or before it, or the first step if `t` lies before
-/// all. `track` is not empty.
+/// Pose at `t`, extrapolated from the last step that begins at or before it, or from the first step
+/// if all begin later. `track` must not be empty.
 Pose pose_at(const ImuTrack& track, Time t);
 
-/// Positions (m) of all points of `scan`, in order, seen from the LiDAR as it is at `end`
-/// (FAST-LIO2's backward propagation, eq. 10, whose relative poses are those of the forward one).
-/// Untimed scans come back as they are; so do points that are not finite.
+/// Positions (m) of all points of `scan`, in order, in the LiDAR frame at the instant of
+/// `world_from_imu_at_end` (FAST-LIO2's backward propagation, eq. 10, with the relative poses of
+/// the forward propagation). Untimed scans are returned unchanged; points that are not finite stay
+/// so.
 std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
                                     const Pose& imu_from_lidar, const Pose& world_from_imu_at_end,
                                     const Parallel& parallel);

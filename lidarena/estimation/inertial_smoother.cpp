@@ -12,10 +12,10 @@ namespace {
 
 using State = NavState;
 
-constexpr int kIterations = 3;            // quadratic: two leave nothing, the third is for starts
-constexpr double kConverged = 1e-9;       // m, rad, ...: largest step
-constexpr double kKnown = 1e-6;           // rad: sigma of a gravity that is known
-constexpr double kLeastVariance = 1e-16;  // of a walk that is said to be none
+constexpr int kIterations = 3;       // quadratic convergence: two suffice, a third at the start
+constexpr double kConverged = 1e-9;  // m, rad, ...: largest element of the step
+constexpr double kKnown = 1e-6;      // rad: sigma of the direction of a known gravity
+constexpr double kLeastVariance = 1e-16;  // added to all, for random walks that are set to 0
 
 Eigen::Index block(std::size_t state) { return 2 + static_cast<Eigen::Index>(state) * State::kDof; }
 
@@ -25,7 +25,7 @@ State::Matrix inverse(const State::Matrix& covariance) {
   return padded.ldlt().solve(State::Matrix::Identity());
 }
 
-/// Of minus(state, mean) by an error of the state.
+/// Jacobian of minus(state, mean) with respect to an error of the state.
 State::Matrix error_of_difference(const State::Vector& difference) {
   State::Matrix j = State::Matrix::Identity();
   j.topLeftCorner<3, 3>() = so3::right_jacobian_inverse(difference.head<3>());
@@ -141,7 +141,8 @@ void InertialSmoother::set_tilt(const Eigen::Vector2d& tilt) {
 }
 
 void InertialSmoother::marginalize_oldest() {
-  // What the oldest state is part of, as a normal distribution of tilt and second state alone.
+  // The terms that involve the oldest state, as a normal distribution of only the tilt and the
+  // second state.
   const Equations sum = equations(2, 1);
   const Eigen::Index oldest = block(0);
   const Eigen::Index second = block(1);

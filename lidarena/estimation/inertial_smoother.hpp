@@ -9,7 +9,7 @@
 
 namespace lidarena {
 
-/// A pose of the IMU as something else measured it.
+/// A pose of the IMU measured by another method, e.g. scan matching.
 struct PoseMeasurement {
   using Information = Eigen::Matrix<double, 6, 6>;
   Pose world_from_imu = Pose::Identity();
@@ -17,36 +17,36 @@ struct PoseMeasurement {
   Information information = Information::Identity();
 };
 
-/// Where a smoother starts from.
+/// Initial state of a smoother.
 struct InertialStart {
   NavState state;
   NavState::Matrix covariance = NavState::Matrix::Identity();
   Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world
-  double gravity_sigma = 0.0;                   ///< rad, of its direction; 0: it is known
+  double gravity_sigma = 0.0;                   ///< rad, of its direction; 0: known exactly
 };
 
 /// Fuses poses from scan matching with the IMU: a factor graph of the last few states joined by
 /// preintegrated measurements (Shan et al., "LIO-SAM", IROS 2020, section III-B), solved by
-/// Gauss-Newton; what is older is marginalized into a prior. Beside the states it can estimate in
-/// which direction gravity points in the world, whose frame the first scan has fixed.
+/// Gauss-Newton; older states are marginalized into a prior. It can also estimate the direction of
+/// gravity in the world, whose frame is fixed by the first scan.
 class InertialSmoother {
  public:
-  /// `lag` measurements stay in the graph (at least 1).
+  /// `lag`: number of measurements that stay in the graph (at least 1).
   explicit InertialSmoother(int lag = 6) : lag_(static_cast<std::size_t>(lag)) {}
 
   void start(const InertialStart& start);
-  /// The state at the end of `since_last`, measured.
+  /// Adds the state at the end of `since_last` and its measured pose.
   void add(const Preintegration& since_last, const PoseMeasurement& measured);
 
   const NavState& latest() const { return states_.back(); }
   const Eigen::Vector3d& gravity() const { return gravity_; }
-  /// Of the latest state.
+  /// Covariance of the latest state.
   const NavState::Matrix& covariance() const { return covariance_; }
   std::size_t size() const { return states_.size(); }
 
  private:
-  /// Gravity's direction as a turn of two angles from where it was at the start, then one state
-  /// after the other.
+  /// Order of the unknowns: direction of gravity as a rotation by two angles from its initial one,
+  /// then one state after the other.
   static constexpr int kGravityDof = 2;
   using Prior = Eigen::Matrix<double, kGravityDof + NavState::kDof, 1>;
   using PriorInformation =
@@ -71,7 +71,7 @@ class InertialSmoother {
   Eigen::Vector3d start_gravity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
   Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
-  NavState prior_state_;  ///< of the oldest state
+  NavState prior_state_;  ///< prior mean of the oldest state
   Eigen::Vector2d prior_tilt_ = Eigen::Vector2d::Zero();
   PriorInformation prior_information_ = PriorInformation::Identity();
   NavState::Matrix covariance_ = NavState::Matrix::Identity();

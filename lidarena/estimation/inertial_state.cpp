@@ -16,14 +16,14 @@ auto part(const State::Vector& v, State::Block block) {
   return v.segment<Size>(block);
 }
 
-/// The rotation vector, across `b`, that turns the direction of `b` to that of `a`.
+/// The rotation vector, perpendicular to `b`, that rotates the direction of `b` to that of `a`.
 Eigen::Vector3d turn_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d across = b.cross(a);
   const double sine = across.norm();
   const double angle = std::atan2(sine, a.dot(b));
   if (sine > 0.0) return angle / sine * across;
   if (angle < 1.0) return Eigen::Vector3d::Zero();
-  return angle * tangent_basis(b).col(0);  // opposite: any way round
+  return angle * tangent_basis(b).col(0);  // opposite: any perpendicular axis
 }
 
 }  // namespace
@@ -68,8 +68,8 @@ State::Matrix transport(const State& from, const State::Vector& delta) {
   for (const State::Block block : {State::kRotation, State::kLidarRotation}) {
     a.block<3, 3>(block, block) = so3::right_jacobian(part(delta, block));
   }
-  // exp(B (d + e)) g is exp(left_jacobian(B d) B e) applied to the moved gravity, and of that turn
-  // the part along the moved gravity changes nothing.
+  // exp(B (d + e)) g is exp(left_jacobian(B d) B e) applied to the rotated gravity, and the part of
+  // that rotation about the rotated gravity has no effect.
   const Eigen::Matrix<double, 3, 2> basis = tangent_basis(from.gravity);
   const Eigen::Vector3d turn = basis * part<2>(delta, State::kGravity);
   const Eigen::Vector3d moved = so3::exp(turn) * from.gravity;
@@ -107,7 +107,7 @@ State::Matrix propagate(State& state, const Eigen::Vector3d& gyro, const Eigen::
 }
 
 State::Matrix step_noise(const ImuNoise& noise, double seconds) {
-  // Of the same variance on each axis, so turning it changes nothing.
+  // The same variance on each axis, so rotating it changes nothing.
   State::Vector variances = State::Vector::Zero();
   const auto set = [&](State::Block block, double density) {
     variances.segment<3>(block).setConstant(density * density * seconds);

@@ -10,13 +10,14 @@
 
 namespace lidarena {
 
-/// Motion of an IMU, its biases, gravity, and where the LiDAR sits on it: the state of
+/// Motion of an IMU, its biases, gravity, and the pose of the LiDAR on it: the state of
 /// LiDAR-inertial filters (Xu, Cai, He, Lin, Zhang, "FAST-LIO2", IEEE T-RO 2022, section IV). World
-/// frame: any. Errors live in its tangent space of 23 dimensions, rotations perturbed on the right.
+/// frame: any. Errors are vectors in its tangent space of 23 dimensions, with rotations perturbed
+/// on the right.
 struct InertialState {
   static constexpr int kDof = 23;
-  /// Where each part's error begins in a tangent vector. The first 12 are those that a LiDAR point
-  /// depends on.
+  /// Index at which each part's error begins in a tangent vector. The first 12 elements are those
+  /// that a LiDAR point depends on.
   enum Block {
     kPosition = 0,
     kRotation = 3,
@@ -47,24 +48,25 @@ InertialState plus(const InertialState& state, const InertialState::Vector& delt
 /// The tangent vector at `b` that leads to `a`: plus(b, minus(a, b)) is a.
 InertialState::Vector minus(const InertialState& a, const InertialState& b);
 
-/// How a tangent vector at plus(`from`, `delta`), small, follows from a change of `delta`:
-/// minus(plus(from, delta + e), plus(from, delta)) ~ transport(from, delta) e.
+/// Jacobian of the tangent vector at plus(`from`, `delta`) with respect to a small change e of
+/// `delta`: minus(plus(from, delta + e), plus(from, delta)) ~ transport(from, delta) e.
 InertialState::Matrix transport(const InertialState& from, const InertialState::Vector& delta);
 
-/// Orthonormal basis of the plane across `direction`; continuous but where the smallest of the
-/// direction's components changes.
+/// Orthonormal basis of the plane perpendicular to `direction`; continuous except where another
+/// component of `direction` becomes the smallest.
 Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction);
 
-/// How the position goes on over a step: x + v dt, or with the half of a dt^2.
+/// How the position is integrated over a step: x + v dt, or x + v dt + a dt^2 / 2.
 enum class Integration { kFirstOrder, kSecondOrder };
 
 /// One IMU step of `seconds` with rate and specific force held constant. Changes `state`; returns
-/// the Jacobian of the new error by the old one.
+/// the Jacobian of the new error with respect to the old one.
 InertialState::Matrix propagate(InertialState& state, const Eigen::Vector3d& gyro,
                                 const Eigen::Vector3d& accel, double seconds,
                                 Integration integration);
 
-/// Covariance that the IMU's noise adds over a step of `seconds`: density^2 * seconds for each.
+/// Covariance that the IMU's noise adds over a step of `seconds`: density^2 * seconds for each
+/// part.
 InertialState::Matrix step_noise(const ImuNoise& noise, double seconds);
 
 }  // namespace lidarena

@@ -29,7 +29,7 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
     if (points.count == 0) continue;
     result.points = points;
 
-    // The prior, as it is seen from x: mean and covariance in the tangent space there.
+    // Mean and covariance of the prior in the tangent space at x.
     const State::Vector moved = minus(x, prior.state);
     const State::Matrix a = transport(prior.state, moved);
     const State::Matrix prior_information =
@@ -56,8 +56,8 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
 
 namespace {
 
-/// Kalman update by a measurement of N neighboring parts of the state: `off` is measured minus
-/// believed, in their tangent space.
+/// Kalman update with a measurement of N neighboring components of the state: `off` is measured
+/// minus predicted, in their tangent space.
 template <int N>
 Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<double, N>& off,
                const Eigen::Vector<double, N>& sigma) {

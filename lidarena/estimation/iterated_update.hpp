@@ -9,18 +9,19 @@
 
 namespace lidarena {
 
-/// What is believed of the motion: the state, and the covariance of its error.
+/// Estimate of the motion: the state and the covariance of its error.
 struct Belief {
   InertialState state;
   InertialState::Matrix covariance = InertialState::Matrix::Identity();
 };
 
-/// Errors that LiDAR points depend on: position, rotation, and the LiDAR's rotation and position.
+/// Number of error components that LiDAR points depend on: position, rotation, and the rotation and
+/// position of the LiDAR.
 inline constexpr int kPointDof = 12;
 
 struct IteratedUpdateOptions {
-  int max_iterations = 3;   ///< one more evaluation than this, at most
-  double tolerance = 1e-3;  ///< an evaluation whose step is nowhere larger has converged
+  int max_iterations = 3;   ///< at most one more evaluation than this
+  double tolerance = 1e-3;  ///< converged if no component of the step is larger
   double variance = 1e-3;   ///< m^2, of each point's residual
 };
 
@@ -28,25 +29,27 @@ struct IteratedUpdate {
   Belief belief;
   int evaluations = 0;
   bool converged = false;
-  /// Of the last evaluation that had residuals; its count is 0 when none had: the prior stands.
+  /// Of the last evaluation that had residuals; its count is 0 if none had: then `belief` is the
+  /// prior.
   NormalEquations<kPointDof> points;
 };
 
-/// Residuals r (m) of all points at a state, as the sums of J^T J and J^T r; `search` asks for new
-/// correspondences, else those of before are used again.
+/// Residuals r (m) of all points at a state, as the sums of J^T J and J^T r. If `search`, searches
+/// for new correspondences, else uses the previous ones.
 using PointResiduals =
     std::function<NormalEquations<kPointDof>(const InertialState& state, bool search)>;
 
-/// Update of an iterated error-state Kalman filter on the manifold with the gain that inverts a
-/// matrix of the state's size and not of the measurements' (FAST-LIO2, eq. 14-18, after He, Xu,
-/// Zhang, "Kalman Filters on Differentiable Manifolds", 2021). New correspondences are searched at
-/// the start, whenever an evaluation has converged, and for the last evaluation if none has.
+/// Update of an iterated error-state Kalman filter on the manifold, with the form of the gain that
+/// inverts a matrix of the size of the state instead of that of the measurements (FAST-LIO2, eq.
+/// 14-18, after He, Xu, Zhang, "Kalman Filters on Differentiable Manifolds", 2021). New
+/// correspondences are searched at the start, whenever an evaluation has converged, and for the
+/// last evaluation if none has.
 IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
                                const IteratedUpdateOptions& options);
 
-/// Kalman update by "the velocity is zero" with `sigma` m/s on each axis.
+/// Kalman update with the measurement "the velocity is zero", sigma `sigma` m/s on each axis.
 Belief zero_velocity_update(const Belief& prior, double sigma);
-/// Kalman update by "the IMU is at this pose", with sigmas in m and rad on each axis.
+/// Kalman update with a measured pose of the IMU, with sigmas in m and rad on each axis.
 Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
                    double rotation_sigma);
 

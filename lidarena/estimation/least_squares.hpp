@@ -18,7 +18,7 @@ struct NormalEquations {
   Matrix hessian = Matrix::Zero();   ///< sum of w J^T J
   Vector gradient = Vector::Zero();  ///< sum of w J^T r
   double cost = 0.0;                 ///< 1/2 sum of w |r|^2
-  std::size_t count = 0;             ///< residual blocks
+  std::size_t count = 0;             ///< number of residual blocks
 
   /// Adds one residual block of R rows with its Jacobian and weight.
   template <int R>
@@ -38,11 +38,11 @@ struct NormalEquations {
     return *this;
   }
 
-  /// The step, by L D L^T; directions that no residual constrains stay at zero if all do.
+  /// The step, by L D L^T decomposition; zero if no residual constrains any direction.
   Vector solve() const { return -hessian.ldlt().solve(gradient); }
 };
 
-/// Sums body(i, equations) over i in [0, count): the same bits on any number of threads.
+/// Sums body(i, equations) over i in [0, count); bit-identical for any number of threads.
 template <int N, class Body>
 NormalEquations<N> accumulate_normal_equations(const Parallel& parallel, std::size_t count,
                                                Body&& body) {

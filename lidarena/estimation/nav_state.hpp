@@ -7,14 +7,14 @@
 
 namespace lidarena {
 
-/// What is added to the samples of an IMU at rest; changes slowly.
+/// Biases of an IMU: slowly changing offsets of its samples.
 struct ImuBias {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
 };
 
-/// Motion of an IMU at an instant, and its biases. World frame: any. Errors live in its tangent
-/// space of 15 dimensions, the rotation perturbed on the right.
+/// Motion of an IMU at an instant, and its biases. World frame: any. Errors are vectors in its
+/// tangent space of 15 dimensions, with the rotation perturbed on the right.
 struct NavState {
   static constexpr int kDof = 15;
   enum Block { kRotation = 0, kVelocity = 3, kPosition = 6, kGyroBias = 9, kAccelBias = 12 };

@@ -13,7 +13,7 @@
 namespace lidarena {
 namespace {
 
-/// A node as the solver moves it.
+/// The parameters of a node in the solver.
 struct Parameters {
   Eigen::Quaterniond rotation;
   Eigen::Vector3d translation;
@@ -39,7 +39,7 @@ Eigen::Matrix<T, 6, 1> difference(const Quaternion<T>& rotation, const Vector3<T
 
 struct PriorError {
   Pose measured;
-  PoseGraph::Covariance root;  ///< of the information
+  PoseGraph::Covariance root;  ///< square root of the information
 
   template <class T>
   bool operator()(const T* rotation, const T* translation, T* residual) const {
@@ -93,13 +93,14 @@ Eigen::Matrix<double, N, N> root_of_information(const Eigen::Matrix<double, N, N
   return factor.matrixL().solve(Eigen::Matrix<double, N, N>::Identity());
 }
 
-/// Builds the solver's problem; the problem owns what is new here.
+/// Builds the Ceres problem, which owns the objects created by `new` here.
 class Problem {
  public:
   explicit Problem(const PoseGraph& graph) {
     for (const Pose& node : graph.nodes) {
       if (!node.matrix().allFinite()) {
-        throw InputError("pose graph", "a node is not finite", "leave out poses that diverged");
+        throw InputError("pose graph", "the pose of a node is not finite",
+                         "leave out poses that diverged");
       }
       parameters_.push_back({Eigen::Quaterniond(node.linear()), node.translation()});
     }
@@ -123,7 +124,8 @@ class Problem {
     options.sparse_linear_algebra_library_type = ceres::EIGEN_SPARSE;
     options.num_threads = 1;
     options.max_num_iterations = max_iterations;
-    // Nearly Gauss-Newton: a long chain bends so softly that the usual damping would hold it fast.
+    // A large trust region, so nearly Gauss-Newton: a long chain of poses has little stiffness
+    // against bending, and the default damping would keep it from moving.
     options.initial_trust_region_radius = 1e12;
     options.function_tolerance = 1e-10;
     options.logging_type = ceres::SILENT;
@@ -147,7 +149,8 @@ class Problem {
                      "add its pose to `nodes` first");
   }
 
-  // Nodes are looked up before anything is made for the solver, which owns it only once added.
+  // Nodes are looked up (which may throw) before a cost function is created, because the solver
+  // owns that only once it is added.
   void add(const PoseGraph::Prior& prior) {
     double* const blocks[] = {rotation(prior.node), translation(prior.node)};
     auto* error = new ceres::AutoDiffCostFunction<PriorError, 6, 4, 3>(

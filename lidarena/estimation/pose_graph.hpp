@@ -16,20 +16,20 @@ struct RobustLoss {
   double scale = 1.0;  ///< in sigmas of the whole measurement
 };
 
-/// Poses in the world and what was measured of them, all rigid in SE(3): the back end of a SLAM
-/// with keyframes (Grisetti, Kuemmerle, Stachniss, Burgard, "A Tutorial on Graph-Based SLAM", IEEE
-/// ITS Magazine 2010). Covariances are of (translation in m, rotation in rad), both in the frame of
-/// the node that is measured from; they must be positive definite.
+/// Poses in the world and measurements of them, all in SE(3): the back end of keyframe-based SLAM
+/// (Grisetti, Kuemmerle, Stachniss, Burgard, "A Tutorial on Graph-Based SLAM", IEEE ITS Magazine
+/// 2010). Covariances are of (translation in m, rotation in rad), both in the frame of the node
+/// that is measured from; they must be positive definite.
 struct PoseGraph {
   using Covariance = Eigen::Matrix<double, 6, 6>;
 
-  /// Node `node` stands at this pose.
+  /// A measured pose of node `node`.
   struct Prior {
     std::size_t node = 0;
     Pose world_from_node = Pose::Identity();
     Covariance covariance = Covariance::Identity();
   };
-  /// Node `second` stands like this when seen from node `first`: odometry, or a loop.
+  /// A measured pose of node `second` relative to node `first`: odometry or a loop.
   struct Between {
     std::size_t first = 0;
     std::size_t second = 0;
@@ -37,7 +37,7 @@ struct PoseGraph {
     Covariance covariance = Covariance::Identity();
     RobustLoss loss{};
   };
-  /// Node `node` is at this place (satellite navigation, a marker), m.
+  /// A measured position (m) of node `node` (satellite navigation, a marker).
   struct Position {
     std::size_t node = 0;
     Eigen::Vector3d position = Eigen::Vector3d::Zero();
@@ -45,14 +45,14 @@ struct PoseGraph {
     RobustLoss loss{};
   };
 
-  std::vector<Pose> nodes;  ///< world_from_node, as far as known
+  std::vector<Pose> nodes;  ///< world_from_node, initial guesses
   std::vector<Prior> priors;
   std::vector<Between> betweens;
   std::vector<Position> positions;
 };
 
-/// Squared Mahalanobis distance of a measurement from the nodes as they stand; chi-squared with 6
-/// degrees of freedom when all is as modeled.
+/// Squared Mahalanobis distance of a measurement from the nodes of `graph`; chi-squared with 6
+/// degrees of freedom if the model holds.
 double squared_mahalanobis(const PoseGraph& graph, const PoseGraph::Between& measurement);
 
 struct PoseGraphSolution {
@@ -60,13 +60,13 @@ struct PoseGraphSolution {
   double initial_cost = 0.0;  ///< half the sum of (robust) squared Mahalanobis distances
   double final_cost = 0.0;
   int iterations = 0;
-  bool converged = false;  ///< false: `nodes` are as they were given, or the best found in time
+  bool converged = false;  ///< false: `nodes` are as given, or the best of all iterations
 };
 
-/// The nodes that fit all measurements best (Levenberg-Marquardt from where they stand). Without a
-/// prior or position the first node stays where it is. One thread: the same bits each time.
-/// Throws InputError when a node is not finite, or a measurement names a node that is not there or
-/// has a covariance that is not positive definite.
+/// The nodes that fit all measurements best (Levenberg-Marquardt, starting from `graph.nodes`).
+/// Without a prior or position the first node is fixed. Single-threaded: bit-identical each time.
+/// Throws InputError when a node is not finite, or a measurement names a node that does not exist
+/// or has a covariance that is not positive definite.
 PoseGraphSolution optimize(const PoseGraph& graph, int max_iterations = 50);
 
 }  // namespace lidarena

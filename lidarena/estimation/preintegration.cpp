@@ -10,7 +10,8 @@ using State = NavState;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Jacobians of one step's motion by the motion before and by the step's rate and force.
+/// Jacobians of the motion after one step with respect to the motion before it and to the rate and
+/// force of the step.
 struct Step {
   Eigen::Matrix<double, 9, 9> by_motion = Eigen::Matrix<double, 9, 9>::Identity();
   Eigen::Matrix<double, 9, 6> by_input = Eigen::Matrix<double, 9, 6>::Zero();
@@ -19,7 +20,7 @@ struct Step {
 Step advance(RelativeMotion& motion, const Vector3d& rate, const Vector3d& force, double dt) {
   const Vector3d half_turn = 0.5 * dt * rate;
   const Matrix3d middle = motion.rotation * so3::exp(half_turn);
-  const Matrix3d push = -middle * so3::hat(force);  // of the force by an error of the middle
+  const Matrix3d push = -middle * so3::hat(force);  // d(rotated force) / d(error of middle)
 
   Step step;
   step.by_motion.block<3, 3>(0, 0) = so3::exp(-2.0 * half_turn);
@@ -49,7 +50,7 @@ void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, doub
   by_bias_ = step.by_motion * by_bias_ - step.by_input;
 
   const auto variance = [&](double density) { return density * density; };
-  Eigen::Matrix<double, 6, 1> input;  // of a mean over the step
+  Eigen::Matrix<double, 6, 1> input;  // variance of the mean over the step
   input << Vector3d::Constant(variance(noise.gyro_density) / seconds),
       Vector3d::Constant(variance(noise.accel_density) / seconds);
   auto moved = covariance_.topLeftCorner<9, 9>();

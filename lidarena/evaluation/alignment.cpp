@@ -11,12 +11,12 @@
 namespace lidarena {
 namespace {
 
-// Positions that spread less than this (1 cm) hold no direction that noise would not hide.
+// Positions that spread less than this (1 cm) determine no direction: noise dominates.
 constexpr double kMinSpread_m = 0.01;
-// A flight whose width is under a thousandth of its length is a line: the roll about it would be
-// known to no better than (position error) / (width), many radians for 1 cm in 10 m.
+// A flight whose width is under a thousandth of its length counts as a line: the roll about it has
+// an uncertainty of (position error) / (width), more than a radian for 1 cm in 10 m.
 constexpr double kMinWidthOfLength = 1e-3;
-// A heading-only fit of an estimate that leans more than this adds 3.5 cm a meter.
+// With a larger tilt of the z axis a heading-only fit is wrong by more than 3.5 cm per meter.
 constexpr double kLeans_rad = 0.035;
 
 /// Means and cross covariance C = mean (q - q_mean) (p - p_mean)^T of truth q and estimate p.
@@ -48,7 +48,7 @@ double tilt_of(const Eigen::Matrix3d& rotation) {
   return std::atan2(z.head<2>().norm(), z.z());
 }
 
-/// Heading that turns the estimate best: argmax over theta of tr(Rz(theta)^T C).
+/// Translation and the best heading: argmax over theta of tr(Rz(theta)^T C).
 Pose fit_position_and_yaw(const Moments& m) {
   const Eigen::Matrix3d& c = m.cross;
   const double yaw = std::atan2(c(1, 0) - c(0, 1), c(0, 0) + c(1, 1));
@@ -57,7 +57,7 @@ Pose fit_position_and_yaw(const Moments& m) {
   return make_pose(rotation, m.truth_mean - rotation * m.estimate_mean);
 }
 
-/// Why the fit has no answer; empty when it has one.
+/// Why the fit is not determined; empty when it is.
 std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
                        const Eigen::Vector3d& singular_values, Gauge gauge) {
   if (pairs.empty()) return "no estimate lies inside the truth's time span";
@@ -65,7 +65,7 @@ std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
   if (pairs.size() < 3) return fmt::format("only {} common poses, 3 are needed", pairs.size());
   const double length = std::sqrt(singular_values[0]);
   if (length < kMinSpread_m) {
-    return fmt::format("the positions spread only {:.2g} m: no direction to align", length);
+    return fmt::format("the positions spread only {:.2g} m: rotation undetermined", length);
   }
   const double width = std::sqrt(singular_values[1]);
   if (gauge == Gauge::kSe3 && width < kMinWidthOfLength * length) {
@@ -75,7 +75,7 @@ std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
   const Eigen::Matrix2d level = m.cross.topLeftCorner<2, 2>();
   const double turned = std::hypot(level(1, 0) - level(0, 1), level.trace());
   if (gauge == Gauge::kPosYaw && std::sqrt(turned) < kMinSpread_m) {
-    return "the positions do not spread level: heading undetermined";
+    return "the positions do not spread horizontally: heading undetermined";
   }
   return {};
 }
@@ -131,7 +131,7 @@ Alignment align(std::span<const PosePair> pairs, Gauge gauge) {
     alignment.truth_from_estimate = fit_position_and_yaw(m);
     if (se3_determined && alignment.tilt_rad > kLeans_rad) {
       alignment.warning = fmt::format(
-          "the estimate's z axis leans {:.1f} deg: a heading-only fit needs one that is upright",
+          "the estimate's z axis is tilted by {:.1f} deg: a heading-only fit needs a vertical one",
           alignment.tilt_rad * 180.0 / M_PI);
     }
   }

@@ -11,7 +11,7 @@ double rate_hz(const Trajectory& trajectory) {
   return period > Time{0} ? 1.0 / to_seconds(period) : 0.0;
 }
 
-/// Time within the truth's span between two estimates without a gap, s.
+/// Part of the truth's time span that lies between consecutive estimates without a gap, s.
 double covered_s(const Trajectory& estimate, const Trajectory& truth) {
   const Time bracket = max_bracket(estimate);
   Time covered{0};

@@ -9,15 +9,16 @@
 
 namespace lidarena {
 
-/// What the comparison of two trajectories rests on; printed before any error.
+/// How well two trajectories can be compared (overlap, coverage, rates); printed before any error.
 struct Association {
   std::size_t estimates = 0;  ///< poses of the estimate
   std::size_t truths = 0;     ///< poses of the truth
-  std::size_t matched = 0;    ///< estimates with a truth at their instant, see matched_poses()
-  /// Share of the truth's time, 0..1, between two estimates not farther apart than max_bracket().
+  std::size_t matched = 0;    ///< estimates with a truth pose at their stamp, see matched_poses()
+  /// Share of the truth's duration, 0..1, that lies between two consecutive estimates without a
+  /// gap, see max_bracket().
   double coverage = 0.0;
   double overlap_s = 0.0;         ///< length of the common time span
-  double longest_gap_s = 0.0;     ///< between consecutive estimates
+  double longest_gap_s = 0.0;     ///< longest time between consecutive estimates
   double estimate_rate_hz = 0.0;  ///< 1 / median period; 0 with fewer than two poses
   double truth_rate_hz = 0.0;
 };
@@ -26,22 +27,22 @@ Association associate(const Trajectory& estimate, const Trajectory& truth);
 /// Median time between consecutive poses; zero with fewer than two.
 Time median_period(const Trajectory& trajectory);
 
-/// Two poses farther apart than this (1.5 median periods) have a gap between them, and nothing is
-/// interpolated across a gap.
+/// 1.5 median periods: two consecutive poses farther apart than this have a gap between them,
+/// across which nothing is interpolated.
 Time max_bracket(const Trajectory& trajectory);
 
 /// Trajectory::at, but empty inside gaps longer than `bracket`.
 std::optional<Pose> pose_between(const Trajectory& trajectory, Time t, Time bracket);
 
-/// Both poses of one instant.
+/// Poses of truth and estimate at one instant.
 struct PosePair {
   Time stamp{0};
   Pose truth = Pose::Identity();
   Pose estimate = Pose::Identity();
 };
 
-/// Each estimate with the truth interpolated at its instant; estimates outside the truth's span or
-/// in one of its gaps are left out.
+/// Each pose of the estimate with the truth interpolated at its stamp; poses outside the truth's
+/// time span or in one of its gaps are left out.
 std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory& truth);
 
 }  // namespace lidarena

@@ -18,18 +18,18 @@ constexpr const char* kPlace = "evo";
 constexpr double kDegree = std::numbers::pi / 180.0;
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
-/// Stamps as evo holds them: the double nearest to the decimal seconds.
+/// Stamps as evo stores them: the double nearest to the decimal seconds.
 std::vector<double> seconds_of(const Trajectory& trajectory) {
   std::vector<double> seconds;
   seconds.reserve(trajectory.size());
   for (const StampedPose& pose : trajectory.poses()) {
-    // 64 bits of mantissa hold any count exactly, so that one division rounds
+    // a mantissa of 64 bits holds every count exactly, so that only the division rounds
     seconds.push_back(static_cast<double>(static_cast<long double>(pose.stamp.count()) / 1e9L));
   }
   return seconds;
 }
 
-/// The first index among those with the least |stamps[i] - t|; `stamps` rise.
+/// The first index with the minimum of |stamps[i] - t|; `stamps` in ascending order.
 std::size_t nearest(const std::vector<double>& stamps, double t) {
   const auto after = std::lower_bound(stamps.begin(), stamps.end(), t);
   if (after == stamps.begin()) return 0;
@@ -40,7 +40,7 @@ std::size_t nearest(const std::vector<double>& stamps, double t) {
 
 // --- alignment
 
-/// evo asks for two singular values of the positions' covariance above this, whatever their unit.
+/// evo requires two singular values of the positions' covariance above this, whatever their unit.
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 Similarity fit(std::span<const PosePair> pairs, const EvoOptions& o) {
@@ -48,10 +48,10 @@ Similarity fit(std::span<const PosePair> pairs, const EvoOptions& o) {
   const Similarity found = umeyama(pairs.first(n), o.scale);
   if (!(found.singular_values[1] > kEpsilon)) {
     throw InputError(kPlace,
-                     fmt::format("the first {} poses lie on a line or a point: the alignment has "
-                                 "no answer",
+                     fmt::format("the first {} poses lie on a line or a point: the alignment is "
+                                 "not determined",
                                  n),
-                     "align the origin, or more poses");
+                     "align only the origin (--origin), or more poses (--n-to-align)");
   }
   if (o.align) return found;
   Similarity scaled;
@@ -82,7 +82,7 @@ std::vector<Pose> moved(std::span<const PosePair> pairs, const Similarity& a) {
 
 // --- pieces
 
-/// Path or turn from each pose to the next.
+/// Path length (m) or rotation angle (rad) from each pose to the next.
 std::vector<double> steps_of(std::span<const Pose> poses, bool by_path) {
   std::vector<double> steps;
   for (std::size_t i = 1; i < poses.size(); ++i) {
@@ -121,7 +121,7 @@ IndexPairs pieces_of_frames(std::size_t poses, std::size_t delta, bool all_pairs
   return pieces;
 }
 
-/// From each pose to the one whose path is nearest `delta`, if within `tolerance`.
+/// Pairs each pose with the one at the path length nearest to `delta`, if within `tolerance`.
 IndexPairs all_pairs_by_path(std::span<const Pose> poses, double delta, double tolerance) {
   std::vector<double> s{0.0};
   for (const double step : steps_of(poses, true)) s.push_back(s.back() + step);
@@ -137,7 +137,7 @@ IndexPairs all_pairs_by_path(std::span<const Pose> poses, double delta, double t
   return pieces;
 }
 
-/// Every two poses whose rotations differ by `delta`, within `tolerance`.
+/// All pairs of poses whose rotations differ by `delta`, within `tolerance`.
 IndexPairs all_pairs_by_angle(std::span<const Pose> poses, double delta, double tolerance) {
   IndexPairs pieces;
   for (std::size_t i = 0; i < poses.size(); ++i) {
@@ -161,7 +161,7 @@ void check_delta(const EvoOptions& o) {
   }
   const double half_turn = o.unit == EvoUnit::kDegrees ? 180.0 : std::numbers::pi;
   if ((o.unit == EvoUnit::kDegrees || o.unit == EvoUnit::kRadians) && o.delta > half_turn) {
-    throw InputError(kPlace, "delta is more than half a turn");
+    throw InputError(kPlace, "delta is more than 180 degrees");
   }
 }
 
@@ -169,7 +169,7 @@ void check_delta(const EvoOptions& o) {
 
 double frobenius(const Eigen::Matrix3d& r) { return (r - Eigen::Matrix3d::Identity()).norm(); }
 
-/// Of E = `a`^-1 `b`.
+/// The `relation` of E = `a`^-1 `b`.
 double error_of(const Pose& a, const Pose& b, EvoRelation relation) {
   const Eigen::Matrix3d r = a.linear().transpose() * b.linear();
   const double distance = (a.translation() - b.translation()).norm();
@@ -250,13 +250,14 @@ std::vector<PosePair> matched(const Trajectory& reference, const Trajectory& est
 
 void check_options(const EvoOptions& o) {
   if (!(o.max_difference_s >= 0.0) || !std::isfinite(o.offset_s)) {
-    throw InputError(kPlace, "the stamps' largest difference or offset is no time");
+    throw InputError(kPlace,
+                     "the maximum difference of stamps is negative, or their offset not finite");
   }
   if (o.align_origin && (o.align || o.scale)) {
-    throw InputError(kPlace, "the origin and a fit cannot both be aligned", "choose one");
+    throw InputError(kPlace, "--origin cannot be combined with --align or --scale", "choose one");
   }
   if (o.metric == EvoMetric::kApe && o.relation == EvoRelation::kPointDistanceRatio) {
-    throw InputError(kPlace, "point_distance_error_ratio is a relation of the rpe alone");
+    throw InputError(kPlace, "point_distance_error_ratio is defined for the metric rpe only");
   }
 }
 
@@ -309,7 +310,7 @@ IndexPairs evo_pieces(std::span<const Pose> poses, const EvoOptions& o) {
                    : all_pairs_by_angle(poses, delta, tolerance);
   }
   std::vector<std::size_t> marks = marks_of(steps_of(poses, by_path), delta);
-  if (!by_path) marks.insert(marks.begin(), 0);  // angles count from the first pose on
+  if (!by_path) marks.insert(marks.begin(), 0);  // pieces by angle start at the first pose
   return between_marks(marks);
 }
 
@@ -329,7 +330,7 @@ EvoResult compat_evo(const Trajectory& reference, const Trajectory& estimate, co
     result.errors = relative_errors(q, p, pieces, o.relation);
   }
   if (result.errors.empty()) {
-    throw InputError(kPlace, "there are no two poses as far apart as delta says",
+    throw InputError(kPlace, "no two poses are as far apart as delta",
                      "lower --delta, or raise --delta-tolerance");
   }
   result.statistics = statistics_of(result.errors);

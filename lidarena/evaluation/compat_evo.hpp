@@ -13,9 +13,9 @@
 #include "lidarena/evaluation/alignment.hpp"
 #include "lidarena/evaluation/association.hpp"
 
-/// The figures of another tool, evo (v1.36.5), for the same options, so that published numbers can
-/// be checked. Its definitions differ from ours (docs/metrics.md says how); written from a
-/// description of what it does.
+/// Reproduces the numbers of another tool, evo (v1.36.5), for the same options, so that published
+/// results can be checked. Its definitions differ from ours (see docs/metrics.md). Written from a
+/// description of its behavior.
 namespace lidarena {
 
 enum class EvoMetric {
@@ -23,18 +23,18 @@ enum class EvoMetric {
   kRpe,  ///< relative pose error
 };
 
-/// What is measured of the error E of two poses (APE) or of two motions (RPE).
+/// Which part of the error transform E between two poses (APE) or two motions (RPE) is measured.
 enum class EvoRelation {
   kTranslation,         ///< |t(E)|, m
   kRotation,            ///< Frobenius norm of R(E) - I, no unit
   kFull,                ///< Frobenius norm of E - I: meters and rotation mixed
   kAngleDegrees,        ///< angle of R(E), deg
   kAngleRadians,        ///< angle of R(E), rad
-  kPointDistance,       ///< APE: |t(E)|; RPE: difference of the chords' lengths, m
-  kPointDistanceRatio,  ///< RPE alone: that in percent of the reference's chord
+  kPointDistance,       ///< APE: |t(E)|; RPE: difference of the translations' lengths, m
+  kPointDistanceRatio,  ///< RPE only: that in percent of the reference's translation
 };
 
-/// In which unit `delta` gives the length of a piece (RPE).
+/// Unit of `delta`, the length of a piece (RPE).
 enum class EvoUnit { kFrames, kMeters, kDegrees, kRadians };
 
 template <>
@@ -64,22 +64,22 @@ struct EvoOptions {
   EvoMetric metric = EvoMetric::kApe;
   EvoRelation relation = EvoRelation::kTranslation;
   // association
-  double max_difference_s = 0.01;  ///< between stamps that are taken for one instant
+  double max_difference_s = 0.01;  ///< maximum difference of stamps that are paired
   double offset_s = 0.0;           ///< added to the estimate's stamps
-  // alignment; none of them: the trajectories are compared as they are
-  bool align = false;          ///< rotation and translation by Umeyama
-  bool scale = false;          ///< scale by Umeyama; with `align` a similarity
-  bool align_origin = false;   ///< first poses on each other
-  std::size_t n_to_align = 0;  ///< fit the first n pairs alone; 0 = all
+  // alignment; if none of these is set, the trajectories are compared as they are
+  bool align = false;          ///< fit rotation and translation (Umeyama)
+  bool scale = false;          ///< fit the scale (Umeyama); with `align` a similarity
+  bool align_origin = false;   ///< make the first poses coincide
+  std::size_t n_to_align = 0;  ///< fit only the first n pairs; 0 = all
   // pieces of the RPE
   double delta = 1.0;
   EvoUnit unit = EvoUnit::kFrames;
-  double delta_tolerance = 0.1;       ///< of `delta`, for all pairs by meters and angles
-  bool all_pairs = false;             ///< a piece from every pose, else one after the other
-  bool pairs_from_reference = false;  ///< path and angle of the reference, else of the estimate
+  double delta_tolerance = 0.1;       ///< relative to `delta`; for all_pairs in meters or angles
+  bool all_pairs = false;             ///< a piece starts at every pose, else consecutive pieces
+  bool pairs_from_reference = false;  ///< measure pieces on the reference, else on the estimate
 };
 
-/// evo's statistics; the deviation divides by n.
+/// evo's statistics; `std` divides by n, not by n - 1.
 struct EvoStatistics {
   double rmse = 0.0, mean = 0.0, median = 0.0, std = 0.0, min = 0.0, max = 0.0, sse = 0.0;
 };
@@ -91,23 +91,25 @@ struct EvoResult {
   std::vector<double> errors;
 };
 
-/// Scores `estimate` as evo does. Throws InputError where it refuses: no stamps in common, an
-/// alignment without two directions (of `n_to_align` poses), no pieces, a delta that is not
-/// positive, no whole number of frames, or above 180 degrees, options that exclude each other.
+/// Scores `estimate` as evo does. Throws InputError where evo refuses: no common stamps, positions
+/// to be aligned (the first `n_to_align`) that lie on a line or a point, no pieces, a delta that is
+/// not positive, not a whole number of frames, or above 180 degrees, options that exclude each
+/// other.
 EvoResult compat_evo(const Trajectory& reference, const Trajectory& estimate,
                      const EvoOptions& options);
 
-/// "m", "deg", "rad", "%", or "" for the Frobenius norms.
+/// Unit of the errors: "m", "deg", "rad", "%", or "" for the Frobenius norms.
 const char* unit_of(EvoRelation relation);
 
-/// Pairs of indices (reference, estimate): to each stamp of the shorter trajectory the nearest of
-/// the longer, if not farther than `max_difference_s`; a pose of the longer one may serve twice.
+/// Pairs of indices (reference, estimate). Each stamp of the trajectory with fewer poses is paired
+/// with the nearest stamp of the other one, if they differ by at most `max_difference_s`; a pose of
+/// the longer trajectory may be paired twice.
 std::vector<std::pair<std::size_t, std::size_t>> evo_association(const Trajectory& reference,
                                                                  const Trajectory& estimate,
                                                                  double max_difference_s,
                                                                  double offset_s);
 
-/// Pieces (begin, end) of `poses` by the options' delta.
+/// Pieces of the length given by the options' delta, as pairs of pose indices (begin, end).
 std::vector<std::pair<std::size_t, std::size_t>> evo_pieces(std::span<const Pose> poses,
                                                             const EvoOptions& options);
 

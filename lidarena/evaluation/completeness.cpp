@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint64_t kSeed = 1;
 constexpr double kGridCell_m = 0.10;
 
-/// Triangle t owns the samples [first[t], first[t + 1]): systematic sampling of the running area.
+/// Triangle t has the samples [first[t], first[t + 1]): systematic sampling of the cumulative area.
 std::vector<std::size_t> first_samples(const TriangleMesh& mesh) {
   std::vector<std::size_t> first{0};
   double area = 0.0;
@@ -27,8 +27,8 @@ std::vector<std::size_t> first_samples(const TriangleMesh& mesh) {
   return first;
 }
 
-/// Sample `k` of the `count` of a triangle: strips of equal area along one side, and along each
-/// strip the multiples of the golden ratio.
+/// Sample `k` of the `count` of a triangle: one strip of equal area per sample, parallel to one
+/// side, and along the strips multiples of the golden ratio.
 Vector3d sample_of(const TriangleMesh& mesh, std::size_t triangle, std::size_t k, std::size_t count,
                    double u, double shift) {
   constexpr double kGolden = 0.6180339887498949;

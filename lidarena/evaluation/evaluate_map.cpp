@@ -16,7 +16,7 @@
 namespace lidarena {
 namespace {
 
-/// At most `most` points of the map: others evenly left out.
+/// No more than `most` points of the map: every k-th point.
 std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std::size_t most) {
   const std::size_t stride = std::max<std::size_t>(1, (map.size() + most - 1) / most);
   std::vector<Eigen::Vector3f> sample;
@@ -25,8 +25,9 @@ std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std
   return sample;
 }
 
-/// How many points of a map are scored: more tell no more and take as much longer. A lost map's
-/// searches reach far and take a hundred times as long each, and its figures say only that it is lost.
+/// Maximum number of points of a map that are scored; more take longer without changing the
+/// numbers. For a failed map, far from the mesh, each search takes a hundred times as long, and the
+/// numbers only show that it has failed, so fewer points are scored.
 std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
                         const World& world, const Parallel& parallel) {
   constexpr std::size_t kMost = 2'000'000, kMostOfLost = 200'000, kLook = 10'000;
@@ -35,7 +36,7 @@ std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_f
   return look.outliers_percent > kLost_percent ? kMostOfLost : kMost;
 }
 
-/// A map and what is made of it once for all gauges.
+/// A map and what is computed once from it for all gauges.
 struct Subject {
   std::vector<Eigen::Vector3f> map;
   const World& world;
@@ -43,7 +44,7 @@ struct Subject {
   const SeenSurface* seen;
   const IdentifiedMap* identified;
   MortonOrder order;
-  std::optional<PointGrid> grid;  ///< where completeness is asked for
+  std::optional<PointGrid> grid;  ///< if completeness is computed
 
   Subject(std::span<const Eigen::Vector3f> points, std::size_t most, const World& mesh,
           const Parallel& workers, const SeenSurface* surface, const IdentifiedMap* with_hits)
@@ -61,7 +62,7 @@ std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map)
   return score_points(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel);
 }
 
-/// `scores`: the map's, moved by `mesh_from_map`.
+/// `scores`: those of the map moved by `mesh_from_map`.
 Json measure(const Subject& subject, std::span<const PointScore> scores,
              const Pose& mesh_from_map) {
   Json json = to_json(map_error(subject.order, scores, subject.map.size()));
@@ -87,7 +88,7 @@ Json measure_vertices(const Subject& subject, std::span<const PointScore> scores
                                  subject.parallel));
 }
 
-/// The move from the first-pose gauge is the rigid part of the drift.
+/// The transform from the first-pose gauge to this one is the rigid part of the drift.
 Json measure_robust(const Subject& subject, const Pose& start, const Pose& first_pose) {
   const MeshAlignment alignment =
       align_to_mesh(subject.map, start, subject.world, subject.parallel);
@@ -152,13 +153,14 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
     Json& measured = json[to_string(gauge)] = measure(subject, scores, *start);
     if (gauge == Gauge::kSe3) measured["point_vertex"] = measure_vertices(subject, scores, *start);
   }
-  json["robust"] = start && first_pose ? measure_robust(subject, *start, *first_pose)
-                                       : Json{{"refused", "there is no pose to start from"}};
+  json["robust"] = start && first_pose
+                       ? measure_robust(subject, *start, *first_pose)
+                       : Json{{"refused", "neither first_pose nor se3 gives a pose to start from"}};
   return json;
 }
 
 std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, const World& world) {
-  constexpr double kSuspicious = 100.0;  // a flight may see a hundredth of a world, hardly less
+  constexpr double kSuspicious = 100.0;  // a flight rarely sees less than 1 % of a world
   constexpr double kCoarse_m = 0.0005;
   std::vector<std::string> warnings;
   const auto invalid = std::count_if(map.begin(), map.end(),
@@ -180,8 +182,8 @@ std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, cons
   const double step = far * std::numeric_limits<float>::epsilon();
   if (step > kCoarse_m && map_m <= kSuspicious * mesh_m) {
     warnings.push_back(
-        fmt::format("the map lies {:.0f} km from its origin, where its single-precision "
-                    "coordinates are {:.3g} mm apart",
+        fmt::format("the map lies {:.0f} km from its origin, where single precision "
+                    "resolves only {:.3g} mm",
                     far / 1000.0, 1000.0 * step));
   }
   return warnings;

@@ -12,17 +12,17 @@
 namespace lidarena {
 namespace {
 
-constexpr double kLowCoverage = 0.9;     // below, numbers speak of a part of the flight alone
+constexpr double kLowCoverage = 0.9;     // below, numbers describe only a part of the flight
 constexpr double kLateStamps_s = 0.005;  // 5 cm at 10 m/s
-constexpr double kHighFloor = 0.5;       // share of an error beyond which it says little
-constexpr double kSmallFloor_m = 0.005;  // nobody minds so little
+constexpr double kHighFloor = 0.5;       // floor / error; above, the error is mostly interpolation
+constexpr double kSmallFloor_m = 0.005;  // smaller floors cause no warning
 
 struct Status {
   std::string name = "ok";
   std::string reason;
 };
 
-/// "`reason`; `suspicion`", where there is one.
+/// "`reason`; `suspicion`", or the reason alone without a suspicion.
 std::string with_suspicion(std::string reason, const std::string& suspicion) {
   return suspicion.empty() ? reason : reason + "; " + suspicion;
 }
@@ -41,11 +41,11 @@ Status status_of(const Trajectory& estimate, const Trajectory& truth) {
   return {};
 }
 
-/// What the runner said, else what the poses say.
+/// The status of the manifest unless it is "ok", else that of the poses.
 Status status_of(const RunFiles& run, const Trajectory& truth) {
   if (run.manifest.is_object()) {
     const std::string said = run.manifest.value("status", "ok");
-    if (said != "ok") return {said, run.manifest.value("reason", "the run says so")};
+    if (said != "ok") return {said, run.manifest.value("reason", "its manifest gives no reason")};
   }
   return status_of(run.trajectory, truth);
 }
@@ -58,7 +58,7 @@ Json describe_truth(const Trajectory& truth) {
           {"path_m", truth.path_length()}};
 }
 
-/// What a perfect estimate would give at the same instants.
+/// The poses of a perfect estimate at the same instants.
 Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth) {
   std::vector<StampedPose> poses;
   for (const PosePair& pair : matched_poses(estimate, truth)) {
@@ -84,9 +84,9 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
       relative_pose_error(truth_at_estimates(estimate, truth), truth).translation_m.rmse;
   if (floor > kHighFloor * rpe && floor > kSmallFloor_m) {
     warnings.push_back(
-        fmt::format("of the {:.2f} cm of RPE per meter with interpolated ends, {:.2f} cm are "
-                    "interpolation between the estimates, which a perfect one would show, too: "
-                    "look at the one between poses, or give poses more often",
+        fmt::format("of the {:.2f} cm of RPE per meter with interpolated ends, {:.2f} cm come from "
+                    "interpolation between the estimates and would remain for a perfect "
+                    "estimate: use the RPE between poses, or give poses more often",
                     100.0 * rpe, 100.0 * floor));
   }
   const std::string quaternions = suspect_quaternion_order(estimate, truth);
@@ -99,8 +99,8 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   return warnings;
 }
 
-/// A relative error with its floor: the same of a perfect estimate, which is what interpolating
-/// between the estimates makes of it.
+/// A relative error with its floor: the same error of a perfect estimate, which is caused by
+/// interpolation between the estimates alone.
 Json with_floor(const RelativePoseError& error, const RelativePoseError& of_perfect) {
   Json json = to_json(error);
   json["floor"] = nullptr;
@@ -111,7 +111,7 @@ Json with_floor(const RelativePoseError& error, const RelativePoseError& of_perf
   return json;
 }
 
-/// Null for a map that was not made.
+/// Null when the run has no such map.
 Json evaluate_map_of(const Cloud& cloud, const RunFiles& run, const Trajectory& truth,
                      const World& world, const Parallel& parallel, const SeenSurface* seen,
                      const IdentifiedMap* identified = nullptr) {

@@ -17,7 +17,7 @@ struct Entry {
   std::uint32_t axis;  ///< of the normal's largest component
   float height;
   bool same_patch(const Entry& other) const { return cube == other.cube && axis == other.axis; }
-  /// Equal entries are interchangeable, so the sorted list is the same however it is sorted.
+  /// Equal entries are interchangeable, so the sorted list does not depend on how it is sorted.
   bool operator<(const Entry& other) const {
     if (cube != other.cube) return cube < other.cube;
     if (axis != other.axis) return axis < other.axis;
@@ -69,7 +69,7 @@ Moments moments(std::span<const float> values) {
   return all;
 }
 
-/// In the middle third of the way between the parts' means.
+/// Number of points in the middle third between the parts' means.
 double points_near_middle(std::span<const float> values, const Sheets& sheets) {
   const auto near = std::count_if(values.begin(), values.end(), [&](double h) {
     return std::abs(h - sheets.middle_m) < sheets.separation_m / 6.0;

@@ -13,23 +13,24 @@
 
 namespace lidarena {
 
-/// A re-projected map whose points know what they really hit.
+/// A re-projected map with the true hit of each point.
 struct IdentifiedMap {
   std::vector<Eigen::Vector3f> points;  ///< m, the estimate's world frame
-  std::vector<PointTruth> hits;         ///< one a point
+  std::vector<PointTruth> hits;         ///< one per point
 };
 
-/// Follows each point to its return and that to its true hit; points whose scan or return the truth
-/// lacks are left out. `origins` as reproject() gives them, so scans in order.
+/// Finds the true hit of the return that each map point came from; points whose scan or return is
+/// missing in the truth are left out. `origins` as reproject() returns them, with ascending scan
+/// numbers.
 IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const ReturnOrigin> origins,
                        ScanTruthSource& truth);
 
-/// Distance of each point from where its own ray really hit, not from whatever surface is nearest:
-/// what the distance to the mesh is a lower bound of. All in m.
+/// Distance of each point from the true hit of its own ray, not from the nearest surface; the
+/// distance to the mesh is a lower bound of it. All in m.
 struct IdentityError {
   Summary distance_m;
-  Summary normal_m;      ///< its part along the surface's normal, without sign
-  Summary tangential_m;  ///< its part along the surface
+  Summary normal_m;      ///< magnitude of its component along the surface's normal
+  Summary tangential_m;  ///< its component along the surface
 };
 IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map);
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kStartEvery = 10;  // frames: one second of KITTI
 
-/// Path flown at each pair.
+/// Path length of the truth at each pair, m.
 std::vector<double> paths_of(const std::vector<PosePair>& pairs, const Trajectory& truth) {
   std::vector<double> s;
   if (pairs.empty()) return s;

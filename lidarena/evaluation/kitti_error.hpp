@@ -19,7 +19,7 @@ inline constexpr std::array kKittiLengths_m{100.0, 200.0, 300.0, 400.0, 500.0, 6
 struct KittiLength {
   double length_m = 0.0;
   std::size_t pieces = 0;
-  double translation_percent = 0.0;  ///< of the length; 0 without pieces
+  double translation_percent = 0.0;  ///< mean, of the length; 0 without pieces
   double rotation_rad_per_m = 0.0;
 };
 
@@ -33,10 +33,10 @@ struct KittiError {
   std::string refusal;  ///< why there is no number; empty when there is one
 };
 
-/// Frames are the estimate's poses with a truth at their instant; path is measured on the truth. A
-/// piece starts at every tenth frame and ends at the first frame *beyond* the length, where there
-/// is one; its errors are divided by the length. The mean is over all (start, length) pairs, so
-/// long lengths count less. Poses must be of one body frame (KITTI: the camera's).
+/// Frames are the estimate's poses with a truth pose at their stamp; path length is measured on the
+/// truth. A piece starts at every tenth frame and ends at the first frame *beyond* the length, if
+/// there is one; its errors are divided by the length. The mean is over all (start, length) pairs,
+/// so long lengths count less. All poses must be of the same body frame (KITTI: the camera's).
 KittiError kitti_error(const Trajectory& estimate, const Trajectory& truth,
                        std::span<const double> lengths_m = kKittiLengths_m);
 

@@ -20,14 +20,15 @@ using se3::Vector6;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr std::size_t kMinMotions = 10;
-constexpr double kMinTurn_rad = 0.0175;  // RMS a second; less shows no arm
+constexpr double kMinTurn_rad = 0.0175;  // RMS over 1 s; with less, no arm is observable
 constexpr int kIterations = 20;
 constexpr double kStep = 1e-6;      // of the numeric derivatives, m and rad
-constexpr double kSettled = 1e-10;  // m and rad
-// Keeps directions that the flight does not show where they start; the others feel none of it.
+constexpr double kSettled = 1e-10;  // steps below end the iteration, m and rad
+// Keeps unobservable directions at their initial values; relative to the largest diagonal element
+// of the Hessian, hence negligible for the others.
 constexpr double kDamping = 1e-9;
 
-/// Weights of meters and radians: one over the RMS of each.
+/// Weights of the translation and rotation residuals: one over the RMS of each.
 struct Weights {
   double translation = 1.0;
   double rotation = 1.0;
@@ -47,7 +48,7 @@ Eigen::VectorXd residuals(const std::vector<MotionPair>& motions, const Pose& x,
   return r;
 }
 
-/// X moved by `d`: translation in the body, rotation about the estimate's own axes.
+/// X changed by `d`: translation in the body, rotation about the estimate's own axes.
 Pose moved(const Pose& x, const Vector6& d) {
   return make_pose(Eigen::Matrix3d(x.linear() * so3::exp(d.tail<3>())),
                    x.translation() + d.head<3>());
@@ -144,7 +145,7 @@ std::string warning_of(const LeverArm& arm) {
   if (!beyond(t, 0) && !beyond(turn, 3)) return {};
   if (2.0 * arm.misfit_m > arm.misfit_without_m) return {};
   return fmt::format(
-      "the estimate seems to be of another frame of the body, {:.3g} m away and turned by {:.3g} "
+      "the estimate seems to be of another frame of the body, {:.3g} m away and rotated by {:.3g} "
       "deg (not corrected): if so, give --lever body_from_estimate",
       t.norm(), turn.norm() * 180.0 / std::numbers::pi);
 }

@@ -8,7 +8,8 @@
 
 namespace lidarena {
 
-/// Poses of the LiDAR at instants that come in runs: a column of a spinning sensor fires at once.
+/// Interpolated poses of the LiDAR. Keeps the last one, because consecutive points often have the
+/// same stamp: the points of a column of a spinning sensor are measured at once.
 class LidarPoses {
  public:
   LidarPoses(const Trajectory& trajectory, const Pose& body_from_lidar)
@@ -16,7 +17,7 @@ class LidarPoses {
         body_from_lidar_(body_from_lidar),
         bracket_(max_bracket(trajectory)) {}
 
-  /// World from LiDAR; nullptr where the trajectory says nothing.
+  /// World from LiDAR at `t`; nullptr outside the trajectory and in its gaps.
   const Pose* at(Time t) {
     if (!known_ || t != stamp_) look_up(t);
     return has_pose_ ? &pose_ : nullptr;

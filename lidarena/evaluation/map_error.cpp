@@ -52,7 +52,7 @@ MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_m
 
 MapError map_error(const MortonOrder& order, std::span<const PointScore> scores, std::size_t points,
                    std::vector<float>* distances) {
-  std::vector<double> found(points, kNaN);  // summed as the map has them, not as the curve goes
+  std::vector<double> found(points, kNaN);  // in the order of the map, in which they are summed
   for (std::size_t k = 0; k < scores.size(); ++k) {
     found[order.entries[k].index] = scores[k].distance;
   }

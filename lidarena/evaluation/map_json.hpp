@@ -10,7 +10,7 @@
 #include "lidarena/evaluation/vertex_distance.hpp"
 #include "lidarena/evaluation/voxel_error.hpp"
 
-/// Measures of a map as JSON, in the manner of metrics_json.hpp. Null where nothing was measured.
+/// Map metrics as JSON, with the conventions of metrics_json.hpp. Null where nothing was measured.
 namespace lidarena {
 
 Json to_json(const VoxelError& error);
@@ -18,9 +18,9 @@ Json to_json(const SignedDistance& distance);
 Json to_json(const Ghosting& ghosting);
 Json to_json(const IdentityError& error);
 Json to_json(const Completeness& completeness);
-/// Says why under "refused" where it is not known.
+/// Has the reason under "refused" where the distance was not computed.
 Json to_json(const VertexDistance& distance);
-/// What the gauge "robust" rests on.
+/// Diagnostics of the gauge "robust".
 Json to_json(const MeshAlignment& alignment);
 
 }  // namespace lidarena

@@ -27,19 +27,19 @@ namespace {
 using Vector6d = Eigen::Matrix<double, 6, 1>;
 using Matrix6d = Eigen::Matrix<double, 6, 6>;
 
-constexpr double kVoxel_m = 0.10;            // equal weight to equal area
-constexpr std::size_t kPoints = 50'000;      // 0.1 mm of 2 cm noise
-constexpr std::size_t kStartPoints = 3'000;  // to see where a start ends
+constexpr double kVoxel_m = 0.10;            // gives equal areas equal weight
+constexpr std::size_t kPoints = 50'000;      // 2 cm of noise average to 0.1 mm
+constexpr std::size_t kStartPoints = 3'000;  // enough to see where a start converges
 constexpr std::size_t kLeastPoints = 100;
-constexpr double kTrim = 0.95;  // share of the points that count, nearest first
+constexpr double kTrim = 0.95;  // share of the points that are used, nearest first
 constexpr double kStartMove_m = 0.20;
 constexpr double kStartTurn_rad = 2.0 * std::numbers::pi / 180.0;
-constexpr double kLeastScale_m = 0.01;  // of the kernel; ranges are no better
+constexpr double kLeastScale_m = 0.01;  // of the kernel; ranges are not more accurate
 constexpr double kReach_m = 1.0;        // farther points have no match
-constexpr double kWorse = 1.5;          // see fit_from
-constexpr int kMostIterations = 40;     // a scale
+constexpr double kWorse = 1.5;          // cost ratio, see fit_from
+constexpr int kMostIterations = 40;     // per scale
 
-/// Smaller steps end a scale.
+/// Smaller steps end the iteration at one scale.
 struct Tolerance {
   double m = 1e-4;
   double rad = 1e-5;
@@ -47,17 +47,18 @@ struct Tolerance {
 constexpr Tolerance kFine;
 constexpr Tolerance kCoarse{2e-3, 2e-4};
 
-/// Scales of the kernel (m); the last is the residuals' own.
+/// Scales of the kernel (m); the last is computed from the residuals.
 constexpr std::array<std::optional<double>, 3> kScales{1.0, 0.2, std::nullopt};
 
-/// Points of the map, and a scale for twists in which every direction moves them alike.
+/// Points of the map, and a scaling of rotations with which a unit twist moves them by the same
+/// distance in every direction.
 struct Points {
   std::vector<Vector3d> positions;  ///< m, map frame
   Vector3d centroid = Vector3d::Zero();
   Matrix3d rad_per_m = Matrix3d::Identity();  ///< rotations that move the points by 1 m RMS
 };
 
-/// The inverse root of the mean of hat(p)^T hat(p), map frame.
+/// The inverse square root of the mean of hat(p)^T hat(p), p from the centroid, map frame.
 Matrix3d rotations_of_one_meter(const std::vector<Vector3d>& positions, const Vector3d& centroid) {
   Matrix3d levers = Matrix3d::Zero();
   for (const Vector3d& p : positions) {
@@ -65,7 +66,7 @@ Matrix3d rotations_of_one_meter(const std::vector<Vector3d>& positions, const Ve
     levers += hat.transpose() * hat;
   }
   levers /= static_cast<double>(positions.size());
-  levers += 1e-6 * Matrix3d::Identity();  // m^2, so that points on a line do not divide by zero
+  levers += 1e-6 * Matrix3d::Identity();  // m^2; no division by zero for points on a line
   return Eigen::SelfAdjointEigenSolver<Matrix3d>(levers).operatorInverseSqrt();
 }
 
@@ -82,7 +83,7 @@ Points every(std::size_t limit, std::span<const Eigen::Vector3f> map,
   return points;
 }
 
-/// What a twist is counted about and in, mesh frame.
+/// Center and rotation scaling of a twist, mesh frame.
 struct TwistFrame {
   Vector3d center;
   Matrix3d rad_per_m;
@@ -101,11 +102,11 @@ Pose moved_by(const Vector3d& move, const Vector3d& turn, const TwistFrame& fram
   return orthonormalized(moved);
 }
 
-/// Points against the mesh at one pose.
+/// The points and their nearest points on the mesh at one pose.
 struct Matches {
   std::vector<Vector3d> positions;
   std::vector<ClosestPoint> nearest;
-  double gate = 0.0;    ///< m, farther points do not count
+  double gate = 0.0;    ///< m, farther points are not used
   double median = 0.0;  ///< m, of the distances within the gate
 };
 
@@ -145,7 +146,7 @@ NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame,
       });
 }
 
-/// Gauss-Newton's step without its parts along directions that are not held.
+/// The Gauss-Newton step without its components along unobservable directions.
 Vector6d held_step(const NormalEquations<6>& equations, Vector6d& eigenvalues) {
   const double weight = static_cast<double>(equations.count);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.hessian / weight);
@@ -162,20 +163,20 @@ Vector6d held_step(const NormalEquations<6>& equations, Vector6d& eigenvalues) {
 struct Fit {
   Pose pose = Pose::Identity();
   int iterations = 0;
-  std::size_t scales = 0;                                 ///< of kScales that were kept
+  std::size_t scales = 0;                                 ///< number of kScales that were kept
   double cost = std::numeric_limits<double>::infinity();  ///< m^2, see rate()
   double inlier_share = 0.0;
-  Matrix6d hessian = Matrix6d::Zero();  ///< a point
+  Matrix6d hessian = Matrix6d::Zero();  ///< per point
   Vector6d eigenvalues = Vector6d::Zero();
 };
 
-/// One scale of the kernel (m), or the residuals' own when none is given.
+/// Iterates with one scale of the kernel (m), or with the residuals' own when none is given.
 void descend(const Points& points, std::optional<double> fixed_scale, const Tolerance& tolerance,
              const World& world, const Parallel& parallel, Fit& fit) {
   for (int i = 0; i < kMostIterations; ++i) {
     const double reach = fixed_scale.value_or(kReach_m);
     Matches matches = match(points, fit.pose, reach, world, parallel);
-    if (fixed_scale == kScales.front()) matches.gate = reach;  // which points to trim is unknown
+    if (fixed_scale == kScales.front()) matches.gate = reach;  // no trimming at the first scale
     const double scale =
         fixed_scale.value_or(std::max(kLeastScale_m, 3.0 * 1.4826 * matches.median));
     const TwistFrame frame(points, fit.pose);
@@ -190,7 +191,7 @@ void descend(const Points& points, std::optional<double> fixed_scale, const Tole
   }
 }
 
-/// Mean of the squared distances, each at most 1 m, and the share within 20 cm.
+/// Computes the cost (mean of the squared distances, each at most 1 m) and the share within 20 cm.
 void rate(const Points& points, const World& world, const Parallel& parallel, Fit& fit) {
   const Matches matches = match(points, fit.pose, kReach_m, world, parallel);
   double squares = 0.0;
@@ -205,8 +206,8 @@ void rate(const Points& points, const World& world, const Parallel& parallel, Fi
   fit.inlier_share = static_cast<double>(inliers) / n;
 }
 
-/// A narrower kernel may lay one part of a bent map onto the mesh and give up the rest; a result
-/// that is clearly worse as a whole is not kept.
+/// Fits with up to `most_scales` scales. A narrower kernel may align one part of a bent map with
+/// the mesh and ignore the rest; a result whose total cost is clearly higher is not kept.
 Fit fit_from(const Pose& start, std::size_t most_scales, const Points& points, const World& world,
              const Parallel& parallel) {
   Fit fit;
@@ -235,7 +236,7 @@ std::vector<Pose> starts_around(const Pose& start, const Points& points) {
   return starts;
 }
 
-/// How far (m, RMS) the points move from one pose to the other along directions that are held.
+/// RMS motion (m) of the points from one pose to the other along observable directions.
 double apart(const Pose& a, const Pose& b, const Points& points, const Matrix6d& hessian) {
   const TwistFrame frame(points, a);
   Vector6d twist;
@@ -251,7 +252,7 @@ double apart(const Pose& a, const Pose& b, const Points& points, const Matrix6d&
   return std::sqrt(squares);
 }
 
-/// Where the starts ended.
+/// Result of the iterations from all starts.
 struct Starts {
   Pose pose = Pose::Identity();
   int agreeing = 0;
@@ -259,7 +260,7 @@ struct Starts {
   int iterations = 0;
 };
 
-/// Descends from all starts; where they end apart, with one narrow kernel less.
+/// Iterates from all starts; if their results differ, again with one narrow scale less.
 Starts narrowest_that_agree(const Pose& start, const Points& points, const World& world,
                             const Parallel& parallel) {
   Starts result;
@@ -268,7 +269,7 @@ Starts narrowest_that_agree(const Pose& start, const Points& points, const World
     std::vector<Fit> fits;
     for (const Pose& from : starts_around(start, points)) {
       fits.push_back(fit_from(from, result.scales, points, world, parallel));
-      result.scales = fits.front().scales;  // as the given start, so that results can be compared
+      result.scales = fits.front().scales;  // as the given start, to compare the results
       result.iterations += fits.back().iterations;
     }
     const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
@@ -277,7 +278,7 @@ Starts narrowest_that_agree(const Pose& start, const Points& points, const World
       return apart(fit.pose, best.pose, points, best.hessian) < MeshAlignment::kAgree_m;
     };
     result.agreeing = static_cast<int>(std::count_if(fits.begin(), fits.end(), agrees));
-    // the given start's result where it may be, so that what is frozen stays as it was
+    // prefer the given start, because its result keeps the unobservable directions of the start
     result.pose = agrees(fits.front()) ? fits.front().pose : best.pose;
     if (2 * result.agreeing > MeshAlignment::kStarts || result.scales == 1) return result;
     --result.scales;
@@ -292,8 +293,8 @@ std::string named(const char* what, Vector3d axis) {
   return fmt::format("{} ({:.2f}, {:.2f}, {:.2f})", what, axis.x(), axis.y(), axis.z());
 }
 
-/// Translations that nothing holds, then rotations that nothing holds even when the points may
-/// shift with them (Schur complement).
+/// Names the unobservable directions: translations, then rotations that stay unobservable when the
+/// points may also translate (Schur complement).
 std::vector<std::string> names_of_frozen(const Matrix6d& hessian, const Matrix3d& rad_per_m) {
   std::vector<std::string> names;
   const Matrix3d tt = hessian.topLeftCorner<3, 3>();
@@ -321,11 +322,11 @@ std::vector<std::string> names_of_frozen(const Matrix6d& hessian, const Matrix3d
 
 std::string refusal_of(const MeshAlignment& alignment) {
   if (alignment.inlier_share < MeshAlignment::kLeastInliers) {
-    return fmt::format("only {:.0f} % of the map come within 20 cm of the mesh",
+    return fmt::format("only {:.0f} % of the map's points lie within 20 cm of the mesh",
                        100.0 * alignment.inlier_share);
   }
   if (2 * alignment.agreeing_starts <= MeshAlignment::kStarts) {
-    return fmt::format("only {} of {} starts end at the same place", alignment.agreeing_starts,
+    return fmt::format("only {} of {} starts converge to the same pose", alignment.agreeing_starts,
                        MeshAlignment::kStarts);
   }
   return {};

@@ -27,7 +27,7 @@ constexpr std::array kFigures{
     MetricFigure{"rpe_1m_rotation", nullptr, "/final/rpe/1m", "/rotation/rmse_rad", kDegrees, "deg",
                  "RPE per meter, ends interpolated, rotation"},
     MetricFigure{"rpe_1m_floor", nullptr, "/final/rpe/1m", "/floor/translation_rmse_m", 100, "cm",
-                 "of it, interpolation (floor)"},
+                 "RPE per meter, interpolation (floor)"},
     MetricFigure{"rpe_1s_translation", nullptr, "/final/rpe/1s", "/translation/rmse_m", 100, "cm",
                  "RPE per second"},
     MetricFigure{"rpe_10m_translation", nullptr, "/final/rpe/10m", "/translation/rmse_m", 100, "cm",

@@ -10,18 +10,18 @@
 
 namespace lidarena {
 
-/// The tables of metrics_table.hpp.
+/// The tables of metrics_table.hpp in which a figure may be a column.
 enum class FigureTable { kNone, kMain, kMap };
 
-/// A figure and where it stands in metrics.json.
+/// One number of the evaluation and its location in metrics.json.
 struct MetricFigure {
   const char* key;
-  const char* heading;  ///< in its table; null = in none
-  const char* group;    ///< pointer to the object with definition, used, total
-  const char* value;    ///< pointer from there
+  const char* heading;  ///< of its column; null = in no table
+  const char* group;    ///< JSON pointer to the object with definition, used, total
+  const char* value;    ///< JSON pointer from there to the number
   double factor;
   const char* unit;
-  const char* words;  ///< on a terminal
+  const char* words;  ///< label on a terminal
   FigureTable table = FigureTable::kNone;
   Better better = Better::kLess;
 };
@@ -29,20 +29,21 @@ struct MetricFigure {
 /// The main figures, in the order in which they are shown.
 std::span<const MetricFigure> metric_figures();
 
-/// What stands at `path` of `json`; null when some part of the way is not there.
+/// The value at JSON pointer `path`; null when it does not exist.
 const Json* find_in(const Json& json, const std::string& path);
-/// The number there, times `factor`; empty when there is none.
+/// The number at `path`, times `factor`; empty when there is none.
 std::optional<double> number_in(const Json& json, const std::string& path, double factor = 1.0);
-/// The text there, or nothing.
+/// The string at `path`; empty when there is none.
 std::string text_in(const Json& json, const std::string& path);
 
-/// Why there is no such figure, where the JSON says so: at its group or at what that is a part of.
+/// Why the figure is missing: "refused" of its group or of an enclosing object; else empty.
 std::string refusal_of(const Json& metrics, const MetricFigure& figure);
 
 std::optional<double> value_of(const Json& metrics, const MetricFigure& figure);
-/// Of the "live" or the "final" trajectory.
+/// Coverage of the "live" or the "final" trajectory.
 std::optional<double> coverage_percent(const Json& metrics, const char* trajectory);
-/// Errors of the live trajectory rest on its own coverage, all else on the final one's.
+/// Coverage that applies to the figure: that of the live trajectory for its own errors, that of the
+/// final one for all others.
 std::optional<double> coverage_of(const Json& metrics, const MetricFigure& figure);
 
 /// "ok", "diverged", "failed", ...

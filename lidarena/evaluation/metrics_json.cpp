@@ -84,7 +84,7 @@ Json to_json(const Association& association, const std::optional<TimeOffset>& of
 }
 
 Json to_json(const std::optional<LeverArm>& arm) {
-  constexpr double kKnown = 0.1;  // m and rad: a component less certain says nothing
+  constexpr double kKnown = 0.1;  // m and rad: less certain components are null
   if (!arm) return nullptr;
   const auto known = [&](const Eigen::Vector3d& value, Eigen::Index first) {
     Json components = Json::array();

@@ -11,8 +11,8 @@
 #include "lidarena/evaluation/time_offset.hpp"
 #include "lidarena/evaluation/trajectory_error.hpp"
 
-/// Metrics as JSON. Units stand in the names; a number that does not exist is null, never zero or
-/// NaN; each metric carries the id of its definition in docs/metrics.md.
+/// Metrics as JSON. Names contain the units; a number that does not exist is null, never zero or
+/// NaN; each metric has the id of its definition in docs/metrics.md.
 namespace lidarena {
 
 /// E.g. "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]".
@@ -27,18 +27,18 @@ std::string definition_id(const MapError& error);
 /// {count, rmse_UNIT, mean_UNIT, median_UNIT, p95_UNIT, p99_UNIT, max_UNIT}; null when empty.
 Json to_json(const Summary& summary, const std::string& unit);
 Json to_json(const Association& association, const std::optional<TimeOffset>& offset);
-/// Components known no better than 10 cm or 0.1 rad are null.
+/// Components with a sigma of 10 cm or 0.1 rad or more are null.
 Json to_json(const std::optional<LeverArm>& arm);
 Json to_json(const RelativePoseError& rpe);
 Json to_json(const AbsoluteTrajectoryError& ate);
-/// Null means for lengths without a piece; "refused" when no length has one.
+/// Means are null for lengths without a piece; "refused" when no length has one.
 Json to_json(const KittiError& error);
 Json to_json(const MapError& error);
-/// Null when nothing hovered.
+/// Null without a hover.
 Json to_json(const HoverJitter& jitter);
 
-/// Columns t_s (since `start`), translation_m, rotation_rad; at most `limit` rows, of which each is
-/// the largest error of a run of neighbors, so that no peak is lost. Rounded to 1e-6.
+/// Columns t_s (since `start`), translation_m, rotation_rad; at most `limit` rows, each the largest
+/// error of several consecutive ones, so that no peak is lost. Rounded to 1e-6.
 Json errors_over_time(std::span<const SegmentError> segments, Time start, std::size_t limit = 2000);
 Json errors_over_time(std::span<const PoseError> poses, Time start, std::size_t limit = 2000);
 

@@ -20,7 +20,7 @@ bool has_coverage(const MetricFigure& figure) {
   return !std::string_view(figure.group).starts_with("/resources");
 }
 
-/// "used of total", in whatever the figure counts; empty when it counts nothing.
+/// The number of samples ("38 of 45 pieces", "900 points"); empty when the figure has none.
 std::string basis_of(const Json& metrics, const MetricFigure& figure) {
   const std::string group = figure.group;
   const auto used = number_in(metrics, group + "/used");
@@ -52,8 +52,8 @@ std::string three_numbers(const Json& list, double factor) {
 
 std::string lever_text(const Json& association) {
   const Json* arm = find_in(association, "/lever_arm");
-  if (arm == nullptr || arm->is_null()) return "not shown by this motion";
-  return fmt::format("at{} m, turned by{} deg (a diagnosis, not applied)",
+  if (arm == nullptr || arm->is_null()) return "not observable from this motion";
+  return fmt::format("at{} m, rotated by{} deg (a diagnostic, not applied)",
                      three_numbers(arm->at("position_m"), 1.0),
                      three_numbers(arm->at("rotation_vector_rad"), kDegrees));
 }
@@ -82,7 +82,7 @@ std::string diagnosis_text(const Json& metrics) {
       at("estimate_rate_hz").value_or(0), at("truth_rate_hz").value_or(0),
       offset ? fmt::format("{:.1f} +- {:.1f} ms (not corrected)", 1e3 * *offset,
                            1e3 * at("time_offset_sigma_s").value_or(0))
-             : "an amount that this motion does not show");
+             : "an amount that is not observable from this motion");
   text += "  estimate's frame in the truth's body: " + lever_text(*found) + "\n";
   return text + gauge_text(metrics);
 }
@@ -115,7 +115,7 @@ std::string figure_text(const Json& metrics, const MetricFigure& figure) {
 
 using Cell = std::optional<double>;
 
-/// The columns of a table; of the map's, those that some run has.
+/// The columns of a table; in the map table only those that some run has.
 std::vector<const MetricFigure*> table_figures(std::span<const ScoredRun> runs, FigureTable table) {
   std::vector<const MetricFigure*> figures;
   for (const MetricFigure& figure : metric_figures()) {
@@ -128,7 +128,8 @@ std::vector<const MetricFigure*> table_figures(std::span<const ScoredRun> runs, 
   return figures;
 }
 
-/// How many of the other runs have a better value than run `i`; empty where there is no contest.
+/// How many of the other runs have a better value than run `i`; empty when fewer than two runs have
+/// a value.
 std::optional<std::size_t> rank_of(std::span<const ScoredRun> runs, std::size_t i,
                                    const MetricFigure& figure) {
   const Cell mine = value_of(runs[i].metrics, figure);
@@ -159,7 +160,7 @@ std::string quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Without what Markdown takes for the end of a cell.
+/// Escapes what would end a cell in Markdown.
 std::string for_markdown(const std::string& text) {
   std::string out;
   for (const char c : text) out += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);

@@ -7,7 +7,7 @@
 namespace lidarena {
 namespace {
 
-/// The 21 low bits of `x` moved to every third place.
+/// The 21 low bits of `x`, each moved to every third bit.
 std::uint64_t spread(std::uint64_t x) {
   x = (x | x << 32U) & 0x001F00000000FFFFULL;
   x = (x | x << 16U) & 0x001F0000FF0000FFULL;

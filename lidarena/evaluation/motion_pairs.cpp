@@ -34,7 +34,7 @@ std::vector<MotionPair> motion_pairs(const Trajectory& estimate, const Trajector
 }
 
 Eigen::Matrix3d mounting_of(std::span<const MotionPair> motions) {
-  constexpr double kTwoAxes = 1e-4;  // second against first singular value
+  constexpr double kTwoAxes = 1e-4;  // ratio of the second to the first singular value
   Eigen::Matrix3d cross = Eigen::Matrix3d::Zero();
   for (const MotionPair& motion : motions) {
     cross += so3::log(motion.truth.linear()) * so3::log(motion.estimate.linear()).transpose();

@@ -18,10 +18,10 @@ namespace {
 
 constexpr double kOnMesh_m = 1e-3;    // a true hit is stored in single precision
 constexpr double kExplained_m = 0.5;  // more than range noise
-constexpr double kOtherSide = 0.05;   // share of hits that makes a side doubtful
+constexpr double kOtherSide = 0.05;   // share of hits; with more, the free side is unknown
 constexpr std::size_t kBatch = 1 << 16U;
 
-/// Collects hits and counts from which side each triangle was met.
+/// Collects hits and counts from which side each triangle was hit.
 class Observation {
  public:
   explicit Observation(const World& world)
@@ -31,7 +31,7 @@ class Observation {
         front_(world.mesh().triangles.size(), 0),
         back_(front_) {}
 
-  /// Whether no return lay in the voxel of `position` (m, world frame) yet.
+  /// Whether this is the first return in its voxel; `position` in m, world frame.
   bool is_new(const Vector3d& position) {
     ++surface_.returns;
     return voxels_.insert((position - center_).cast<float>());
@@ -64,7 +64,8 @@ class Observation {
   ObservedSurface surface_;
 };
 
-/// Looks the triangles up again: the truth's indices are those of the simulator's mesh.
+/// Finds the triangles from the positions, because the truth's indices are those of the simulator's
+/// mesh.
 void add_hits(const std::vector<PointTruth>& hits, const World& world, const Parallel& parallel,
               Observation& observation) {
   std::vector<Vector3d> positions;

@@ -20,18 +20,18 @@ struct ObservedSurface {
   static constexpr double kVoxel_m = 0.02;
   /// True hits, the first of each 2 cm voxel: m, offsets from the mesh's center (center_of()).
   std::vector<Eigen::Vector3f> hits;
-  /// One a triangle. Free space is on the side that the rays came from; a triangle of which more
-  /// than 5 % of the hits are on the other side has none.
+  /// One per triangle. Free space is on the side that the rays came from; unknown for a triangle
+  /// with more than 5 % of its hits from the other side.
   std::vector<FreeSide> free_side;
-  std::size_t returns = 0;   ///< looked at
-  std::size_t off_mesh = 0;  ///< of the voxels' first: not explained by this mesh, left out
+  std::size_t returns = 0;   ///< number of processed returns
+  std::size_t off_mesh = 0;  ///< first hits of voxels that do not lie on this mesh; left out
 };
 
-/// From what the simulator noted of each return.
+/// From the true hits that the simulator recorded for each return.
 ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parallel& parallel);
 
-/// From the measurements alone: each return's ray, laid by the true motion, is cast again. Returns
-/// whose ray meets the mesh more than 0.5 m from where they are count as off the mesh.
+/// From the measurements only: each return's ray, placed by the true motion, is cast again. Returns
+/// whose ray hits the mesh more than 0.5 m from the measured range count as off the mesh.
 ObservedSurface observe(EventSource& events, const std::string& lidar_id,
                         const Pose& body_from_lidar, const Trajectory& truth, const World& world,
                         const Parallel& parallel);

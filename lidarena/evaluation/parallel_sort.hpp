@@ -8,8 +8,8 @@
 
 namespace lidarena {
 
-/// Sorts runs, then merges neighbors. `values` must have a strict order without equals, so that
-/// the result depends on nothing else.
+/// Sorts blocks in parallel, then merges neighboring blocks. No two of `values` may be equal (or
+/// equal ones must be interchangeable), so that the result is the same on any number of threads.
 template <class T>
 void parallel_sort(std::span<T> values, const Parallel& parallel) {
   constexpr std::size_t kRun = std::size_t{1} << 16U;

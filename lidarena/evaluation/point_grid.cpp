@@ -52,7 +52,7 @@ float PointGrid::nearest(const Eigen::Vector3f& query) const {
   const VoxelKey key = voxel_key(voxel);
   const Eigen::Array3f above = query.array() - voxel.cast<float>().array() * cell_;
   const Eigen::Array3f below = cell_ - above;
-  // least distance along an axis to the cubes that are `step` away
+  // squared minimum distance along an axis to the cubes that are `step` away
   const auto gap = [&](int axis, int step) {
     if (step == 0) return 0.0F;
     const float to_face = step < 0 ? above[axis] : below[axis];

@@ -14,11 +14,12 @@
 
 namespace lidarena {
 
-/// A cloud sorted into cubes, for exact nearest neighbors within a reach. 16 bytes a point.
+/// Points sorted into cubes, for exact nearest-neighbor distances up to a maximum distance. 16
+/// bytes per point.
 class PointGrid {
  public:
-  /// Points that are not finite are left out. Cubes of `cell` m; `reach` m is the farthest that
-  /// nearest() looks; both above 0.
+  /// Points that are not finite are left out. `cell`: edge of the cubes, m; `reach`: maximum
+  /// distance of nearest(), m; both above 0.
   PointGrid(std::span<const Eigen::Vector3f> points, double cell, double reach,
             const Parallel& parallel);
 
@@ -27,7 +28,7 @@ class PointGrid {
 
  private:
   float cell_, inverse_cell_, reach_;
-  std::vector<Voxel> steps_;  ///< to all cubes in reach, near ones first
+  std::vector<Voxel> steps_;  ///< offsets to all cubes within reach, nearest first
   std::vector<Eigen::Vector3f> points_;
   tsl::robin_map<VoxelKey, std::pair<std::uint32_t, std::uint32_t>, VoxelKeyHash> cells_;
 };

@@ -10,7 +10,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points in flight; bounds the memory
+constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points per batch; limits the memory
 
 PointScore score_of(const Vector3d& point, const ClosestPoint& nearest, const TriangleMesh& mesh,
                     const Vector3d& center) {

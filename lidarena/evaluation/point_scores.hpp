@@ -13,19 +13,19 @@
 
 namespace lidarena {
 
-/// Where a point of a map lies against the mesh.
+/// Position of a map point relative to the mesh.
 struct PointScore {
   double distance = 0.0;        ///< m, to the nearest triangle
   Eigen::Vector3f foot_offset;  ///< m, from the mesh's center to the nearest point of the surface
   float height = 0.0F;          ///< m above the nearest triangle's plane, on its normal's side
-  std::uint32_t triangle = 0;   ///< the nearest
+  std::uint32_t triangle = 0;   ///< index of the nearest triangle
 };
 
-/// Center of the mesh's box: what PointScore::foot_offset counts from, so that a mesh far from the
-/// origin costs no precision.
+/// Center of the mesh's bounding box. Offsets (PointScore::foot_offset) are relative to it, so that
+/// single precision suffices for a mesh far from the origin.
 Eigen::Vector3d center_of(const World& world);
 
-/// One score for each entry of `order` (of `map`), the map moved by `mesh_from_map`.
+/// One score per entry of `order` (of `map`), after moving the map by `mesh_from_map`.
 std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
                                      const Pose& mesh_from_map, const World& world,
                                      const Parallel& parallel);

@@ -46,7 +46,7 @@ MemoryFigures memory_of(std::span<const ResourceRow> rows, const Bytes& bytes) {
   return figures;
 }
 
-/// Share of scans not done when the next one ended.
+/// Share of scans that were not processed when the next one ended.
 double late_share(std::span<const ResourceRow> rows) {
   if (rows.size() < 2) return 0.0;
   std::size_t late = 0;

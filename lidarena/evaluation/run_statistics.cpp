@@ -100,7 +100,7 @@ Json statistics_json(std::span<const ScoredRun> runs, std::uint64_t seed) {
 
 std::string statistics_text(const Json& statistics) {
   std::string text =
-      "medians, ranges, and 95 % intervals by bootstrap over flights (- under three flights)\n";
+      "medians, ranges, and 95 % intervals by bootstrap over flights (- for fewer than three)\n";
   for (const auto& [algorithm, figures] : statistics.at("algorithms").items()) {
     text += fmt::format("{}\n", algorithm.empty() ? "all" : algorithm);
     for (const MetricFigure& figure : metric_figures()) {
@@ -112,7 +112,7 @@ std::string statistics_text(const Json& statistics) {
                           s.at("values").get<std::size_t>(), s.at("runs").get<std::size_t>());
     }
     for (const Json& failure : figures.at(metric_figures()[0].key).at("failures")) {
-      text += fmt::format("  without: {}\n", failure.get<std::string>());
+      text += fmt::format("  no value: {}\n", failure.get<std::string>());
     }
   }
   const Json& paired = statistics.at("paired");

@@ -13,7 +13,7 @@ namespace lidarena {
 /// ...}}}, and under "paired" the comparison where there are exactly two algorithms (see
 /// statistics.hpp).
 Json statistics_json(std::span<const ScoredRun> runs, std::uint64_t seed = 1);
-/// The same in words and columns.
+/// The same as text for a terminal.
 std::string statistics_text(const Json& statistics);
 
 }  // namespace lidarena

@@ -13,26 +13,29 @@
 
 namespace lidarena {
 
-/// Of each scan, scoring looks at no more returns than this: all of a Mid-360's, every 15th of an
-/// OS0-128's 262,144. What more of them would tell is which sensor has more.
+/// Maximum number of returns of a scan that are scored: all of a Mid-360's, every 15th of an
+/// OS0-128's 262,144. With more, the score would depend on the number of points that the sensor
+/// measures.
 inline constexpr std::size_t kScoredReturns = 20'000;
-/// And of a whole recording at about so many: what more of them would tell is how long it took.
+/// Approximate maximum for a whole recording. With more, the score would depend on its duration.
 inline constexpr std::size_t kScoredInAll = 10'000'000;
 
-/// How many returns of a scan are looked at, at most, where there are `scans` (0: not known).
+/// Maximum number of scored returns of a scan in a recording of `scans` scans (0: not known).
 inline std::size_t scored_returns(std::size_t scans) {
   return scans == 0 ? kScoredReturns
                     : std::clamp<std::size_t>(kScoredInAll / scans, 1, kScoredReturns);
 }
 
-/// Every how many points of a scan of `points` are taken so that at most `most` are: 1, or an odd
-/// number, so that no row of a spinning sensor's columns (of a power of two) is passed over.
+/// The stride k of scoring every k-th point of a scan of `points` points, so that no more than
+/// `most` are scored: 1, or an odd number, so that no row of a spinning sensor is skipped (its
+/// columns have a power of two of points).
 inline std::size_t scoring_stride(std::size_t points, std::size_t most) {
   const std::size_t stride = (points + most - 1) / most;
   return stride <= 1 ? 1 : stride | 1U;
 }
 
-/// Leaves the returns that are scored, in their order. The same of a scan and of its truth.
+/// Removes the returns that are not scored and keeps the order. Keeps the same returns of a scan
+/// and of its truth.
 template <class P>
 void keep_scored(std::vector<P>& points, std::size_t most) {
   const std::size_t stride = scoring_stride(points.size(), most);
@@ -42,7 +45,7 @@ void keep_scored(std::vector<P>& points, std::size_t most) {
   points.resize(kept);
 }
 
-/// The events of `source` with the scored returns alone, at most `most` of a scan.
+/// The events of `source` with only the scored returns, up to `most` per scan.
 class ScoredEvents : public EventSource {
  public:
   ScoredEvents(std::unique_ptr<EventSource> source, std::size_t most)
@@ -54,7 +57,7 @@ class ScoredEvents : public EventSource {
   std::size_t most_;
 };
 
-/// What these hit.
+/// The true hits of these returns.
 class ScoredTruth : public ScanTruthSource {
  public:
   ScoredTruth(std::unique_ptr<ScanTruthSource> source, std::size_t most)

@@ -10,24 +10,24 @@
 
 namespace lidarena {
 
-/// Which side of a triangle is free space, told by the rays that hit it: the winding of a mesh
-/// tells nothing reliable.
+/// On which side of a triangle there is free space, determined from the rays that hit it, because
+/// the winding of a mesh is not reliable.
 enum class FreeSide : std::int8_t {
-  kBack = -1,    ///< against the triangle's normal (b - a) x (c - a)
+  kBack = -1,    ///< opposite to the triangle's normal (b - a) x (c - a)
   kUnknown = 0,  ///< never hit, or hit from both sides
   kFront = 1,
 };
 
-/// Distance with a sign: positive in free space, before the surface as the sensor saw it; negative
-/// behind it. A bias of the ranges moves the mean, a double wall makes a second peak.
+/// Signed distance: positive in free space, in front of the surface as the sensor saw it; negative
+/// behind it. A range bias shifts the mean, a double wall makes a second peak.
 struct SignedDistance {
-  static constexpr double kRange_m = 0.20;  ///< the histogram is of -20..20 cm
+  static constexpr double kRange_m = 0.20;  ///< the histogram covers -20..20 cm
   static constexpr double kBin_m = 0.01;
   static constexpr std::size_t kBins = 40;
-  /// A point farther off its nearest triangle's normal than 60 degrees is beside an edge, and which
-  /// side it is on is not for that triangle to say.
+  /// A point whose direction from its nearest triangle is more than 60 degrees off the normal is
+  /// beside an edge; that triangle does not determine on which side it lies.
   static constexpr double kLeastCosine = 0.5;
-  std::size_t points = 0;   ///< with a sign
+  std::size_t points = 0;   ///< number of points with a sign
   std::size_t without = 0;  ///< beside an edge, or nearest to a triangle whose free side is unknown
   double mean_m = 0.0, median_m = 0.0, p5_m = 0.0, p95_m = 0.0;  ///< 0 when there are no points
   double behind_percent = 0.0;                                   ///< share below zero

@@ -14,10 +14,10 @@
 namespace lidarena {
 namespace {
 
-constexpr std::size_t kMinFlights = 3;  // two give three different resamples
+constexpr std::size_t kMinFlights = 3;  // of two there are only three different resamples
 constexpr std::size_t kExact = 200;
 
-/// Values of each flight, flights by name and values rising: the order of the runs is forgotten.
+/// Values of each flight, sorted by its name, so that the order of the runs does not matter.
 using ByFlight = std::map<std::string, std::vector<double>>;
 
 double median_of(std::vector<double> values) { return quantile(values, 0.5); }
@@ -59,7 +59,7 @@ std::string reason_of(const RunFigure& run) {
   return run.failure.empty() ? "has no such figure" : run.failure;
 }
 
-/// Median where `failed` further values are worse than all.
+/// Median when `failed` further values count as worse than all.
 std::optional<double> median_with_failures(std::vector<double> values, std::size_t failed,
                                            Better better) {
   const std::size_t n = values.size() + failed;
@@ -70,7 +70,7 @@ std::optional<double> median_with_failures(std::vector<double> values, std::size
   return n % 2 == 1 ? values[upper] : 0.5 * (values[upper - 1] + values[upper]);
 }
 
-/// Ranks of the magnitudes, doubled so that shared ones are whole, and the sign of each.
+/// Ranks of the magnitudes, doubled so that shared ranks are integers, and their sums.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
   std::size_t positive = 0;  ///< doubled sum of the ranks of positive differences
@@ -95,7 +95,7 @@ SignedRanks ranks_of(std::span<const double> differences) {
   return ranks;
 }
 
-/// Probability of each doubled rank sum when every sign is a fair coin.
+/// Probability of each doubled rank sum when both signs are equally likely.
 std::vector<double> distribution_of(const SignedRanks& ranks) {
   std::vector<double> p(ranks.total + 1, 0.0);
   p[0] = 1.0;
@@ -118,7 +118,8 @@ double exact_p(const SignedRanks& ranks) {
   return std::min(1.0, 2.0 * std::min(below, above));
 }
 
-/// With the variance that shared ranks leave, and a continuity correction of half a rank.
+/// Normal approximation with the variance for shared ranks and a continuity correction of half a
+/// rank.
 double normal_p(const SignedRanks& ranks) {
   double variance = 0.0;
   for (const std::size_t doubled : ranks.doubled) {

@@ -14,7 +14,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kSameLength = 1.5;  // a flight may be cut by this factor and still be recognized
+constexpr double kSameLength = 1.5;  // the durations may differ by up to this factor
 constexpr double kClearly_rad = 0.035;
 
 struct Unit {
@@ -28,7 +28,7 @@ double duration_s(const Trajectory& trajectory) {
   return to_seconds(trajectory.end_time() - trajectory.begin_time());
 }
 
-/// The unit in which `longer` seems to be, when it lasts that many times `shorter`.
+/// The unit in which `longer` seems to be given, if it is that many times `shorter`.
 const Unit* unit_of(double longer, double shorter) {
   for (const Unit& unit : kUnits) {
     const double ratio = longer / (shorter * unit.per_second);
@@ -37,7 +37,7 @@ const Unit* unit_of(double longer, double shorter) {
   return nullptr;
 }
 
-/// What was read from columns w x y z as x y z w, read right.
+/// Corrects quaternions that were read as x y z w from columns w x y z.
 Trajectory reordered(const Trajectory& trajectory) {
   std::vector<StampedPose> poses;
   poses.reserve(trajectory.size());
@@ -49,7 +49,8 @@ Trajectory reordered(const Trajectory& trajectory) {
   return Trajectory(std::move(poses));
 }
 
-/// RMS of the angle between the motions' turns, the estimate's seen through `body_from_estimate`.
+/// RMS of the angle between the rotations of both motions, the estimate's mapped by
+/// `body_from_estimate`.
 double misfit(const std::vector<MotionPair>& motions, const Eigen::Matrix3d& body_from_estimate) {
   double sum = 0.0;
   for (const MotionPair& motion : motions) {
@@ -64,7 +65,8 @@ double misfit(const Trajectory& estimate, const Trajectory& truth) {
   return misfit(motion_pairs(estimate, truth), Eigen::Matrix3d::Identity());
 }
 
-/// As the files were read, at best: with the sensor mounted as it is, or as would explain it.
+/// Misfit of the files as read: the smaller of that without and that with a constant mounting
+/// rotation.
 double misfit_as_read(const Trajectory& estimate, const Trajectory& truth) {
   const std::vector<MotionPair> motions = motion_pairs(estimate, truth);
   return std::min(misfit(motions, Eigen::Matrix3d::Identity()),
@@ -78,12 +80,14 @@ std::string suspect_times(const Trajectory& estimate, const Trajectory& truth) {
   const double estimate_s = duration_s(estimate);
   const double truth_s = duration_s(truth);
   if (const Unit* unit = unit_of(estimate_s, truth_s)) {
-    return fmt::format("the estimate lasts {:.4g} s, the truth {:.4g} s: its times look like {}",
-                       estimate_s, truth_s, unit->name);
+    return fmt::format(
+        "the estimate lasts {:.4g} s, the truth {:.4g} s: the estimate's times look like {}",
+        estimate_s, truth_s, unit->name);
   }
   if (const Unit* unit = unit_of(truth_s, estimate_s)) {
-    return fmt::format("the truth lasts {:.4g} s, the estimate {:.4g} s: its times look like {}",
-                       truth_s, estimate_s, unit->name);
+    return fmt::format(
+        "the truth lasts {:.4g} s, the estimate {:.4g} s: the truth's times look like {}", truth_s,
+        estimate_s, unit->name);
   }
   const bool meet =
       estimate.begin_time() <= truth.end_time() && truth.begin_time() <= estimate.end_time();
@@ -99,7 +103,7 @@ std::string suspect_quaternion_order(const Trajectory& estimate, const Trajector
   if (as_read < kClearly_rad) return {};
   const auto suspect = [&](double in_the_other_order, const char* whose) -> std::string {
     if (in_the_other_order > 0.5 * as_read) return {};
-    return fmt::format("the {}'s quaternions look like w x y z, they were read as x y z w", whose);
+    return fmt::format("the {}'s quaternions look like w x y z but were read as x y z w", whose);
   };
   const std::string first = suspect(misfit(reordered(estimate), truth), "estimate");
   return first.empty() ? suspect(misfit(estimate, reordered(truth)), "truth") : first;

@@ -11,8 +11,8 @@
 namespace lidarena {
 namespace {
 
-constexpr double kStep_s = 0.01;      // grid of shifts; a parabola finds the minimum between
-constexpr double kMaxSigma_s = 0.02;  // a less certain offset is not worth printing
+constexpr double kStep_s = 0.01;      // of the search; a parabola interpolates the minimum
+constexpr double kMaxSigma_s = 0.02;  // less certain offsets are not reported
 constexpr Time kPiece = std::chrono::seconds(1);
 constexpr std::size_t kMaxPieces = 1000;
 
@@ -38,8 +38,8 @@ std::vector<Piece> pieces_of(const Trajectory& estimate) {
   return pieces;
 }
 
-/// Mean square of the relative translation error with the stamps made `shift` earlier; empty when
-/// less than half of the pieces have a truth.
+/// Mean square of the relative translation error with the estimate's stamps `shift` earlier; empty
+/// when less than half of the pieces have a truth.
 std::optional<double> misfit(const std::vector<Piece>& pieces, const Trajectory& truth,
                              Time bracket, Time shift) {
   double sum = 0.0;
@@ -56,7 +56,7 @@ std::optional<double> misfit(const std::vector<Piece>& pieces, const Trajectory&
   return sum / static_cast<double>(count);
 }
 
-/// Vertex of the parabola through the misfits at three neighboring shifts.
+/// Vertex of the parabola through the misfits at three neighboring offsets.
 std::optional<TimeOffset> vertex(double before, double least, double after, double shift_s,
                                  double independent_pieces) {
   const double curvature = (before - 2.0 * least + after) / (kStep_s * kStep_s);

@@ -13,10 +13,10 @@ struct TimeOffset {
   double sigma_s = 0.0;  ///< formal uncertainty, from the misfit that remains
 };
 
-/// The shift within +-`range_s` for which the estimate's motions over about one second agree best
-/// with the truth's (least mean square of the translation of eq. 1). Empty when the motion does not
-/// show it: nothing to compare, best at the end of the range, or sigma above 20 ms (steady flight
-/// looks the same at any offset).
+/// The offset within +-`range_s` for which the estimate's motions over about one second agree best
+/// with the truth's (minimum mean square of the translation of eq. 1). Empty when the motion does
+/// not determine it: no motions to compare, minimum at the end of the range, or sigma above 20 ms
+/// (steady flight looks the same at any offset).
 std::optional<TimeOffset> time_offset(const Trajectory& estimate, const Trajectory& truth,
                                       double range_s = 0.5);
 

@@ -14,8 +14,8 @@
 namespace lidarena {
 namespace {
 
-// Rounding of a path summed over 1e5 poses with 9 significant digits stays under this; a last piece
-// may be shorter by as much.
+// More than the rounding of a path summed over 1e5 poses with 9 significant digits (m or s); the
+// last piece may be shorter by this much.
 constexpr double kLengthSlack = 1e-6;
 
 /// How many pieces of `segment`, starting every `step`, fit into `length`.
@@ -89,7 +89,7 @@ RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
 
 void require_positive(double value, const char* name) {
   if (!(value > 0.0) || !std::isfinite(value)) {
-    throw InputError(name, "is not a positive number", "give a length above zero");
+    throw InputError(name, "not a positive number", "give a value above zero");
   }
 }
 

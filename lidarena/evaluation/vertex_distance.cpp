@@ -17,7 +17,7 @@ using Eigen::Vector3f;
 
 namespace {
 
-/// Pieces along each edge of a triangle; a double, for it may be more than any integer holds.
+/// Number of pieces of each edge of a triangle; a double, because it may exceed every integer type.
 double pieces_of(const TriangleMesh& mesh, const Triangle& triangle, double edge) {
   double longest = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -42,7 +42,7 @@ std::uint64_t count_subdivided(const TriangleMesh& mesh, double edge) {
   auto count = static_cast<double>(std::count(used.begin(), used.end(), true));
   for (const Triangle& triangle : mesh.triangles) {
     const double n = pieces_of(mesh, triangle, edge);
-    count += 0.5 * (n + 1.0) * (n + 2.0) - 3.0;  // but for its corners
+    count += 0.5 * (n + 1.0) * (n + 2.0) - 3.0;  // without its corners
   }
   constexpr double kMost = 1e18;
   return static_cast<std::uint64_t>(std::min(count, kMost));
@@ -80,8 +80,8 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
   result.vertices = count_subdivided(world.mesh(), edge);
   if (result.vertices > most) {
     result.refusal = fmt::format(
-        "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the {:g} "
-        "million that are held",
+        "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the limit of {:g} "
+        "million",
         100.0 * edge, 1e-6 * static_cast<double>(result.vertices),
         1e-6 * static_cast<double>(most));
     return result;
@@ -99,7 +99,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
       return;
     }
     const Vector3d moved = mesh_from_map * map[index].cast<double>();
-    const auto bound = static_cast<float>(to_surface + edge);  // there is one within 0.58 edges
+    const auto bound = static_cast<float>(to_surface + edge);  // a vertex lies within 0.58 edges
     Neighbor nearest;
     tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
     distances[index] = std::sqrt(double{nearest.squared_distance});

@@ -9,7 +9,7 @@
 namespace lidarena {
 
 VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> scores) {
-  constexpr unsigned kBits = 9;  // 8 x 8 x 8 cells of the curve
+  constexpr unsigned kBits = 9;  // 8 x 8 x 8 cells of the Morton order
   static_assert(VoxelError::kVoxel_m == 8.0 * MortonOrder::kCell_m);
   std::vector<double> rms;
   double shares = 0.0;

@@ -9,18 +9,18 @@
 
 namespace lidarena {
 
-/// Map error where each occupied cube of the map counts once, however many points it holds: near
-/// walls, where points crowd, do not outweigh far ones.
+/// Map error in which each occupied voxel of the map counts once, however many points it holds, so
+/// that near walls with their many points do not outweigh far ones.
 struct VoxelError {
   static constexpr double kVoxel_m = 0.05;
   std::size_t voxels = 0;
-  /// Of each cube the root mean square of its points' distances (m); the root mean square of these
-  /// is the RMSE with each point weighted by 1 / (points of its cube).
+  /// Root mean square of the point distances in each voxel (m). The RMSE of these values is the
+  /// RMSE of the points weighted by 1 / (points in the voxel).
   Summary rms_m;
-  double outliers_percent = 0.0;  ///< mean over cubes of the share of points beyond 20 cm
+  double outliers_percent = 0.0;  ///< mean over voxels of the share of points beyond 20 cm
 };
 
-/// The grid is the map's own, so the cubes are the same in every gauge.
+/// The grid is aligned with the map frame, so the voxels are the same in every gauge.
 VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> scores);
 
 }  // namespace lidarena

@@ -8,9 +8,9 @@ namespace lidarena {
 std::optional<Encounter> first_encounter(const Flight& flight, const World& world,
                                          double clearance) {
   constexpr Time kStep = std::chrono::milliseconds(5);
-  Eigen::Vector3d asked = flight.pose_at(Time{0}).translation();  // where the world was asked last
+  Eigen::Vector3d asked = flight.pose_at(Time{0}).translation();  // position of the last query
   Eigen::Vector3d last = asked;
-  double margin = 0.0;  // way that may be flown from `asked` before asking again
+  double margin = 0.0;  // path length from `asked` within which no new query is needed
   double flown = 0.0;
   for (Time t{0};; t = std::min(t + kStep, flight.duration())) {
     const Eigen::Vector3d here = flight.pose_at(t).translation();

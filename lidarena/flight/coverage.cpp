@@ -12,7 +12,7 @@ namespace lidarena {
 using Eigen::Vector3d;
 
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t count) {
-  std::vector<double> area_until;  // cumulated
+  std::vector<double> area_until;  // cumulative area up to and including each triangle
   area_until.reserve(mesh.triangles.size());
   double area = 0.0;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -26,7 +26,7 @@ std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t 
     const auto found = std::upper_bound(area_until.begin(), area_until.end() - 1, share * area);
     const auto index = static_cast<std::size_t>(found - area_until.begin());
     const auto& [a, b, c] = mesh.triangles[index];
-    const double u = std::sqrt(random.uniform(k, 1));  // even over the triangle
+    const double u = std::sqrt(random.uniform(k, 1));  // uniform over the triangle
     const double v = random.uniform(k, 2);
     samples.push_back(
         {(1.0 - u) * mesh.vertices[a] + u * (1.0 - v) * mesh.vertices[b] + u * v * mesh.vertices[c],
@@ -37,10 +37,10 @@ std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t 
 
 namespace {
 
-/// Marks what `place` sees of the samples that are not marked yet.
+/// Marks the samples that are visible from `place` and not yet marked.
 void look(const World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
           double range_m, Seen& seen) {
-  constexpr double kBefore = 0.002;  // m; the ray caster's rounding in a world of 1 km
+  constexpr double kBefore = 0.002;  // m; rounding error of the ray caster in a world of 1 km
   std::vector<Ray> rays;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < samples.size(); ++i) {

@@ -12,36 +12,38 @@
 
 namespace lidarena {
 
-/// A point of a surface; each stands for the same area.
+/// A point of a surface; all samples represent equal areas.
 struct SurfaceSample {
   Eigen::Vector3d point;
   std::uint32_t triangle;
 };
 
-/// `count` points spread evenly over the mesh's area, one drawn from each of as many equal shares.
+/// `count` points distributed evenly over the mesh's area: one random point in each of `count`
+/// equal shares of the area (stratified sampling).
 std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t count);
 
-/// Of each sample, 1 when it is seen.
+/// For each sample, 1 when it is seen, otherwise 0.
 using Seen = std::vector<std::uint8_t>;
 
-/// What a sensor at `place` sees that looks in all directions up to `range_m`: a sample is seen
-/// when nothing lies on the straight way to it (up to 2 mm before it).
+/// The samples that are visible from `place` in any direction up to `range_m`: a sample is visible
+/// when no surface intersects the line of sight (up to 2 mm before the sample).
 Seen seen_from(const World& world, const Eigen::Vector3d& place,
                std::span<const SurfaceSample> samples, double range_m);
-/// The same from each of many places, each row a Seen.
+/// seen_from() for each of many places.
 std::vector<Seen> seen_from_each(const World& world, std::span<const Eigen::Vector3d> places,
                                  std::span<const SurfaceSample> samples, double range_m,
                                  const Parallel& parallel);
-/// What is seen along a flight, from places at most `spacing_m` apart.
+/// The samples that are seen along a flight, from positions about `spacing_m` apart.
 Seen seen_along(const World& world, const Flight& flight, std::span<const SurfaceSample> samples,
                 double range_m, double spacing_m);
 
-/// Adds what `other` sees to `seen`.
+/// Adds the samples that are seen in `other` to `seen`.
 void add_seen(Seen& seen, const Seen& other);
 std::size_t count_seen(const Seen& seen);
 
-/// Rows of `views` that together see at least `share` of what all see together, each chosen because
-/// it adds the most to those before it (greedy set cover; of equals the first).
+/// Indices of views that together see at least `share` of what all views see together. Each is
+/// chosen because it adds the most samples to the previous ones (greedy set cover; of equals the
+/// first).
 std::vector<std::size_t> choose_views(std::span<const Seen> views, double share);
 
 }  // namespace lidarena

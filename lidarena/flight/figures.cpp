@@ -40,7 +40,7 @@ FlightFigures figures_of(const Flight& flight) {
 std::string describe(const FlightFigures& f) {
   return fmt::format(
       "{:.1f} s, {:.1f} m, up to {:.2f} m/s, {:.2f} m/s^2, tilt {:.0f} deg, {:.2f} rad/s; "
-      "{:.0f} % above 2 m/s or 90 deg/s",
+      "{:.0f} % of the time above 2 m/s or 90 deg/s",
       f.duration_s, f.length_m, f.max_speed, f.max_acceleration,
       f.max_tilt * 180.0 / std::numbers::pi, f.max_angular_rate, 100.0 * f.lively_share);
 }

@@ -7,7 +7,7 @@
 
 namespace lidarena {
 
-/// What a flight asks of the body; maxima over samples 1 ms apart.
+/// Key figures of a flight; maxima over samples 1 ms apart.
 struct FlightFigures {
   double duration_s = 0.0;
   double length_m = 0.0;
@@ -16,12 +16,12 @@ struct FlightFigures {
   double max_tilt = 0.0;                  ///< rad, of the body's z axis from the vertical
   double max_angular_rate = 0.0;          ///< rad/s
   double max_angular_acceleration = 0.0;  ///< rad/s^2
-  double lively_share = 0.0;              ///< of the time: above 2 m/s or above 90 deg/s
+  double lively_share = 0.0;              ///< share of the time above 2 m/s or above 90 deg/s
 };
 
 FlightFigures figures_of(const Flight& flight);
 
-/// One line for people.
+/// One-line summary for the log.
 std::string describe(const FlightFigures& figures);
 
 }  // namespace lidarena

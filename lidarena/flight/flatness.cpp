@@ -31,11 +31,12 @@ Matrix3d turned(const Matrix3d& tilt, double c, double s) {
   return r;
 }
 
-/// A unit vector and its derivatives, from those of a vector `f` along it.
+/// A unit vector and its first and second time derivatives.
 struct Direction {
   Vector3d value, rate, acceleration;
 };
 
+/// The direction of a vector `f` with first derivative `df` and second derivative `ddf`.
 Direction direction_of(const Vector3d& f, const Vector3d& df, const Vector3d& ddf) {
   const double n = f.norm();
   const Vector3d z = f / n;
@@ -45,7 +46,7 @@ Direction direction_of(const Vector3d& f, const Vector3d& df, const Vector3d& dd
   return {z, dz, (ddf - 2.0 * dn * dz - ddn * z) / n};
 }
 
-/// Rate of tilt_of(z), in its own rotated frame, and the rate's derivative.
+/// Angular rate of tilt_of(z), in the rotated frame, and its time derivative.
 struct TiltRate {
   Vector3d value, rate;
 };

@@ -13,14 +13,14 @@ namespace lidarena {
 using FlatOutputs = std::array<Eigen::Vector4d, 5>;
 
 /// Rotation world_from_body of a body whose thrust, along its z axis, gives `acceleration` (m/s^2,
-/// world, without gravity): the shortest rotation from the world's z to the thrust's direction,
-/// after a turn by `yaw` about z. The thrust must not point straight down.
+/// world, without gravity): a rotation by `yaw` about z, followed by the shortest rotation from the
+/// world's z axis to the direction of the thrust. The thrust must not point straight down.
 /// Differential flatness: Mellinger, Kumar, "Minimum snap trajectory generation and control for
 /// quadrotors" (ICRA 2011), with the yaw coordinate of Watterson, Kumar, "Control of quadrotors
-/// using the Hopf fibration on SO(3)" (ISRR 2017), which is smooth up to thrust straight down.
+/// using the Hopf fibration on SO(3)" (ISRR 2017), which is smooth except for thrust straight down.
 Eigen::Matrix3d attitude_of(const Eigen::Vector3d& acceleration, double yaw);
 
-/// The whole motion: attitude, body rate and angular acceleration by exact differentiation.
+/// The full motion; attitude, body rate and angular acceleration by exact differentiation.
 Motion motion_of(const FlatOutputs& outputs);
 
 }  // namespace lidarena

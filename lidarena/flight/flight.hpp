@@ -8,7 +8,7 @@
 
 namespace lidarena {
 
-/// Magnitude of gravity, m/s^2; it points along -z of the world. The one place it is written.
+/// Magnitude of gravity, m/s^2; it points along -z of the world.
 inline constexpr double kGravity = 9.80665;
 
 /// State of the flying body at one instant.
@@ -20,15 +20,15 @@ struct Motion {
   Eigen::Vector3d angular_acceleration_body = Eigen::Vector3d::Zero();  ///< rad/s^2 (lever arms)
 };
 
-/// A flight: continuous in time and pure, so LiDAR, IMU and truth sample one function, each at its
-/// own instants. Defined on [0, duration()]; outside, the body rests where it began or ended.
-/// Body frame: x forward, y left, z up.
+/// A flight as a pure, continuous function of time, which LiDAR, IMU and ground truth sample at
+/// their own instants. Defined on [0, duration()]; outside, the body rests at its first or last
+/// pose. Body frame: x forward, y left, z up.
 class Flight {
  public:
   virtual ~Flight() = default;
   virtual Motion at(Time t) const = 0;
   virtual Time duration() const = 0;
-  /// The pose alone, for ray casting; cheaper than at() where that matters.
+  /// The pose only, for ray casting; may be cheaper than at().
   virtual Pose pose_at(Time t) const { return at(t).world_from_body; }
 };
 

@@ -12,7 +12,7 @@
 
 namespace lidarena {
 
-/// Where the path comes from.
+/// Source of the path.
 enum class FlightKind { kWaypoints, kRoute, kReplay, kAuto };
 template <>
 struct EnumNames<FlightKind> {
@@ -21,7 +21,7 @@ struct EnumNames<FlightKind> {
       std::pair{"replay", FlightKind::kReplay}, std::pair{"auto", FlightKind::kAuto}};
 };
 
-/// How hard the body is flown.
+/// Preset of the flight's limits.
 enum class FlightStyle { kGentle, kBrisk, kAggressive };
 template <>
 struct EnumNames<FlightStyle> {
@@ -39,20 +39,23 @@ struct FlightLimits {
   double max_yaw_rate = 0.0;      ///< rad/s
 };
 
-/// Limits of a style: a careful inspection, an everyday flight, a race through rooms.
+/// Limits of a style: gentle for inspection, brisk for ordinary flight, aggressive for racing.
 FlightLimits limits_of(FlightStyle style);
 
-/// Limits that differ from the style's.
+/// Limits that override those of the style.
 struct LimitsConfig {
   std::optional<double> max_speed, max_acceleration, max_jerk, max_tilt, max_yaw_rate;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("max_speed", self.max_speed, "m/s", "top speed", above(0));
-    v("max_acceleration", self.max_acceleration, "m/s^2", "without gravity", above(0));
-    v("max_jerk", self.max_jerk, "m/s^3", "lower means softer turns and brakes", above(0));
-    v("max_tilt", self.max_tilt, "rad", "of the body from the vertical", Limits{0.0, 1.5, true});
-    v("max_yaw_rate", self.max_yaw_rate, "rad/s", "of the heading", above(0));
+    v("max_speed", self.max_speed, "m/s", "maximum speed", above(0));
+    v("max_acceleration", self.max_acceleration, "m/s^2", "maximum acceleration, without gravity",
+      above(0));
+    v("max_jerk", self.max_jerk, "m/s^3",
+      "maximum jerk; a lower value gives smoother turns and braking", above(0));
+    v("max_tilt", self.max_tilt, "rad", "maximum tilt of the body from the vertical",
+      Limits{0.0, 1.5, true});
+    v("max_yaw_rate", self.max_yaw_rate, "rad/s", "maximum rate of the heading", above(0));
   }
 };
 
@@ -72,14 +75,16 @@ struct HeadingConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("mode", self.mode, "", "along_path, fixed, or sweep: to and fro about the path's direction");
-    v("yaw", self.yaw, "rad", "heading of `fixed`, from the world's x axis");
-    v("amplitude", self.amplitude, "rad", "of `sweep`", at_least(0));
-    v("period_s", self.period_s, "s", "of `sweep`", above(0));
+    v("mode", self.mode, "",
+      "along_path, fixed, or sweep: oscillates about the direction of the path");
+    v("yaw", self.yaw, "rad", "heading in mode fixed, from the world's x axis");
+    v("amplitude", self.amplitude, "rad", "amplitude of the oscillation in mode sweep",
+      at_least(0));
+    v("period_s", self.period_s, "s", "period of the oscillation in mode sweep", above(0));
   }
 };
 
-/// How a tour is planned (kind auto), see plan_tour().
+/// Settings of the tour planner (kind auto), see plan_tour().
 struct TourConfig {
   std::optional<Eigen::Vector3d> start;
   double coverage = 0.9;
@@ -92,22 +97,26 @@ struct TourConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("start", self.start, "m", "where it begins and ends; found when absent");
-    v("coverage", self.coverage, "", "share of what can be seen that its views see, by area",
+    v("start", self.start, "m", "start and end of the tour; chosen automatically when absent");
+    v("coverage", self.coverage, "",
+      "share, by area, of the visible surface that the chosen viewpoints must see",
       between(0.01, 1));
-    v("range_m", self.range_m, "m", "from how far a surface counts as seen", above(0));
-    v("margin_m", self.margin_m, "m", "kept beyond clearance_m: for what a quadrotor strays",
+    v("range_m", self.range_m, "m", "maximum distance at which a surface counts as seen", above(0));
+    v("margin_m", self.margin_m, "m",
+      "distance kept in addition to clearance_m, for the tracking error of a quadrotor",
       at_least(0));
-    v("cell_m", self.cell_m, "m", "edge of the grid's cells; larger where max_cells asks for it",
+    v("cell_m", self.cell_m, "m", "edge of the grid's cells; increased if max_cells requires it",
       Limits{0.02, 10.0, false});
-    v("max_cells", self.max_cells, "", "most cells; bounds time and memory", between(100, 1e8));
-    v("max_views", self.max_views, "", "most places to choose views from", between(2, 1e5));
-    v("samples", self.samples, "", "points of the surface by which coverage is measured",
+    v("max_cells", self.max_cells, "", "upper limit on the number of cells; limits time and memory",
+      between(100, 1e8));
+    v("max_views", self.max_views, "", "upper limit on the number of candidate viewpoints",
+      between(2, 1e5));
+    v("samples", self.samples, "", "number of surface points by which coverage is measured",
       between(10, 1e7));
   }
 };
 
-/// A file of configs/flights.
+/// A flight file (see configs/flights).
 struct FlightConfig {
   FlightKind kind = FlightKind::kWaypoints;
   std::vector<Eigen::Vector3d> waypoints;
@@ -129,38 +138,40 @@ struct FlightConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("kind", self.kind, "",
-      "waypoints, route (one of the world's own), replay (a TUM file) or auto (a planned tour)");
-    v("waypoints", self.waypoints, "m", "list of [x, y, z]; the path is the line through them");
-    v("route", self.route, "", "which of the world's routes", at_least(0));
+      "waypoints, route (provided by the world), replay (a TUM file) or auto (a planned tour)");
+    v("waypoints", self.waypoints, "m", "list of [x, y, z]; the path follows the polyline");
+    v("route", self.route, "", "index of the world's route, from 0", at_least(0));
     v("replay", self.replay, "", "TUM file, relative to this file");
     v("replay_step_s", self.replay_step_s, "s",
-      "least time between poses that are used; more keeps a recording's noise out of the rates",
+      "minimum time between the poses used; a larger value reduces the effect of a recording's "
+      "noise on the rates",
       at_least(0));
-    v("world_from_recording", self.world_from_recording, "", "where a replay is flown");
+    v("world_from_recording", self.world_from_recording, "",
+      "pose of the recording's frame in the world");
     v("recorded_from_body", self.recorded_from_body, "",
-      "our body (x forward, z up) in the frame whose poses were recorded");
-    v("tour", self.tour, "", "how kind auto plans");
-    v("style", self.style, "", "gentle, brisk or aggressive: the limits that `limits` starts from");
-    v("limits", self.limits, "", "limits that differ from the style's");
-    v("heading", self.heading, "", "where the body's x axis looks");
+      "pose of the body (x forward, z up) in the frame whose poses were recorded");
+    v("tour", self.tour, "", "settings of the tour planner (kind auto)");
+    v("style", self.style, "", "gentle, brisk or aggressive: preset of the limits");
+    v("limits", self.limits, "", "limits that override those of the style");
+    v("heading", self.heading, "", "direction of the body's x axis");
     v("corner_m", self.corner_m, "m",
-      "largest distance between the path and the line; smaller means slower corners",
+      "maximum distance between the path and the polyline; a smaller value gives slower corners",
       Limits{0.001, 100.0, false});
-    v("clearance_m", self.clearance_m, "m", "least distance from body center to any surface",
+    v("clearance_m", self.clearance_m, "m", "minimum distance from body center to any surface",
       at_least(0));
     v("duration_s", self.duration_s, "s",
-      "length of the flight: it loops (to and fro when the line is open) or stops early; 0 = once "
-      "through",
+      "duration of the flight: the path is repeated (back and forth if it is open) or cut short; "
+      "0 = once through",
       at_least(0));
-    v("hover_s", self.hover_s, "s", "rest at begin and end; estimators initialize in it",
-      at_least(0));
+    v("hover_s", self.hover_s, "s",
+      "rest at the start and at the end; estimators initialize during the first", at_least(0));
     v("dynamics", self.dynamics, "",
-      "a quadrotor that follows the path as well as it can, {} for the default one; without this "
-      "key the path is followed exactly");
+      "simulate a quadrotor that follows the path ({} for the default one); without this key the "
+      "path is followed exactly");
   }
 };
 
-/// The style's limits with the file's changes.
+/// The limits of the style, overridden by those of the file.
 FlightLimits limits_of(const FlightConfig& config);
 
 }  // namespace lidarena

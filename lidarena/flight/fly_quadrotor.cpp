@@ -16,9 +16,9 @@
 namespace lidarena {
 namespace {
 
-constexpr double kStep = 0.002;      // s; a tenth of a rotor's lag, of which order 4 leaves 1e-6
-constexpr double kKnot = 4 * kStep;  // samples lie at odd halves of a knot: on even steps
-constexpr double kLost = 3.0;        // m
+constexpr double kStep = 0.002;      // s; a tenth of a rotor's lag: order 4 has errors of 1e-6
+constexpr double kKnot = 4 * kStep;  // s; samples at odd multiples of half a knot are even steps
+constexpr double kLost = 3.0;        // m, position error above which tracking has failed
 
 double hover_speed(const DynamicsConfig& config, const std::string& place) {
   const double share = config.mass_kg * kGravity / (4.0 * config.max_thrust);
@@ -26,10 +26,10 @@ double hover_speed(const DynamicsConfig& config, const std::string& place) {
   throw InputError(place,
                    fmt::format("the quadrotor cannot lift itself: 4 rotors of {:g} N, {:g} kg",
                                config.max_thrust, config.mass_kg),
-                   "raise dynamics.max_thrust or lower dynamics.mass_kg");
+                   "increase dynamics.max_thrust or reduce dynamics.mass_kg");
 }
 
-/// A quadrotor on its way, advanced step by step.
+/// Simulates a quadrotor that follows the reference, step by step.
 class Pilot {
  public:
   Pilot(const Flight& reference, const DynamicsConfig& config, const std::string& place)
@@ -40,7 +40,7 @@ class Pilot {
     state_.rotor_speed.setConstant(hover_speed(config, place));
   }
 
-  /// The pose at `t`, not before that of the last call.
+  /// The pose at `t` (s); `t` must not decrease from call to call.
   Pose pose_at(double t) {
     if (steps_ == kUnset) steps_ = steps_until(t);
     for (const std::int64_t last = steps_until(t); steps_ < last; ++steps_) {
@@ -63,9 +63,10 @@ class Pilot {
   void require_near(double t) const {
     const Eigen::Vector3d wanted = reference_.pose_at(from_seconds(t)).translation();
     if ((state_.position - wanted).norm() < kLost) return;  // false for NaN, too
-    throw InputError(
-        place_, fmt::format("the quadrotor is lost {:.2f} s after its begin", t),
-        "lower limits (or take a softer style), dynamics.gusts, or raise dynamics.max_thrust");
+    throw InputError(place_,
+                     fmt::format("the quadrotor has lost the path {:.2f} s after the start", t),
+                     "reduce limits (or choose a gentler style) or dynamics.gusts, or increase "
+                     "dynamics.max_thrust");
   }
 
   const Flight& reference_;
@@ -73,7 +74,7 @@ class Pilot {
   Gusts gusts_;
   const std::string& place_;
   QuadrotorState state_;
-  std::int64_t steps_ = kUnset;  ///< done since t = 0; negative before
+  std::int64_t steps_ = kUnset;  ///< number of steps from t = 0; negative before t = 0
 };
 
 }  // namespace

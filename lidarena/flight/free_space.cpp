@@ -12,12 +12,12 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3i;
 using Cell = FreeSpace::Cell;
-using Grid = std::unordered_map<std::uint64_t, std::int32_t>;  // index of a cell, or below
+using Grid = std::unordered_map<std::uint64_t, std::int32_t>;  // cell index, kBlocked or kOpen
 
-constexpr double kCoarser = 4.0;       // of the first look
-constexpr double kFar = 1.0;           // m; what is farther away is not told apart
-constexpr std::int32_t kBlocked = -2;  // looked at, and too near to a surface
-constexpr std::int32_t kOpen = -3;     // to be looked at next
+constexpr double kCoarser = 4.0;       // factor on the cell size in the first exploration
+constexpr double kFar = 1.0;           // m; larger distances are treated as equal
+constexpr std::int32_t kBlocked = -2;  // visited, too close to a surface or not connected
+constexpr std::int32_t kOpen = -3;     // to be visited next
 constexpr std::array<std::array<int, 3>, 6> kSteps{
     {{-1, 0, 0}, {1, 0, 0}, {0, -1, 0}, {0, 1, 0}, {0, 0, -1}, {0, 0, 1}}};
 
@@ -25,7 +25,7 @@ Vector3i stepped(const Vector3i& at, std::size_t side) {
   return at + Vector3i(kSteps[side][0], kSteps[side][1], kSteps[side][2]);
 }
 
-/// 21 bits for each coordinate; cells are counted from the start, to both sides.
+/// Hash key with 21 bits per coordinate; coordinates are relative to the start and may be negative.
 std::uint64_t key_of(const Vector3i& at) {
   constexpr std::int64_t kHalf = 1 << 20;
   std::uint64_t key = 0;
@@ -33,8 +33,9 @@ std::uint64_t key_of(const Vector3i& at) {
   return key;
 }
 
-/// The point of the cube around `center` that hill climbing finds farthest from the surface.
-/// What cannot come to `least` within it, or has `preferred` at its center, is left there.
+/// Cell whose point is moved by hill climbing to the place in the cube around `center` that is
+/// farthest from the surface. The point stays at the center if that already has the preferred
+/// distance, or if the minimum distance cannot be reached within the cube.
 Cell settled(const World& world, const Vector3d& center, double edge, const Distances& wanted) {
   Cell cell{center, 0.0, {}};
   cell.next.fill(FreeSpace::kNone);
@@ -52,20 +53,21 @@ Cell settled(const World& world, const Vector3d& center, double edge, const Dist
     cell.point = there;
     cell.clearance = std::min(next.distance, kFar);
     nearest = next;
-    step *= 2.0;  // as long as it helps
+    step *= 2.0;  // keep the step size after a successful step
   }
   return cell;
 }
 
-/// True when the distances at both ends alone say so, or else the world.
+/// True when the line between the points of two cells keeps the distance `least`. This follows from
+/// the clearances at both ends if they are large enough; otherwise the world is queried.
 bool is_joined(const World& world, const Cell& a, const Cell& b, double least) {
   const double apart = (a.point - b.point).norm();
   if (0.5 * (a.clearance + b.clearance - apart) >= least) return true;
   return is_clear(world, a.point, b.point, least);
 }
 
-/// Joins the cell at `at`, which comes next in `cells`, with those beside it; false if there are
-/// none.
+/// Connects `cell` at the grid coordinates `at`, which will be appended to `cells`, with its
+/// neighbors; returns false if it cannot be connected with any.
 bool join(const World& world, double least, const Grid& grid, const Vector3i& at, Cell& cell,
           std::vector<Cell>& cells) {
   bool joined = false;
@@ -99,7 +101,7 @@ bool FreeSpace::explore(const World& world, const Vector3d& start, std::size_t m
   cells_.clear();
   Grid grid;
   std::vector<Vector3i> wave{Vector3i::Zero()};
-  std::vector<Vector3i> at;  // of each cell
+  std::vector<Vector3i> at;  // grid coordinates of each cell
   while (!wave.empty() && cells_.size() <= max_cells) {
     std::vector<Cell> looked_at(wave.size());
     parallel.for_each(wave.size(), 32, [&](std::size_t i) {
@@ -129,7 +131,8 @@ bool FreeSpace::explore(const World& world, const Vector3d& start, std::size_t m
 
 namespace {
 
-/// Dijkstra's algorithm with whole lengths: a ring of buckets (Dial, CACM 1969). Stops at `until`.
+/// Dijkstra's algorithm for integer lengths with a ring of buckets (Dial, CACM 1969). Stops when
+/// the cell `until` is reached.
 std::vector<std::int32_t> shortest(const FreeSpace& space, std::int32_t from, std::int32_t until) {
   constexpr std::int32_t kWide = 2;
   constexpr std::int32_t kNarrow = 6;

@@ -13,36 +13,38 @@
 
 namespace lidarena {
 
-/// How near to surfaces a body may come.
+/// Distances from surfaces.
 struct Distances {
-  double least = 0.0;      ///< m, kept everywhere
-  double preferred = 0.0;  ///< m, kept where there is room; ways with less count three times
+  double least = 0.0;      ///< m, minimum everywhere
+  double preferred = 0.0;  ///< m, kept where possible; below it path lengths count three times
 };
 
-/// What can be reached from a place inside the mesh's box: the cells of a cubic grid in which a
-/// point keeps the least distance to every surface, joined where the straight way between two
-/// neighbors' points keeps it too. In narrow places the point is the one of its cell that hill
-/// climbing finds farthest from the surface, so that a door need not lie on the grid.
+/// The space that can be reached from a starting point inside the mesh's bounding box: cells of a
+/// cubic grid with a point that keeps the minimum distance from every surface. Two neighboring
+/// cells are connected if the line between their points keeps the minimum distance, too. In narrow
+/// places the point is moved by hill climbing away from the surfaces within its cell, so that doors
+/// are passed regardless of their position relative to the grid.
 class FreeSpace {
  public:
   static constexpr std::int32_t kNone = -1;
   struct Cell {
     Eigen::Vector3d point;
-    double clearance;                  ///< m, at the point; distances beyond 1 m are not told apart
+    double clearance;                  ///< m, at the point; larger distances are stored as 1 m
     std::array<std::int32_t, 6> next;  ///< neighbors in -x, +x, -y, +y, -z, +z, or kNone
   };
 
-  /// Explores from `start` with cells of `cell_m`, or larger ones if there would be more than
-  /// `max_cells`: a first look with cells four times as long tells. Empty when `start` itself is
-  /// too near to a surface or outside the box.
+  /// Explores from `start` with cells of edge `cell_m`, or larger ones if there would be more than
+  /// `max_cells`, which is estimated with cells of four times the edge. Empty when `start` itself
+  /// is too close to a surface or outside the box.
   FreeSpace(const World& world, const Eigen::Vector3d& start, const Distances& distances,
             double cell_m, std::size_t max_cells, const Parallel& parallel);
 
   std::span<const Cell> cells() const { return cells_; }
   double cell_m() const { return cell_m_; }
-  /// Lengths of the shortest ways along neighbors from one cell to all, in half cells.
+  /// Lengths of the shortest paths along neighbors from one cell to all cells, in half cell edges;
+  /// steps below the preferred distance count three times.
   std::vector<std::int32_t> lengths_from(std::int32_t from) const;
-  /// The cells on a shortest way, both ends included.
+  /// The cells on a shortest path, both ends included.
   std::vector<std::int32_t> way(std::int32_t from, std::int32_t to) const;
   bool is_wide(std::int32_t cell) const {
     return cells_[static_cast<std::size_t>(cell)].clearance >= distances_.preferred;
@@ -50,7 +52,7 @@ class FreeSpace {
   const Distances& distances() const { return distances_; }
 
  private:
-  /// Sets cells_; false when they are more than `max_cells`.
+  /// Fills `cells_`; returns false when there are more than `max_cells`.
   bool explore(const World& world, const Eigen::Vector3d& start, std::size_t max_cells,
                const Parallel& parallel);
 
@@ -59,8 +61,8 @@ class FreeSpace {
   std::vector<Cell> cells_;
 };
 
-/// Whether every point of the straight way keeps `clearance` (sphere tracing; what dips below by
-/// less than 1 cm between two places asked may be missed).
+/// Whether every point of the line segment keeps `clearance` (sphere tracing; a violation by less
+/// than 1 cm between two query points may be missed).
 bool is_clear(const World& world, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
               double clearance);
 

@@ -12,8 +12,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-/// Largest acceleration that corrects errors, m/s^2: half of gravity, so that the force never turns
-/// over.
+/// Upper limit on the acceleration that corrects errors, m/s^2: half of gravity, so that the thrust
+/// never points downward.
 constexpr double kMostCorrection = 0.5 * kGravity;
 
 Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
@@ -27,9 +27,9 @@ Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
          quadrotor.drag(reference.world_from_body.linear(), reference.velocity_world);
 }
 
-/// Turn, as seen from the body, that is left to do: the shortest one that brings the z axis to
-/// where it should be (x, y), and the rest, about z. The heading may lag without disturbing the
-/// tilt.
+/// Attitude error as a rotation vector in the body frame: x and y are the shortest rotation that
+/// aligns the z axis, z is the remaining heading error. A lag of the heading thus does not affect
+/// the tilt.
 Vector3d turn_to(const Matrix3d& body_from_wanted) {
   const Matrix3d tilt =
       Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), body_from_wanted.col(2))

@@ -18,7 +18,7 @@ Gusts::Gusts(const GustConfig& config)
   std::uint64_t index = 0;
   for (auto& axis : waves_) {
     for (std::size_t k = 0; k < kWaves; ++k, ++index) {
-      // the spectrum's integral from 0 to w is s^2 (2 / pi) atan(T w)
+      // integral of the spectrum from 0 to w: s^2 (2 / pi) atan(T w)
       const double share = (static_cast<double>(k) + random.uniform(index, 0)) / kWaves;
       axis[k] = {std::tan(share * last) / config.correlation_time_s,
                  2.0 * std::numbers::pi * random.uniform(index, 1)};

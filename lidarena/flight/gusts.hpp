@@ -8,21 +8,21 @@
 
 namespace lidarena {
 
-/// Velocity of the air as a pure and infinitely smooth function of time: the mean wind and, on each
-/// axis, a sum of sines whose frequencies sample the longitudinal Dryden spectrum
+/// Velocity of the air as a pure and infinitely smooth function of time: the mean wind plus, on
+/// each axis, a sum of sines whose frequencies sample the longitudinal Dryden spectrum
 ///   S(w) = 2 s^2 T / (pi (1 + (T w)^2))   (MIL-F-8785C, with T = L / V),
-/// s the standard deviation and T the correlation time: one frequency is drawn from each of
-/// kWaves parts of equal variance (spectral representation, Shinozuka, Jan 1972), at most
-/// kCutoff, because faster gusts are smaller than the body. All fades in over the first second.
+/// with standard deviation s and correlation time T. One frequency is drawn from each of kWaves
+/// bands of equal variance (spectral representation, Shinozuka, Jan 1972), up to kCutoff, because
+/// faster gusts are smaller than the body. Wind and gusts are faded in over the first second.
 class Gusts {
  public:
   static constexpr std::size_t kWaves = 32;
-  static constexpr double kCutoff = 30.0;  ///< rad/s; above it are 2 % of the variance at T = 1 s
-  static constexpr double kFade = 1.0;     ///< s
+  static constexpr double kCutoff = 30.0;  ///< rad/s; 2 % of the variance lies above it at T = 1 s
+  static constexpr double kFade = 1.0;     ///< s, duration of the fade-in
 
   explicit Gusts(const GustConfig& config);
 
-  /// World frame, m/s; zero for t <= 0.
+  /// Velocity of the air in the world frame, m/s; zero for t <= 0.
   Eigen::Vector3d at(double t_s) const;
   bool still() const { return still_; }
 

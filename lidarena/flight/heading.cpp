@@ -8,7 +8,8 @@
 namespace lidarena {
 namespace {
 
-constexpr double kLeastHorizontal = 0.1;  // of a unit vector; steeper ones have no heading
+// Minimum horizontal part of a unit vector; the heading of steeper directions is undefined.
+constexpr double kLeastHorizontal = 0.1;
 
 }  // namespace
 

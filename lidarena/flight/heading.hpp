@@ -9,15 +9,15 @@
 
 namespace lidarena {
 
-/// Yaw (rad, without jumps of 2 pi) of each direction; where one is nearly vertical the yaw before
-/// it is held.
+/// Yaw (rad, without jumps of 2 pi) of each direction; for nearly vertical directions the previous
+/// yaw is kept.
 std::vector<double> yaw_along(std::span<const Eigen::Vector3d> directions);
 
-/// A sine about a path's direction, faded in and out over one period at both ends of
+/// Offset (rad) of the yaw in mode sweep: a sine, faded in and out over one period at both ends of
 /// [begin_s, end_s].
 double sweep_at(double t, double begin_s, double end_s, double amplitude, double period_s);
 
-/// Follows `yaw` by steps of at most `step`: what the body can turn between two control points.
+/// Limits the change of `yaw` (rad) between consecutive control points to `step`.
 void limit_steps(std::span<double> yaw, double step);
 
 }  // namespace lidarena

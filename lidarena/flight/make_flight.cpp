@@ -20,7 +20,8 @@ bool is_recording(const std::filesystem::path& file) {
   return file.extension() == ".tum" || file.extension() == ".txt";
 }
 
-/// A bare recording has no configuration; it only must not pass through a surface.
+/// The configuration of a flight; for a TUM file, that of its replay, with a clearance of 0: it
+/// must only not pass through a surface.
 FlightConfig config_of(const std::filesystem::path& file) {
   if (!is_recording(file)) return load_config<FlightConfig>(file);
   FlightConfig config;
@@ -35,9 +36,9 @@ const std::vector<Eigen::Vector3d>& route_of(const WorldModel& model, int route,
   const auto index = static_cast<std::size_t>(route);
   if (index < model.routes.size()) return model.routes[index];
   throw InputError(place,
-                   fmt::format("the world '{}' has {} route(s); route {} is asked for (from 0)",
+                   fmt::format("the world '{}' has {} route(s), but route {} (from 0) is selected",
                                model.name, model.routes.size(), route),
-                   model.routes.empty() ? "use kind: waypoints, or a world that knows its routes"
+                   model.routes.empty() ? "use kind: waypoints, or a world that provides routes"
                                         : "choose a lower number");
 }
 
@@ -46,7 +47,8 @@ std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightCon
   const std::string place = file.string();
   switch (config.kind) {
     case FlightKind::kReplay: {
-      if (config.replay.empty()) throw InputError(place, "names no file to replay", "set replay");
+      if (config.replay.empty())
+        throw InputError(place, "the key 'replay' is missing", "set replay to a TUM file");
       const auto recording = file.parent_path() / config.replay;
       const Trajectory poses = thinned(read_recording(recording), config.replay_step_s);
       return std::make_unique<ReplayFlight>(
@@ -70,7 +72,7 @@ std::unique_ptr<Flight> flown(const Flight& reference, const DynamicsConfig& dyn
                               const std::string& place, LogSink& log) {
   std::unique_ptr<Flight> flight = fly_quadrotor(reference, dynamics, place);
   const TrackingError error = tracking_error(*flight, reference);
-  log.info(fmt::format("flight {}: flown by a quadrotor, {:.3f} m rms and at most {:.3f} m off",
+  log.info(fmt::format("flight {}: quadrotor, tracking error {:.3f} m rms and at most {:.3f} m",
                        place, error.rms_m, error.max_m));
   return flight;
 }
@@ -86,9 +88,10 @@ void require_clear(const Flight& flight, const World& world, double clearance,
           : fmt::format("comes within {:.3f} m of a surface", encounter->distance);
   throw InputError(
       place,
-      fmt::format("the flight {} at ({:.2f}, {:.2f}, {:.2f}), {:.2f} s after its begin", what,
+      fmt::format("the flight {} at ({:.2f}, {:.2f}, {:.2f}), {:.2f} s after its start", what,
                   p.x(), p.y(), p.z(), to_seconds(encounter->time)),
-      fmt::format("move the waypoints there, or lower clearance_m ({:g}) or corner_m", clearance));
+      fmt::format("move the nearby waypoints, or reduce clearance_m ({:g}) or corner_m",
+                  clearance));
 }
 
 }  // namespace

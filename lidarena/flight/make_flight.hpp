@@ -11,10 +11,10 @@
 
 namespace lidarena {
 
-/// Builds the flight that `file` describes (a YAML of configs/flights, or a TUM trajectory to
-/// replay) in `world`, whose own routes `model` carries.
-/// Throws InputError when the path leaves less than the configured clearance to the mesh (it names
-/// the place and the time), exceeds its own limits, or the world has no route where one is asked.
+/// Builds the flight that `file` describes (a YAML file as in configs/flights, or a TUM trajectory
+/// to replay) in `world`; `model` provides the world's routes.
+/// Throws InputError when the path comes closer to the mesh than the configured clearance (with
+/// position and time), exceeds its limits, or the world does not have the selected route.
 std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const WorldModel& model,
                                     const World& world, LogSink& log);
 

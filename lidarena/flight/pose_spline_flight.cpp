@@ -19,7 +19,8 @@ Quaterniond quaternion_of(const Value& value) {
   return Quaterniond(Eigen::Vector4d(value.tail<4>()));
 }
 
-/// Both quaternions of a rotation are as good: the one nearer to that of `last` is taken.
+/// Position and quaternion of a pose. Of the two quaternions of a rotation the one closer to that
+/// of `last` is chosen.
 Value value_of(const Pose& pose, const Value& last) {
   Quaterniond q(pose.linear());
   if (q.coeffs().dot(last.tail<4>()) < 0.0) q.coeffs() = -q.coeffs();
@@ -69,7 +70,7 @@ Motion PoseSplineFlight::at(Time t) const {
   motion.velocity_world = first.head<3>();
   motion.acceleration_world = second.head<3>();
   // With s = n q the product conj(s) s' = n^2 conj(q) q' + n n': its vector part is n^2 rate / 2.
-  // One derivative on, conj(s') s' adds nothing to the vector part.
+  // In its derivative, the term conj(s') s' has no vector part.
   const Quaterniond conjugate = quaternion_of(value).conjugate();
   const double n2 = value.tail<4>().squaredNorm();
   const double dn2 = 2.0 * value.tail<4>().dot(first.tail<4>());

@@ -8,19 +8,19 @@
 
 namespace lidarena {
 
-/// A flight along poses that were computed at equal steps of time: one B-spline of degree 6 in
-/// position and quaternion (the quaternion is divided by its norm, which is close to 1), so pose,
-/// velocity, acceleration, body rate and angular acceleration are exact derivatives of one
-/// function. Five times continuously differentiable. 392 bytes a knot.
+/// A flight along poses that were computed at equal time steps: one B-spline of degree 6 in
+/// position and quaternion (the quaternion is divided by its norm, which is close to 1), so that
+/// velocity, acceleration, body rate and angular acceleration are exact derivatives of the pose.
+/// Five times continuously differentiable. 392 bytes per knot.
 class PoseSplineFlight final : public Flight {
  public:
   static constexpr int kDegree = 6;
   using Spline = UniformSpline<kDegree, 7>;
-  /// Seconds before 0 at which the first pose is asked.
+  /// Time (s) before 0 at which the first pose is sampled.
   static double lead_s(double knot_s);
 
-  /// `pose_at(t)`, t in s, is asked for once per knot from -lead_s() on, in order of time, until
-  /// lead_s() and a knot behind `duration` at the latest.
+  /// `pose_at(t)`, t in s, is called once per knot in order of time, from -lead_s() on, at most
+  /// until lead_s() plus one knot after `duration`.
   PoseSplineFlight(const std::function<Pose(double)>& pose_at, double knot_s, Time duration);
 
   Motion at(Time t) const override;

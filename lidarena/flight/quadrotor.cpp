@@ -14,8 +14,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-// front left, front right, rear left, rear right: where a rotor stands in x and y, and the sense of
-// its reaction torque about z
+// For the rotors front left, front right, rear left, rear right: sign of the position in x and y,
+// and sign of the reaction torque about z.
 const Array4d kAhead{1, 1, -1, -1};
 const Array4d kLeft{1, -1, 1, -1};
 const Array4d kSpin{1, -1, -1, 1};

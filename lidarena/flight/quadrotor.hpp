@@ -8,14 +8,14 @@
 
 namespace lidarena {
 
-/// Everything that changes while a quadrotor flies. Body frame: x forward, y left, z up, at the
-/// center of mass. Rotors: front left, front right, rear left, rear right.
+/// State of a quadrotor. Body frame: x forward, y left, z up, at the center of mass. Rotors: front
+/// left, front right, rear left, rear right.
 struct QuadrotorState {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();            ///< m, world
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();            ///< m/s, world
   Eigen::Quaterniond attitude = Eigen::Quaterniond::Identity();  ///< world_from_body
   Eigen::Vector3d rate = Eigen::Vector3d::Zero();                ///< rad/s, body
-  Eigen::Array4d rotor_speed = Eigen::Array4d::Zero();           ///< of full speed
+  Eigen::Array4d rotor_speed = Eigen::Array4d::Zero();           ///< as a fraction of full speed
 };
 
 /// Time derivative of a QuadrotorState.
@@ -32,32 +32,33 @@ struct Wrench {
   Eigen::Vector3d torque = Eigen::Vector3d::Zero();  ///< N m
 };
 
-/// The physics: a rigid body, four rotors whose speed follows its command with a first-order lag
-/// and whose thrust and torque grow with the speed's square, gravity, and drag proportional to the
-/// speed through the air across the thrust (rotor drag).
+/// Physical model: a rigid body, four rotors whose speed follows its command with a first-order lag
+/// and whose thrust and torque are proportional to the square of the speed, gravity, and drag
+/// proportional to the airspeed perpendicular to the thrust (rotor drag).
 class Quadrotor {
  public:
   explicit Quadrotor(const DynamicsConfig& config);
 
-  /// `command`: rotor speeds asked for, in [0, 1] of full speed; `air`: its velocity, m/s, world.
+  /// `command`: commanded rotor speeds as fractions of full speed, in [0, 1]; `air`: velocity of
+  /// the air, m/s, world.
   QuadrotorRate derivative(const QuadrotorState& state, const Eigen::Array4d& command,
                            const Eigen::Vector3d& air) const;
-  /// What rotors at these speeds (of full speed) exert.
+  /// The wrench of the rotors at these speeds (as fractions of full speed).
   Wrench wrench(const Eigen::Array4d& rotor_speed) const;
-  /// Rotor speeds whose wrench is `wanted`, as far as rotors can: torque about z gives way first,
-  /// then each rotor is held between standstill and full speed.
+  /// Rotor speeds that produce the wrench `wanted` as far as possible: the torque about z is
+  /// reduced first, then each rotor is limited to the range from standstill to full speed.
   Eigen::Array4d speeds_for(const Wrench& wanted) const;
-  /// Force of the air on a body, N, world.
+  /// Drag force on the body, N, world.
   Eigen::Vector3d drag(const Eigen::Matrix3d& world_from_body,
                        const Eigen::Vector3d& velocity_through_air) const;
   const DynamicsConfig& config() const { return config_; }
 
  private:
   DynamicsConfig config_;
-  double lever_;  ///< m, of a rotor about the x and the y axis
+  double lever_;  ///< m, lever arm of a rotor about the x and the y axis
 };
 
-/// state + h * rate; the quaternion is not normalized.
+/// Returns state + h * rate; the quaternion is not normalized.
 QuadrotorState advanced(const QuadrotorState& state, const QuadrotorRate& rate, double h);
 
 /// One step of the classical Runge-Kutta method of order 4 over h seconds from `t`.

@@ -8,8 +8,9 @@
 
 namespace lidarena {
 
-/// Moving air. Each axis of the gusts is a stationary Gaussian-like process with the spectrum of
-/// the longitudinal Dryden model (see Gusts). It sets in over the flight's first second.
+/// Wind and gusts. Each axis of the gusts is an approximately Gaussian stationary process with the
+/// spectrum of the longitudinal Dryden model (see Gusts). Both are faded in over the first second
+/// of the flight.
 struct GustConfig {
   Eigen::Vector3d wind = Eigen::Vector3d::Zero();
   double gust_speed = 0.0;
@@ -21,18 +22,17 @@ struct GustConfig {
     v("wind", self.wind, "m/s", "mean velocity of the air, world frame");
     v("gust_speed", self.gust_speed, "m/s", "standard deviation of the gusts on each axis; 0 = off",
       between(0, 20));
-    v("correlation_time_s", self.correlation_time_s, "s", "how long a gust lasts",
+    v("correlation_time_s", self.correlation_time_s, "s", "correlation time of the gusts",
       between(0.1, 100));
-    v("seed", self.seed, "", "of the gusts");
+    v("seed", self.seed, "", "seed of the gusts");
   }
 };
 
-/// A quadrotor in X configuration and its controller. The defaults are a 1.5 kg airframe that
+/// A quadrotor in X configuration and its controller. The defaults describe a 1.5 kg airframe that
 /// carries a LiDAR: inertia, torque per thrust and motor lag are those of the Iris in PX4's Gazebo
 /// models (lag between its 12.5 ms up and 25 ms down), thrust its 5.84e-6 N s^2 * (1100 rad/s)^2;
-/// arm and drag are assumptions (drag of the order that Faessler, Franchi, Scaramuzza,
-/// "Differential flatness of quadrotor dynamics subject to rotor drag", RA-L 2018, are concerned
-/// with).
+/// arm and drag are assumptions (drag of the order of magnitude in Faessler, Franchi, Scaramuzza,
+/// "Differential flatness of quadrotor dynamics subject to rotor drag", RA-L 2018).
 struct DynamicsConfig {
   double mass_kg = 1.5;
   Eigen::Vector3d inertia{0.029125, 0.029125, 0.055225};
@@ -49,20 +49,23 @@ struct DynamicsConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("mass_kg", self.mass_kg, "kg", "with everything it carries", above(0));
-    v("inertia", self.inertia, "kg m^2", "about the body's x, y, z", above(0));
-    v("arm_m", self.arm_m, "m", "from the center to each motor", above(0));
-    v("max_thrust", self.max_thrust, "N", "of one rotor at full speed", above(0));
-    v("torque_per_thrust", self.torque_per_thrust, "m", "of a rotor about its axis", above(0));
+    v("mass_kg", self.mass_kg, "kg", "total mass including payload", above(0));
+    v("inertia", self.inertia, "kg m^2", "moments of inertia about the body's x, y, z", above(0));
+    v("arm_m", self.arm_m, "m", "distance from the center to each motor", above(0));
+    v("max_thrust", self.max_thrust, "N", "thrust of one rotor at full speed", above(0));
+    v("torque_per_thrust", self.torque_per_thrust, "m",
+      "reaction torque of a rotor about its axis per thrust", above(0));
     v("motor_lag_s", self.motor_lag_s, "s", "time constant of a rotor's speed", between(0.004, 1));
     v("drag_per_s", self.drag_per_s, "1/s",
-      "rotor drag across the thrust: deceleration per speed through the air", between(0, 10));
+      "rotor drag perpendicular to the thrust: deceleration per airspeed", between(0, 10));
     v("position_bandwidth", self.position_bandwidth, "rad/s",
-      "natural frequency at which position errors are corrected", above(0));
-    v("tilt_bandwidth", self.tilt_bandwidth, "rad/s", "the same of roll and pitch", above(0));
-    v("yaw_bandwidth", self.yaw_bandwidth, "rad/s", "the same of the heading", above(0));
-    v("damping", self.damping, "", "ratio, of all three", between(0.3, 3));
-    v("gusts", self.gusts, "", "wind");
+      "natural frequency of the position controller", above(0));
+    v("tilt_bandwidth", self.tilt_bandwidth, "rad/s",
+      "natural frequency of the roll and pitch controller", above(0));
+    v("yaw_bandwidth", self.yaw_bandwidth, "rad/s", "natural frequency of the heading controller",
+      above(0));
+    v("damping", self.damping, "", "damping ratio of the three controllers", between(0.3, 3));
+    v("gusts", self.gusts, "", "wind and gusts");
   }
 };
 

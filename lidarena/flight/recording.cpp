@@ -18,7 +18,8 @@
 namespace lidarena {
 namespace {
 
-/// Decimal seconds as integer nanoseconds, so that nothing of a large stamp is lost to `double`.
+/// Converts decimal seconds to integer nanoseconds without the rounding of large stamps to
+/// `double`.
 std::optional<Time> exact_seconds(const std::string& text) {
   const std::size_t dot = std::min(text.find('.'), text.size());
   std::int64_t seconds = 0;
@@ -40,9 +41,9 @@ StampedPose tum_row(const std::string& line, const std::string& place) {
   std::string rest;
   if (!in || in >> rest) throw InputError(place, "is not a row 't x y z qx qy qz qw'");
   std::optional<Time> time = exact_seconds(stamp);
-  if (!time) {  // with an exponent
+  if (!time) {  // a number with an exponent
     const auto seconds = parse_number(stamp);
-    if (!seconds) throw InputError(place, "has no time in its first column");
+    if (!seconds) throw InputError(place, "has no time stamp in its first column");
     time = from_seconds(*seconds);
   }
   const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
@@ -58,7 +59,7 @@ StampedPose tum_row(const std::string& line, const std::string& place) {
 Trajectory read_recording(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in)
-    throw InputError(file.string(), "cannot be opened", "check the name and its permissions");
+    throw InputError(file.string(), "cannot be opened", "check the path and the permissions");
   std::vector<StampedPose> poses;
   std::string line;
   for (int number = 1; std::getline(in, line); ++number) {

@@ -26,14 +26,14 @@ struct Node {
   Rates position, rotation;
 };
 
-/// Derivatives at pose `i` of the polynomial through it and up to four neighbors, the same number
-/// on both sides where there are that many.
+/// Derivatives at pose `i` of the polynomial through it and up to four neighbors, two on each side
+/// where possible.
 Node node_at(std::span<const StampedPose> poses, std::size_t i) {
   const std::size_t count = std::min<std::size_t>(5, poses.size());
   const std::size_t first = std::min(i - std::min<std::size_t>(i, 2), poses.size() - count);
   const Pose& here = poses[i].world_from_body;
   const double scale = to_seconds(poses[first + count - 1].stamp - poses[first].stamp);
-  // row: one neighbor's step = [t t^2 t^3 ...] * coefficients, with time in units of `scale`
+  // one row per neighbor: step = [t t^2 t^3 ...] * coefficients, with time in units of `scale`
   const auto n = static_cast<Eigen::Index>(count - 1);
   Eigen::MatrixXd powers(n, n);
   Eigen::MatrixXd steps(n, 6);
@@ -57,7 +57,8 @@ Node node_at(std::span<const StampedPose> poses, std::size_t i) {
           {first_rates.tail<3>(), second_rates.tail<3>()}};
 }
 
-/// The quintic over [0, 1] with these end values and derivatives, which are per second of `h`.
+/// The quintic polynomial over [0, 1] with these end values and derivatives; the interval lasts `h`
+/// seconds and the derivatives are per second.
 Coefficients quintic(const Vector3d& from, const Rates& begin, const Vector3d& to, const Rates& end,
                      double h) {
   const Vector3d v0 = h * begin.first;
@@ -102,7 +103,7 @@ ReplayFlight::ReplayFlight(const Trajectory& recording, const std::string& name)
   const auto poses = recording.poses();
   if (poses.size() < 2) {
     throw InputError(name, "has " + std::to_string(poses.size()) + " pose(s)",
-                     "a replay needs two or more");
+                     "a replay needs at least two");
   }
   for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
     const Node begin = node_at(poses, i);

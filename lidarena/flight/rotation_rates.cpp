@@ -10,14 +10,14 @@ namespace {
 using Eigen::Vector3d;
 
 /// b = (1 - cos t) / t^2, c = (t - sin t) / t^3 of the right Jacobian I - b [v] + c [v]^2 (Sola,
-/// Deray, Atchuthan 2018, eq. 143), and their derivatives by x = t^2.
+/// Deray, Atchuthan 2018, eq. 143), and their derivatives with respect to x = t^2.
 struct Quotients {
   double b, c, db, dc;
 };
 
 Quotients quotients(double x) {
-  // Below, the closed forms lose digits to cancellation; the series' first dropped terms are
-  // under 1e-16 of the sum.
+  // Below this value the closed forms suffer from cancellation; the first neglected terms of the
+  // series are below 1e-16 of the sum.
   if (x < 1e-2) {
     return {1.0 / 2 - x * (1.0 / 24 - x * (1.0 / 720 - x * (1.0 / 40320 - x / 3628800))),
             1.0 / 6 - x * (1.0 / 120 - x * (1.0 / 5040 - x * (1.0 / 362880 - x / 39916800))),

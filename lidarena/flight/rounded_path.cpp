@@ -14,11 +14,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastStep = 1e-3;      // m; waypoints nearer than this are a mistake
-constexpr double kLeastRadius = 1e-3;    // m; a tighter corner is a turn on the spot
-constexpr double kStraightAngle = 1e-6;  // rad; flown straight on
+constexpr double kLeastStep = 1e-3;      // m; waypoints closer than this are an input error
+constexpr double kLeastRadius = 1e-3;    // m; at a tighter corner the path stops
+constexpr double kStraightAngle = 1e-6;  // rad; corners below this angle are ignored
 
-/// The arc that rounds a corner; `reach` is how much of both segments it takes.
+/// The arc that rounds a corner; `reach` (m) is the length that it replaces on both segments.
 struct Corner {
   double angle = 0.0, radius = 0.0, reach = 0.0;
   Vector3d normal = Vector3d::Zero();
@@ -32,7 +32,7 @@ Corner corner_at(const Vector3d& in, const Vector3d& out, double reach, double t
   corner.angle = std::atan2(in.cross(out).norm(), in.dot(out));
   if (corner.is_straight()) return corner;
   const double half = 0.5 * corner.angle;
-  const double leave = 1.0 / std::cos(half) - 1.0;  // distance corner to arc, per radius
+  const double leave = 1.0 / std::cos(half) - 1.0;  // distance from corner to arc, per radius
   corner.radius = std::min(tolerance / leave, reach / std::tan(half));
   if (corner.is_stop()) return corner;
   corner.reach = corner.radius * std::tan(half);
@@ -72,7 +72,7 @@ Vector3d RoundedPath::direction(double s) const {
 
 RoundedPath round_corners(std::span<const Vector3d> waypoints, double tolerance) {
   std::vector<PathPiece> pieces;
-  Corner last;  // where the path starts there is nothing to round
+  Corner last;  // no rounding at the start of the path
   for (std::size_t i = 0; i + 1 < waypoints.size(); ++i) {
     const Vector3d step = waypoints[i + 1] - waypoints[i];
     const double length = step.norm();
@@ -105,13 +105,13 @@ RoundedPath round_corners(std::span<const Vector3d> waypoints, double tolerance)
 void check_waypoints(std::span<const Vector3d> waypoints, const std::string& place) {
   if (waypoints.size() < 2) {
     throw InputError(place, fmt::format("has {} waypoint(s)", waypoints.size()),
-                     "a flight needs two or more");
+                     "a flight needs at least two");
   }
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
     if ((waypoints[i] - waypoints[i - 1]).norm() >= kLeastStep) continue;
     const Vector3d& p = waypoints[i];
     throw InputError(place,
-                     fmt::format("waypoint {} repeats the one before it: ({:g}, {:g}, {:g})", i + 1,
+                     fmt::format("waypoint {} repeats the previous one: ({:g}, {:g}, {:g})", i + 1,
                                  p.x(), p.y(), p.z()),
                      "remove it");
   }

@@ -6,16 +6,17 @@
 
 namespace lidarena {
 
-/// Samples beyond a control point on either side that controls_through() uses.
+/// Number of samples on either side of a control point that controls_through() uses.
 inline constexpr std::size_t kFitReach = 3;
 
-/// Control points of a uniform B-spline of degree D (at most 6) that follows samples taken at its
-/// controls' centers: control j belongs to sample j + kFitReach. A local quasi-interpolant (de
-/// Boor, "A Practical Guide to Splines", ch. XII): polynomials up to degree D are reproduced, any
-/// other smooth motion to order D + 1 in the knot.
+/// Control points of a uniform B-spline of degree D (at most 6) that approximates samples taken at
+/// the centers of its control points: control point j belongs to sample j + kFitReach. A local
+/// quasi-interpolant (de Boor, "A Practical Guide to Splines", ch. XII): polynomials up to degree D
+/// are reproduced, other smooth functions with an error of order D + 1 in the knot spacing.
 ///
-/// At the frequency w (rad per knot) the spline's weights pass sinc(w/2)^(D+1). The inverse's
-/// series in s = 4 sin^2(w/2), which as a filter is minus the second difference, is cut after s^3.
+/// The spline's weights attenuate the frequency w (rad per knot) by sinc(w/2)^(D+1). The series of
+/// the inverse in s = 4 sin^2(w/2), which as a filter is the negative second difference, is
+/// truncated after s^3.
 template <int D, class Value>
 std::vector<Value> controls_through(const std::vector<Value>& samples) {
   static_assert(D <= 6);
@@ -28,7 +29,7 @@ std::vector<Value> controls_through(const std::vector<Value>& samples) {
   constexpr double s1 = a;
   constexpr double s2 = a / 12.0 + b;
   constexpr double s3 = a / 90.0 + b / 6.0 + c;
-  // s, s^2 and s^3 of samples are sums of samples 0, 1, 2, 3 away
+  // s, s^2 and s^3 applied to the samples are weighted sums of the samples at distances 0, 1, 2, 3
   constexpr double w0 = 1.0 + 2.0 * s1 + 6.0 * s2 + 20.0 * s3;
   constexpr double w1 = -s1 - 4.0 * s2 - 15.0 * s3;
   constexpr double w2 = s2 + 6.0 * s3;

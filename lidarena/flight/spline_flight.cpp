@@ -23,21 +23,21 @@ using Eigen::Vector4d;
 using Spline = SplineFlight::Spline;
 using std::numbers::pi;
 
-/// The acceleration that keeps the tilt, and half of `corner` for what the spline smooths away:
-/// a/2 variance knot^2 <= corner/2 with knot = 2 a / j.
+/// Maximum acceleration on the path. It also respects the maximum tilt and limits the deviation by
+/// the spline's smoothing to half of `corner`: a/2 variance knot^2 <= corner/2 with knot = 2 a / j.
 double usable_acceleration(const FlightLimits& limits, double corner) {
   const double j = limits.max_jerk;
   return std::min({limits.max_acceleration, kGravity * std::sin(limits.max_tilt),
                    std::cbrt(corner * j * j / (4.0 * Spline::kVariance))});
 }
 
-/// Share of a sine of this period that is left after the spline's smoothing.
+/// Factor by which the spline's smoothing reduces the amplitude of a sine of this period.
 double sweep_gain(double period_s, double knot) {
   const double x = pi * knot / period_s;
   return std::pow(std::sin(x) / x, SplineFlight::kDegree + 1);
 }
 
-/// The waypoints, flown round again (to and fro when the line is open) for at least `length` m.
+/// The waypoints repeated (back and forth when the line is open) for at least `length` (m).
 std::vector<Vector3d> tour(std::span<const Vector3d> waypoints, double length) {
   constexpr double kClosed = 1e-3;  // m
   std::vector<Vector3d> lap(waypoints.begin(), waypoints.end());
@@ -52,7 +52,7 @@ std::vector<Vector3d> tour(std::span<const Vector3d> waypoints, double length) {
   return laps;
 }
 
-/// The amplitude that `sweep` needs before smoothing, and the yaw rate it then takes.
+/// The amplitude (rad) of a sweep before smoothing, and its maximum yaw rate (rad/s).
 struct Sweep {
   double amplitude = 0.0, rate = 0.0;
 };
@@ -65,14 +65,17 @@ Sweep sweep_of(const HeadingConfig& heading, double knot, double max_yaw_rate,
   const double rate = 2.0 * pi * amplitude / heading.period_s;
   if (!(rate < max_yaw_rate)) {
     throw InputError(place,
-                     fmt::format("the heading's sweep asks for {:.2f} rad/s of at most {:.2f}",
+                     fmt::format("the heading's sweep needs a yaw rate of {:.2f} rad/s, above the "
+                                 "limit of {:.2f} rad/s",
                                  rate, max_yaw_rate),
-                     "lower heading.amplitude or raise heading.period_s or limits.max_yaw_rate");
+                     "reduce heading.amplitude or increase heading.period_s or "
+                     "limits.max_yaw_rate");
   }
   return {amplitude, rate};
 }
 
-/// Where the moving point is at the controls' instants, and when it moves.
+/// Position and direction of the moving point at the instants of the control points, and the start
+/// and end of its motion.
 struct Course {
   std::vector<Vector3d> points, directions;
   double begin_s = 0.0, end_s = 0.0;
@@ -104,13 +107,14 @@ std::vector<double> headings(const Course& course, const HeadingConfig& heading,
   return yaw;
 }
 
-/// Seconds of a flight of `duration_s` that are left for moving.
+/// The time (s) that remains for moving in a flight of `duration_s`.
 double moving_time(double duration_s, double begin_s, const std::string& place) {
   const double moving_s = duration_s - 2.0 * begin_s;
   if (moving_s > 0.0) return moving_s;
   throw InputError(
       place, fmt::format("duration_s {:g} leaves no time to move", duration_s),
-      fmt::format("more than {:.3g} s go into hovering, starting and stopping", 2.0 * begin_s));
+      fmt::format("use more than {:.3g} s, the time for hovering, starting and stopping",
+                  2.0 * begin_s));
 }
 
 PathLimits path_limits(const FlightLimits& limits, double acceleration, HeadingMode mode,
@@ -121,7 +125,7 @@ PathLimits path_limits(const FlightLimits& limits, double acceleration, HeadingM
                   .stop_s = 0.0};
   if (mode != HeadingMode::kFixed) {
     path.max_turn_rate = limits.max_yaw_rate - sweep.rate;
-    path.stop_s = pi / limits.max_yaw_rate;  // to turn round
+    path.stop_s = pi / limits.max_yaw_rate;  // time for a rotation by 180 degrees
   }
   return path;
 }
@@ -137,7 +141,7 @@ SplineFlight::Plan SplineFlight::plan(std::span<const Vector3d> waypoints,
   const Sweep sweep = sweep_of(config.heading, knot, limits.max_yaw_rate, place);
   const PathLimits on_path = path_limits(limits, acceleration, config.heading.mode, sweep);
   const double smoothed_away = 0.5 * acceleration * Spline::kVariance * knot * knot;
-  // a control point shapes the flight half a support before its instant and after
+  // a control point affects the flight within half a support before and after its instant
   const double begin_s = config.hover_s + Spline::kHalfSupport * knot;
 
   const bool loops = config.duration_s > 0.0;

@@ -7,9 +7,9 @@
 namespace lidarena {
 namespace {
 
-constexpr double kCell = 0.02;  // m; speed changes at constant acceleration within
+constexpr double kCell = 0.02;  // m, maximum length of a cell of constant acceleration
 
-// In an arc the acceleration is shared between across and along: 0.8^2 + 0.6^2 = 1.
+// In an arc the acceleration is divided into parts across and along the path: 0.8^2 + 0.6^2 = 1.
 constexpr double kAcross = 0.8;
 constexpr double kAlong = 0.6;
 
@@ -35,7 +35,7 @@ TimeLaw::TimeLaw(const RoundedPath& path, const PathLimits& limits, double end) 
     if (begin >= end) break;
     const double length = std::min(piece.length, end - begin);
     const CellLimits cell = limits_in(piece, limits);
-    // two or more, so that between two stops there is a node that moves
+    // at least two, so that there is a node with nonzero speed between two stops
     const auto count = std::max<std::size_t>(2, static_cast<std::size_t>(length / kCell) + 1);
     nodes_.back().speed = piece.from_stop ? 0.0 : std::min(nodes_.back().speed, cell.speed);
     pause.back() = piece.from_stop;
@@ -82,7 +82,7 @@ double TimeLaw::distance_at(double t) const {
 TimeLaw law_of_duration(const RoundedPath& path, const PathLimits& limits, double duration) {
   double low = 0.0;
   double high = path.length();
-  // 50 halvings leave less than a picometer of any path
+  // after 50 bisections the interval is below a picometer for any realistic path
   for (int i = 0; i < 50; ++i) {
     const double middle = 0.5 * (low + high);
     (TimeLaw(path, limits, middle).duration() < duration ? low : high) = middle;

@@ -23,8 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kSlack = 0.005;          // m; for what lies between two places asked
-constexpr double kCoverageSpacing = 0.2;  // m, between places along the flight to look from
+constexpr double kSlack = 0.005;          // m; allows for violations between two query points
+constexpr double kCoverageSpacing = 0.2;  // m, between viewpoints along the flight
 
 Vector3d start_of(const WorldModel& model, const World& world, const TourConfig& config,
                   double clearance, const std::string& place, const Parallel& parallel) {
@@ -32,9 +32,9 @@ Vector3d start_of(const WorldModel& model, const World& world, const TourConfig&
   if (!model.routes.empty() && !model.routes.front().empty()) return model.routes.front().front();
   if (const auto found = most_enclosed_place(world, clearance, parallel)) return *found;
   throw InputError(place,
-                   fmt::format("finds no place in the world '{}' that keeps {:g} m from surfaces",
+                   fmt::format("no starting point in the world '{}' keeps {:g} m from all surfaces",
                                model.name, clearance),
-                   "give tour.start, or lower clearance_m");
+                   "set tour.start, or reduce clearance_m");
 }
 
 FreeSpace explored(const World& world, const Vector3d& start, const FlightConfig& config,
@@ -46,12 +46,13 @@ FreeSpace explored(const World& world, const Vector3d& start, const FlightConfig
   throw InputError(
       place,
       fmt::format("the tour's start ({:.2f}, {:.2f}, {:.2f}) is {:.3f} m from a "
-                  "surface, or outside the mesh's box",
+                  "surface, which is too close, or it is outside the mesh's bounding box",
                   start.x(), start.y(), start.z(), world.closest_point(start).distance),
-      fmt::format("move tour.start, or lower clearance_m ({:g})", config.clearance_m));
+      fmt::format("move tour.start, or reduce clearance_m ({:g})", config.clearance_m));
 }
 
-/// In each block of the grid the cell with the most room; blocks are as small as `most` allows.
+/// The cell with the largest clearance in each block of a coarse grid. The blocks are enlarged
+/// until there are at most `most` of them.
 std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
   const auto cells = space.cells();
   for (double edge = 5.0 * space.cell_m();; edge *= 1.25) {
@@ -81,7 +82,7 @@ std::vector<Vector3d> points_of(const FreeSpace& space, std::span<const std::int
   return points;
 }
 
-/// The start's cell, the first, and the cells of the chosen views; two at least.
+/// The cell of the start (the first cell) and the cells of the chosen viewpoints; two or more.
 std::vector<std::int32_t> stops(const FreeSpace& space, const std::vector<std::int32_t>& cells,
                                 const std::vector<std::size_t>& chosen) {
   std::vector<std::int32_t> all{0};
@@ -92,7 +93,7 @@ std::vector<std::int32_t> stops(const FreeSpace& space, const std::vector<std::i
   return all;
 }
 
-/// Visiting order of `cells`, from the first on.
+/// The `cells` in the order in which they are visited, starting with the first.
 std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std::int32_t>& cells,
                                   const Parallel& parallel) {
   std::vector<std::vector<std::int32_t>> lengths(cells.size());
@@ -107,8 +108,9 @@ std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std:
   return visits;
 }
 
-/// Appends the corners of `line` between its first point, which is there already, and its last,
-/// with as few of them as ways of this clearance allow (found by doubling, then halving a leap).
+/// Appends the points of `line` after its first one, which is already in `way`, to its last one,
+/// and skips those that a straight segment with this clearance can bypass. The longest segment is
+/// found by doubling the number of skipped points, then by bisection.
 void append_pulled(const World& world, std::span<const Vector3d> line, double clearance,
                    std::vector<Vector3d>& way) {
   for (std::size_t from = 0; from + 1 < line.size();) {
@@ -132,8 +134,8 @@ void append_pulled(const World& world, std::span<const Vector3d> line, double cl
   }
 }
 
-/// The way along `cells`, pulled straight: wide stretches at the preferred distance, narrow ones,
-/// with a cell more on either side, at the least.
+/// Appends the path along `cells`, shortened by straight segments: wide sections keep the preferred
+/// distance; narrow sections, with one more cell at either end, keep the minimum distance.
 void append_way(const World& world, const FreeSpace& space, std::span<const std::int32_t> cells,
                 std::vector<Vector3d>& way) {
   const auto wide = [&](std::size_t i) { return space.is_wide(cells[i]); };
@@ -148,7 +150,7 @@ void append_way(const World& world, const FreeSpace& space, std::span<const std:
   }
 }
 
-/// Without points that repeat the one before.
+/// Drops points that are closer than kApart to the previous one.
 std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
   constexpr double kApart = 0.02;  // m
   std::vector<Vector3d> kept{way.front()};
@@ -159,7 +161,7 @@ std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
   return kept;
 }
 
-/// From each cell to the next, and from the last to the first.
+/// The path from each cell to the next, and from the last to the first.
 std::vector<Vector3d> way_through(const World& world, const FreeSpace& space,
                                   const std::vector<std::int32_t>& visits) {
   std::vector<Vector3d> way{space.cells()[static_cast<std::size_t>(visits.front())].point};
@@ -169,8 +171,8 @@ std::vector<Vector3d> way_through(const World& world, const FreeSpace& space,
   return thinned(way);
 }
 
-/// A corner of the tour; with a finite reach, waypoints at that distance before and behind keep its
-/// arc within half of it.
+/// A corner of the tour. If `reach` (m) is finite, extra waypoints at that distance before and
+/// after the corner limit its arc to half of that distance.
 struct Corner {
   Vector3d point;
   double reach = std::numeric_limits<double>::infinity();
@@ -183,7 +185,7 @@ std::vector<Vector3d> waypoints_of(const std::vector<Corner>& corners) {
     const Vector3d& to = corners[i].point;
     const double length = (to - from).norm();
     const Vector3d along = (to - from) / length;
-    // beside a corner only where the segment is longer than what both corners take
+    // extra waypoints only where the segment is longer than required for both of its corners
     const double behind = corners[i - 1].reach, before = corners[i].reach;
     constexpr double kApart = 0.01;  // m
     if (behind < 0.5 * length - kApart) waypoints.emplace_back(from + behind * along);
@@ -205,12 +207,12 @@ double share_of(const Seen& seen) {
   return static_cast<double>(count_seen(seen)) / static_cast<double>(seen.size());
 }
 
-/// Corners near which the flight comes nearer to a surface than `clearance`.
+/// Corners near which the flight comes closer to a surface than `clearance`.
 std::vector<std::size_t> tight_corners(const Flight& flight, const World& world, double clearance,
                                        const std::vector<Corner>& corners) {
   constexpr Time kStep = std::chrono::milliseconds(5);
   std::vector<std::size_t> tight;
-  double margin = 0.0;  // way that may be flown before asking again
+  double margin = 0.0;  // path length within which no new query is needed
   Vector3d last = flight.pose_at(Time{0}).translation();
   for (Time t{0}; t <= flight.duration(); t += kStep) {
     const Vector3d here = flight.pose_at(t).translation();
@@ -227,11 +229,11 @@ std::vector<std::size_t> tight_corners(const Flight& flight, const World& world,
   return tight;
 }
 
-/// The way as waypoints whose flight keeps the clearance at its corners, if that can be had.
+/// The path as waypoints whose flight keeps the clearance at its corners, if possible.
 std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& world,
                                 const FlightConfig& config, const std::string& place) {
   constexpr int kRounds = 8;
-  constexpr double kFirstReach = 0.8;  // m; halved each time
+  constexpr double kFirstReach = 0.8;  // m; halved in each further round
   std::vector<Corner> corners;
   corners.reserve(way.size());
   for (const Vector3d& point : way) corners.push_back({point});
@@ -278,8 +280,8 @@ Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& 
 
 std::string describe(const Tour& tour) {
   return fmt::format(
-      "a tour of {} waypoints by way of {} views; {:.1f} % of what can be seen from the {} cells "
-      "of {:.2f} m that can be reached is seen: {:.1f} % of the mesh's area, of at most {:.1f} %",
+      "a tour of {} waypoints through {} viewpoints sees {:.1f} % of what is visible from the {} "
+      "reachable cells of {:.2f} m: {:.1f} % of the mesh's area of at most {:.1f} %",
       tour.waypoints.size(), tour.views, 100.0 * tour.seen / std::max(tour.seeable, 1e-12),
       tour.cells, tour.cell_m, 100.0 * tour.seen, 100.0 * tour.seeable);
 }
@@ -289,7 +291,7 @@ std::string as_yaml(const Tour& tour, const FlightConfig& config) {
   saved.kind = FlightKind::kWaypoints;
   saved.waypoints = tour.waypoints;
   for (Vector3d& point : saved.waypoints) point = (1e3 * point).array().round() / 1e3;
-  return to_json(saved).dump(2) + "\n";  // JSON is YAML
+  return to_json(saved).dump(2) + "\n";  // JSON is valid YAML
 }
 
 }  // namespace lidarena

@@ -11,11 +11,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAcross = 16;  // places along the box's longest edge, at most twice as many as below
-constexpr int kLeast = 4;    // along any edge
+constexpr int kAcross = 16;  // number of grid points along the longest edge of the bounding box
+constexpr int kLeast = 4;    // minimum number of grid points along any edge
 constexpr std::size_t kDirections = 64;
 
-/// Directions spread evenly over the sphere (a spiral by the golden angle).
+/// Directions distributed evenly over the sphere (golden-angle spiral).
 std::vector<Eigen::Vector3f> directions() {
   std::vector<Eigen::Vector3f> all;
   for (std::size_t k = 0; k < kDirections; ++k) {
@@ -46,7 +46,7 @@ std::vector<Vector3d> grid(const Eigen::AlignedBox3d& box) {
 }
 
 struct Score {
-  int enclosed = -1;  ///< directions; negative when the place is not fit
+  int enclosed = -1;  ///< number of directions that end at a surface; negative: unsuitable place
   double room = 0.0;
   bool operator<(const Score& other) const {
     return enclosed != other.enclosed ? enclosed < other.enclosed : room < other.room;

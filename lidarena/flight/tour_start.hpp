@@ -9,9 +9,10 @@
 
 namespace lidarena {
 
-/// The place, of a grid over the mesh's box, that is most enclosed: from where the most of 64 even
-/// directions end at a surface; of equals the one with the most room (up to 1 m), then the first.
-/// Only places that keep `clearance` and have a floor below them count.
+/// The most enclosed point of a grid over the mesh's bounding box: the one from which the most of
+/// 64 evenly distributed directions end at a surface; of equals the one farthest from surfaces (up
+/// to 1 m), then the first. Only points that keep `clearance` (m) and have a surface below them are
+/// considered. Empty when there is none.
 std::optional<Eigen::Vector3d> most_enclosed_place(const World& world, double clearance,
                                                    const Parallel& parallel);
 

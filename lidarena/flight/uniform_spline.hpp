@@ -9,20 +9,21 @@
 namespace lidarena {
 
 /// Uniform B-spline of degree D with values in R^N (de Boor, "A Practical Guide to Splines").
-/// Interval k spans [k, k+1) * knot seconds and is shaped by the control points k .. k+D; control
+/// Interval k spans [k, k+1) * knot seconds and depends on the control points k .. k+D; control
 /// point j has its center at (j - (D-1)/2) * knot. D - 1 times continuously differentiable.
 ///
 /// Weights are not negative and sum to one, so a value lies in the convex hull of its D+1 control
-/// points, and so do derivatives in that of the control points' finite differences: bounds on
+/// points, and a derivative in that of the control points' finite differences: bounds on the
 /// differences of control points are bounds on the derivatives at every instant. Straight lines
-/// are reproduced; a control polygon sampled from a curve with second derivative below m is
-/// followed within m/2 * kVariance * knot^2 (Taylor, the weights' second moment being constant).
+/// are reproduced; a curve with second derivative below m, sampled at the control points' centers,
+/// is approximated within m/2 * kVariance * knot^2 (Taylor expansion; the second moment of the
+/// weights is constant).
 template <int D, int N>
 class UniformSpline {
  public:
   using Value = Eigen::Matrix<double, N, 1>;
-  static constexpr double kVariance = (D + 1) / 12.0;    ///< of the weights, in knots^2
-  static constexpr double kHalfSupport = (D + 1) / 2.0;  ///< knots
+  static constexpr double kVariance = (D + 1) / 12.0;    ///< variance of the weights, in knots^2
+  static constexpr double kHalfSupport = (D + 1) / 2.0;  ///< half width of the weights, in knots
 
   /// At least D + 1 control points; knot > 0.
   UniformSpline(const std::vector<Value>& controls, double knot) : rate_(1.0 / knot) {
@@ -43,11 +44,12 @@ class UniformSpline {
 
   std::size_t intervals() const { return pieces_.size(); }
 
-  /// Where `t` (s) lies; ends are held.
+  /// Position on the spline that belongs to a time.
   struct Place {
     const Eigen::Matrix<double, N, D + 1>* piece;
     double u;  ///< [0, 1] within the piece
   };
+  /// The place of time `t` (s), which is clamped to the spline's range.
   Place find(double t) const {
     const double last = static_cast<double>(pieces_.size() - 1);
     const double x = std::clamp(t * rate_, 0.0, last + 1.0);

@@ -11,17 +11,17 @@
 
 namespace lidarena {
 
-/// Poses that hang on keyframes, so that they move along when those are moved afterwards. What the
-/// keyframes' new places ask of the motion between two of them is shared out evenly over its time.
+/// Poses relative to keyframes, which move along when the keyframes are corrected later. The
+/// correction of the motion between two keyframes is distributed evenly over the time between them.
 class AnchoredTrajectory {
  public:
-  /// A new keyframe at `stamp`, and where it stood when seen from the one before.
+  /// Adds a keyframe at `stamp` with its pose relative to the one before.
   void add_anchor(Time stamp, const Pose& previous_from_this);
-  /// A pose seen from the last keyframe; from the world, as long as there is none. Poses not later
-  /// than the one before are left out.
+  /// Adds a pose relative to the last keyframe, or to the world as long as there is none. Poses not
+  /// later than the one before are left out.
   void add(Time stamp, const Pose& anchor_from_body);
 
-  /// All poses, the keyframes being at `anchors` now (as many as were added).
+  /// All poses in the world, for keyframes at `anchors` (as many as were added).
   std::vector<StampedPose> placed(std::span<const Pose> anchors) const;
 
   std::size_t size() const { return poses_.size(); }
@@ -34,7 +34,7 @@ class AnchoredTrajectory {
   };
   struct Hanging {
     Time stamp{0};
-    std::size_t anchors = 0;  ///< that there were; it hangs on the last of them
+    std::size_t anchors = 0;  ///< number of keyframes so far; relative to the last of them
     Pose anchor_from_body = Pose::Identity();
   };
   std::vector<Anchor> anchors_;

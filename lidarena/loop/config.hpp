@@ -8,13 +8,13 @@
 
 namespace lidarena {
 
-/// What two places are laid on each other by.
+/// Distances that ICP minimizes.
 enum class IcpMetric {
-  kPoints,  ///< distances to the nearest points
-  kPlanes,  ///< distances to the planes through them
+  kPoints,  ///< to the nearest points
+  kPlanes,  ///< to the planes through them
 };
 
-/// How loops are looked for, judged and used. The defaults are LIO-SAM's.
+/// How loops are searched for, verified and used. The defaults are those of LIO-SAM.
 struct LoopConfig {
   int keyframes_per_search = 1;
   double least_gap_s = 30.0;
@@ -53,62 +53,81 @@ struct LoopConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("keyframes_per_search", self.keyframes_per_search, "", "a loop is looked for every so many",
-      at_least(1));
-    v("least_gap_s", self.least_gap_s, "s", "between the two visits of a place", at_least(0));
+    v("keyframes_per_search", self.keyframes_per_search, "",
+      "search for a loop at every n-th keyframe", at_least(1));
+    v("least_gap_s", self.least_gap_s, "s", "minimum time between the two visits of a place",
+      at_least(0));
     v("least_way_m", self.least_way_m, "m",
-      "of measured motion between the two, loops that are known included: less drift than a loop "
-      "could cure; 0: loops are added however little they tell",
+      "minimum path length between the two visits, by the shortest path through known loops; after "
+      "less there is too little drift to correct; 0: no minimum",
       at_least(0));
     v("search_radius_m", self.search_radius_m, "m",
-      "the nearest keyframe within it is tried; 0: none", at_least(0));
+      "the nearest keyframe within this distance is a candidate; 0: no candidates by distance",
+      at_least(0));
     v("appearance_candidates", self.appearance_candidates, "",
-      "so many keyframes that look alike are tried, wherever they are", at_least(0));
+      "maximum number of candidates per search by similar appearance, at any distance",
+      at_least(0));
     v("appearance_distance", self.appearance_distance, "",
-      "of descriptors, at most: 0 alike, 1 not", at_least(0));
-    v("appearance_range_m", self.appearance_range_m, "m", "that descriptors see", above(0));
-    v("source_keyframes", self.source_keyframes, "", "before the new one that are matched with it",
-      at_least(0));
-    v("target_keyframes", self.target_keyframes, "", "on each side of the old one", at_least(0));
-    v("leaf_m", self.leaf_m, "m", "both clouds are averaged in cells of this edge", above(0));
-    v("source_points", self.source_points, "", "so many of the new place's are matched; 0: all",
-      at_least(0));
-    v("least_source_points", self.least_source_points, "", "", at_least(1));
-    v("least_target_points", self.least_target_points, "", "", at_least(1));
-    v("metric", self.metric, "", "points or planes");
-    v("correspondence_m", self.correspondence_m, "m", "to the nearest point, at most", above(0));
-    v("max_iterations", self.max_iterations, "", "of ICP", at_least(1));
-    v("max_fitness_m2", self.max_fitness_m2, "m^2",
-      "mean squared distance of corresponding points, at most", above(0));
-    v("inlier_m", self.inlier_m, "m", "nearer points overlap", above(0));
-    v("least_overlap", self.least_overlap, "", "share of the new place's points that overlap",
-      between(0, 1));
-    v("least_constraint", self.least_constraint, "",
-      "share of the least held direction in all that the points tell (planes only)", between(0, 1));
-    v("drift_per_meter", self.drift_per_meter, "m/m",
-      "sigma of the odometry's drift; a loop that asks for more than `drift_gate` of it is "
-      "refused; "
-      "0: any is believed",
-      at_least(0));
-    v("turn_drift_rad_per_meter", self.turn_drift_rad_per_meter, "rad/m", "likewise", at_least(0));
-    v("drift_gate", self.drift_gate, "sigma", "", above(0));
-    v("agreeing_loops", self.agreeing_loops, "",
-      "so many that ask for the same correction are needed before one is believed", at_least(1));
-    v("agreement_m", self.agreement_m, "m", "loops that agree differ by less", above(0));
-    v("agreement_rad", self.agreement_rad, "rad", "likewise", above(0));
-    v("odometry_shift_sigma_m", self.odometry_shift_sigma_m, "m", "from keyframe to keyframe",
+      "maximum distance between place descriptors: 0 equal, 1 nothing in common", at_least(0));
+    v("appearance_range_m", self.appearance_range_m, "m",
+      "maximum range of the points in a place descriptor", above(0));
+    v("source_keyframes", self.source_keyframes, "",
+      "number of keyframes before the new one whose points are matched with its own", at_least(0));
+    v("target_keyframes", self.target_keyframes, "",
+      "number of keyframes on each side of the old one whose points are matched", at_least(0));
+    v("leaf_m", self.leaf_m, "m", "voxel size in which the points of both clouds are averaged",
       above(0));
-    v("odometry_turn_sigma_rad", self.odometry_turn_sigma_rad, "rad", "likewise", above(0));
+    v("source_points", self.source_points, "",
+      "upper limit on the points of the new place that are matched; 0: all", at_least(0));
+    v("least_source_points", self.least_source_points, "",
+      "minimum number of points of the new place", at_least(1));
+    v("least_target_points", self.least_target_points, "",
+      "minimum number of points of the old place", at_least(1));
+    v("metric", self.metric, "", "distances that ICP minimizes: to points or planes");
+    v("correspondence_m", self.correspondence_m, "m", "maximum distance to a corresponding point",
+      above(0));
+    v("max_iterations", self.max_iterations, "", "maximum number of iterations of ICP",
+      at_least(1));
+    v("max_fitness_m2", self.max_fitness_m2, "m^2",
+      "maximum mean squared distance of corresponding points", above(0));
+    v("inlier_m", self.inlier_m, "m", "points within this distance of the other cloud overlap",
+      above(0));
+    v("least_overlap", self.least_overlap, "",
+      "minimum share of the new place's points that overlap", between(0, 1));
+    v("least_constraint", self.least_constraint, "",
+      "minimum share of the least constrained direction in the information of all points (planes "
+      "only)",
+      between(0, 1));
+    v("drift_per_meter", self.drift_per_meter, "m/m",
+      "sigma of the odometry's drift in translation; a loop that corrects more than `drift_gate` "
+      "sigmas is rejected; 0: no limit",
+      at_least(0));
+    v("turn_drift_rad_per_meter", self.turn_drift_rad_per_meter, "rad/m",
+      "sigma of the odometry's drift in rotation", at_least(0));
+    v("drift_gate", self.drift_gate, "sigma", "maximum correction by a loop", above(0));
+    v("agreeing_loops", self.agreeing_loops, "",
+      "number of loops with the same correction that are required to accept them", at_least(1));
+    v("agreement_m", self.agreement_m, "m", "maximum difference in translation of loops that agree",
+      above(0));
+    v("agreement_rad", self.agreement_rad, "rad",
+      "maximum difference in rotation of loops that agree", above(0));
+    v("odometry_shift_sigma_m", self.odometry_shift_sigma_m, "m",
+      "sigma of the translation from keyframe to keyframe", above(0));
+    v("odometry_turn_sigma_rad", self.odometry_turn_sigma_rad, "rad",
+      "sigma of the rotation from keyframe to keyframe", above(0));
     v("loop_shift_sigma_m", self.loop_shift_sigma_m, "m",
-      "of a loop; 0: the fitness is its variance, in m^2 and rad^2 alike", at_least(0));
-    v("loop_turn_sigma_rad", self.loop_turn_sigma_rad, "rad", "likewise", at_least(0));
+      "sigma of the translation of a loop; 0: its fitness is the variance of both, in m^2 and "
+      "rad^2",
+      at_least(0));
+    v("loop_turn_sigma_rad", self.loop_turn_sigma_rad, "rad", "sigma of the rotation of a loop",
+      at_least(0));
     v("robust_scale", self.robust_scale, "sigma",
-      "beyond which a loop counts less and less (Cauchy); 0: always in full", at_least(0));
+      "scale of the Cauchy kernel of loops; 0: no robust kernel", at_least(0));
   }
 };
 
-/// Loops that are tried by place and by looks, judged by overlap, fit and what the odometry may
-/// have drifted, and believed only when two agree.
+/// Our own settings (not those of LIO-SAM): candidates by distance and by appearance, verified by
+/// overlap, fitness and the possible drift of the odometry, and accepted only if two agree.
 LoopConfig careful_loops();
 
 }  // namespace lidarena

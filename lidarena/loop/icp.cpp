@@ -13,17 +13,17 @@
 namespace lidarena {
 namespace {
 
-using Equations = NormalEquations<6>;  // turn about the target's origin, shift
+using Equations = NormalEquations<6>;  // rotation about the target's origin, translation
 using Eigen::Vector3d;
 
 constexpr std::size_t kPlanePoints = 6;
-constexpr double kFlat = 0.1;        // spread across by spread along, as lengths squared
-constexpr double kPlaneReach = 1.0;  // m: points of a plane are not further from each other
-constexpr std::size_t kFewest = 10;  // correspondences that could hold a pose
-constexpr double kStill = 3e-4;      // m, rad: a step that has converged
-constexpr double kShrink = 0.7;      // of the reach, each iteration
+constexpr double kFlat = 0.1;        // maximum ratio of the variances across and along
+constexpr double kPlaneReach = 1.0;  // m: minimum search radius for points of a plane
+constexpr std::size_t kFewest = 10;  // minimum number of correspondences
+constexpr double kStill = 3e-4;      // m, rad: converged below this step
+constexpr double kShrink = 0.7;      // factor on the maximum distance per iteration
 
-/// The normal at the nearest points, if they lie flat.
+/// Fits a plane to the points `near`; returns whether they are flat.
 bool find_normal(std::span<const Neighbor> near, Vector3d& normal) {
   Vector3d center = Vector3d::Zero();
   for (const Neighbor& n : near)
@@ -58,7 +58,7 @@ void add_plane(const Vector3d& moved, const KdTree& target, double reach, Equati
   const double distance = normal.dot(moved - near[0].point.cast<double>());
   Eigen::Matrix<double, 1, 6> j;
   j << moved.cross(normal).transpose(), normal.transpose();
-  // Geman-McClure: what does not belong to the place hardly pulls
+  // Geman-McClure: points that do not belong to the place have little influence
   const double scale = 0.3 * reach;
   const double weight = 1.0 / (1.0 + distance * distance / (scale * scale));
   sum.add<1>(j, Eigen::Matrix<double, 1, 1>(distance), weight * weight);
@@ -95,7 +95,8 @@ void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
       source.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(source.size());
 }
 
-/// Share of the least held direction; turning is about the middle of the correspondences.
+/// Share of the least constrained direction in all information; rotations are about `center`, and
+/// `lever` (m) scales them to translations.
 double constraint_of(Equations sum, double lever, const Vector3d& center) {
   Eigen::Matrix<double, 6, 6> to_center = Eigen::Matrix<double, 6, 6>::Identity();
   to_center.bottomLeftCorner<3, 3>() = so3::hat(center);

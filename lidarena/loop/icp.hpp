@@ -12,20 +12,20 @@
 
 namespace lidarena {
 
-/// How well one cloud came to lie on another.
+/// Result of the alignment of one cloud to another.
 struct IcpResult {
   Pose target_from_source = Pose::Identity();
   bool converged = false;
   int iterations = 0;
-  double fitness = 0.0;     ///< m^2, mean squared distance to the nearest points within reach
+  double fitness = 0.0;     ///< m^2, mean squared distance to the nearest target points
   double overlap = 0.0;     ///< share of the source's points with a target point within `inlier_m`
-  double constraint = 0.0;  ///< of the least held direction, turning on one scale with shifting
+  double constraint = 0.0;  ///< share of the least constrained direction in all information
 };
 
 /// Iterated closest points (Besl, McKay 1992; with planes: Chen, Medioni 1991) from `guess`. With
-/// planes the reach shrinks from `correspondence_m` to `inlier_m` as the clouds come together.
-/// Fitness and overlap are those of the end. Not converged: without correspondences, or still
-/// moving after the last iteration.
+/// planes the maximum distance of correspondences shrinks from `correspondence_m` to `inlier_m`
+/// over the iterations. Fitness and overlap are those of the final pose. Not converged: too few
+/// correspondences, or steps still too large at the last iteration.
 IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& target,
                        const Pose& guess, const LoopConfig& config, const Parallel& parallel);
 

@@ -16,11 +16,11 @@ namespace {
 
 using Covariance = PoseGraph::Covariance;
 
-constexpr double kLeastShift = 0.1;       // m: loops are no better known than this
-constexpr double kLeastTurn = 0.01;       // rad
-constexpr double kLeverArm = 1.0;         // m of way for a radian of turning
-constexpr std::size_t kWaitingKept = 20;  // keyframes that a loop waits for another one
-constexpr double kLeastVariance = 1e-6;   // of a loop's fitness, m^2
+constexpr double kLeastShift = 0.1;       // m: sigma of the drift at path length zero
+constexpr double kLeastTurn = 0.01;       // rad: likewise
+constexpr double kLeverArm = 1.0;         // m of path length per radian of rotation
+constexpr std::size_t kWaitingKept = 20;  // keyframes that a loop waits for another
+constexpr double kLeastVariance = 1e-6;   // m^2: minimum variance of a loop
 
 Covariance diagonal(double shift_variance, double turn_variance) {
   Covariance covariance = Covariance::Zero();
@@ -29,8 +29,8 @@ Covariance diagonal(double shift_variance, double turn_variance) {
   return covariance;
 }
 
-/// In an order that depends on the number of points alone, so that the first ones are from all
-/// over.
+/// Shuffles with a seed that depends only on the number of points, so that the first points are
+/// from the whole cloud.
 std::vector<Eigen::Vector3f> shuffled(std::vector<Eigen::Vector3f> points) {
   SequentialRandom random(points.size());
   for (std::size_t i = points.size(); i > 1; --i) {
@@ -183,7 +183,7 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
     return loop;
   }
   auto source = around(loop.second, source_size, 0, cloud);
-  // The target must not reach into the source, which would fit itself.
+  // The target must not contain keyframes of the source, which would match themselves.
   const std::size_t after =
       std::min(target_size, loop.second - std::min(loop.second, loop.first + source_size + 1));
   auto target = around(loop.first, target_size, after, cloud);
@@ -248,7 +248,7 @@ std::vector<double> LoopCloser::ways_to_last() const {
 }
 
 bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
-  // Where each loop would move the newer of the two keyframes.
+  // Where each loop places the newer keyframe of `b`.
   const std::vector<Pose>& x = graph_.nodes;
   const Pose by_b = x[b.first] * b.first_from_second;
   const Pose by_a = x[a.first] * a.first_from_second * x[a.second].inverse() * x[b.second];

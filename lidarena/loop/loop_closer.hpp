@@ -17,49 +17,49 @@
 
 namespace lidarena {
 
-/// What became of a place that might be one seen before.
+/// Result of the verification of a loop candidate.
 enum class LoopVerdict {
   kAccepted,
-  kWaiting,        ///< good, but no other loop agrees yet
-  kTooFewPoints,   ///< of one of the clouds
-  kNotConverged,   ///< ICP found no rest
-  kPoorFit,        ///< points lie too far from each other
-  kLittleOverlap,  ///< too much of the new place is not at the old one
+  kWaiting,        ///< verified, but no other loop agrees yet
+  kTooFewPoints,   ///< in one of the clouds
+  kNotConverged,   ///< ICP did not converge
+  kPoorFit,        ///< corresponding points are too far from each other
+  kLittleOverlap,  ///< too few points of the new place overlap with the old one
   kUnconstrained,  ///< the clouds can slide along each other
-  kBeyondDrift,    ///< the odometry cannot be that wrong: another place that looks the same
+  kBeyondDrift,    ///< more than the odometry can have drifted: another, similar place
 };
 const char* to_string(LoopVerdict verdict);
 
-/// A loop that was tried.
+/// A loop candidate that was verified, accepted or not.
 struct LoopRecord {
-  std::size_t first = 0;   ///< keyframe seen before
-  std::size_t second = 0;  ///< keyframe that was new
+  std::size_t first = 0;   ///< keyframe of the first visit
+  std::size_t second = 0;  ///< keyframe of the second visit
   bool by_appearance = false;
   LoopVerdict verdict = LoopVerdict::kTooFewPoints;
-  Pose first_from_second = Pose::Identity();  ///< as the clouds say
+  Pose first_from_second = Pose::Identity();  ///< measured by ICP
   double fitness = 0.0;                       ///< m^2
   double overlap = 0.0;
   double constraint = 0.0;
-  double shift = 0.0;  ///< m, by which the loop contradicts the poses at the time
-  double turn = 0.0;   ///< rad, likewise
-  double way = 0.0;    ///< m of measured motion between the two
+  double shift = 0.0;  ///< m, translation by which the loop would correct the poses
+  double turn = 0.0;   ///< rad, likewise, rotation
+  double way = 0.0;    ///< m, path length between the two
 };
 
 /// The points of a keyframe, in its own frame (m).
 using KeyframeCloud = std::function<std::span<const Eigen::Vector3f>(std::size_t keyframe)>;
 
-/// Finds places that a path of keyframes comes back to and bends the path so that they meet:
-/// candidates by distance (LIO-SAM, section III-C.4) and by looks, verification by ICP and by what
-/// the odometry can have drifted, then a pose graph. Knows nothing of how the path was estimated.
-/// Searches are triggered by the number of keyframes, so the same input gives the same bits; what
-/// one finds is tried one by one, as keyframes come.
+/// Detects loops in a path of keyframes and corrects the path: candidates by distance (LIO-SAM,
+/// section III-C.4) and by appearance, verification by ICP and by the possible drift of the
+/// odometry, then a pose graph. Independent of how the path was estimated. Searches are triggered
+/// by the number of keyframes, so the same input gives bit-identical results; the candidates of a
+/// search are verified one per keyframe.
 class LoopCloser {
  public:
   LoopCloser(const LoopConfig& config, Parallel parallel)
       : config_(config), parallel_(std::move(parallel)) {}
 
-  /// The next keyframe, where it stands when seen from the one before (for the first: from the
-  /// world), and access to the points of all so far. Whether poses() have changed beyond it.
+  /// Adds a keyframe with its pose relative to the one before (the first: to the world); `cloud`
+  /// gives the points of all keyframes so far. Returns whether earlier poses() have changed.
   bool add(Time stamp, const Pose& previous_from_this, const KeyframeCloud& cloud);
 
   /// world_from_keyframe.
@@ -71,13 +71,13 @@ class LoopCloser {
  private:
   struct Candidate {
     std::size_t keyframe = 0;
-    std::size_t seen_from = 0;  ///< the keyframe that was new
-    double way = 0.0;           ///< m of measured motion between the two
+    std::size_t seen_from = 0;  ///< keyframe of the second visit
+    double way = 0.0;           ///< m, path length between the two
     bool by_appearance = false;
-    Pose guess = Pose::Identity();  ///< candidate from new keyframe
+    Pose guess = Pose::Identity();  ///< initial guess of keyframe_from_seen_from
   };
   std::size_t last() const { return graph_.nodes.size() - 1; }
-  /// The next candidate: one a keyframe, so that none of them takes long.
+  /// Verifies the next candidate: one per keyframe, to limit the time that a keyframe takes.
   bool try_next(const KeyframeCloud& cloud);
   std::vector<Candidate> candidates(const std::vector<double>& ways) const;
   void add_nearest(const std::vector<double>& ways, std::vector<Candidate>& found) const;
@@ -86,23 +86,24 @@ class LoopCloser {
   std::vector<Eigen::Vector3f> around(std::size_t keyframe, std::size_t before, std::size_t after,
                                       const KeyframeCloud& cloud) const;
   LoopRecord verify(const Candidate& candidate, const KeyframeCloud& cloud) const;
-  /// Whether the two places lie further apart than drift can have brought them.
+  /// Whether the two places are farther apart than drift can explain.
   bool is_out_of_reach(const LoopRecord& loop) const;
   LoopVerdict judge(const IcpResult& icp, const LoopRecord& loop) const;
-  /// Measured meters from each keyframe to the last one, by the shortest way through known loops.
+  /// Path length (m) from each keyframe to the last one, by the shortest path through known loops.
   std::vector<double> ways_to_last() const;
   bool agree(const LoopRecord& a, const LoopRecord& b) const;
-  /// Those waiting that agree with the last record, and itself, if they are enough to be believed.
+  /// The last record and the waiting ones that agree with it, if they are enough to be accepted;
+  /// else none, and the last record waits, too.
   std::vector<LoopRecord> believed();
   void close(const std::vector<LoopRecord>& loops);
 
   LoopConfig config_;
   Parallel parallel_;
   std::vector<Time> stamps_;
-  std::vector<double> steps_;  ///< m, from the keyframe before
+  std::vector<double> steps_;  ///< m, path length from the keyframe before
   std::vector<PlaceDescriptor> descriptors_;
   PoseGraph graph_;
-  std::vector<Candidate> due_;  ///< of the last search, not tried yet
+  std::vector<Candidate> due_;  ///< of the last search, not verified yet
   std::vector<LoopRecord> records_;
   std::vector<LoopRecord> waiting_;
   std::vector<LoopRecord> accepted_;

@@ -8,9 +8,10 @@
 namespace lidarena {
 namespace {
 
-constexpr float kDepth = 5.0F;  // m below the place that still count: a cell's height starts there
+constexpr float kDepth = 5.0F;  // m: heights are measured from this far below the place
 
-/// One minus the mean cosine of the columns that both have, `second` turned by `shift` sectors.
+/// One minus the mean cosine of the columns that are not empty in both, with `second` rotated by
+/// `shift` sectors.
 double distance_at(const PlaceDescriptor& first, const PlaceDescriptor& second, int shift) {
   float sum = 0.0F;
   int columns = 0;

@@ -9,14 +9,15 @@
 
 namespace lidarena {
 
-/// How a grid lies in the frame of its points. Of a wall that runs along a border of cells, the
-/// range noise falls into two layers; each cell is one vote, however few its points, so the mean of
-/// the votes lies off the wall, and farther off the more points there are: a scan comes to rest
-/// beside a map made of many like it. When walls are parallel to the grid that happens over whole
-/// walls alike. Askew, a wall crosses its cells at all heights, and it averages out.
+/// Orientation of a voxel grid in the frame of its points. Where a wall lies along a border between
+/// cells, range noise divides its points between two layers of cells. Each cell has one mean,
+/// however few points it has, so the average of the means lies off the wall, and farther off the
+/// more points there are: a scan is aligned beside a map made of many such scans. With walls
+/// parallel to the grid this happens in the same way over whole walls. In a rotated grid a wall
+/// crosses its cells at all heights, and the error averages out.
 enum class GridAxes {
-  kParallel,  ///< to the frame's axes
-  kAskew,     ///< no axis nearer than 23 degrees to one of them, nor so to walls that lie along them
+  kParallel,  ///< axes parallel to the frame's
+  kAskew,     ///< rotated grid: no axis within 23 degrees of an axis of the frame
 };
 
 template <>
@@ -25,7 +26,7 @@ struct EnumNames<GridAxes> {
                                     std::pair{"askew", GridAxes::kAskew}};
 };
 
-/// From the frame of the points to that of the grid.
+/// Rotation from the frame of the points to that of the grid.
 inline Eigen::Matrix3d grid_turn(GridAxes axes) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;

@@ -6,12 +6,13 @@
 
 namespace lidarena {
 
-/// The best points so far, sorted; the last entry's distance bounds what is still of interest.
+/// State of a nearest-neighbor search: the best points so far, sorted. Points farther away than the
+/// last entry are discarded.
 struct KdTree::Search {
   Eigen::Vector3f query;
   std::span<Neighbor> best;
   std::size_t count = 0;
-  /// Squared distance to the region that is being searched, by axis.
+  /// Squared distance from the query to the region being searched, per axis.
   std::array<float, 3> away{};
 
   float bound() const { return best.back().squared_distance; }
@@ -31,7 +32,7 @@ void KdTree::Search::keep(const Eigen::Vector3f& point, float squared) {
 void KdTree::Search::offer(const Leaf& leaf) {
   std::array<float, kLeafSize> squared;
   const auto& [x, y, z] = leaf.coordinates;
-  for (std::size_t i = 0; i < kLeafSize; ++i) {  // of all places, used or not: no branch
+  for (std::size_t i = 0; i < kLeafSize; ++i) {  // all slots, used or not: no branch
     const float dx = x[i] - query.x();
     const float dy = y[i] - query.y();
     const float dz = z[i] - query.z();
@@ -123,13 +124,15 @@ void KdTree::release(Index node) {
   free_splits_.push_back(node);
 }
 
-/// Small subtrees cannot be balanced better than to a leaf or two.
+/// Whether a subtree with a child of `larger` points is out of balance. Small subtrees are exempt:
+/// they cannot be balanced to better than a leaf or two.
 bool KdTree::leans(std::uint32_t larger, std::uint32_t size) const {
   return size > 4 * kLeafSize &&
          static_cast<float>(larger) > options_.balance * static_cast<float>(size);
 }
 
-/// Median along the longest side of the points' box, then both halves likewise.
+/// Splits at the median along the longest side of the points' bounding box, then both halves
+/// likewise.
 KdTree::Index KdTree::build(std::span<Eigen::Vector3f> points) {
   if (points.size() <= kLeafSize) {
     const Index index = allocate(leaves_, free_leaves_);
@@ -173,9 +176,9 @@ KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point) {
   }
   Split& split = splits_[node];
   const float x = point[split.axis];
-  const bool left = x - split.low < split.high - x;  // the nearer side grows
+  const bool left = x - split.low < split.high - x;  // the nearer side gets the point
   const Index child = left ? split.left : split.right;
-  // The highest subtree that will lean is rebuilt with the point.
+  // The topmost subtree that would be out of balance is rebuilt, including the point.
   if (leans(size_of(child) + 1, split.size + 1)) return rebuilt(node, &point);
   split.peak = std::max(split.peak, ++split.size);
   if (left) {
@@ -188,7 +191,7 @@ KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point) {
   return node;
 }
 
-/// The leaf without its points in the box; nothing if none is left.
+/// Removes the points of a leaf that lie in the box; returns kNone if none is left.
 KdTree::Index KdTree::without(Index node, const Eigen::AlignedBox3f& box) {
   Leaf& points = leaf(node);
   const Leaf before = points;
@@ -202,7 +205,7 @@ KdTree::Index KdTree::without(Index node, const Eigen::AlignedBox3f& box) {
   return kNone;
 }
 
-/// `bounds`: around all points of the subtree.
+/// `bounds`: box around all points of the subtree.
 KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box,
                              const Eigen::AlignedBox3f& bounds) {
   if (node == kNone || !box.intersects(bounds)) return node;
@@ -218,7 +221,7 @@ KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box,
   upper.min()[split.axis] = split.high;
   const Index left = remove(split.left, box, lower);
   const Index right = remove(split.right, box, upper);
-  if (left == kNone || right == kNone) {  // the split has nothing to tell apart
+  if (left == kNone || right == kNone) {  // one child is left: no split is needed
     free_splits_.push_back(node);
     return left == kNone ? right : left;
   }
@@ -263,8 +266,8 @@ std::size_t KdTree::nearest(const Eigen::Vector3f& query, std::span<Neighbor> ou
   return state.count;
 }
 
-/// The nearer side first; the other only if it can hold something better (Arya, Mount, "Algorithms
-/// for fast vector quantization", 1993: distances to regions by axis).
+/// Searches the nearer side first, the other only if it can contain a nearer point (Arya, Mount,
+/// "Algorithms for fast vector quantization", 1993: distances to regions by axis).
 void KdTree::search(Index node, Search& state) const {
   if (is_leaf(node)) {
     state.offer(leaf(node));
@@ -281,7 +284,7 @@ void KdTree::search(Index node, Search& state) const {
   float& away = state.away[static_cast<std::size_t>(split.axis)];
   const float before = away;
   away = std::max(before, gap * gap);
-  // What rounding may have added to the sum must not hide a point.
+  // Rounding errors of the sum must not exclude a point.
   constexpr float kRounding = 1.0F - 1e-6F;
   if (kRounding * (state.away[0] + state.away[1] + state.away[2]) < state.bound()) {
     search(left_first ? split.right : split.left, state);

@@ -14,34 +14,35 @@
 
 namespace lidarena {
 
-/// A k-d tree of points (m) that grows, shrinks and stays balanced, after Cai, Xu, Zhang,
-/// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808): it thins while
-/// it inserts, removes boxes, and rebuilds a subtree as soon as that leans or has lost half of its
-/// points (scapegoat tree). Unlike there, points lie in the leaves, up to 16 together, so that a
-/// removal needs no label on a point: what stays behind, until the rebuilding, is a split that
-/// nothing asks for and a leaf with room. Rebuilding is done in place, by the thread that inserts.
-/// Depends on the order of the operations alone. Points must be finite.
+/// A k-d tree of points (m) with insertion and removal that stays balanced, after Cai, Xu, Zhang,
+/// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808): it downsamples
+/// while inserting, removes boxes, and rebuilds a subtree as soon as that is out of balance or has
+/// lost half of its points (scapegoat tree). Unlike in the ikd-Tree, points are stored in the
+/// leaves, up to 16 each, so that removed points need no mark: until the next rebuild, a removal
+/// leaves only splits that could be tighter and leaves with free slots. The calling thread rebuilds
+/// in place. The result depends only on the order of the operations. Points must be finite.
 class KdTree {
  public:
   struct Options {
-    float balance = 0.7F;        ///< rebuild when one child has more of a subtree than this share
-    float removed_share = 0.5F;  ///< rebuild when a subtree has lost more than this share
+    float balance = 0.7F;        ///< rebuild when a child has more than this share of the points
+    float removed_share = 0.5F;  ///< rebuild when more than this share of the points is removed
   };
   KdTree() = default;
   explicit KdTree(const Options& options) : options_(options) {}
 
-  /// Replaces everything.
+  /// Replaces all points.
   void build(std::vector<Eigen::Vector3f> points);
   void insert(const Eigen::Vector3f& point);
-  /// Of the points in the cell of a grid with edge `voxel` and of `point`, keeps the one nearest to
-  /// the cell's center and removes the others. True when that is `point`.
+  /// Inserts with downsampling: of `point` and the points in its cell of a grid with voxel size
+  /// `voxel` (m), keeps the one nearest to the cell's center and removes the others. True if that
+  /// is `point`.
   bool insert_thinned(const Eigen::Vector3f& point, float voxel);
   /// Removes the points in a closed box; returns how many.
   std::size_t remove(const Eigen::AlignedBox3f& box);
   void clear();
 
-  /// The nearest points within `max_distance` of `query`, nearest first, as many as `out` holds;
-  /// returns how many were found.
+  /// Writes the points nearest to `query`, within `max_distance` (m), to `out`, nearest first, at
+  /// most as many as it holds; returns how many were found.
   std::size_t nearest(const Eigen::Vector3f& query, std::span<Neighbor> out,
                       float max_distance = std::numeric_limits<float>::infinity()) const;
   /// Appends the points in a closed box.
@@ -50,23 +51,23 @@ class KdTree {
 
   std::size_t size() const { return size_of(root_); }
   bool empty() const { return size() == 0; }
-  /// Nodes on the longest way from the root to a leaf, both counted.
+  /// Nodes on the longest path from the root to a leaf, both counted.
   std::size_t depth() const { return depth(root_); }
   std::uint64_t memory_bytes() const;
 
  private:
-  /// Of a split, or of a leaf when kLeafBit is set.
+  /// Index of a split, or of a leaf if kLeafBit is set.
   using Index = std::uint32_t;
   static constexpr Index kNone = std::numeric_limits<Index>::max();
   static constexpr Index kLeafBit = Index{1} << 31U;
   static constexpr std::uint32_t kLeafSize = 16;
 
   struct Split {
-    float low = 0.0F;   ///< no point on the left has a larger coordinate,
-    float high = 0.0F;  ///< no point on the right a smaller one; low <= high
+    float low = 0.0F;   ///< upper bound of coordinates on the left side
+    float high = 0.0F;  ///< lower bound of those on the right side; low <= high
     Index left = kNone;
     Index right = kNone;
-    std::uint32_t size = 0;  ///< points below
+    std::uint32_t size = 0;  ///< number of points below
     std::uint32_t peak = 0;  ///< largest size since it was built
     std::int32_t axis = 0;
   };
@@ -108,8 +109,8 @@ class KdTree {
   std::vector<Leaf> leaves_;
   std::vector<Index> free_splits_;
   std::vector<Index> free_leaves_;
-  std::vector<Eigen::Vector3f> scratch_;  ///< points of a subtree that is rebuilt
-  Eigen::AlignedBox3f bounds_;            ///< around all points that ever were in the tree
+  std::vector<Eigen::Vector3f> scratch_;  ///< points of a subtree being rebuilt
+  Eigen::AlignedBox3f bounds_;  ///< box around all points since clear(), removed ones included
   Index root_ = kNone;
 };
 

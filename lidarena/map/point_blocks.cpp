@@ -14,7 +14,7 @@ Eigen::Vector3f* PointBlocks::allocate(int level) {
     free_[slot].pop_back();
     return block;
   }
-  if (used_ + count > kPagePoints) {  // the page's rest is lost: at most one block of this level
+  if (used_ + count > kPagePoints) {  // the rest of the page is wasted: less than this block
     pages_.emplace_back(new Eigen::Vector3f[kPagePoints]);
     used_ = 0;
   }

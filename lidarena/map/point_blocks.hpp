@@ -9,13 +9,14 @@
 
 namespace lidarena {
 
-/// Room for many short lists of points, from pages, without a heap block for each list. A block
-/// holds 1, 2, 4, 8 ... points (its level is the power); freed blocks are used again.
+/// Memory for many short lists of points, allocated in pages instead of one heap block per list. A
+/// block holds 1, 2, 4, 8 ... points (its level is the exponent); freed blocks are reused.
 class PointBlocks {
  public:
   static constexpr std::size_t capacity(int level) { return std::size_t{1} << level; }
 
-  /// Room for capacity(level) points, not initialized; stays in place until released.
+  /// Memory for capacity(level) points, not initialized; its address does not change until
+  /// released.
   Eigen::Vector3f* allocate(int level);
   void release(Eigen::Vector3f* block, int level);
   std::size_t memory_bytes() const;

@@ -13,21 +13,21 @@
 
 namespace lidarena {
 
-/// Points in the order they came, at most one a voxel: the first point met in a voxel stays, later
-/// ones are refused. Never averages, so noise stays visible. Which voxels are taken is kept in bits,
-/// 4 x 4 x 4 voxels together in a hash table: neighbors of a scan are neighbors in memory, and a
-/// surface takes some 3 bytes a voxel besides the 12 of its point.
+/// A point cloud with at most one point per voxel, in insertion order: the first point of a voxel
+/// is kept, later ones are rejected. Nothing is averaged, so noise stays visible. Occupied voxels
+/// are kept as bits, in blocks of 4 x 4 x 4 voxels in a hash table: neighbors in a scan are
+/// neighbors in memory, and a surface takes about 3 bytes per voxel besides the 12 of its point.
 class PointMap {
  public:
-  /// `voxel_size` in m; room for `expected` points is made at once.
+  /// `voxel_size` in m; memory for `expected` points is reserved at once.
   explicit PointMap(double voxel_size, std::size_t expected = 0);
 
-  /// Whether `point` (m) is the first of its voxel; points that are not finite are refused.
+  /// Adds `point` (m) if it is finite and the first of its voxel; returns whether it was added.
   bool insert(const Eigen::Vector3f& point);
   void insert(std::span<const Eigen::Vector3f> points);
 
   std::span<const Eigen::Vector3f> points() const { return points_; }
-  /// Hands the points over and leaves the map empty.
+  /// Returns the points and leaves the map empty.
   std::vector<Eigen::Vector3f> take();
 
   std::size_t size() const { return points_.size(); }
@@ -38,7 +38,7 @@ class PointMap {
 
   float inverse_size_;
   std::vector<Eigen::Vector3f> points_;
-  Blocks blocks_;  ///< which of a block's 64 voxels are taken
+  Blocks blocks_;  ///< which of a block's 64 voxels are occupied
 };
 
 }  // namespace lidarena

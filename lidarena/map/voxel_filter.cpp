@@ -15,8 +15,8 @@ namespace lidarena {
 
 namespace {
 
-/// Which of a few points are the first of their voxels: a table of their indices, open addressing,
-/// at most 5/8 full.
+/// Finds the points that are the first of their voxels, with a hash table of their indices: open
+/// addressing, at most 5/8 full.
 class FirstPoints {
  public:
   FirstPoints(std::span<const Eigen::Vector3f> points, double voxel_size, VoxelRounding rounding)
@@ -31,7 +31,7 @@ class FirstPoints {
 
   /// Indices in the order of the points.
   std::vector<std::uint32_t> take() { return std::move(kept_); }
-  /// Indices in the order of the table: mixed, yet the same for the same input.
+  /// Indices in the order of the table: pseudo-random, but the same for the same input.
   std::vector<std::uint32_t> in_table_order() const {
     std::vector<std::uint32_t> indices;
     indices.reserve(kept_.size());
@@ -68,7 +68,7 @@ class FirstPoints {
   float inverse_size_;
   VoxelRounding rounding_;
   std::vector<std::uint32_t> kept_;
-  std::vector<std::uint32_t> slots_;  ///< index, or kFree; as many as a power of two
+  std::vector<std::uint32_t> slots_;  ///< index or kFree; the size is a power of two
 };
 
 }  // namespace
@@ -84,7 +84,8 @@ std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> poin
     return FirstPoints(points, voxel_size, thinning.rounding).in_table_order();
   const std::uint32_t y_factor = thinning.order == ThinningOrder::kTeschner ? 19349663U : 19349669U;
   const auto inverse_size = static_cast<float>(1.0 / voxel_size);
-  // a table twice as large as its input, slots in a power of two; who comes late stands behind
+  // The order of a hash table at least twice as large as its input, with a power of two of slots.
+  // Of points in the same slot, later ones follow.
   const auto mask = static_cast<std::uint32_t>(std::bit_ceil(2 * points.size() + 1) - 1);
   const auto slot = [&](std::uint32_t i) {
     const Eigen::Array<std::uint32_t, 3, 1> voxel =

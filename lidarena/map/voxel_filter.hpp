@@ -12,15 +12,15 @@
 namespace lidarena {
 
 /// Indices of the points (m) that are the first of their voxel, in input order, so the result
-/// depends on the input alone. Points that are not finite are left out.
+/// depends only on the input. Points that are not finite are left out.
 std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> points,
                                                double voxel_size,
                                                VoxelRounding rounding = VoxelRounding::kFloor);
 
-/// Order of thinned points: that of a hash table of their voxels with an open slot for each slot
-/// taken, or more. It looks random but depends on the input alone.
+/// Order of downsampled points: that of the slots in a hash table of their voxels with some slots
+/// free. It looks random but depends only on the input.
 enum class ThinningOrder {
-  kMixed,          ///< by a hash of our own
+  kMixed,          ///< by VoxelKeyHash
   kTeschner,       ///< by x 73856093 xor y 19349663 xor z 83492791, as Teschner, Heidelberger,
                    ///< Mueller, Pomerantes, Gross, "Optimized spatial hashing" (VMV 2003)
   kTeschnerPrime,  ///< the same with 19349669, which, unlike 19349663 = 41 * 471943, is a prime
@@ -31,17 +31,18 @@ struct Thinning {
   ThinningOrder order = ThinningOrder::kMixed;
 };
 
-/// The indices of first_of_each_voxel() in that order. So a second, coarser pass takes its points
-/// from all over the scan's duration and not from its beginning.
+/// The indices of first_of_each_voxel() in the order of `thinning`. In such a pseudo-random order,
+/// a second, coarser pass selects points from the whole duration of the scan and not only from its
+/// beginning.
 std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> points,
                                            double voxel_size, const Thinning& thinning = {});
 
-/// The points at those indices, with their own coordinates (no centroids).
+/// The points at these indices, with their own coordinates (no centroids).
 std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, double voxel_size,
                                   const Thinning& thinning = {});
 
-/// Mean of the points of each voxel, in the order in which the voxels are first met. Points that
-/// are not finite are left out. For estimators alone: a mean hides noise.
+/// Mean of the points of each voxel, in the order in which the voxels first occur. Points that are
+/// not finite are left out. For estimators only: a mean hides noise.
 std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
                                          GridAxes axes = GridAxes::kParallel);
 

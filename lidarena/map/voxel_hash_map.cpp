@@ -41,7 +41,7 @@ VoxelHashMap::VoxelHashMap(const Options& options)
       squared_spacing_(static_cast<float>(options.min_spacing * options.min_spacing)) {
   if (!(options.voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
   if (options.max_points < 1 || options.max_points > 4096)
-    throw InputError("max_points", "must lie in 1..4096 points a cell");
+    throw InputError("max_points", "must be 1 to 4096 points per cell");
 }
 
 bool VoxelHashMap::insert(const Eigen::Vector3f& point) {
@@ -77,8 +77,8 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
 }
 
 void VoxelHashMap::fit_plane(Cell& cell) {
-  constexpr int kLeastPoints = 5;         // fewer lie near some plane by chance
-  constexpr float kLineThinness = 0.02F;  // points of a line: so much of their variance across it
+  constexpr int kLeastPoints = 5;         // fewer can lie near a plane by chance
+  constexpr float kLineThinness = 0.02F;  // line: middle below this share of the largest variance
   if (cell.count < kLeastPoints) return;
   const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
   const Eigen::Vector3f mean = points.rowwise().mean();
@@ -124,7 +124,7 @@ VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float ma
   const Voxel voxel = cell_of(query);
   const VoxelKey key = voxel_key(voxel);
   // Squared distance along each axis to the cells below, here and above: a cell that begins beyond
-  // the best distance so far need not be looked up.
+  // the best distance so far need not be searched.
   const bool wide = options_.rounding == VoxelRounding::kTruncate;
   const Eigen::Array3i index = voxel.array();
   const Eigen::Array3i lower = wide ? Eigen::Array3i(index - (index <= 0).cast<int>()) : index;
@@ -158,12 +158,12 @@ VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float ma
 
 namespace {
 
-/// The nearest of many, kept as a heap whose first one is the farthest.
+/// The nearest points so far, as a heap with the farthest of them on top.
 class NearestFew {
  public:
   NearestFew(std::span<Neighbor> out, float radius) : out_(out), bound_(radius * radius) {}
 
-  /// Squared distance from which on a point does not matter.
+  /// Points at this squared distance or beyond are ignored.
   float bound() const { return bound_; }
   std::size_t count() const { return count_; }
 
@@ -182,7 +182,7 @@ class NearestFew {
   }
 
  private:
-  /// Sifts `neighbor` down from the heap's top.
+  /// Replaces the top of the heap, the farthest neighbor, by `neighbor`.
   void replace_farthest(const Neighbor& neighbor) {
     std::size_t hole = 0;
     while (2 * hole + 1 < count_) {
@@ -210,7 +210,7 @@ std::size_t VoxelHashMap::nearest(const Eigen::Vector3f& query, float radius,
   const VoxelKey key = voxel_key(voxel);
   const bool wide = options_.rounding == VoxelRounding::kTruncate;
   const Eigen::Array3i index = voxel.array();
-  // Distances (m) to the faces of the cell, and by how much more each step away goes.
+  // Distances (m) from the query to the faces of its cell; each further cell adds a voxel size.
   const Eigen::Array3i lower = wide ? Eigen::Array3i(index - (index <= 0).cast<int>()) : index;
   const Eigen::Array3i upper = wide ? Eigen::Array3i(index + (index >= 0).cast<int>()) : index + 1;
   const Eigen::Array3f below = query.array() - lower.cast<float>() * size_m_;

@@ -16,49 +16,52 @@
 namespace lidarena {
 
 /// A local map: a hash table from cubic cells to a few points each, as in Vizzo et al., "KISS-ICP"
-/// (RA-L 2023), section III-D. Points are kept as float: 8 um at 100 m, 0.06 mm at 1 km.
+/// (RA-L 2023), section III-D. Points are stored as float: resolution 8 um at 100 m, 0.06 mm at 1
+/// km.
 class VoxelHashMap {
  public:
   struct Options {
     double voxel_size = 1.0;   ///< edge of a cell, m
-    int max_points = 20;       ///< of a cell; later ones are refused (1..4096)
-    double min_spacing = 0.0;  ///< m; a point nearer to another one of its own cell is refused
+    int max_points = 20;       ///< per cell (1..4096); later points are rejected
+    double min_spacing = 0.0;  ///< m; points nearer to another one of their cell are rejected
     VoxelRounding rounding = VoxelRounding::kFloor;
-    /// Above 0: cells find the plane through their points; variance (m^2) across it at most this
-    /// part of the middle one.
+    /// Above 0: a plane is fitted to the points of each cell and kept if the variance (m^2) across
+    /// it is below this share of the middle one of the three variances.
     double plane_thinness = 0.0;
   };
   struct Plane {
     Eigen::Vector3f mean;    ///< of the cell's points, m
-    Eigen::Vector3f normal;  ///< unit, either way
+    Eigen::Vector3f normal;  ///< unit, either sign
   };
   /// The nearest point and what its cell looks like.
   struct Match : Neighbor {
     bool found = false;
     const Plane* plane = nullptr;  ///< of the point's cell; null if it is not flat
-    /// Where planes are fitted: the point's cell has fewer than five points, or they lie on a line,
-    /// so that they show the sensor's scan pattern rather than a surface.
+    /// Only with plane fitting: the cell of the point has fewer than five points, or they lie on a
+    /// line, so that they show the scan pattern rather than a surface.
     bool shapeless = false;
     explicit operator bool() const { return found; }
   };
 
-  /// Throws InputError on options that make no sense.
+  /// Throws InputError on invalid options.
   explicit VoxelHashMap(const Options& options);
 
-  /// Adds one point (m, map frame); whether it was taken. Points that are not finite are refused.
+  /// Adds one point (m, map frame); returns whether it was added. Points that are not finite are
+  /// rejected.
   bool insert(const Eigen::Vector3f& point);
   void insert(std::span<const Eigen::Vector3f> points);
 
-  /// Drops each cell whose first point is `radius` (m) or more from `center`.
+  /// Removes each cell whose first point is `radius` (m) or more from `center`.
   void remove_far(const Eigen::Vector3f& center, double radius);
 
-  /// Nearest point to `query` among its cell and the 26 around, nearer than `max_distance`: the
-  /// true nearest one if that is at most `voxel_size` away.
+  /// Nearest point to `query` in its cell and the 26 around it, nearer than `max_distance` (m): the
+  /// nearest of the whole map if that is at most `voxel_size` away.
   Match nearest(const Eigen::Vector3f& query, float max_distance) const;
 
-  /// The points nearest to `query` among those nearer than `radius`, as many as `out` holds, in an
-  /// order that is the same for the same map; returns how many were found. Looks up
-  /// (2 ceil(radius / edge) + 1)^3 cells, less those that begin beyond the farthest one in `out`.
+  /// Writes the points nearest to `query`, nearer than `radius` (m), to `out`, at most as many as
+  /// it holds, not sorted but in the same order for the same map; returns how many were found.
+  /// Searches (2 ceil(radius / voxel_size) + 1)^3 cells, except those beyond the farthest point in
+  /// `out`.
   std::size_t nearest(const Eigen::Vector3f& query, float radius, std::span<Neighbor> out) const;
 
   bool empty() const { return cells_.empty(); }
@@ -69,20 +72,20 @@ class VoxelHashMap {
 
  private:
   static constexpr std::uint32_t kNoPlane = 0xFFFFFFFFU;
-  static constexpr std::uint32_t kShapeless = 0xFFFFFFFEU;  ///< and up: no plane either
+  static constexpr std::uint32_t kShapeless = 0xFFFFFFFEU;  ///< no plane, see Neighbor
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
     std::uint8_t level = 0;            ///< of the block, see PointBlocks
-    std::uint32_t plane = kShapeless;  ///< in planes_, or one of the above
+    std::uint32_t plane = kShapeless;  ///< index in planes_, kNoPlane or kShapeless
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {
     return voxel_of(point, inverse_size_, options_.rounding);
   }
-  /// Finds the plane through the cell's points anew.
+  /// Fits the plane of the cell to its present points.
   void fit_plane(Cell& cell);
-  /// Leaves the cell without a plane: kNoPlane or kShapeless.
+  /// Removes the plane of the cell, if any; `instead` is kNoPlane or kShapeless.
   void release_plane(Cell& cell, std::uint32_t instead);
   void append(Cell& cell, const Eigen::Vector3f& point);
 

@@ -15,10 +15,10 @@ namespace lidarena {
 /// Integer cell of a cubic grid, by default floor(coordinate / edge) on each axis.
 using Voxel = Eigen::Vector3i;
 
-/// How coordinates become cells.
+/// How coordinates are rounded to cells.
 enum class VoxelRounding {
-  kFloor,     ///< all cells are alike
-  kTruncate,  ///< towards zero: the cells around the planes x = 0, y = 0, z = 0 are twice as wide
+  kFloor,     ///< all cells have the same size
+  kTruncate,  ///< toward zero: the cells around the planes x = 0, y = 0, z = 0 are twice as wide
 };
 
 template <>
@@ -27,11 +27,11 @@ struct EnumNames<VoxelRounding> {
                                     std::pair{"truncate", VoxelRounding::kTruncate}};
 };
 
-/// A voxel in one number, 21 bits an axis. Keys of neighbors differ by a constant.
+/// A voxel as one integer, 21 bits per axis. The keys of two neighbors differ by a constant.
 using VoxelKey = std::uint64_t;
 
-/// Cells further than this from the origin are one with the cell at this distance (524 km at 0.5 m,
-/// 20 km at 2 cm); one cell is left free on each side so that neighbors never wrap around.
+/// Largest index of a cell; points beyond it are assigned to the cell at this index (524 km at 0.5
+/// m, 20 km at 2 cm). One cell is left free on each side so that neighbors never wrap around.
 inline constexpr int kMaxVoxelIndex = (1 << 20) - 2;
 
 /// Cell of a finite point (m); `inverse_edge` in 1/m.
@@ -47,7 +47,7 @@ inline Voxel voxel_of(const Eigen::Vector3f& point, float inverse_edge,
   return {index(point.x()), index(point.y()), index(point.z())};
 }
 
-/// Difference between the keys of two voxels that lie `d` cells apart.
+/// Difference between the keys of two voxels that lie (dx, dy, dz) cells apart.
 constexpr VoxelKey voxel_key_step(int dx, int dy, int dz) {
   return static_cast<VoxelKey>(dx) + (static_cast<VoxelKey>(dy) << 21) +
          (static_cast<VoxelKey>(dz) << 42);

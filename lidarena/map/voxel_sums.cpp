@@ -48,7 +48,7 @@ void VoxelSums::remove(std::span<const Eigen::Vector3f> points) {
     Cell& cell = cells_[place->second];
     cell.sum_um -= in_micrometers(point);
     if (--cell.count > 0) continue;
-    const std::uint32_t freed = place->second;  // the last one moves there
+    const std::uint32_t freed = place->second;  // the last cell moves there
     places_.erase(place);
     if (freed + 1 < cells_.size()) {
       cells_[freed] = cells_.back();

@@ -13,21 +13,22 @@
 
 namespace lidarena {
 
-/// Means of the points in each cell of a grid, where points come and go: a map that follows a
-/// sensor pays for what changes and not for all of it. Coordinates are summed in whole micrometers,
-/// so what is removed leaves nothing behind. Points that are not finite are left out.
+/// Means of the points in each cell of a grid, updated as points are added and removed: a map that
+/// moves with a sensor costs time only for what changes. Coordinates are summed in integer
+/// micrometers, so removing points leaves no rounding errors. Points that are not finite are left
+/// out.
 class VoxelSums {
  public:
   /// `voxel_size`: edge of a cell (m).
   explicit VoxelSums(double voxel_size, GridAxes axes = GridAxes::kParallel);
 
   void add(std::span<const Eigen::Vector3f> points);
-  /// Takes away points that were added, with the very same coordinates.
+  /// Removes points that were added with exactly the same coordinates.
   void remove(std::span<const Eigen::Vector3f> points);
 
   void clear();
 
-  /// One point a cell that is not empty, in an order that depends on what was done alone.
+  /// The mean of each cell that is not empty; their order depends only on the sequence of calls.
   std::vector<Eigen::Vector3f> means() const;
 
   std::size_t size() const { return cells_.size(); }
@@ -43,7 +44,7 @@ class VoxelSums {
 
   Eigen::Matrix3f cells_from_points_;
   std::vector<Cell> cells_;
-  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< in `cells_`
+  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< index in `cells_`
 };
 
 }  // namespace lidarena

@@ -31,7 +31,7 @@ std::span<const Beam> BeamTable::beams(std::uint64_t index, std::vector<Beam>& s
   Slot& slot = slots_[index % slots_.size()];
   std::call_once(slot.once, [&] {
     pattern_.beams(index, storage);
-    if (!differs_in_directions_alone(storage)) return;  // then it is asked for every time
+    if (!differs_in_directions_alone(storage)) return;  // not stored: computed on every call
     slot.directions.reserve(storage.size());
     for (const Beam& beam : storage) slot.directions.push_back(beam.direction);
   });

@@ -10,20 +10,20 @@
 
 namespace lidarena {
 
-/// Beams of a pattern that repeats, each scan of it computed once, when first asked for, and kept:
-/// 12 bytes a beam, since all but the directions is the same in every scan. The beams are the
-/// pattern's own to the last bit, whoever asks first. Thread safe.
+/// Cache of the beams of a repeating pattern. Each scan is computed on first use and stored with 12
+/// bytes per beam: only the directions differ between scans. Returns bit for bit what the pattern
+/// returns, whichever thread asks first. Thread safe.
 class BeamTable {
  public:
-  static constexpr std::size_t kMostBytes = 64UL << 20U;  ///< larger tables are not kept
+  static constexpr std::size_t kMostBytes = 64UL << 20U;  ///< larger tables are not stored
 
   /// Keeps a reference to `pattern`.
   explicit BeamTable(const ScanPattern& pattern);
 
-  /// Beams of scan `index`, in `storage` or in the table.
+  /// Beams of scan `index`; the span refers to `storage` or to the table.
   std::span<const Beam> beams(std::uint64_t index, std::vector<Beam>& storage) const;
 
-  /// Bytes that the table takes once all scans are in it.
+  /// Memory of the table, in bytes, once all scans are in it.
   std::size_t bytes() const;
 
  private:
@@ -36,7 +36,7 @@ class BeamTable {
 
   const ScanPattern& pattern_;
   std::vector<Beam> first_;          ///< scan 0
-  mutable std::vector<Slot> slots_;  ///< of the scans until it repeats; none if they are not kept
+  mutable std::vector<Slot> slots_;  ///< one per scan of a period; empty if scans are not stored
 };
 
 }  // namespace lidarena

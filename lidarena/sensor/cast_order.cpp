@@ -6,7 +6,7 @@ namespace lidarena {
 CastOrder::CastOrder(std::span<const Beam> beams) {
   std::size_t lasers = 1;
   while (lasers < beams.size() && beams[lasers].ring != beams[0].ring) ++lasers;
-  if (lasers == beams.size()) lasers = 1;  // nothing comes back
+  if (lasers == beams.size()) lasers = 1;  // the first ring never recurs
   place_.resize(kTogether * lasers);
   for (std::size_t firing = 0; firing < kTogether; ++firing) {
     for (std::size_t laser = 0; laser < lasers; ++laser) {

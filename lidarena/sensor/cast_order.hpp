@@ -9,20 +9,21 @@
 
 namespace lidarena {
 
-/// The order in which a block of shots is cast. Eight rays that look nearly alike are followed
-/// through the world together (see RayOrder), and shots fired one after the other seldom do: the
-/// next is the next laser. So tiles of eight firings of all lasers are cast laser by laser.
+/// Order in which a block of shots is cast. The ray caster is fastest if the eight rays of a packet
+/// have similar directions (see RayOrder). Consecutive shots do not, since each comes from another
+/// laser. So a tile of eight firings of all lasers is cast laser by laser.
 class CastOrder {
  public:
   static constexpr std::size_t kTogether = 8;
 
-  /// From a scan's beams: the lasers fire in turn, so the ring comes back once all have fired.
+  /// Finds the number of lasers from a scan's beams: they fire in turn, so the first ring recurs
+  /// once all have fired.
   explicit CastOrder(std::span<const Beam> beams);
 
-  /// Shots that belong together; blocks of shots should be multiples of it.
+  /// Number of shots of a tile; the size of a block should be a multiple of it.
   std::size_t tile() const { return place_.size(); }
-  /// Place in the casting order of shot `i` of a block of `count` shots. Shots beyond the last
-  /// whole tile are cast as they come.
+  /// Position in the casting order of shot `i` of a block of `count` shots. Shots after the last
+  /// whole tile are cast in firing order.
   std::size_t place(std::size_t i, std::size_t count) const {
     const std::size_t within = i % tile();
     const std::size_t begin = i - within;
@@ -30,7 +31,7 @@ class CastOrder {
   }
 
  private:
-  std::vector<std::uint32_t> place_;  ///< of each shot of a tile
+  std::vector<std::uint32_t> place_;  ///< position of each shot of a tile
 };
 
 }  // namespace lidarena

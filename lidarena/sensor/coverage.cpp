@@ -9,8 +9,8 @@ namespace lidarena {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-/// Directions in single precision stray by 4e-6 deg: a ring that lies on a border between cells is
-/// moved to one side of it as a whole.
+/// Single-precision directions have errors of 4e-6 deg. This offset puts a ring that lies on a
+/// border between cells entirely on one side of it.
 constexpr double kNudgeDeg = 1e-5;
 
 int cells(double from_deg, double to_deg, double cell_deg) {
@@ -58,7 +58,7 @@ double Coverage::share() const {
     const double cos_elevation = std::cos(low + cell_deg_ * kDegree / 2);
     for (int column = 0; column < columns_; ++column) {
       const double azimuth = (fov_.azimuth_min_deg + (column + 0.5) * cell_deg_) * kDegree;
-      if (cos_elevation * std::cos(azimuth) < cos_half_angle) continue;  // of the angle to x
+      if (cos_elevation * std::cos(azimuth) < cos_half_angle) continue;  // outside the cone about x
       all += weight;
       if (lit_[index(column, row)]) lit += weight;
     }

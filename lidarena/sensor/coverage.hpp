@@ -12,17 +12,17 @@
 
 namespace lidarena {
 
-/// Which cells of a grid over a field of view have been hit by a ray. Cells are squares in azimuth
-/// and elevation, in rows from the lowest azimuth and elevation on; a cell belongs to the field of
-/// view when its center does.
+/// Grid over a field of view that records which cells were hit by a ray. Cells are squares in
+/// azimuth and elevation, in rows from the minimum azimuth and elevation on; a cell belongs to the
+/// field of view if its center does.
 class Coverage {
  public:
-  /// `cell_deg` > 0; boxes should measure whole cells.
+  /// `cell_deg` > 0; the box of `fov` should be a whole number of cells wide and high.
   Coverage(const FieldOfView& fov, double cell_deg);
 
   void add(const Eigen::Vector3f& direction);
 
-  /// Solid angle of the lit cells of the field of view over that of all of them, 0..1.
+  /// Solid angle of the cells hit, divided by that of all cells of the field of view, 0..1.
   double share() const;
 
   int columns() const { return columns_; }
@@ -42,29 +42,29 @@ class Coverage {
   std::vector<bool> lit_;
 };
 
-/// The shots of a pattern since the sensor's start, one after the other.
+/// Iterates over the shots of a pattern from the sensor's start on.
 class Shots {
  public:
   /// Keeps a reference to `pattern`.
   explicit Shots(const ScanPattern& pattern);
 
-  /// The shot that comes next, and its instant since the start.
+  /// The current shot, and its time since the start.
   const Beam& beam() const { return beams_[next_]; }
   Time time() const { return stamp_ + Time{beam().dt_ns}; }
   void advance();
 
  private:
   const ScanPattern& pattern_;
-  std::vector<Beam> beams_;  ///< of the scan at hand
+  std::vector<Beam> beams_;  ///< of the current scan
   std::uint64_t scan_ = 0;
   std::size_t next_ = 0;
   Time stamp_{0};
 };
 
-/// The smallest box of whole degrees around the shots before `end`.
+/// Smallest box with edges at whole degrees that contains all shots before `end`.
 FieldOfView observed_field_of_view(const ScanPattern& pattern, Time end);
 
-/// Share of the field of view that is lit before each of the `instants` (ascending, since the
+/// Share of the field of view hit before each of the `instants` (ascending, counted from the
 /// start).
 std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov, double cell_deg,
                              std::span<const Time> instants);

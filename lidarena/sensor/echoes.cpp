@@ -11,7 +11,7 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
   constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
   std::vector<Eigen::Vector2d> offsets;
   for (int i = 0; i < count; ++i) {
-    // Of a two-dimensional Gaussian, the share within radius r is 1 - exp(-r^2 / 2).
+    // The share of a two-dimensional Gaussian within radius r is 1 - exp(-r^2 / 2).
     const double radius = std::sqrt(-2.0 * std::log1p(-(i + 0.5) / count));
     offsets.emplace_back(radius * std::cos(i * kGoldenAngle), radius * std::sin(i * kGoldenAngle));
   }
@@ -21,7 +21,7 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
 Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles) {
   Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(axis);
   const double length = left.norm();
-  // Straight up and down there is no left; any will do.
+  // For a vertical axis "left" is undefined: take y.
   left = length > 1e-6 ? Eigen::Vector3d(left / length) : Eigen::Vector3d::UnitY();
   return (axis + angles.x() * left + angles.y() * axis.cross(left)).normalized();
 }
@@ -44,7 +44,7 @@ void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>&
     echo.energy += part.energy;
     echo.signal += part.signal;
     weighted_range += part.signal * part.range;
-    // Black surfaces send nothing: their range is then as good as any.
+    // Parts from black surfaces have no signal: take the range of the last one.
     echo.range = echo.signal > 0.0 ? weighted_range / echo.signal : part.range;
     if (part.signal > strongest) {
       strongest = part.signal;

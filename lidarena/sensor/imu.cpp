@@ -8,7 +8,8 @@
 namespace lidarena {
 namespace {
 
-/// Two counters each, by normals(). Those of a unit's constants are used with sample 0 alone.
+/// What random numbers are used for. Each purpose takes two counters, see normals(); constants of a
+/// unit are drawn with sample 0 only.
 enum Draw : std::uint32_t {
   kGyroNoise,
   kAccelNoise,
@@ -19,7 +20,7 @@ enum Draw : std::uint32_t {
   kVibration = kAccelResponse + 3
 };
 
-/// What the converter makes of `value`.
+/// Output of the analog-to-digital converter for `value`.
 Eigen::Vector3d read_out(const Eigen::Vector3d& value, double range, double resolution) {
   Eigen::Vector3d read = value;
   if (resolution > 0.0) read = (value / resolution).array().round() * resolution;
@@ -61,7 +62,7 @@ Time Imu::stamp(std::uint64_t sample) const {
 
 Time Imu::first_stamp_from(Time t) const {
   auto sample = static_cast<std::uint64_t>(std::max(0.0, to_seconds(t) * config_.rate_hz));
-  while (sample > 0 && stamp(sample) >= t) --sample;  // rounding may have put it one off
+  while (sample > 0 && stamp(sample) >= t) --sample;  // may be off by one due to rounding
   while (stamp(sample) < t) ++sample;
   return stamp(sample);
 }
@@ -83,7 +84,7 @@ Eigen::Matrix3d Imu::make_response(double scale_error, double misalignment,
 
 void Imu::vibrate(const Motion& motion, ImuSample& sample) const {
   const Eigen::Vector3d up(0.0, 0.0, kGravity);
-  // An unbalanced propeller pulls with the square of its speed, as it lifts.
+  // The force of an unbalanced propeller grows with the square of its speed, as its thrust does.
   const double thrust = (motion.acceleration_world + up).norm() / kGravity;
   for (std::size_t i = 0; i < config_.vibration.size(); ++i) {
     const VibrationTone& tone = config_.vibration[i];
@@ -100,7 +101,7 @@ void Imu::vibrate(const Motion& motion, ImuSample& sample) const {
 }
 
 void Imu::walk_biases() {
-  // A walk becomes a step's sigma by sqrt(1 / rate).
+  // Sigma of one step of a random walk: density * sqrt(1 / rate).
   const double root_rate = std::sqrt(config_.rate_hz);
   const bool first = next_ == 0;
   gyro_bias_ += (first ? config_.gyro_turn_on_bias : config_.gyro_bias_walk / root_rate) *
@@ -116,7 +117,7 @@ ImuSample Imu::measure(const Flight& flight) {
   if (noise_) {
     vibrate(motion, sample);
     walk_biases();
-    const double root_rate = std::sqrt(config_.rate_hz);  // a density becomes a sample's sigma
+    const double root_rate = std::sqrt(config_.rate_hz);  // a sample's sigma: density * root_rate
     const Eigen::Vector3d gyro =
         gyro_response_ * sample.gyro +
         (gyro_bias_ + config_.gyro_noise_density * root_rate * normals(next_, kGyroNoise));

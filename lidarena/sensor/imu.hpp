@@ -10,31 +10,33 @@
 
 namespace lidarena {
 
-/// What a perfect IMU at `body_from_imu` feels while its body moves as `motion` says: the rate, and
-/// the specific force R^T (a - g) with the lever arm's share. IMU frame; no stamp.
+/// Error-free sample of an IMU mounted at `body_from_imu` on a body that moves with `motion`:
+/// angular rate, and specific force R^T (a - g) including the lever-arm terms. IMU frame; the stamp
+/// is not set.
 ImuSample perfect_imu(const Motion& motion, const Pose& body_from_imu);
 
-/// One IMU's samples, one after the other: sample k at k / rate_hz since the flight's start. Each
-/// is the instant's value (no averaging over the sample period) with the errors of ImuConfig. What
-/// is fixed for a unit (scale, misalignment, phases of vibration) and its turn-on bias are drawn
-/// once. Depends on (config, id, seed) alone; without `noise` the samples are perfect.
+/// Generates the samples of one IMU in order: sample k at k / rate_hz after the flight's start.
+/// Each is the instantaneous value (no averaging over the sample period) with the errors of
+/// ImuConfig. Constants of the unit (scale, misalignment, phases of vibration) and the turn-on bias
+/// are drawn once. The errors depend only on (config, id, seed); without `noise` the samples are
+/// error-free.
 class Imu {
  public:
   Imu(const ImuConfig& config, const Pose& body_from_imu, const std::string& id, std::uint64_t seed,
       bool noise);
 
-  /// Instant of the sample that measure() gives next.
+  /// Stamp of the sample that measure() returns next.
   Time next_stamp() const { return stamp(next_); }
   ImuSample measure(const Flight& flight);
 
-  /// Instant of the first sample at or after `t`.
+  /// Stamp of the first sample at or after `t`.
   Time first_stamp_from(Time t) const;
 
  private:
   Time stamp(std::uint64_t sample) const;
-  /// Three independent standard normals; `draw` tells the purposes apart.
+  /// Three independent standard normals; `draw` is what they are used for (enum Draw).
   Eigen::Vector3d normals(std::uint64_t sample, std::uint32_t draw) const;
-  /// I with scale errors on its diagonal and the axes' small angles beside it.
+  /// Identity plus scale errors on the diagonal and misalignment angles off the diagonal.
   Eigen::Matrix3d make_response(double scale_error, double misalignment, std::uint32_t draw) const;
   void vibrate(const Motion& motion, ImuSample& sample) const;
   void walk_biases();

@@ -20,26 +20,27 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t kShotsPerBlock = 1024;
-constexpr std::size_t kShares = 32;  // into which a scan is cut for the workers, if it has as many
+constexpr std::size_t kShares = 32;  // number of parts that a scan is split into for the threads
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
 constexpr double kRadians = std::numbers::pi / 180.0;
 
-/// What the random numbers of a ray are for; those of its further echoes follow.
+/// Purposes of a ray's random numbers; each further echo uses the next kDraws values.
 enum Draw : std::uint32_t { kRange, kDetection, kAngle, kSpin, kDraws };
 
 std::uint32_t draw_of(Draw draw, std::size_t echo) {
   return draw + kDraws * static_cast<std::uint32_t>(echo);
 }
 
-/// How far along its beam a shot starts: nowhere but at the beam's origin, except in the fault that
-/// kOfficial keeps: shots start at the minimum range, and the range is counted from there.
+/// Distance from a beam's origin at which its ray starts: 0, except in kOfficial. That mode
+/// reproduces a fault of the official plugin: rays start at the minimum range, and the range is
+/// measured from there.
 double start_shift(const SensorConfig& config) {
   return config.mode == ScanMode::kOfficial ? config.min_range_m : 0.0;
 }
 
 bool has_times(ScanMode mode) { return mode == ScanMode::kRolling || mode == ScanMode::kFrozen; }
 
-/// The configuration of a sensor that measures the geometry.
+/// The configuration without measurement errors, with a single echo.
 SensorConfig without_noise(SensorConfig config) {
   config.range_noise_m = 0.0;
   config.noise = {};
@@ -53,7 +54,7 @@ std::vector<Beam> first_beams(const ScanPattern& pattern) {
   return beams;
 }
 
-/// Moves the first counts[0] of every `stride` values together, then the first counts[1] ...
+/// Of every group of `stride` values keeps the first counts[group], without gaps between groups.
 template <class T>
 void close_gaps(std::vector<T>& values, std::size_t stride,
                 const std::vector<std::size_t>& counts) {
@@ -70,21 +71,21 @@ void close_gaps(std::vector<T>& values, std::size_t stride,
 
 }  // namespace
 
-/// Some shots of a scan on their way.
+/// Working data of a block of shots of a scan.
 struct Lidar::Block {
   std::span<const Beam> shots;
   std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
-  Point* points = nullptr;      ///< room for all that may come back
-  PointTruth* truth = nullptr;  ///< as much room, or none
-  std::size_t count = 0;        ///< of points so far
-  // Kept from block to block, to save memory from being fetched and given back.
-  std::vector<std::uint32_t> places;  ///< of the shots (of their first sub-rays) among the rays
+  Point* points = nullptr;      ///< space for the maximum number of points
+  PointTruth* truth = nullptr;  ///< same size, or nullptr
+  std::size_t count = 0;        ///< number of points so far
+  // Reused from block to block to avoid reallocation.
+  std::vector<std::uint32_t> places;  ///< index in `rays` of each shot's first sub-ray
   std::vector<Ray> rays;              ///< in casting order
   std::vector<Hit> hits;
-  std::array<double, 2> normals{};  ///< of the pair of shots at hand
+  std::array<double, 2> normals{};  ///< of the current pair of shots
   std::uint64_t normals_of = std::numeric_limits<std::uint64_t>::max();  ///< the pair's number
-  // Of the shot at hand.
-  double axis_to_origin = 0.0;  ///< m; ranges count from the sensor's axis
+  // Of the current shot.
+  double axis_to_origin = 0.0;  ///< m; ranges are measured from the sensor's axis
   std::vector<Echo> parts;
   std::vector<Echo> echoes;
 };
@@ -115,11 +116,12 @@ Time Lidar::stamp(std::uint64_t index) const {
 
 Time Lidar::last_firing(std::uint64_t index) const { return stamp(index) + Time{last_dt_ns_}; }
 
-/// Sub-rays of a shot are neighbors and lie together; single rays lie in casting order.
+/// Sub-rays of a shot have similar directions and are stored next to each other; beams of a single
+/// ray are stored in casting order.
 void Lidar::place_rays(Block& block) const {
   const std::size_t split = sub_rays_.size();
   const std::size_t count = block.shots.size();
-  if (block.places.size() == count) return;  // as in the block before
+  if (block.places.size() == count) return;  // same as for the previous block
   block.places.resize(count);
   for (std::size_t i = 0; i < count; ++i) {
     block.places[i] = static_cast<std::uint32_t>(split == 1 ? order_.place(i, count) : i * split);
@@ -132,8 +134,7 @@ void Lidar::aim(const PoseAt& pose_at, Block& block) const {
   const auto shift = static_cast<float>(start_shift(config_));
   const std::size_t split = sub_rays_.size();
   Vector3d position = Vector3d::Zero();
-  Eigen::Matrix3f turn =
-      Eigen::Matrix3f::Identity();  // world from lidar, as exact as directions are
+  Eigen::Matrix3f turn = Eigen::Matrix3f::Identity();  // world_from_lidar, single precision
   std::int32_t known_dt = -1;
   for (std::size_t i = 0; i < block.shots.size(); ++i) {
     const Beam& beam = block.shots[i];
@@ -159,7 +160,7 @@ void Lidar::aim(const PoseAt& pose_at, Block& block) const {
   }
 }
 
-/// What sub-ray `k` of a shot brings back, if anything within the limits.
+/// Return of sub-ray `k` of a shot, if there is one within the range limits.
 std::optional<Echo> Lidar::receive_ray(const Surfaces& world, std::size_t shot, std::size_t k,
                                        const Block& block) const {
   const std::size_t place = block.places[shot] + k;
@@ -173,7 +174,7 @@ std::optional<Echo> Lidar::receive_ray(const Surfaces& world, std::size_t shot, 
   return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
 }
 
-/// Fills the shot's echoes from its hits: those detected, in the order in which they are reported.
+/// Fills block.echoes with the shot's detected echoes, in reporting order.
 void Lidar::receive(const Surfaces& world, std::size_t shot, Block& block) const {
   block.echoes.clear();
   block.parts.clear();
@@ -198,7 +199,8 @@ bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number)
   return probability >= 1.0 || random_.uniform(ray, draw_of(kDetection, number)) < probability;
 }
 
-/// The range noise of an echo, in sigmas. Random normals come in pairs, and two shots share one.
+/// Range noise of an echo, in sigmas. Normal random numbers come in pairs; two consecutive shots
+/// share a pair.
 double Lidar::range_noise(std::uint64_t ray, std::size_t number, Block& block) const {
   if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
   if (block.normals_of != ray / 2) {
@@ -224,7 +226,7 @@ Vector3f Lidar::reported_direction(const Beam& beam, std::uint64_t ray) const {
   return turned_aside(beam.direction.cast<double>(), {sigma * left, sigma * up}).cast<float>();
 }
 
-/// Makes a point, and its truth, of the shot's `number`-th echo.
+/// Appends the point, and its truth, of the shot's echo `number`.
 void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const {
   const Beam& beam = block.shots[shot];
   const std::uint64_t ray = block.first_ray + shot;
@@ -268,12 +270,12 @@ void Lidar::shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& 
   }
 }
 
-/// Replaces `points` (and `truth`) by what the shots bring back.
+/// Replaces `points` (and `truth`) by the points of the shots.
 void Lidar::shoot_all(const Surfaces& world, const PoseAt& world_from_lidar,
                       std::span<const Beam> shots, std::uint64_t first_ray,
                       const Parallel& parallel, std::vector<Point>& points,
                       std::vector<PointTruth>* truth) const {
-  const auto most = static_cast<std::size_t>(config_.returns.count);  // points of a shot
+  const auto most = static_cast<std::size_t>(config_.returns.count);  // max. points per shot
   points.resize(shots.size() * most);
   if (truth != nullptr) truth->resize(points.size());
 

@@ -24,42 +24,44 @@
 
 namespace lidarena {
 
-/// world_from_lidar so many nanoseconds after a scan's stamp.
+/// world_from_lidar at `dt_ns` after a scan's stamp.
 using PoseAt = std::function<Pose(std::int32_t dt_ns)>;
 
-/// A LiDAR flown through a world. measure() is const and keyed by (seed, id, ray number), so scans
-/// can be made in any order and on any number of threads with identical bytes.
+/// Simulated LiDAR that moves through a world. measure() is const and its random numbers are keyed
+/// by (seed, id, ray number), so scans are bit-identical in any order and on any number of threads.
 class Lidar {
  public:
-  /// Copies `config`; `id` keys the noise; without `noise` ranges and directions are exact, beams
-  /// have no width, and no echo is missed. Throws InputError (place: the sensor's name) when the
-  /// parts of the noise do not fit together.
+  /// Copies `config`; `id` is part of the noise's key. Without `noise`, ranges and directions are
+  /// exact, beams have no width, and no echo is missed. Throws InputError (place: the sensor's
+  /// name) when the noise settings contradict each other.
   Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern, const std::string& id,
         std::uint64_t seed, bool noise);
 
   /// Scan `index`, which begins at index * period. Each shot is cast from the pose at its own
-  /// instant (see ScanMode); shots without a return are left out. Ranges count from the sensor's
-  /// axis (|beam origin| + the way flown) and are kept when the true range lies within the limits.
+  /// instant (see ScanMode); shots without a return are left out. Ranges are measured from the
+  /// sensor's axis (|beam origin| + distance along the beam); a return is kept if its true range is
+  /// within the limits.
   ///
-  /// A beam's sub-rays make echoes (merge_echoes); each is detected or missed by its signal; the
-  /// detected ones are chosen and numbered as ReturnConfig says. Then the range gets its noise and
-  /// is rounded, and the direction gets its noise. `truth`, if given, receives what every point
-  /// really hit, in point order: of a mixed echo, the sub-ray with the strongest signal.
+  /// The sub-rays of a beam are merged into echoes (merge_echoes). Each echo is detected or missed,
+  /// depending on its signal; the detected ones are selected and numbered according to
+  /// ReturnConfig. Then range noise is added, the range is rounded, and angular noise is added to
+  /// the direction. `truth`, if given, receives what each point really hit, in point order; for a
+  /// mixed echo, what the sub-ray with the strongest signal hit.
   Scan measure(const Surfaces& world, const Flight& flight, std::uint64_t index,
                const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
-  /// What some shots of a scan bring back, appended to `points` (and `truth`): `shots` of its beams
-  /// from number `first_ray` since the sensor's start on. So a scan can be made piece by piece,
-  /// while the world around moves.
+  /// Appends the points of some shots of a scan to `points` (and `truth`). `first_ray` is the
+  /// number of the first of `shots`, counted from the sensor's start. With this a scan can be
+  /// simulated piece by piece while the world moves.
   void measure_part(const Surfaces& world, const PoseAt& world_from_lidar,
                     std::span<const Beam> shots, std::uint64_t first_ray,
                     std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
 
-  /// Scan `index` before its first shot.
+  /// Scan `index` with its stamp, without points.
   Scan empty_scan(std::uint64_t index) const;
 
   const ScanPattern& pattern() const { return *pattern_; }
-  /// Beams of scan `index`, in `storage` or in a table that the sensor keeps.
+  /// Beams of scan `index`; the span refers to `storage` or to the sensor's table.
   std::span<const Beam> beams(std::uint64_t index, std::vector<Beam>& storage) const {
     return table_.beams(index, storage);
   }
@@ -90,9 +92,9 @@ class Lidar {
   std::unique_ptr<ScanPattern> pattern_;
   CounterRandom random_;
   SignalModel signal_;
-  std::vector<Eigen::Vector2d> sub_rays_;  ///< in sigmas of the beam
+  std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
-  double energy_of_ray_;                   ///< share of the beam's
+  double energy_of_ray_;                   ///< of a sub-ray, as share of the beam's energy
   bool needs_signal_ = false;
   BeamTable table_;
   CastOrder order_;

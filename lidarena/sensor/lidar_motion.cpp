@@ -6,10 +6,10 @@
 namespace lidarena {
 namespace {
 
-constexpr std::int64_t kStep = 1'333'332;  // ns between samples; even, so that halves are whole
+constexpr std::int64_t kStep = 1'333'332;  // ns between samples; even, so that half is an integer
 constexpr std::int64_t kSegment = 3 * kStep;
 constexpr double kPositionTolerance = 1e-7;  // m
-constexpr double kRotationTolerance = 1e-9;  // so 1e-7 m at 100 m
+constexpr double kRotationTolerance = 1e-9;  // per matrix element; 1e-7 m at 100 m
 
 }  // namespace
 
@@ -29,7 +29,7 @@ Pose LidarMotion::exact(Time after_stamp) const {
   return flight_.pose_at(stamp_ + after_stamp) * body_from_lidar_;
 }
 
-/// Lagrange's polynomial through the samples at x = 0, 1, 2, 3.
+/// Lagrange polynomial through the samples at x = 0, 1, 2, 3.
 LidarMotion::Matrix34 LidarMotion::cubic(std::size_t segment, double x) const {
   const double x1 = x - 1.0, x2 = x - 2.0, x3 = x - 3.0;
   const Matrix34* sample = &samples_[3 * segment];

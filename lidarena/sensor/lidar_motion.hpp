@@ -9,23 +9,23 @@
 
 namespace lidarena {
 
-/// Where a lidar is during one scan, cheap to ask for every shot. The flight is sampled every
-/// 1.33 ms; between the samples a cubic runs through four of them, position and rotation matrix
-/// alike, whose error is h^4 |f''''| / 1944 with h = 4 ms. Where the flight itself, asked halfway
-/// between samples, differs from the cubic by more than 1e-7 m or 1e-9 in the matrix (a kink, a
-/// jump), that stretch is not interpolated but asked of the flight shot by shot. So a point at
+/// Pose of a lidar during one scan, cheap enough to evaluate for every shot. The flight is sampled
+/// every 1.33 ms; position and rotation matrix are interpolated by a cubic through four consecutive
+/// samples (a segment), with an error of h^4 |f''''| / 1944, h = 4 ms. Where the flight halfway
+/// between samples differs from the cubic by more than 1e-7 m or 1e-9 in the matrix (a kink, a
+/// jump), the segment is not interpolated; the flight is evaluated for each shot. So a point at
 /// 100 m is off by less than 1e-6 m.
 class LidarMotion {
  public:
-  /// Poses from `stamp` to `last_dt_ns` after it, or, when not `rolling`, the one at the stamp.
+  /// Poses from `stamp` until `last_dt_ns` later; if not `rolling`, only the pose at the stamp.
   /// Keeps a reference to `flight`.
   LidarMotion(const Flight& flight, const Pose& body_from_lidar, Time stamp,
               std::int32_t last_dt_ns, bool rolling);
 
-  /// world_from_lidar at `dt_ns` >= 0 after the stamp; after last_dt_ns the flight is asked.
+  /// world_from_lidar at `dt_ns` >= 0 after the stamp; after last_dt_ns the flight is evaluated.
   Pose at(std::int32_t dt_ns) const;
 
-  /// Share of the scan that is asked of the flight itself.
+  /// Share of the scan for which the flight itself is evaluated, 0..1.
   double exact_share() const;
 
  private:
@@ -38,8 +38,8 @@ class LidarMotion {
   const Flight& flight_;
   Pose body_from_lidar_;
   Time stamp_;
-  std::vector<Matrix34> samples_;  ///< three a segment, and the last; one alone when not rolling
-  std::vector<bool> smooth_;       ///< of each segment
+  std::vector<Matrix34> samples_;  ///< three per segment, and the last; only one if not rolling
+  std::vector<bool> smooth_;       ///< whether each segment is interpolated
 };
 
 }  // namespace lidarena

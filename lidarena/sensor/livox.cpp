@@ -55,8 +55,9 @@ std::size_t rows_per_scan(double row_rate_hz, double rate_hz, std::size_t emitte
   const bool whole = std::abs(rows - std::round(rows)) < 1e-9 * rows;
   const auto count = static_cast<std::size_t>(std::llround(rows));
   if (!whole || count < 1 || count % emitters != 0) {
-    throw InputError(name, "a scan would not hold a whole number of laser groups",
-                     "choose rate_hz so that rows per second / rate_hz / emitters is whole");
+    throw InputError(
+        name, "a scan would not hold a whole number of laser groups",
+        "choose rate_hz so that rows per second / rate_hz / emitters is a whole number");
   }
   return count;
 }
@@ -80,7 +81,7 @@ void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
   const std::uint64_t groups = rows_per_scan_ / emitters;
   out.resize(rows_per_scan_);
   for (std::uint64_t group = 0; group < groups; ++group) {
-    // Whole turns are taken off first, so that long flights lose no precision.
+    // Reduced modulo the repetition period, so that long flights lose no precision.
     const Phases phases = phases_of(model_, (index * groups + group) % model_.repeat_groups);
     for (std::size_t emitter = 0; emitter < emitters; ++emitter) {
       const std::size_t row = group * emitters + emitter;

@@ -14,23 +14,23 @@ namespace lidarena {
 /// Angle of a rotor at the firing of group k, with m = modulation_step_deg:
 ///   phase_deg + step_deg * (k + sample_offset)
 ///   + modulation_rad * (sin(2 m (k + 1/2)) * m / sin m + m)
-/// The last term is a speed modulation as it comes out of summing speeds sample by sample.
+/// The last term is a sinusoidal speed modulation, summed sample by sample.
 struct Rotor {
   double phase_deg;
   double step_deg;  ///< per group
   double sample_offset;
   double modulation_rad = 0.0;
-  double modulation_step_deg = 0.0;  ///< per group; the modulation has twice this rate
+  double modulation_step_deg = 0.0;  ///< per group; the modulation has twice this frequency
 };
 
-/// A Livox as designed: fixed emitters that fire together, and surfaces on rotors.
+/// Optical design of a Livox: fixed emitters that fire together, and optical surfaces on rotors.
 struct LivoxModel {
   double row_rate_hz;                     ///< rows (shots) per second
-  std::vector<Eigen::Vector3d> emitters;  ///< unit; row r is emitter r % size of group r / size
+  std::vector<Eigen::Vector3d> emitters;  ///< unit; row r: emitter r % size of group r / size
   std::vector<Rotor> rotors;
   std::vector<Surface> surfaces;
   double glass_index;
-  std::uint64_t repeat_groups;       ///< after so many groups all rotors are back, exactly
+  std::uint64_t repeat_groups;  ///< number of groups after which all rotor angles repeat exactly
   Eigen::Matrix3d lidar_from_chain;  ///< optical axis of the chain is +z
 };
 
@@ -40,24 +40,27 @@ LivoxModel livox_mid360();
 LivoxModel livox_mid40();
 LivoxModel livox_mid70();
 /// Avia, non-repetitive: six emitters, three wedges; 240,000 rows/s. Approximate: angles and rates
-/// are those of HELIOS++, which reach the data sheet's field of view, 70.4 x 77.2 deg, to 0.2 deg;
-/// not compared with the maker's table.
+/// are taken from HELIOS++; they give the data sheet's field of view, 70.4 x 77.2 deg, to 0.2 deg;
+/// not compared with the manufacturer's table.
 LivoxModel livox_avia();
 
-/// Rows in a scan. Throws InputError (place `name`) when they are no whole number of `emitters`.
+/// Number of rows of a scan. Throws InputError (place `name`) if it is not a multiple of
+/// `emitters`.
 std::size_t rows_per_scan(double row_rate_hz, double rate_hz, std::size_t emitters,
                           const std::string& name);
-/// Instant of row `row` of a scan, to the nearest ns.
+/// Time of row `row` after the start of its scan, rounded to ns.
 std::int32_t row_dt_ns(std::size_t row, double row_rate_hz);
 
-/// Unit direction of row `row` since the sensor's start, lidar frame (x forward, y left, z up).
+/// Unit direction of row `row`, counted from the sensor's start; lidar frame (x forward, y left,
+/// z up).
 Eigen::Vector3d livox_direction(const LivoxModel& model, std::uint64_t row);
 
-/// Scan m covers rows m n .. m n + n - 1 with n = row rate / scan rate; rows follow each other at
-/// the row period, as the driver stamps them; ring is the emitter.
+/// Scan m covers rows m n .. m n + n - 1 with n = row rate / scan rate; rows are one row period
+/// apart, as the driver stamps them; ring is the emitter.
 class LivoxPattern : public ScanPattern {
  public:
-  /// Throws InputError (place `name`) when `rate_hz` does not cut the rows into whole groups.
+  /// Throws InputError (place `name`) if a scan at `rate_hz` does not hold a whole number of
+  /// groups.
   LivoxPattern(LivoxModel model, double rate_hz, const std::string& name);
 
   Time period() const override { return period_; }

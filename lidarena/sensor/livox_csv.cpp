@@ -27,7 +27,7 @@ std::optional<double> number(std::string_view text) {
   return parse_number(text.substr(first, text.find_last_not_of(" \t") - first + 1));
 }
 
-/// Three numbers with commas between; nothing for any other line.
+/// Three comma-separated numbers; nullopt for any other line.
 std::optional<Row> parse(std::string_view line) {
   Row row;
   for (std::size_t column = 0; column < 3; ++column) {
@@ -46,7 +46,7 @@ Eigen::Vector3f direction(const Row& row, const std::string& place) {
   if (!std::isfinite(time) || !(std::abs(azimuth) <= 360.0) ||
       !(zenith >= 0.0 && zenith <= 180.0)) {
     throw InputError(place, "an angle is out of range or not finite",
-                     "azimuth lies within +-360 deg, the zenith angle within 0..180 deg");
+                     "azimuth must be within +-360 deg, the zenith angle within 0..180 deg");
   }
   const double a = azimuth * kDegree;
   const double z = zenith * kDegree;

@@ -11,19 +11,19 @@
 
 namespace lidarena {
 
-/// Unit directions of a table in the maker's format: rows of index or time, azimuth in deg (from x
-/// towards y), zenith angle in deg (from z), with or without a line of column names first. Rows are
-/// taken as evenly spaced in time; the first column is read as a number and not used. Throws
-/// InputError naming file and line when a row has not three numbers, one is not finite or out of
-/// range, or the file is missing or has no rows.
+/// Reads the unit directions of a table in Livox's format: rows of index or time, azimuth in deg
+/// (from x towards y), zenith angle in deg (from z); the first line may hold column names. Rows are
+/// taken as evenly spaced in time; the first column must be a number but is not used. Throws
+/// InputError naming file and line if a row does not have three numbers, a number is not finite or
+/// out of range, or the file is missing or has no rows.
 std::vector<Eigen::Vector3f> read_livox_csv(const std::filesystem::path& file);
 
-/// Rays of a table at `row_rate_hz` rows per second, over again when it ends; ring is the row's
-/// number in the table modulo `lines`.
+/// Fires the rays of a table at `row_rate_hz` rows per second and starts over at its end; ring is
+/// the index of the row in the table modulo `lines`.
 class RayTablePattern : public ScanPattern {
  public:
-  /// Throws InputError (place `name`) when a scan would not hold a whole number of rows, or there
-  /// is no row.
+  /// Throws InputError (place `name`) if a scan would not hold a whole number of rows, or `rays` is
+  /// empty.
   RayTablePattern(std::vector<Eigen::Vector3f> rays, double row_rate_hz, int lines, double rate_hz,
                   const std::string& name);
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The design constants of the Livox patterns, found by fitting optical chains to the tables that
-// the maker published (no table ships with us). Residuals against them: Mid-360, 800,000 rows, none
-// beyond the table's rounding to 0.01 deg; Mid-40 and Mid-70, 400,000 rows each, 1.4e-5 deg. The
-// Avia alone is taken from others and approximate.
+// Design constants of the Livox patterns, found by fitting optical models to the tables published
+// by the manufacturer (the tables are not part of this repository). Residuals: Mid-360, 800,000
+// rows, none beyond the table's rounding to 0.01 deg; Mid-40 and Mid-70, 400,000 rows each, 1.4e-5
+// deg. Only the Avia was not fitted here: it is taken from HELIOS++ and approximate.
 #include <cmath>
 
 #include "lidarena/sensor/livox.hpp"
@@ -12,7 +12,7 @@ namespace {
 
 /// Four emitters in a row along y whose tangents are equally spaced.
 std::vector<Eigen::Vector3d> mid360_fan() {
-  constexpr double kTanSpacing = 0.48 / 19.4;  // fitted; reads as emitter pitch over focal length
+  constexpr double kTanSpacing = 0.48 / 19.4;  // fitted; perhaps emitter pitch / focal length
   std::vector<Eigen::Vector3d> fan;
   for (int beam = 0; beam < 4; ++beam) {
     fan.push_back(Eigen::Vector3d(0.0, (beam - 1.5) * kTanSpacing, 1.0).normalized());
@@ -20,7 +20,7 @@ std::vector<Eigen::Vector3d> mid360_fan() {
   return fan;
 }
 
-/// Two wedges whose speeds are 7294 and -4664 rpm, looking along +x.
+/// Two wedges rotating at 7294 and -4664 rpm, optical axis along +x.
 LivoxModel two_wedges(double glass_index, double tilt_1, double tilt_2, double tilt_3,
                       double tilt_4) {
   LivoxModel model;
@@ -32,7 +32,7 @@ LivoxModel two_wedges(double glass_index, double tilt_1, double tilt_2, double t
                     make_surface(SurfaceKind::kIntoGlass, 1, tilt_3),
                     make_surface(SurfaceKind::kIntoAir, 1, tilt_4)};
   model.glass_index = glass_index;
-  model.repeat_groups = 3'000'000;  // 30 s: the speeds have 2 rpm in common
+  model.repeat_groups = 3'000'000;  // 30 s: greatest common divisor of the speeds 2 rpm
   model.lidar_from_chain << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   return model;
 }
@@ -41,7 +41,7 @@ LivoxModel two_wedges(double glass_index, double tilt_1, double tilt_2, double t
 
 LivoxModel livox_mid360() {
   constexpr int kA = 0;  // thin wedge and mirror, 10,945 rpm
-  constexpr int kB = 1;  // thick wedge, 10,345 rpm: 10 turns a second less, the vertical sweep
+  constexpr int kB = 1;  // thick wedge, 10,345 rpm: 10 rev/s slower than A, the vertical sweep
   LivoxModel model;
   model.row_rate_hz = 200'000.0;
   model.emitters = mid360_fan();
@@ -51,7 +51,7 @@ LivoxModel livox_mid360() {
       make_surface(SurfaceKind::kIntoAir, kB, 29.0), make_surface(SurfaceKind::kIntoGlass, kA, 0.0),
       make_surface(SurfaceKind::kIntoAir, kA, 10.0), make_surface(SurfaceKind::kMirror, kA, 50.0)};
   model.glass_index = 1.9682;
-  model.repeat_groups = 600'000;  // 12 s: 2189, 2069 and 120 whole turns
+  model.repeat_groups = 600'000;  // 12 s: 2189, 2069 and 120 whole revolutions (A, B, modulation)
   model.lidar_from_chain.setIdentity();
   return model;
 }
@@ -59,7 +59,7 @@ LivoxModel livox_mid360() {
 LivoxModel livox_mid40() { return two_wedges(1.5089, 0.0, 18.0, -18.0, 0.0); }
 
 LivoxModel livox_avia() {
-  // Figures of HELIOS++ (its scanner "livox-avia"), fitted there to data of a unit.
+  // Values from HELIOS++ (its scanner "livox-avia"), fitted there to data of one unit.
   constexpr double kGroupRate = 40'000.0;                                // Hz
   constexpr double kRotorRates[] = {-131.5463, 40.8032, 213.1611};       // Hz
   constexpr double kWedges[] = {30.8856, 29.7735, 3.1351};               // deg
@@ -70,13 +70,13 @@ LivoxModel livox_avia() {
   for (const double sine : kFanSines) {
     model.emitters.emplace_back(0.0, sine, std::sqrt(1.0 - sine * sine));
   }
-  for (int wedge = 0; wedge < 3; ++wedge) {  // tilted face first, square face behind
+  for (int wedge = 0; wedge < 3; ++wedge) {  // tilted face first, then the perpendicular face
     model.rotors.push_back({180.0, 360.0 * kRotorRates[wedge] / kGroupRate, 0.0});
     model.surfaces.push_back(make_surface(SurfaceKind::kIntoGlass, wedge, kWedges[wedge]));
     model.surfaces.push_back(make_surface(SurfaceKind::kIntoAir, wedge, 0.0));
   }
   model.glass_index = 1.51;
-  model.repeat_groups = 400'000'000;  // 10,000 s: the rates have 0.0001 Hz in common
+  model.repeat_groups = 400'000'000;  // 10,000 s: greatest common divisor of the rates 0.0001 Hz
   model.lidar_from_chain << 0, 0, 1, 1, 0, 0, 0, 1, 0;
   return model;
 }

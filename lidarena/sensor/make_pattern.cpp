@@ -8,14 +8,14 @@
 namespace lidarena {
 namespace {
 
-/// Keys of one model that are set for another.
+/// Throws InputError if a key is set that the model of this sensor does not use.
 void reject_foreign_keys(const SensorConfig& sensor, const std::string& place) {
   const bool csv = sensor.model == LidarModel::kLivoxCsv;
   const bool table = sensor.model == LidarModel::kBeamTable;
   const bool spins = table || sensor.model == LidarModel::kOusterOs0128;
   const auto reject = [&](const std::string& key, bool is_set, bool allowed) {
     if (is_set && !allowed) {
-      throw InputError(place, key + " is set, but this model has no use for it", "remove " + key);
+      throw InputError(place, key + " is set, but this model does not use it", "remove " + key);
     }
   };
   reject("columns", sensor.columns != 0, spins);
@@ -28,10 +28,11 @@ void reject_foreign_keys(const SensorConfig& sensor, const std::string& place) {
 std::unique_ptr<ScanPattern> make_csv_pattern(const SensorConfig& sensor,
                                               const std::string& place) {
   if (sensor.pattern_file.empty()) {
-    throw InputError(place, "names no table", "set pattern_file to a CSV in Livox's format");
+    throw InputError(place, "the table of rays is missing",
+                     "set pattern_file to a CSV file in Livox's format");
   }
   if (sensor.row_rate_hz <= 0.0) {
-    throw InputError(place, "does not tell how fast the table's rows are fired", "set row_rate_hz");
+    throw InputError(place, "the firing rate of the table's rows is missing", "set row_rate_hz");
   }
   return std::make_unique<RayTablePattern>(read_livox_csv(sensor.pattern_file), sensor.row_rate_hz,
                                            sensor.lines, sensor.rate_hz, place);
@@ -56,12 +57,13 @@ std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std:
       return make_csv_pattern(sensor, place);
     case LidarModel::kBeamTable:
       if (!sensor.beam_table) {
-        throw InputError(place, "names no table", "set pattern_file to a YAML of beams");
+        throw InputError(place, "the beam table is missing",
+                         "set pattern_file to a YAML file of beams");
       }
       return std::make_unique<SpinningHeadPattern>(*sensor.beam_table, sensor.columns,
                                                    sensor.rate_hz, place);
   }
-  throw InputError(place, "the model is not known");
+  throw InputError(place, "unknown model");
 }
 
 std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor) {

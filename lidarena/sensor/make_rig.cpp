@@ -23,7 +23,7 @@ std::string model_name(LidarModel model) {
   return "unknown";
 }
 
-/// Columns by which each row looks ahead of the head.
+/// Number of columns by which each row's azimuth is ahead of the head's.
 std::vector<int> ouster_pixel_shifts(int columns) {
   std::vector<int> shifts;
   for (int row = 0; row < OusterOs0Pattern::kRows; ++row) {

@@ -13,7 +13,7 @@ Surface make_surface(SurfaceKind kind, int rotor, double tilt_deg) {
 
 Eigen::Vector3d trace(std::span<const Surface> surfaces, double glass_index,
                       std::span<const Eigen::Vector2d> phases, Eigen::Vector3d ray) {
-  const double gain = glass_index * glass_index - 1.0;  // of |ray|^2 from air into glass
+  const double gain = glass_index * glass_index - 1.0;  // increase of |ray|^2 from air to glass
   for (const Surface& surface : surfaces) {
     const Eigen::Vector2d& phase = phases[static_cast<std::size_t>(surface.rotor)];
     const Eigen::Vector3d normal(surface.sin_tilt * phase.x(), surface.sin_tilt * phase.y(),

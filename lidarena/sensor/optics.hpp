@@ -8,8 +8,8 @@ namespace lidarena {
 
 enum class SurfaceKind { kIntoGlass, kIntoAir, kMirror };
 
-/// A plane that a ray meets: a face of a wedge, or a mirror, on a turning rotor. Its normal leans
-/// from the optical axis (+z) by the tilt, towards the rotor's present phase.
+/// Plane optical surface on a rotor: a face of a wedge, or a mirror. Its normal is tilted from the
+/// optical axis (+z) towards the rotor's current phase angle.
 struct Surface {
   SurfaceKind kind;
   int rotor;  ///< index among the phases given to trace()
@@ -17,13 +17,13 @@ struct Surface {
   double cos_tilt;
 };
 
-/// `tilt_deg` in degrees, as designs are written down.
+/// Makes a surface from its tilt in degrees.
 Surface make_surface(SurfaceKind kind, int rotor, double tilt_deg);
 
-/// Unit direction (air) in which a ray that starts with the unit direction `ray` leaves the chain
-/// of `surfaces`. `phases` are (cos, sin) of each rotor's angle; `glass_index` is the refractive
-/// index. Snell's law with momentum vectors: the length is 1 in air and the index in glass, and a
-/// face changes only the part along its normal.
+/// Traces a ray with unit direction `ray` through the `surfaces` in order and returns its unit
+/// direction behind them (in air). `phases` are (cos, sin) of each rotor's angle; `glass_index` is
+/// the refractive index. Snell's law in vector form: the ray vector has length 1 in air and the
+/// refractive index in glass; a face changes only its component along the normal.
 Eigen::Vector3d trace(std::span<const Surface> surfaces, double glass_index,
                       std::span<const Eigen::Vector2d> phases, Eigen::Vector3d ray);
 

@@ -10,7 +10,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kRowPitch = 0.012314;     // rad behind the lens, of neighboring rows
+constexpr double kRowPitch = 0.012314;     // rad behind the lens, between neighboring rows
 constexpr double kColumnPitch = 0.048775;  // rad, half the step between pixel columns
 constexpr double kCubicTerm = 0.04265;     // of the f-theta lens
 
@@ -19,8 +19,8 @@ bool is_mode(int columns, double rate_hz) {
   return rate_hz == 20.0 && (columns == 512 || columns == 1024);
 }
 
-/// The maker's range-to-point geometry: with the range r counted from the axis and the beam origin
-/// at radius n, x = (r - n) cos(e - a) cos f + n cos e, and so on.
+/// The manufacturer's range-to-point formula: with the range r measured from the axis and the beam
+/// origin at radius n, x = (r - n) cos(e - a) cos f + n cos e, and so on.
 Beam make_beam(const OusterRow& row, double encoder) {
   const double azimuth = encoder - row.azimuth_offset;
   Beam beam;
@@ -51,7 +51,7 @@ OusterOs0Pattern::OusterOs0Pattern(int columns, double rate_hz, const std::strin
     : period_(from_seconds(1.0 / rate_hz)) {
   if (!is_mode(columns, rate_hz)) {
     throw InputError(name,
-                     std::to_string(columns) + " columns at this rate_hz are no mode of an OS0",
+                     std::to_string(columns) + " columns at this rate_hz are not a mode of the OS0",
                      "use 512, 1024 or 2048 columns at 10 Hz, or 512 or 1024 at 20 Hz");
   }
   beams_.reserve(static_cast<std::size_t>(columns * kRows));

@@ -8,19 +8,19 @@
 
 namespace lidarena {
 
-/// Where one row of an Ouster looks, relative to the head.
+/// Viewing direction of one row of an Ouster, relative to the head.
 struct OusterRow {
   double altitude;        ///< rad, up
-  double azimuth_offset;  ///< rad, clockwise seen from above (as the head turns)
+  double azimuth_offset;  ///< rad, clockwise seen from above (as the head rotates)
 };
 
 /// Row 0 (top) .. 127 of an OS0-128: four pixel columns behind an f-theta lens with a cubic term,
 /// fitted to one unit's calibration (0.02 deg rms in altitude, 0.03 deg in azimuth).
 OusterRow os0_128_row(int row);
 
-/// OS0-128: a head that turns clockwise once a scan and fires all 128 rows at each of `columns`
-/// places. The lidar frame is the maker's: x towards the connector, where column 0 looks. Beams
-/// start on the circle of the beam origins, 27.67 mm from the axis; ring is the row.
+/// OS0-128: the head rotates clockwise once per scan and fires all 128 rows at each of `columns`
+/// azimuths. The lidar frame is the manufacturer's: x points to the connector, the direction of
+/// column 0. Beams start on a circle of 27.67 mm radius about the axis; ring is the row.
 class OusterOs0Pattern : public ScanPattern {
  public:
   static constexpr int kRows = 128;

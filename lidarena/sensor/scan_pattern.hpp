@@ -11,7 +11,7 @@
 
 namespace lidarena {
 
-/// One shot of a LiDAR, in its own frame.
+/// One shot of a LiDAR, in the lidar frame.
 struct Beam {
   Eigen::Vector3f direction;  ///< unit
   std::int32_t dt_ns = 0;     ///< since the scan's first firing
@@ -19,8 +19,8 @@ struct Beam {
   Eigen::Vector3f origin = Eigen::Vector3f::Zero();  ///< where the beam starts, m, lidar frame
 };
 
-/// Where a LiDAR looks and when: a pure function of the scan's index, so any worker may ask for any
-/// scan.
+/// Firing directions and times of a LiDAR: a pure function of the scan's index, so any thread may
+/// request any scan.
 class ScanPattern {
  public:
   virtual ~ScanPattern() = default;
@@ -28,7 +28,7 @@ class ScanPattern {
   virtual std::size_t beams_per_scan() const = 0;
   /// Replaces `out` by the beams of scan `index`, in firing order.
   virtual void beams(std::uint64_t index, std::vector<Beam>& out) const = 0;
-  /// After so many scans the beams are the same again, to the last bit; 0: never.
+  /// Number of scans after which the beams repeat bit for bit; 0: never.
   virtual std::uint64_t repeats_after() const { return 0; }
 };
 

@@ -14,7 +14,8 @@ void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) 
   throw InputError(place, "facts.fov is empty", "keep each minimum below its maximum");
 }
 
-/// Makes the sensor independent of where its file lies.
+/// Loads the beam table, or makes the path of the ray table absolute, so that the configuration
+/// does not depend on where its file is.
 void take_pattern_file(const std::filesystem::path& file, SensorConfig& sensor) {
   if (sensor.pattern_file.empty()) return;
   const std::filesystem::path table = file.parent_path() / sensor.pattern_file;
@@ -33,7 +34,7 @@ SpinningHead load_spinning_head(const std::filesystem::path& file) {
   SpinningHead table;
   read_config(node, table);
   if (table.beams.empty()) {
-    throw InputError(file.string(), "has no beams", "list them under beams:, one a ring");
+    throw InputError(file.string(), "has no beams", "list them under beams:, one per ring");
   }
   for (const ConfigNode& beam : node.find("beams")->items()) {
     if (!beam.find("elevation_deg")) throw InputError(beam.where(), "has no elevation_deg");
@@ -50,7 +51,7 @@ SensorConfig load_sensor(const std::filesystem::path& file) {
   }
   check_returns(sensor.noise, sensor.returns, file.string());
   check_fov(sensor.facts.fov, file.string());
-  make_pattern(sensor, file.string());  // the model must have this mode
+  make_pattern(sensor, file.string());  // throws if the model does not have this mode
   return sensor;
 }
 

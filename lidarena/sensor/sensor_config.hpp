@@ -36,11 +36,11 @@ struct EnumNames<LidarModel> {
                                     std::pair{"beam_table", LidarModel::kBeamTable}};
 };
 
-/// How a scan relates to the motion during it. All but the first are faults of earlier simulators,
-/// kept for comparisons.
+/// How a scan is affected by motion during it. All modes but the first reproduce faults of earlier
+/// simulators, for comparison.
 enum class ScanMode {
   kRolling,          ///< every shot from the pose at its own instant
-  kFrozen,           ///< all shots from the pose at the stamp, stamped as if the sensor had moved
+  kFrozen,           ///< all shots from the pose at the stamp, but with the times of each shot
   kFrozenUnstamped,  ///< all shots from the pose at the stamp, without per-point times
   kOfficial,         ///< as kFrozenUnstamped, and every range too short by the minimum range
 };
@@ -52,10 +52,10 @@ struct EnumNames<ScanMode> {
                                     std::pair{"official", ScanMode::kOfficial}};
 };
 
-/// A tone of the airframe's vibration as the IMU feels it (and the LiDAR does not): each axis
-/// swings as a sine of its own phase, drawn once a unit. The frequency is fixed, and there is no
-/// filter before sampling: a tone above half the IMU's rate shows up folded, as in a part without
-/// one.
+/// A tone of the airframe's vibration, as measured by the IMU (the LiDAR is not affected): on each
+/// axis a sine with a phase of its own, drawn once per unit. The frequency is fixed, and there is
+/// no filter before sampling: a tone above half the IMU's rate is aliased, as in a part without an
+/// anti-aliasing filter.
 struct VibrationTone {
   double frequency_hz = 100.0;
   Eigen::Vector3d accel_amplitude = Eigen::Vector3d::Zero();
@@ -64,19 +64,19 @@ struct VibrationTone {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("frequency_hz", self.frequency_hz, "Hz", "of the tone, e.g. turns per second of a propeller",
-      above(0));
-    v("accel_amplitude", self.accel_amplitude, "m/s^2", "x y z, when hovering", at_least(0));
-    v("gyro_amplitude", self.gyro_amplitude, "rad/s", "x y z, when hovering", at_least(0));
+    v("frequency_hz", self.frequency_hz, "Hz",
+      "frequency of the tone, e.g. revolutions per second of a propeller", above(0));
+    v("accel_amplitude", self.accel_amplitude, "m/s^2", "amplitude x y z in hover", at_least(0));
+    v("gyro_amplitude", self.gyro_amplitude, "rad/s", "amplitude x y z in hover", at_least(0));
     v("grows_with_thrust", self.grows_with_thrust, "",
-      "amplitudes are proportional to thrust, as an unbalanced propeller's; else they are fixed");
+      "true: amplitudes proportional to thrust, as of an unbalanced propeller; false: constant");
   }
 };
 
-/// The IMU inside a LiDAR. Densities are continuous: a sample at rate f has density * sqrt(f).
-/// Every error is off at zero. The order in which they act: vibration is added to what the IMU
-/// feels; scale and misalignment distort that; bias and white noise are added; the result is
-/// rounded to the resolution and held within the range.
+/// The IMU inside a LiDAR. Noise densities are continuous: a sample at rate f has the sigma
+/// density * sqrt(f). An error set to 0 is off. Order in which the errors are applied: vibration is
+/// added to the true values; scale and misalignment distort the sum; bias and white noise are
+/// added; the result is rounded to the resolution and limited to the range.
 struct ImuConfig {
   std::string model;
   double rate_hz = 200.0;
@@ -106,33 +106,33 @@ struct ImuConfig {
       at_least(0));
     v("gyro_bias_walk", self.gyro_bias_walk, "rad/s^2/sqrt(Hz)", "bias random walk", at_least(0));
     v("accel_bias_walk", self.accel_bias_walk, "m/s^3/sqrt(Hz)", "bias random walk", at_least(0));
-    v("gyro_turn_on_bias", self.gyro_turn_on_bias, "rad/s", "sigma of each axis' first bias",
+    v("gyro_turn_on_bias", self.gyro_turn_on_bias, "rad/s", "sigma of each axis' turn-on bias",
       at_least(0));
-    v("accel_turn_on_bias", self.accel_turn_on_bias, "m/s^2", "sigma of each axis' first bias",
+    v("accel_turn_on_bias", self.accel_turn_on_bias, "m/s^2", "sigma of each axis' turn-on bias",
       at_least(0));
     v("gyro_scale_error", self.gyro_scale_error, "", "sigma of each axis' relative scale error",
       at_least(0));
     v("accel_scale_error", self.accel_scale_error, "", "sigma of each axis' relative scale error",
       at_least(0));
     v("gyro_misalignment", self.gyro_misalignment, "rad",
-      "sigma of the two small angles by which each axis leans", at_least(0));
+      "sigma of the two small misalignment angles of each axis", at_least(0));
     v("accel_misalignment", self.accel_misalignment, "rad",
-      "sigma of the two small angles by which each axis leans", at_least(0));
-    v("gyro_range", self.gyro_range, "rad/s", "largest rate read, 0 = no limit", at_least(0));
-    v("accel_range", self.accel_range, "m/s^2", "largest specific force read, 0 = no limit",
+      "sigma of the two small misalignment angles of each axis", at_least(0));
+    v("gyro_range", self.gyro_range, "rad/s", "largest rate measured, 0 = no limit", at_least(0));
+    v("accel_range", self.accel_range, "m/s^2", "largest specific force measured, 0 = no limit",
       at_least(0));
-    v("gyro_resolution", self.gyro_resolution, "rad/s", "step of the read-out, 0 = none",
-      at_least(0));
-    v("accel_resolution", self.accel_resolution, "m/s^2", "step of the read-out, 0 = none",
-      at_least(0));
-    v("vibration", self.vibration, "", "tones of the airframe");
+    v("gyro_resolution", self.gyro_resolution, "rad/s",
+      "quantization step of the samples, 0 = none", at_least(0));
+    v("accel_resolution", self.accel_resolution, "m/s^2",
+      "quantization step of the samples, 0 = none", at_least(0));
+    v("vibration", self.vibration, "", "vibration tones of the airframe");
     v("lidar_from_imu", self.lidar_from_imu, "m, quaternion", "x y z qx qy qz qw");
   }
 };
 
-/// What a buyer asks; no part of the simulation.
+/// Product data for comparing sensors; not used by the simulation.
 struct SensorFacts {
-  std::string source;  ///< where the figures of the file come from
+  std::string source;  ///< source of the figures in the file
   double weight_kg = 0.0;
   double power_min_w = 0.0;
   double power_max_w = 0.0;
@@ -142,13 +142,14 @@ struct SensorFacts {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("source", self.source, "", "where the figures of the file come from");
+    v("source", self.source, "", "source of the figures in this file");
     v("weight_kg", self.weight_kg, "kg", "weight, 0 if unknown", at_least(0));
-    v("power_min_w", self.power_min_w, "W", "least power drawn, 0 if unknown", at_least(0));
-    v("power_max_w", self.power_max_w, "W", "most power drawn, 0 if unknown", at_least(0));
-    v("price", self.price, "", "in words, empty if unknown");
-    v("approximate", self.approximate, "", "what of the pattern is approximate, empty if nothing");
-    v("fov", self.fov, "", "the field of view that the data sheet gives");
+    v("power_min_w", self.power_min_w, "W", "minimum power consumption, 0 if unknown", at_least(0));
+    v("power_max_w", self.power_max_w, "W", "maximum power consumption, 0 if unknown", at_least(0));
+    v("price", self.price, "", "price as text, empty if unknown");
+    v("approximate", self.approximate, "",
+      "which parts of the pattern are approximate, empty if none");
+    v("fov", self.fov, "", "field of view according to the data sheet");
   }
 };
 
@@ -174,38 +175,41 @@ struct SensorConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("name", self.name, "", "id in the dataset; the file's stem if empty");
+    v("name", self.name, "", "id in the dataset; if empty, the file name without extension");
     v("model", self.model, "", "scan pattern");
-    v("columns", self.columns, "", "firings per turn; spinning sensors only", at_least(0));
+    v("columns", self.columns, "", "columns (firings) per revolution; spinning sensors only",
+      at_least(0));
     v("pattern_file", self.pattern_file, "",
       "table of livox_csv (CSV) or beam_table (YAML), relative to this file");
     v("row_rate_hz", self.row_rate_hz, "Hz", "rows per second of livox_csv", between(0, 1e7));
-    v("lines", self.lines, "", "laser lines that take turns in the rows of livox_csv",
+    v("lines", self.lines, "", "number of laser lines that alternate in the rows of livox_csv",
       between(1, 65535));
-    v("beam_table", self.beam_table, "", "the table itself, instead of pattern_file");
-    v("rate_hz", self.rate_hz, "Hz", "scans per second", at_least(0.5));  // dt_ns holds 2.1 s
+    v("beam_table", self.beam_table, "", "the beam table itself, instead of pattern_file");
+    v("rate_hz", self.rate_hz, "Hz", "scans per second", at_least(0.5));  // dt_ns covers 2.1 s
     v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
     v("range_noise_m", self.range_noise_m, "m", "sigma of the range noise", at_least(0));
-    v("noise", self.noise, "", "further errors, and what decides whether an echo is seen");
-    v("returns", self.returns, "", "which of a shot's echoes are reported, and how bright");
+    v("noise", self.noise, "",
+      "further measurement errors, and the conditions for detecting an echo");
+    v("returns", self.returns, "",
+      "which of a shot's echoes are reported, and the kind of intensity");
     v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
     v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
-    v("imu", self.imu, "", "the IMU inside, if any");
+    v("imu", self.imu, "", "the IMU inside the LiDAR, if any");
     v("facts", self.facts, "", "weight, power, price, source");
   }
 };
 
-/// Reads a file of configs/sensors: a beam table is read into `beam_table`, and the `pattern_file`
-/// of a livox_csv made a full path, so that the configuration no longer depends on where its file
-/// lies. Throws InputError naming file, line and key when a key is unknown, a value is out of
-/// range, or the values do not fit together.
+/// Reads a sensor file, as in configs/sensors. A beam table is read into `beam_table`, and the
+/// `pattern_file` of a livox_csv is made absolute, so that the configuration does not depend on
+/// where its file is. Throws InputError naming file, line and key if a key is unknown, a value is
+/// out of range, or the values contradict each other.
 SensorConfig load_sensor(const std::filesystem::path& file);
 
-/// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) when the
-/// model has no such mode.
+/// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) if the
+/// model does not have this mode.
 std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor);
-/// The same; `place` stands in messages.
+/// The same, with `place` as the place in error messages.
 std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std::string& place);
 
 }  // namespace lidarena

@@ -16,9 +16,9 @@ void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
   if (rated && signal.range_at_80_m <= signal.range_at_10_m) {
     throw InputError(place, "noise.signal.range_at_80_m is not above range_at_10_m");
   }
-  // Beyond, the signal that fits both would rise again before the farther range.
+  // For a larger ratio the signal that fits both ranges would rise with range before the far one.
   if (rated && signal.range_at_80_m > 6.0 * signal.range_at_10_m) {
-    throw InputError(place, "noise.signal.range_at_80_m is over six times range_at_10_m");
+    throw InputError(place, "noise.signal.range_at_80_m is more than six times range_at_10_m");
   }
   if (!rated && (noise.dropouts || noise.weak_signal_noise)) {
     throw InputError(place, "noise.dropouts and noise.weak_signal_noise need the rated ranges",
@@ -32,11 +32,11 @@ void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
   }
   const BeamConfig& beam = noise.beam;
   if (beam.sub_rays > 1 && beam.width_deg == 0.0 && beam.height_deg == 0.0) {
-    throw InputError(place, "noise.beam.sub_rays has no beam to split",
+    throw InputError(place, "noise.beam.sub_rays needs a beam with a width",
                      "set noise.beam.width_deg and height_deg");
   }
   if (returns.count > 1 && beam.sub_rays == 1) {
-    throw InputError(place, "returns.count needs a beam that can meet several surfaces",
+    throw InputError(place, "returns.count above 1 needs a beam of several sub-rays",
                      "set noise.beam.sub_rays, width_deg and height_deg");
   }
 }
@@ -44,7 +44,7 @@ void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 double normal_quantile(double p) {
-  double low = -40.0, high = 40.0;  // beyond, p is not a double's
+  double low = -40.0, high = 40.0;  // beyond this, p is not representable as a double
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
     (normal_cdf(middle) < p ? low : high) = middle;
@@ -71,7 +71,7 @@ double SignalModel::signal(double energy, double range) const {
 }
 
 double SignalModel::detection_probability(double signal) const {
-  constexpr double kCertain = 8.3;  // sigmas; from here on the distribution rounds to 1
+  constexpr double kCertain = 8.3;  // sigmas; above this the distribution rounds to 1
   const double margin = signal * rated_ - threshold_;
   return margin > kCertain ? 1.0 : normal_cdf(margin);
 }

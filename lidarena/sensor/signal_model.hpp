@@ -5,20 +5,22 @@
 
 namespace lidarena {
 
-/// How much light comes back, and what a receiver makes of it.
+/// Model of the received signal and of its detection.
 ///
 /// Signal: energy / 0.1 * (r10 / r)^2 * exp(-2 a (r - r10)), the lidar equation with extinction a,
-/// where energy is the light relative to a white diffuse surface head-on (see backscatter()) and
-/// r10 = range_at_10. So it is 1 for a 10 % target at its rated range, and
+/// where energy is the returned light relative to that of a white diffuse surface at normal
+/// incidence (see backscatter()) and r10 = range_at_10_m. It is 1 for a 10 % target at its rated
+/// range, and
 ///   a = ln(8 (r10 / r80)^2) / (2 (r80 - r10))
-/// makes it 1 for an 80 % target at its own. (a stands for all that sets in with range; a sheet
-/// whose far range is more than the square law gives makes it negative.)
+/// makes it 1 for an 80 % target at its rated range. (a covers all effects that depend on range; it
+/// is negative if the data sheet's far range exceeds what the square law gives.)
+///
 /// Receiver: the signal plus unit Gaussian noise must exceed a threshold, so
 ///   P(detection) = Phi(signal * rated - threshold),  threshold = -Phi^-1(false alarms),
 ///   rated = threshold + Phi^-1(detection at the rated range).
 class SignalModel {
  public:
-  /// Without rated ranges: no extinction, and a 10 % target gives 1 at 1 m.
+  /// Without rated ranges: no extinction, and the signal of a 10 % target is 1 at 1 m.
   explicit SignalModel(const SignalConfig& config);
 
   double signal(double energy, double range) const;
@@ -37,7 +39,8 @@ class SignalModel {
 /// 1 / sqrt(signal).
 double range_sigma(double range_noise_m, const NoiseConfig& noise, double range, double signal);
 
-/// Cumulative distribution of the standard normal, and its inverse (0 < p < 1; to 1e-12).
+/// Cumulative distribution function of the standard normal, and its inverse (0 < p < 1; accurate to
+/// 1e-12).
 double normal_cdf(double x);
 double normal_quantile(double p);
 

@@ -17,8 +17,8 @@ struct ImuStream {
 struct LidarStream {
   std::string id;
   Lidar lidar;
-  std::uint64_t next = 0;   ///< index of the scan to come
-  std::uint64_t scans = 0;  ///< only whole scans
+  std::uint64_t next = 0;   ///< index of the next scan
+  std::uint64_t scans = 0;  ///< number of complete scans in the flight
 };
 
 class Simulation final : public EventSource {
@@ -66,7 +66,7 @@ class Simulation final : public EventSource {
     return scan;
   }
 
-  /// The IMU whose sample comes next; ties go to the sensor named first.
+  /// The IMU whose sample is next, on ties the first in the list; nullptr after the end.
   ImuStream* next_imu() {
     const auto first = std::min_element(
         imus_.begin(), imus_.end(),
@@ -74,7 +74,7 @@ class Simulation final : public EventSource {
     return first == imus_.end() || first->imu.next_stamp() > end_ ? nullptr : &*first;
   }
 
-  /// The LiDAR whose scan is due next.
+  /// The LiDAR whose scan is due next; nullptr if there are no more scans.
   LidarStream* next_lidar() {
     LidarStream* first = nullptr;
     for (LidarStream& lidar : lidars_) {
@@ -84,7 +84,8 @@ class Simulation final : public EventSource {
     return first;
   }
 
-  /// When a scan may be delivered: once every IMU has a sample at or after its last firing.
+  /// Earliest time at which a scan may be delivered: once every IMU has a sample at or after its
+  /// last firing.
   Time due(const LidarStream& stream) const {
     const Time last = stream.lidar.last_firing(stream.next);
     Time covered = last;

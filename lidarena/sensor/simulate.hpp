@@ -24,15 +24,16 @@ struct SimulationOptions {
   ScanTruthSink* truth = nullptr;  ///< receives a scan's truth just before next() returns the scan
 };
 
-/// The rig that these sensors make on one body (each LiDAR brings its IMU, if it has one). Ids are
-/// the sensors' names, made unique; a LiDAR and the IMU inside it share the id, as they share the
-/// topics /ID/points and /ID/imu. Throws InputError when a model has no such mode.
+/// The rig of these sensors on one body (each LiDAR with its IMU, if it has one). Ids are the
+/// sensors' names, made unique; a LiDAR and the IMU inside it share the id (topics /ID/points and
+/// /ID/imu). Throws InputError if a model does not have the configured mode.
 Rig make_rig(const std::vector<SensorConfig>& sensors);
 
-/// The measurements of a flight, made as they are asked for: in the order that EventSource
-/// promises, the same for the same seed on any number of threads. Keeps references to `world` and
-/// `flight`. Times are since the flight's start: scan k begins at k * period, and only whole scans
-/// are made. A scan comes once every IMU has given a sample at or after its last firing (or ended).
+/// Simulates the measurements of a flight, each when it is requested, in the order that EventSource
+/// specifies; identical for the same seed on any number of threads. Keeps references to `world` and
+/// `flight`. Times count from the flight's start: scan k begins at k * period, and only complete
+/// scans are simulated. A scan is delivered once every IMU has delivered a sample at or after the
+/// scan's last firing (or has ended).
 std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
                                       const std::vector<SensorConfig>& sensors,
                                       const SimulationOptions& options, const Parallel& parallel);

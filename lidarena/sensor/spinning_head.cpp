@@ -13,13 +13,13 @@ namespace lidarena {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr int kMostColumns = 100'000;  // fifty times any sensor's; keeps a slip from eating memory
+constexpr int kMostColumns = 100'000;  // fifty times any sensor's; limits memory if mistyped
 
 void check(const SpinningHead& table, int columns, double column_us, double turn_us,
            const std::string& name) {
   if (table.beams.empty()) throw InputError(name, "the beam table has no beams");
-  if (columns < 1) throw InputError(name, "a turn has no columns", "set columns");
-  if (columns > kMostColumns) throw InputError(name, "a turn has too many columns");
+  if (columns < 1) throw InputError(name, "columns is not positive", "set columns");
+  if (columns > kMostColumns) throw InputError(name, "there are too many columns per revolution");
   for (std::size_t ring = 0; ring < table.beams.size(); ++ring) {
     const std::string beam = "beam " + std::to_string(ring) + " of the table ";
     if (std::isnan(table.beams[ring].elevation_deg)) {
@@ -27,11 +27,11 @@ void check(const SpinningHead& table, int columns, double column_us, double turn
     }
     if (!(table.beams[ring].dt_us < column_us)) {
       throw InputError(name, beam + "fires after its column ends",
-                       "keep dt_us below the column's period");
+                       "keep dt_us below the column period");
     }
   }
   if (column_us * columns > turn_us * (1.0 + 1e-9)) {
-    throw InputError(name, "the columns take longer than a turn",
+    throw InputError(name, "the columns take longer than a revolution",
                      "lower columns, column_period_us or rate_hz");
   }
 }
@@ -46,7 +46,7 @@ std::vector<std::size_t> firing_order(const SpinningHead& table) {
   return rings;
 }
 
-/// The beam while the head looks at `head` rad.
+/// The beam while the head's azimuth is `head`, rad.
 Beam turned(const HeadBeam& row, double head) {
   const double azimuth = head + row.azimuth_offset_deg * kDegree;
   const double elevation = row.elevation_deg * kDegree;

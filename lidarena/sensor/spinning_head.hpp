@@ -13,8 +13,8 @@
 
 namespace lidarena {
 
-/// One laser of a spinning head. Angles and origin are given in the head's frame: x where the head
-/// looks, z up, so they turn with it.
+/// One laser of a spinning head. Angles and origin are given in the head's frame, which rotates
+/// with the head: x in its viewing direction, z up.
 struct HeadBeam {
   double elevation_deg = std::numeric_limits<double>::quiet_NaN();  ///< must be given
   double azimuth_offset_deg = 0.0;
@@ -23,16 +23,16 @@ struct HeadBeam {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("elevation_deg", self.elevation_deg, "deg", "up", between(-90, 90));
+    v("elevation_deg", self.elevation_deg, "deg", "positive upwards", between(-90, 90));
     v("azimuth_offset_deg", self.azimuth_offset_deg, "deg",
-      "from where the head looks, counterclockwise seen from above", between(-180, 180));
-    v("dt_us", self.dt_us, "us", "when it fires after its column begins", at_least(0));
-    v("origin_m", self.origin_m, "m", "x y z of where the beam starts");
+      "from the head's viewing direction, counterclockwise seen from above", between(-180, 180));
+    v("dt_us", self.dt_us, "us", "firing time after the start of its column", at_least(0));
+    v("origin_m", self.origin_m, "m", "x y z of the point where the beam starts");
   }
 };
 
-/// The lasers of a spinning head that fires all of them once in each column; ring is the place in
-/// the list.
+/// The lasers of a spinning head. All of them fire once in each column; ring is the index in the
+/// list.
 struct SpinningHead {
   bool clockwise = true;
   double start_azimuth_deg = 0.0;
@@ -41,27 +41,28 @@ struct SpinningHead {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("clockwise", self.clockwise, "", "how the head turns, seen from above");
+    v("clockwise", self.clockwise, "", "sense of rotation of the head, seen from above");
     v("start_azimuth_deg", self.start_azimuth_deg, "deg",
-      "where the head looks when a scan begins, counterclockwise from x", between(-360, 360));
+      "azimuth of the head at the start of a scan, counterclockwise from x", between(-360, 360));
     v("column_period_us", self.column_period_us, "us",
-      "from one column to the next; 0 = a turn cut evenly", at_least(0));
-    v("beams", self.beams, "", "the lasers, ring by ring");
+      "time between columns; 0 = one revolution divided by the number of columns", at_least(0));
+    v("beams", self.beams, "", "the lasers in order of ring");
   }
 };
 
-/// Reads a YAML file of the keys above. Throws InputError naming file and line for a key that is
-/// unknown, a number that is not finite or out of range, a beam without elevation_deg, and a table
+/// Reads a YAML file with the keys above. Throws InputError naming file and line for an unknown
+/// key, a number that is not finite or out of range, a beam without elevation_deg, and a table
 /// without beams.
 SpinningHead load_spinning_head(const std::filesystem::path& file);
 
-/// A head that turns once a scan and fires the lasers of its table in each of `columns` columns.
-/// The head goes on turning while a column is fired: each beam looks where the head is at its own
-/// instant. With a column period the scan's last columns leave a gap before the next scan.
+/// A head that rotates once per scan and fires the lasers of its table in each of `columns`
+/// columns. The head keeps rotating while a column is fired: each beam is cast at the head's
+/// azimuth at its own instant. With a column period, a gap may remain between the last column and
+/// the next scan.
 class SpinningHeadPattern : public ScanPattern {
  public:
-  /// Throws InputError (place `name`) when there are no columns or beams, a beam fires after its
-  /// column, or the columns do not fit into a turn.
+  /// Throws InputError (place `name`) if there are no columns or beams, a beam fires after the end
+  /// of its column, or the columns do not fit into a revolution.
   SpinningHeadPattern(const SpinningHead& table, int columns, double rate_hz,
                       const std::string& name);
 

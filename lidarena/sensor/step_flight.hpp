@@ -8,10 +8,10 @@
 
 namespace lidarena {
 
-/// The motion about the middle one of three poses that follow each other, as of a simulator that
-/// goes by steps: position and rotation vector are quadratic in time, so that rates and
-/// accelerations at the middle pose are central differences, off by h^2 / 6 times a third
-/// derivative and h^2 / 12 times a fourth (h the step).
+/// Motion around the middle one of three consecutive poses, as a simulator with time steps gives
+/// them. Position and rotation vector are quadratic in time, so rates and accelerations at the
+/// middle pose are central differences, with errors of h^2 / 6 times a third derivative and
+/// h^2 / 12 times a fourth (h: the step).
 class StepFlight : public Flight {
  public:
   /// Stamps must strictly increase.

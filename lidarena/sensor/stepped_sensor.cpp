@@ -13,7 +13,7 @@ Lidar make_lidar(const SensorConfig& config, const std::string& id, std::uint64_
   return {config, make_pattern(config), id, seed, noise};
 }
 
-/// The body's pose at `t`, between the two.
+/// The body's pose at `t`, interpolated between two stamped poses.
 Pose between(const StampedPose& from, const StampedPose& to, Time t) {
   const double share = to_seconds(t - from.stamp) / to_seconds(to.stamp - from.stamp);
   return interpolate(from.world_from_body, to.world_from_body, std::clamp(share, 0.0, 1.0));
@@ -78,7 +78,7 @@ void SteppedSensor::cast(const Surfaces& world, const StampedPose& pose) {
   }
 }
 
-/// All shots from the pose at the stamp.
+/// Casts all shots of the scan from the pose at the stamp.
 void SteppedSensor::cast_frozen(const Surfaces& world, const PoseAt& world_from_lidar) {
   const Pose frozen = world_from_lidar(0);
   const PoseAt stands_still = [&](std::int32_t) { return frozen; };
@@ -94,7 +94,7 @@ void SteppedSensor::finish_scan() {
   shots_ = lidar_.beams(index_, storage_);
 }
 
-/// The samples up to the middle one of the three poses.
+/// Appends the IMU samples up to the middle one of the three poses.
 void SteppedSensor::sample(std::vector<Event>& events) {
   const StepFlight flight({poses_[0], poses_[1], poses_[2]});
   while (imu_->next_stamp() <= poses_[1].stamp) {
@@ -106,7 +106,7 @@ void SteppedSensor::sample(std::vector<Event>& events) {
   }
 }
 
-/// A scan goes once a sample at or after its last firing has gone.
+/// Delivers a scan once an IMU sample at or after its last firing has been delivered.
 void SteppedSensor::deliver(std::vector<Event>& events) {
   const auto is_covered = [&](const Scan& scan) {
     const auto index = static_cast<std::uint64_t>(scan.stamp / lidar_.pattern().period());

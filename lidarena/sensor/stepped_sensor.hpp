@@ -14,21 +14,23 @@
 
 namespace lidarena {
 
-/// A LiDAR, and the IMU inside it, in a world that goes by steps, as physics engines do. Each step
-/// casts the shots that fall into it, each from the body's pose at its own instant (between two
-/// steps linear, which is off by at most a h^2 / 8: 1.3e-6 m at 10 m/s^2 and 1 ms), at the world as
-/// it stands at the step's end. The noise is that of simulate(), shot for shot, for the same id and
-/// seed. Scan k begins at k * period of the simulator's clock, sample k of the IMU at k / rate.
+/// A LiDAR and the IMU inside it, in a world that advances in time steps, as in a physics engine.
+/// Each step casts the shots that fall into it, each from the body's pose at its own instant
+/// (interpolated linearly between two steps, with an error of at most a h^2 / 8: 1.3e-6 m at
+/// 10 m/s^2 and 1 ms), against the world at the end of the step. The noise of each shot equals that
+/// of simulate() for the same id and seed. Scan k begins at k * period of the simulator's clock;
+/// sample k of the IMU is at k / rate.
 class SteppedSensor {
  public:
-  /// The first whole scan at or after `start` is the first. Throws InputError as make_pattern() and
-  /// Lidar do.
+  /// The first scan is the first one that begins at or after `start`. Throws InputError as
+  /// make_pattern() and Lidar do.
   SteppedSensor(const SensorConfig& config, const std::string& id, std::uint64_t seed, bool noise,
                 Time start);
 
-  /// The body has come to `pose`; `world` is the one of that instant. Appends to `events` what is
-  /// known now, in EventSource's order: IMU samples come a step late (see StepFlight), a scan after
-  /// the samples that span it. Steps that go back in time start the sensor anew.
+  /// Advances to the body pose `pose`; `world` is the world at that instant. Appends to `events`
+  /// the measurements that are complete, in the order of EventSource: IMU samples one step late
+  /// (see StepFlight), a scan after the samples that cover it. A step back in time restarts the
+  /// sensor.
   void step(const Surfaces& world, const StampedPose& pose, std::vector<Event>& events);
 
   const Lidar& lidar() const { return lidar_; }
@@ -48,12 +50,12 @@ class SteppedSensor {
   Lidar lidar_;
   std::optional<Imu> imu_;
   std::vector<StampedPose> poses_;  ///< the last three
-  std::uint64_t index_ = 0;         ///< of the scan being made
+  std::uint64_t index_ = 0;         ///< of the scan being simulated
   std::size_t next_shot_ = 0;
   std::vector<Beam> storage_;
   std::span<const Beam> shots_;  ///< of that scan
   Scan scan_;
-  std::vector<Scan> waiting_;  ///< for the IMU
+  std::vector<Scan> waiting_;  ///< scans that wait for IMU samples
   std::uint64_t rays_ = 0;
 };
 

@@ -11,17 +11,18 @@ using Eigen::Vector3f;
 
 namespace {
 
-constexpr std::uint32_t kLeaf = 4;  // members of a leaf that is not split further
+constexpr std::uint32_t kLeaf = 4;  // a node with at most this number of members is not split
 constexpr std::size_t kBins = 16;
 
-/// Half the surface; an empty box has none.
+/// Half the surface area of the box; 0 for an empty box.
 float half_area(const AlignedBox3f& box) {
   if (box.isEmpty()) return 0.0F;
   const Vector3f s = box.sizes();
   return s.x() * s.y() + s.y() * s.z() + s.z() * s.x();
 }
 
-/// Which of equal slices along an axis a box's middle lies in.
+/// Divides an axis into `kBins` equal slices (bins) and returns the slice that contains the center
+/// of a box.
 struct Slices {
   int axis;
   float low, width;
@@ -34,14 +35,14 @@ struct Slices {
   }
 };
 
-/// A cut between two slices: those up to `last` go to the left.
+/// A cut between two slices: slices up to and including `last` go to the left child.
 struct Cut {
   int axis = 0;
   std::size_t last = 0;
   float cost = std::numeric_limits<float>::infinity();
 };
 
-/// Makes the tree, from the root down.
+/// Builds the tree from the root down.
 class Builder {
  public:
   Builder(std::span<const AlignedBox3f> boxes, std::vector<BoxTree::Node>& nodes,
@@ -95,7 +96,7 @@ class Builder {
     return best;
   }
 
-  /// The surface area heuristic: a side costs its surface times the number of its triangles.
+  /// Surface area heuristic: the cost of a side is its surface area times its number of members.
   Cut cheapest_cut(std::span<const std::uint32_t> members, const Slices& slices) const {
     std::array<AlignedBox3f, kBins> box;
     std::array<std::uint32_t, kBins> count{};
@@ -104,7 +105,7 @@ class Builder {
       box[slice].extend(boxes_[i]);
       ++count[slice];
     }
-    std::array<float, kBins> right_cost{};  // of all slices beyond
+    std::array<float, kBins> right_cost{};  // cost of all slices after this one
     AlignedBox3f side;
     std::uint32_t members_of_side = 0;
     for (std::size_t i = kBins - 1; i > 0; --i) {
@@ -125,7 +126,7 @@ class Builder {
     return best;
   }
 
-  /// Returns how many go to the left.
+  /// Reorders the members by the cut; returns the number of members that go to the left child.
   std::uint32_t divide(std::span<std::uint32_t> members, const AlignedBox3f& middles,
                        const Cut& cut) const {
     const Slices slices(cut.axis, middles);

@@ -13,13 +13,13 @@
 
 namespace lidarena {
 
-/// A ray against boxes: for each axis the near and the far side are known beforehand.
+/// Ray-box intersection test (slab method); what depends on the ray alone is precomputed.
 struct BoxTest {
   Eigen::Vector3d origin, inverse;
   std::array<bool, 3> backwards;
 
   BoxTest(const Eigen::Vector3d& centered, const Eigen::Vector3d& direction) : origin(centered) {
-    constexpr double kParallel = 1e-30;  // a zero would make 0 * infinity of a box's side
+    constexpr double kParallel = 1e-30;  // replaces zero, which would give 0 * infinity
     for (int axis = 0; axis < 3; ++axis) {
       const double size = std::max(std::abs(direction[axis]), kParallel);
       inverse[axis] = 1.0 / std::copysign(size, direction[axis]);
@@ -27,7 +27,8 @@ struct BoxTest {
     }
   }
 
-  /// Where the ray enters the box between `near` and `far`; infinity when it does not.
+  /// Range at which the ray enters the box, limited to [near, far]; infinity when it misses the
+  /// box within these limits.
   double entry(const Eigen::AlignedBox3f& box, double near, double far) const {
     for (int axis = 0; axis < 3; ++axis) {
       const double low = (double{box.min()[axis]} - origin[axis]) * inverse[axis];
@@ -39,25 +40,26 @@ struct BoxTest {
   }
 };
 
-/// A binary tree over boxes, split where the surface area heuristic finds it cheapest among bins
-/// (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007), walked with a
-/// small stack. The same boxes give the same tree.
+/// A binary bounding volume hierarchy over boxes, built by the binned surface area heuristic
+/// (Wald, "On fast construction of SAH-based bounding volume hierarchies", 2007) and traversed
+/// with a small stack. The same boxes give the same tree.
 class BoxTree {
  public:
-  /// A box and what is in it.
+  /// A leaf (`count` > 0: `count` members from index `first` on) or an inner node (`count` = 0: its
+  /// children are the nodes `first` and `first` + 1).
   struct Node {
     Eigen::AlignedBox3f box;
-    std::uint32_t first = 0;  ///< of `count` members, or of two neighboring nodes when 0
+    std::uint32_t first = 0;  ///< index of the first member or child
     std::uint32_t count = 0;
   };
 
-  /// `boxes`: one for each member, at least one.
+  /// `boxes`: one box per member; at least one.
   explicit BoxTree(std::span<const Eigen::AlignedBox3f> boxes);
-  /// The same tree around members that have moved.
+  /// Updates the boxes of the nodes after members have moved; the structure of the tree is kept.
   void refit(std::span<const Eigen::AlignedBox3f> boxes);
 
-  /// Calls `meet(member)` for those whose leaf the ray enters between `near` and `far`, which
-  /// `meet` may bring nearer, roughly from near to far.
+  /// Calls `meet(member)` for every member of a leaf whose box the ray enters between the ranges
+  /// `near` and `far`, roughly in order of range. `meet` may reduce `far` to end the search sooner.
   template <typename Meet>
   void walk(const BoxTest& ray, double near, const double& far, const Meet& meet) const {
     Stack stack;
@@ -75,8 +77,8 @@ class BoxTree {
     }
   }
 
-  /// Calls `visit(member)` for those whose leaf is within sqrt(`reach2`) of the point; `reach2` is
-  /// then what it returns.
+  /// Calls `visit(member)` for every member of a leaf whose box is within sqrt(`reach2`) of the
+  /// point. Each call returns the new value of `reach2`.
   template <typename Visit>
   void visit_near(const Eigen::Vector3d& point, double reach2, const Visit& visit) const {
     const auto distance2 = [&](const Node& node) {
@@ -98,17 +100,19 @@ class BoxTree {
     }
   }
 
-  static constexpr std::size_t kCheapestDepth = 48;  ///< below, halves: then the depth is bounded
+  /// Down to this depth nodes are split by the surface area heuristic; deeper ones are split into
+  /// halves of equal count, which bounds the depth of the tree.
+  static constexpr std::size_t kCheapestDepth = 48;
   static constexpr std::size_t kMostDepth = kCheapestDepth + 32;
 
  private:
-  /// Nodes still to be looked into, each with how far away it begins.
+  /// Nodes still to be visited, each with the distance to its box.
   class Stack {
    public:
     bool empty() const { return size_ == 0; }
     void push(const Node* node, double near) { entries_[size_++] = {node, near}; }
     std::pair<const Node*, double> pop() { return entries_[--size_]; }
-    /// The nearer of two comes to lie on top.
+    /// Pushes both nodes so that the nearer one is popped first; skips those at infinity.
     void push_both(const Node* a, double near_a, const Node* b, double near_b) {
       if (near_a <= near_b) {
         std::swap(a, b);
@@ -123,7 +127,7 @@ class BoxTree {
     std::size_t size_ = 0;
   };
 
-  std::vector<Node> nodes_;             ///< the root first; children behind their parents
+  std::vector<Node> nodes_;             ///< the root first; children after their parents
   std::vector<std::uint32_t> members_;  ///< in the order of the leaves
 };
 

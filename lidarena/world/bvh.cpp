@@ -17,8 +17,8 @@ namespace {
 constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// How much larger boxes are made: what is lost by rounding them to single precision, and by double
-/// arithmetic on coordinates far from the origin.
+/// Margin (m) added to the boxes: covers their rounding to single precision and the rounding of
+/// double arithmetic on coordinates far from the origin.
 double box_margin(const AlignedBox3d& bounds) {
   const double largest =
       std::max(bounds.min().lpNorm<Eigen::Infinity>(), bounds.max().lpNorm<Eigen::Infinity>());
@@ -39,10 +39,10 @@ std::vector<AlignedBox3f> triangle_boxes(const TriangleMesh& mesh, const Vector3
   return boxes;
 }
 
-/// A ray against triangles. Seen in coordinates in which the ray is the z axis, each edge has the
-/// origin on its left or its right; two triangles that share an edge compute the same number for it
-/// but for its sign, so that a ray cannot pass outside both. Needs products that are rounded before
-/// they are subtracted: see -ffp-contract in CMakeLists.txt.
+/// Watertight ray-triangle test. In coordinates in which the ray is the z axis, the origin lies to
+/// the left or to the right of each edge. Two triangles that share an edge compute the same value
+/// for it except for the sign, so a ray cannot pass outside both. This requires that products are
+/// rounded before they are subtracted: see -ffp-contract in CMakeLists.txt.
 struct TriangleTest {
   Vector3d origin;
   int x, y, z;  ///< axes; the ray's direction is largest along z
@@ -62,7 +62,7 @@ struct TriangleTest {
     return {v[x] - shear_x * v[z], v[y] - shear_y * v[z], scale * v[z]};
   }
 
-  /// Range of the hit; negative or NaN when the ray's line does not meet the triangle before it.
+  /// Range of the hit; negative or NaN when the ray does not hit the triangle.
   double range(const Vector3d& corner_a, const Vector3d& corner_b, const Vector3d& corner_c) const {
     const Vector3d a = sheared(corner_a), b = sheared(corner_b), c = sheared(corner_c);
     const double u = c.x() * b.y() - c.y() * b.x();
@@ -86,8 +86,8 @@ Bvh::Bvh(const TriangleMesh& mesh)
       center_(mesh.bounds().center()),
       tree_(triangle_boxes(mesh, center_, box_margin(mesh.bounds()))) {}
 
-/// Calls `meet(triangle, range)` for what the ray meets between `near` and `far`, which `meet` may
-/// bring nearer, roughly from near to far.
+/// Calls `meet(triangle, range)` for every triangle that the ray hits between the ranges `near` and
+/// `far`, roughly in order of range. `meet` may reduce `far` to end the search sooner.
 template <typename Meet>
 void Bvh::walk(const Ray& ray, double near, double& far, const Meet& meet) const {
   if (!can_hit(ray)) return;
@@ -125,7 +125,7 @@ bool Bvh::occluded(const Ray& ray, double near, double far) const {
   bool is_blocked = false;
   walk(ray, near, far, [&](std::uint32_t /*triangle*/, double /*range*/) {
     is_blocked = true;
-    far = -kInfinity;  // one is enough
+    far = -kInfinity;  // one hit is enough: ends the search
   });
   return is_blocked;
 }

@@ -12,13 +12,14 @@
 
 namespace lidarena {
 
-/// A bounding volume hierarchy (see box_tree.hpp) that needs Eigen alone. Triangles are met in
-/// double precision by a test that lets no ray slip between two that share an edge (Woop, Benthin
-/// and Wald, "Watertight ray/triangle intersection", 2013). The same mesh gives the same tree; of
-/// triangles met at the same range the one with the lower index is the hit.
+/// A bounding volume hierarchy (see box_tree.hpp) that depends on Eigen only. Ray-triangle tests
+/// use double precision and are watertight: no ray passes between two triangles that share an edge
+/// (Woop, Benthin and Wald, "Watertight ray/triangle intersection", 2013). The same mesh gives the
+/// same tree; of triangles hit at the same range the one with the lower index is reported.
 class Bvh : public MeshTree {
  public:
-  /// Refers to the mesh, which must be clean (see clean_mesh), stay where it is, and outlive it.
+  /// Keeps a reference to the mesh, which must be clean (see clean_mesh), must not be moved in
+  /// memory, and must outlive this object.
   explicit Bvh(const TriangleMesh& mesh);
 
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
@@ -35,7 +36,7 @@ class Bvh : public MeshTree {
 
   const TriangleMesh& mesh_;
   Eigen::Vector3d center_;
-  BoxTree tree_;  ///< of boxes relative to the center, a little too large so that rounding is safe
+  BoxTree tree_;  ///< boxes relative to `center_`, enlarged by a margin that covers rounding
 };
 
 }  // namespace lidarena

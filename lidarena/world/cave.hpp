@@ -8,7 +8,7 @@
 
 namespace lidarena {
 
-/// A maze of winding tunnels without an exit: a ladder whose cells are the loops.
+/// A closed maze of winding tunnels, arranged as a ladder: each loop is one cell between two rungs.
 struct CaveConfig {
   int loops = 4;
   double cell_length_m = 26;
@@ -24,34 +24,36 @@ struct CaveConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("loops", self.loops, "", "loops in a row; neighbors share a tunnel", between(1, 12));
+    v("loops", self.loops, "", "number of loops in a row; neighboring loops share a tunnel",
+      between(1, 12));
     v("cell_length_m", self.cell_length_m, "m", "distance between cross tunnels, before winding",
       between(8, 100));
     v("cell_width_m", self.cell_width_m, "m", "length of a cross tunnel, before winding",
       between(8, 100));
-    v("winding_m", self.winding_m, "m", "how far a tunnel swings to either side", between(0, 2.5));
-    v("relief_m", self.relief_m, "m", "how far junctions lie above or below the mean height",
+    v("winding_m", self.winding_m, "m", "maximum sideways deviation of a tunnel from straight",
+      between(0, 2.5));
+    v("relief_m", self.relief_m, "m", "maximum height of a junction above or below the mean height",
       between(0, 4));
     v("width_min_m", self.width_min_m, "m", "width of the narrowest places", between(1.6, 6));
     v("width_max_m", self.width_max_m, "m", "width of the widest tunnels (junctions are wider)",
       between(1.6, 6));
-    v("roughness_2m_m", self.roughness_2m_m, "m", "height of the roughness of 2 m scale",
-      between(0, 0.5));
-    v("roughness_03m_m", self.roughness_03m_m, "m", "height of the roughness of 0.3 m scale",
-      between(0, 0.15));
-    v("roughness_005m_m", self.roughness_005m_m, "m", "height of the roughness of 0.05 m scale",
-      between(0, 0.03));
+    v("roughness_2m_m", self.roughness_2m_m, "m",
+      "amplitude of the surface noise with a lattice step of 2 m", between(0, 0.5));
+    v("roughness_03m_m", self.roughness_03m_m, "m",
+      "amplitude of the surface noise with a lattice step of 0.3 m", between(0, 0.15));
+    v("roughness_005m_m", self.roughness_005m_m, "m",
+      "amplitude of the surface noise with a lattice step of 0.05 m", between(0, 0.03));
     v("resolution_m", self.resolution_m, "m",
-      "edge of a grid cell; triangles are about this large (finer roughness is met at the "
-      "vertices)",
+      "edge of a grid cell; triangles are about this large (finer roughness is exact at the "
+      "vertices only)",
       between(0.02, 0.3));
   }
 };
 
-/// The cave's rock surface (one closed 2-manifold, normals into free space) and one closed route
-/// along the centerlines through every tunnel. Its first and last points are equal. The same
-/// (config, seed) give the same bits. Throws InputError when the narrowest width is above the
-/// widest, or too little for the roughness.
+/// Returns the cave's rock surface (one closed 2-manifold, normals into free space) and one closed
+/// route along the centerlines of all tunnels; its first and last points are equal. The same
+/// (config, seed) give bit-identical results. Throws InputError when `width_min_m` and
+/// `width_max_m` differ by too little for the roughness, or are in the wrong order.
 WorldModel make_cave(const CaveConfig& config, std::uint64_t seed);
 
 }  // namespace lidarena

@@ -8,14 +8,14 @@
 namespace lidarena {
 namespace {
 
-constexpr double kBlend = 1.0;        // m, over which tunnels merge at a junction
+constexpr double kBlend = 1.0;        // m, distance over which tunnels are blended at a junction
 constexpr double kNoisePeak = 1.04;   // largest |GradientNoise|
-constexpr double kFar = 1.0;          // m, stands for "deep in rock"
-constexpr double kLargeScale = 2.0;   // m, lattice steps of the roughness
+constexpr double kFar = 1.0;          // m, field value deep in rock
+constexpr double kLargeScale = 2.0;   // m, lattice step of the noise, as are the next two
 constexpr double kMediumScale = 0.3;  // m
 constexpr double kSmallScale = 0.05;  // m
 
-/// The lesser of a and b with the corner rounded over `kBlend` (quadratic, C1).
+/// The minimum of a and b with the corner rounded over `kBlend` (quadratic, C1).
 double smooth_min(double a, double b) {
   const double overlap = std::max(kBlend - std::abs(a - b), 0.0) / kBlend;
   return std::min(a, b) - 0.25 * kBlend * overlap * overlap;
@@ -53,11 +53,11 @@ double CaveField::segment_distance(const Segment& s, const Eigen::Vector3d& p) c
   return (p - s.a - t * ab).norm() - (s.radius_a + t * (s.radius_b - s.radius_a));
 }
 
-/// For each block, the segments that can matter to a point of it that lies near the surface.
+/// Lists for each block the segments that can affect the field at a point of it near the surface.
 void CaveField::index_segments() {
   const double half_diagonal = 0.5 * std::sqrt(3.0) * block_m_;
-  // A segment matters to p when its distance is within kBlend of the least, and the least there is
-  // at most the noise, plus two grid steps, plus the way across the block.
+  // A segment affects the field at p when its distance is within kBlend of the minimum. The minimum
+  // is at most the noise bound plus two grid steps plus the diameter of the block.
   const double reach = 3 * half_diagonal + noise_bound() + kBlend + 2 * config_.resolution_m;
   for (std::uint32_t i = 0; i < segments_.size(); ++i) {
     const Segment& s = segments_[i];
@@ -123,7 +123,7 @@ SparseField CaveField::sample() const {
           const Eigen::Vector3d position = field.position(SparseField::kBlock * block + p);
           double value = tunnel_distance(near, position);
           if (std::abs(value) < band)
-            value += noise(position);  // elsewhere it cannot turn the sign
+            value += noise(position);  // elsewhere the noise cannot change the sign
           values[SparseField::index_in_block(p)] = static_cast<float>(value);
         }
       }

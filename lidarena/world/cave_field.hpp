@@ -14,25 +14,26 @@
 
 namespace lidarena {
 
-/// How deep a point lies in rock (m, about; negative in free space): the distance to the tunnels,
-/// smoothly united where they meet, plus noise of three scales.
+/// Approximate signed distance to the rock surface (m; positive in rock, negative in free space):
+/// the distance to the tunnels, blended smoothly where they meet, plus noise of three scales.
 class CaveField {
  public:
   CaveField(const CaveGraph& graph, const CaveConfig& config, std::uint64_t seed);
 
-  /// Valid within about a meter of the surface; +1 m where no tunnel is near.
+  /// Field value (m) at p; valid within about 1 m of the surface, +1 m where no tunnel is near.
   double operator()(const Eigen::Vector3d& p) const;
   /// Samples the field wherever the surface may pass, on a grid of the configured resolution.
   SparseField sample() const;
 
  private:
-  /// A piece of a tunnel: a ball whose radius changes linearly rolls from a to b.
+  /// A piece of a tunnel: the volume swept by a ball that moves from a to b while its radius
+  /// changes linearly.
   struct Segment {
     Eigen::Vector3d a, b;
     double radius_a, radius_b;
     std::size_t tunnel;
   };
-  using Near = std::vector<std::uint32_t>;  ///< segments, those of one tunnel together
+  using Near = std::vector<std::uint32_t>;  ///< indices of segments, grouped by tunnel
 
   double noise_bound() const;
   double segment_distance(const Segment& segment, const Eigen::Vector3d& p) const;
@@ -50,8 +51,9 @@ class CaveField {
   std::unordered_map<std::uint64_t, Near> near_;
 };
 
-/// Moves the vertices of a net onto the field's zero surface (two Newton steps along the gradient,
-/// each at most half a grid step), where they meet even the roughness that is finer than the grid.
+/// Moves the vertices of a surface net onto the field's zero surface by two Newton steps along the
+/// gradient, each at most half a grid step. The vertices then also show the roughness that is finer
+/// than the grid.
 void project_onto_surface(TriangleMesh& mesh, const CaveField& field, double step);
 
 }  // namespace lidarena

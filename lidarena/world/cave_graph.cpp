@@ -11,11 +11,11 @@ namespace lidarena {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kPointSpacing = 0.5;  // m, fine against the winding's wavelengths
+constexpr double kPointSpacing = 0.5;  // m, small compared with the wavelengths of the winding
 constexpr double kRouteSpacing = 1.5;  // m
-constexpr double kMaxHeading = 0.35;   // rad; neighboring cells bend by at most twice this
-/// Share of the roughness heights by which the noise is expected to narrow or widen a tunnel:
-/// gradient noise seldom exceeds 0.6.
+constexpr double kMaxHeading = 0.35;   // rad; neighboring cells differ by at most twice this
+/// Expected change of a tunnel's radius by the noise, as a fraction of the noise amplitudes:
+/// gradient noise rarely exceeds 0.6.
 constexpr double kRoughnessReach = 0.6;
 
 // A ladder of n cells: junctions 2 i (left rail) and 2 i + 1 (right rail) lie at rung i of 0 ... n;
@@ -47,8 +47,8 @@ std::vector<Eigen::Vector3d> ladder_junctions(const CaveConfig& config, Sequenti
   return junctions;
 }
 
-/// A slow swing between -1 and 1: a long wave, and a shorter one that breaks its regularity. The
-/// wavelengths (m) keep the centerline's bends wider than the tunnel.
+/// A slow random oscillation between -1 and 1: a long wave plus a shorter one, so that it is not
+/// periodic. The wavelengths (m) keep the centerline's bend radius above the tunnel's radius.
 class Swing {
  public:
   explicit Swing(SequentialRandom& random)
@@ -73,7 +73,7 @@ Tunnel wind(const CaveConfig& config, const std::vector<Eigen::Vector3d>& juncti
   const double radius_max = 0.5 * config.width_max_m - reach;
   if (radius_min > radius_max) {
     throw InputError("cave", "width_min_m and width_max_m leave no room for the roughness",
-                     "widen their difference or lower the roughness");
+                     "increase their difference or reduce the roughness");
   }
   const Eigen::Vector3d chord = junctions[to] - junctions[from];
   const Eigen::Vector3d side = chord.cross(Eigen::Vector3d::UnitZ()).normalized();
@@ -85,11 +85,11 @@ Tunnel wind(const CaveConfig& config, const std::vector<Eigen::Vector3d>& juncti
   for (int i = 0; i <= steps; ++i) {
     const double u = static_cast<double>(i) / steps;
     const double s = u * chord.norm();
-    const double inner = std::sin(kPi * u);  // 0 at the junctions
+    const double inner = std::sin(kPi * u);  // fades to 0 at the junctions
     const Eigen::Vector3d swing = config.winding_m * lateral.at(s) * side +
                                   0.4 * config.relief_m * vertical.at(s) * Eigen::Vector3d::UnitZ();
     tunnel.points.emplace_back(junctions[from] + u * chord + inner * swing);
-    // Junctions are as wide as tunnels get.
+    // At the junctions the tunnel has its maximum width.
     const double wide = 1 - inner * (0.5 - 0.5 * radial.at(s));
     tunnel.radii.push_back(radius_min + (radius_max - radius_min) * wide);
   }

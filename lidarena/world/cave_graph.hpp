@@ -12,27 +12,28 @@ namespace lidarena {
 
 /// A tunnel's centerline between two junctions, as a polyline with a radius at each point.
 struct Tunnel {
-  std::size_t from = 0;  ///< junctions
+  std::size_t from = 0;  ///< indices of the junctions at both ends
   std::size_t to = 0;
   std::vector<Eigen::Vector3d> points;  ///< about 0.5 m apart
-  std::vector<double> radii;            ///< m, before roughness
+  std::vector<double> radii;            ///< m, without roughness
 
   double length() const;
 };
 
-/// The cave before rock is put around it.
+/// The junctions and tunnels of a cave, from which its surface is generated.
 struct CaveGraph {
   std::vector<Eigen::Vector3d> junctions;
   std::vector<Tunnel> tunnels;
-  /// The tunnels around each cell of the ladder.
+  /// For each loop (cell of the ladder), the indices of its tunnels.
   std::vector<std::vector<std::size_t>> loops;
 };
 
-/// Draws the maze of `config`: a ladder, bent in plan and height, of tunnels that wind.
+/// Generates the maze at random: winding tunnels in a ladder that is bent in plan and height.
+/// Throws InputError when the tunnel widths leave no room for the roughness.
 CaveGraph make_cave_graph(const CaveConfig& config, std::uint64_t seed);
 
-/// A closed way through every tunnel that nowhere turns on the spot: it weaves from rail to rail
-/// over the rungs to the far end and comes back over the other rails, so that inner rungs are flown
+/// A closed route through every tunnel without a reversal on the spot: it crosses from rail to rail
+/// at every rung up to the far end and returns along the other rails, so inner rungs are traversed
 /// twice. Points are 1 to 2 m apart; the last equals the first.
 std::vector<Eigen::Vector3d> cave_route(const CaveGraph& graph);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/world/embree_tree.hpp"
 
-// The only file that knows Embree, and which of its two versions is here.
+// The only file that includes Embree; it supports versions 3 and 4.
 #if LIDARENA_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
 #else
@@ -60,9 +60,9 @@ Scene build_scene(RTCDevice device, const TriangleMesh& mesh, const Vector3d& ce
     }
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene.get(), geometry);
-    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between two triangles
-    // One thread: which of two triangles a ray through their common edge reports depends on the
-    // tree, and the tree on the number of builders.
+    rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST);  // no ray passes between two triangles
+    // Built by one thread: which of two triangles is reported for a ray through their common edge
+    // depends on the tree, and the tree depends on the number of threads that build it.
     tbb::task_arena(1).execute([&] { rtcJoinCommitScene(scene.get()); });
   }
   rtcReleaseGeometry(geometry);
@@ -109,7 +109,7 @@ RTCRay make_ray(const Vector3d& origin, const Vector3f& direction, float near, f
   return ray;
 }
 
-/// Eight rays in the form that Embree follows together; lanes without a ray are left alone.
+/// Eight rays in the layout of Embree's packet queries; lanes without a ray are marked invalid.
 struct Packet {
   static constexpr std::size_t kSize = 8;
   alignas(32) int valid[kSize];
@@ -207,7 +207,8 @@ bool EmbreeTree::occluded(const Ray& ray, double near, double far) const {
   return query.tfar < 0.0F;  // Embree marks an occluded ray by -infinity
 }
 
-/// Radius that surely holds everything as near as `distance`. `slack`: see visit_near.
+/// Search radius for Embree that covers all points within `distance` in spite of rounding.
+/// `slack`: see visit_near.
 float search_radius(double distance, double slack) {
   return static_cast<float>(distance * (1.0 + 4.0 * kFloatEpsilon) + slack);
 }
@@ -227,8 +228,8 @@ bool visit_triangle(RTCPointQueryFunctionArguments* args) {
 
 void EmbreeTree::visit_near(const Vector3d& point, double radius, TriangleVisitor& visitor) const {
   const Vector3d centered = point - center_;
-  // How far the tree's float boxes may be from the truth: rounding of the point, of the vertices,
-  // and of Embree's own arithmetic on their differences.
+  // Bound on the error of the tree's single-precision boxes: rounding of the point and of the
+  // vertices, and of Embree's own arithmetic on their differences.
   const double slack = 8.0 * kFloatEpsilon * (half_extent_ + centered.lpNorm<Eigen::Infinity>());
   RTCPointQuery query{};
   query.x = static_cast<float>(centered.x());

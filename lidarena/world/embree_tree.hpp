@@ -9,8 +9,8 @@
 
 namespace lidarena {
 
-/// Embree's tree over a clean mesh, of which it keeps a copy in single precision around the middle
-/// of its bounds; throws Error (that names `name`) when Embree fails.
+/// Embree's tree over a clean mesh. It holds a copy of the mesh in single precision, relative to
+/// the center of its bounds. Throws Error (which contains `name`) when Embree fails.
 std::unique_ptr<MeshTree> make_embree_tree(const TriangleMesh& mesh, const std::string& name);
 
 }  // namespace lidarena

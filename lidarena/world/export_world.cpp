@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The file appears under its name only once it is whole.
+/// Writes to a temporary file and renames it, so that the file is never incomplete.
 void write_whole(const fs::path& file, std::string_view text) {
   fs::path part = file;
   part += ".part";
@@ -29,7 +29,7 @@ void write_whole(const fs::path& file, std::string_view text) {
   if (!out || error) {
     std::error_code ignored;
     fs::remove(part, ignored);
-    throw Error(file.string() + ": cannot be written; check the folder, its permissions and space");
+    throw Error(file.string() + ": cannot be written; check folder, permissions and free space");
   }
 }
 
@@ -39,13 +39,13 @@ std::string model_name(const fs::path& file) {
     return std::isalnum(c) != 0 || c == '_' || c == '-' || c == '.';
   });
   if (name.empty() || !plain) {
-    throw InputError(file.string(), "its name becomes the model's name, which must be plain",
-                     "use letters, digits, '_', '-' and '.' alone");
+    throw InputError(file.string(), "the file name is not valid as the name of an SDF model",
+                     "use only letters, digits, '_', '-' and '.'");
   }
   return name;
 }
 
-/// A static model of one mesh, seen and touched alike.
+/// A static model with the same mesh as visual and as collision shape.
 std::string model_sdf(const std::string& name) {
   const std::string geometry =
       fmt::format("<geometry><mesh><uri>model://{0}/meshes/{0}.obj</uri></mesh></geometry>", name);
@@ -102,7 +102,7 @@ void save_obj(const fs::path& file, const TriangleMesh& mesh) {
   for (const Eigen::Vector3d& v : mesh.vertices) {
     fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", v.x(), v.y(), v.z());
   }
-  for (const Triangle& t : mesh.triangles) {  // counted from one
+  for (const Triangle& t : mesh.triangles) {  // OBJ indices start at 1
     fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
   }
   write_whole(file, text);
@@ -113,7 +113,7 @@ void save_sdf(const fs::path& file, const TriangleMesh& mesh) {
   const fs::path model = file.parent_path() / "models" / name;
   std::error_code error;
   fs::create_directories(model / "meshes", error);
-  if (error) throw Error((model / "meshes").string() + ": cannot be made: " + error.message());
+  if (error) throw Error((model / "meshes").string() + ": cannot be created: " + error.message());
   save_obj(model / "meshes" / (name + ".obj"), mesh);
   write_whole(model / "model.sdf", model_sdf(name));
   write_whole(model / "model.config", model_config(name));
@@ -125,7 +125,7 @@ void save_world(const fs::path& file, const TriangleMesh& mesh) {
   if (ending == ".ply") return save_ply(file, mesh);
   if (ending == ".obj") return save_obj(file, mesh);
   if (ending == ".sdf" || ending == ".world") return save_sdf(file, mesh);
-  throw InputError(file.string(), "has an ending that worlds are not written in",
+  throw InputError(file.string(), "worlds cannot be written in a file with this extension",
                    "use .ply, .obj, .sdf or .world");
 }
 

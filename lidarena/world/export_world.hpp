@@ -9,18 +9,18 @@
 namespace lidarena {
 
 /// Writes Wavefront OBJ: one object, meters, z up, 9 significant digits, no normals or colors.
-/// The file appears under its name only once it is whole. Throws Error when it cannot be written.
+/// The file appears under its name only once it is complete. Throws Error if it cannot be written.
 void save_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 /// Writes a world for Gazebo: `file` (an SDF world with one static model, a sun and gravity) and,
 /// beside it, models/NAME with model.config, model.sdf and meshes/NAME.obj, where NAME is the stem
-/// of `file`. Point GAZEBO_MODEL_PATH at that `models` folder; load_world() finds it by itself.
+/// of `file`. Gazebo needs that `models` folder in GAZEBO_MODEL_PATH; load_world() does not.
 /// Throws InputError when the stem has other characters than letters, digits, '_', '-' and '.', and
 /// Error when something cannot be written.
 void save_sdf(const std::filesystem::path& file, const TriangleMesh& mesh);
 
-/// One of save_ply(), save_obj(), save_sdf(), by the file's ending (.ply, .obj, .sdf, .world).
-/// Throws InputError for other endings.
+/// Calls save_ply(), save_obj() or save_sdf(), chosen by the file extension (.ply, .obj, .sdf,
+/// .world). Throws InputError for other extensions.
 void save_world(const std::filesystem::path& file, const TriangleMesh& mesh);
 
 }  // namespace lidarena

@@ -14,12 +14,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr int kTries = 300;
-constexpr double kRouteClearance = 0.52;  // m, so that 0.5 m is kept with the sampling below
+constexpr double kRouteClearance = 0.52;  // m: 0.5 m plus the error of sampling at kRouteStep
 constexpr double kRouteStep = 0.04;       // m
 constexpr double kGap = 0.02;             // m between pieces
 constexpr double kBack = 0.01;            // m between a piece and the wall behind it
 
-/// Cosine and sine of a quarter turn, exactly, so that boxes stay aligned.
+/// Rotation about z by `quarters` * 90 degrees with exact cosine and sine, so that boxes stay
+/// aligned with the axes.
 Pose quarter_turn(int quarters, const Vector3d& position) {
   constexpr std::array kCosine{1.0, 0.0, -1.0, 0.0};
   const double c = kCosine[static_cast<std::size_t>(quarters & 3)];
@@ -37,7 +38,8 @@ AlignedBox3d box_at(const AlignedBox3d& box, const Pose& pose) {
   return turned;
 }
 
-/// The box around an opening, `along` wider on both sides and `ahead` deep before and behind.
+/// The box around an opening, extended by `along` (m) on both sides and by `ahead` (m) to the front
+/// and to the back.
 AlignedBox3d box_around(const Opening& opening, double along, double ahead) {
   const Vector3d wide =
       (0.5 * opening.width + along) * (opening.axis == 0 ? Vector3d::UnitX() : Vector3d::UnitY());
@@ -83,7 +85,7 @@ bool Furnisher::is_free(RoomUse use, const AlignedBox3d& box, Handle ignore) con
           Eigen::AlignedBox2d(Vector2d(box.min().head<2>()), Vector2d(box.max().head<2>())))) {
     return false;
   }
-  // Pieces may stand on rugs: what overlaps by less than the gap in height does not collide.
+  // Pieces may stand on rugs: an overlap in height of less than kGap is not a collision.
   AlignedBox3d body(box.min() - Vector3d(kGap, kGap, -kGap), box.max() + Vector3d(kGap, kGap, 0));
   if (body.min().z() > body.max().z()) body.max().z() = body.min().z();
   for (std::size_t i = 0; i < objects_.size(); ++i) {
@@ -139,7 +141,7 @@ Furnisher::Handle Furnisher::standing(RoomUse use, const Piece& piece, double u,
   const Eigen::AlignedBox2d floor = inner_floor(use);
   const Vector3d middle = piece.mesh.bounds().center();
   for (int attempt = 0; attempt < kTries; ++attempt) {
-    const double stray = 0.5 * attempt / kTries;  // first near the wish, then anywhere
+    const double stray = 0.5 * attempt / kTries;  // near (u, v) at first, then anywhere
     const Vector2d at(u + random_.uniform(-stray, stray), v + random_.uniform(-stray, stray));
     const Vector2d foot = floor.min() + at.cwiseProduct(floor.sizes());
     Pose pose = quarter_turn(random_.integer(0, 3), Vector3d::Zero());
@@ -195,7 +197,7 @@ void Furnisher::around(RoomUse use, Handle host, const std::vector<Piece>& piece
   const std::size_t per_side = (pieces.size() + 1) / 2;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
     const double depth = pieces[i].mesh.bounds().max().y();
-    const double out = depth - random_.uniform(0.1, 0.25);  // how far its back stands off the table
+    const double out = depth - random_.uniform(0.1, 0.25);  // distance from its back to the table
     const double share = (double(i % per_side) + 0.5) / double(per_side);
     const bool low_side = i < per_side;
     const Vector3d low = table.min();

@@ -9,31 +9,33 @@
 
 namespace lidarena {
 
-/// The sides of a room, as its furniture sees them: a piece at kSouth faces +y.
+/// The walls of a room: a piece of furniture with its back to the wall kSouth faces +y.
 enum class Side { kSouth, kEast, kNorth, kWest };
 
-/// Finds free places for pieces, and keeps what was placed.
+/// Finds free places for pieces of furniture and stores the placed objects.
 class Furnisher {
  public:
   using Piece = furniture::Piece;
-  /// Number of a placed object; empty when no place was found.
+  /// Index of a placed object; empty when no place was found.
   using Handle = std::optional<std::size_t>;
 
   Furnisher(const HousePlan& plan, const HouseConfig& config, SequentialRandom& random);
 
-  /// With its back to a wall, its foot `z` meters up; any wall, or the given one.
+  /// Places the piece with its back to a wall, its base at height `z` (m); at a random wall unless
+  /// `side` is given.
   Handle against_wall(RoomUse use, const Piece& piece, double z = 0, std::optional<Side> side = {});
-  /// Free in the room, about the fractions (u, v) of its floor, turned by quarters at will.
+  /// Places the piece near the fractions (u, v) of the floor, rotated by a random multiple of 90
+  /// degrees.
   Handle standing(RoomUse use, const Piece& piece, double u, double v);
-  /// From the ceiling, about the fractions (u, v).
+  /// Places the piece at the ceiling, near the fractions (u, v) of the floor.
   Handle hanging(RoomUse use, const Piece& piece, double u, double v);
-  /// On another object's table top.
+  /// Places the piece on another object's table top.
   Handle on_top(Handle host, const Piece& piece);
-  /// At the two long sides of a table, `count` in all, facing it and pushed under it.
+  /// Places the pieces (chairs) at the two long sides of a table, facing it, partly under it.
   void around(RoomUse use, Handle host, const std::vector<Piece>& pieces);
-  /// Before a window, from `z` upward.
+  /// Places the piece in front of a window, its base at height `z` (m).
   Handle at_window(const Opening& window, const Piece& piece, double z);
-  /// Exactly there, whatever is in the way.
+  /// Places the piece exactly at `pose`, without a check for collisions.
   Handle fixed(const Piece& piece, const Pose& pose);
 
   std::vector<PlacedObject> take() { return std::move(objects_); }
@@ -46,11 +48,11 @@ class Furnisher {
   const HousePlan& plan_;
   const HouseConfig& config_;
   SequentialRandom& random_;
-  std::vector<Eigen::AlignedBox3d> keep_out_;  ///< before doors and windows
+  std::vector<Eigen::AlignedBox3d> keep_out_;  ///< in front of doors and windows
   std::vector<PlacedObject> objects_;
 };
 
-/// Least distance between a box and a polyline, to within 2 cm.
+/// Minimum distance (m) between a box and a polyline, to within 2 cm.
 double distance_to_route(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector3d>& route);
 
 }  // namespace lidarena

@@ -7,23 +7,24 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-/// Things that stand, lie and hang in a house. Sizes are in meters; each piece has its back at
-/// y = 0, its front towards +y, its middle at x = 0, and stands on z = 0 (hangs from z = 0).
+/// Meshes of furniture and other objects of a house. Sizes are in meters; each piece has its back
+/// at y = 0, its front towards +y, its center at x = 0, and stands on z = 0 (or hangs from z = 0).
 namespace lidarena::furniture {
 
-/// How finely curved parts are cut, and the random numbers that draw sizes and shapes.
+/// Settings for building a piece: the resolution of curved parts, and the random number generator
+/// for sizes and shapes.
 struct Craft {
   SequentialRandom& random;
   double detail = 1;
 
-  /// `facets` at detail 1, and at least 4.
+  /// Number of facets: `facets` scaled by `detail`, at least 4.
   int fine(int facets) const { return std::max(4, static_cast<int>(std::lround(facets * detail))); }
 };
 
 struct Piece {
   std::string kind;
   TriangleMesh mesh;
-  double top = 0;  ///< height of its table top, on which small things may stand; 0: none
+  double top = 0;  ///< height of its table top, on which small objects may stand; 0: none
 };
 
 // Seats and tables (furniture_seating.cpp)
@@ -35,7 +36,7 @@ Piece table(Craft& craft, const std::string& kind, double width, double depth, d
 Piece desk(Craft& craft);
 Piece bed(Craft& craft, double width);
 
-// Things with shelves, doors and drawers (furniture_storage.cpp)
+// Furniture with shelves, doors and drawers (furniture_storage.cpp)
 Piece bookshelf(Craft& craft, double width, double height);
 Piece cabinet(Craft& craft, const std::string& kind, const Eigen::Vector3d& size, int columns,
               int rows);
@@ -58,7 +59,7 @@ Piece book_pile(Craft& craft);
 Piece basket(Craft& craft, const std::string& kind, double radius, double height);
 Piece toy_ball(Craft& craft);
 Piece rug(Craft& craft, double width, double depth);
-/// Two panels drawn aside on a rod `width` long.
+/// Two curtain panels drawn to the sides of a rod of length `width`.
 Piece curtain(Craft& craft, double width, double height);
 Piece picture(Craft& craft, const std::string& kind, double width, double height);
 Piece television(Craft& craft);
@@ -69,10 +70,10 @@ Piece bathtub(Craft& craft);
 Piece toilet(Craft& craft);
 Piece basin(Craft& craft);
 Piece towel_rail(Craft& craft);
-/// Open stairs `width` wide (x) and `run` long (y) that climb by `rise` towards y = 0.
+/// Open stairs of width `width` (x) and length `run` (y) that climb by `rise` towards y = 0.
 Piece stairs(Craft& craft, double width, double run, double rise, int steps);
-/// A slab whose top lies at z = size.z(), with a railing along its front that leaves `gap` meters
-/// free at low x.
+/// A slab whose top lies at z = size.z(), with a railing along its front that is open over the
+/// first `gap` meters in x.
 Piece gallery(Craft& craft, const Eigen::Vector3d& size, double gap);
 Piece column(Craft& craft, double height);
 

@@ -15,7 +15,8 @@ using shape::scaled;
 constexpr double kPi = std::numbers::pi;
 constexpr double kRail = 0.95;  // m, height of a handrail
 
-/// A handrail from `a` to `b` (on the floor below it) on posts `spacing` meters apart.
+/// A handrail on posts `spacing` meters apart; `a` and `b` are the points on the floor below its
+/// ends.
 TriangleMesh railing(Craft& craft, const Vector3d& a, const Vector3d& b, double spacing) {
   const Vector3d up(0, 0, kRail);
   TriangleMesh mesh = shape::bar({a + up, b + up}, 0.025, craft.fine(18));
@@ -93,7 +94,7 @@ Piece stairs(Craft& craft, double width, double run, double rise, int steps) {
   }
   for (const double x : {-half + 0.02, half - 0.02}) {  // stringers
     mesh.append(shape::grid(1, 4, [&](double u, double v) {
-      // Around the cross section of a plank that leans with the stairs.
+      // Follows the outline of the cross section of a plank inclined like the stairs.
       const int corner = static_cast<int>(std::lround(4 * v)) % 4;
       const double across = corner == 1 || corner == 2 ? 0.018 : -0.018;
       const double below = corner >= 2 ? -0.2 : 0.02;

@@ -24,7 +24,7 @@ TriangleMesh legs(Craft& craft, double width, double depth, double height, doubl
   return mesh;
 }
 
-/// A rounded box whose back lies at y and which stands at z.
+/// A rounded box centered at x, with its back at y and its base at z.
 TriangleMesh pad(Craft& craft, const Vector3d& size, double x, double y, double z, double bulge) {
   const double radius = 0.35 * size.minCoeff();
   return moved(shape::rounded_box(size, radius, craft.fine(18), bulge), {x, y + 0.5 * size.y(), z});
@@ -113,7 +113,7 @@ Piece beanbag(Craft& craft) {
     const double tilt = kPi * (v - 0.5);
     const double wrinkle = 1 + 0.03 * std::sin(5 * round + phase) * std::cos(tilt) +
                            0.02 * std::sin(11 * round - 3 * tilt);
-    const double flat = v < 0.5 ? 0.55 : 1.0;  // it sags onto the floor
+    const double flat = v < 0.5 ? 0.55 : 1.0;  // flattened where it lies on the floor
     return Vector3d(0.42 * wrinkle * std::cos(tilt) * std::cos(round),
                     0.45 + 0.42 * wrinkle * std::cos(tilt) * std::sin(round),
                     0.23 + 0.42 * flat * std::sin(tilt));

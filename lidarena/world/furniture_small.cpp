@@ -52,7 +52,7 @@ TriangleMesh leaf(Craft& craft, double length, double width, double heading, dou
   return shape::grid(craft.fine(10), 4, [&](double u, double v) -> Vector3d {
     const double across = (v - 0.5) * width * std::sin(kPi * std::pow(u, 0.7));
     const double height = length * (u * std::sin(rise) - 0.55 * u * u);
-    const double keel = 0.4 * std::abs(across);  // folded along its middle
+    const double keel = 0.4 * std::abs(across);  // folded along its center line
     return length * u * std::cos(0.6 * rise) * out + across * side +
            (height + keel) * Vector3d::UnitZ();
   });
@@ -207,7 +207,7 @@ Piece toy_ball(Craft& craft) {
 Piece rug(Craft& craft, double width, double depth) {
   const double phase = craft.random.uniform(0, 2 * kPi);
   TriangleMesh mesh = shape::grid(craft.fine(70), craft.fine(50), [&](double u, double v) {
-    const double edge = std::min({u, 1 - u, v, 1 - v}) * 40;  // its rim lies on the floor
+    const double edge = std::min({u, 1 - u, v, 1 - v}) * 40;  // the edge is flush with the floor
     const double pile = 0.012 + 0.003 * std::sin(31 * u + phase) * std::sin(27 * v + phase);
     return Vector3d((u - 0.5) * width, v * depth, std::min(1.0, edge) * pile);
   });
@@ -272,7 +272,7 @@ Piece coat_rack(Craft& craft) {
         {Vector3d(0, 0, 1.6), Vector3d(0, 0, 1.58) + 0.1 * out, Vector3d(0, 0, 1.66) + 0.16 * out},
         0.01, craft.fine(10)));
   }
-  // A coat: cloth that hangs in folds from one hook.
+  // A coat that hangs in folds from one hook.
   const Vector3d hook(0.14 * std::cos(phase), 0.14 * std::sin(phase), 0);
   mesh.append(shape::grid(craft.fine(64), craft.fine(30), [&](double u, double v) -> Vector3d {
     const double angle = 2 * kPi * u;

@@ -14,7 +14,7 @@ using shape::moved;
 constexpr double kPi = std::numbers::pi;
 constexpr double kBoard = 0.02;  // m
 
-/// Books of all sizes on a board, from x0 towards x1; the row may end early.
+/// A row of books of random sizes on a board, from x0 towards x1; it may end before x1.
 TriangleMesh books(Craft& craft, double x0, double x1, double z, double depth, double space) {
   TriangleMesh mesh;
   const double end = x0 + (x1 - x0) * craft.random.uniform(0.5, 1.0);
@@ -28,7 +28,7 @@ TriangleMesh books(Craft& craft, double x0, double x1, double z, double depth, d
   return mesh;
 }
 
-/// A ring about y, as of a washing machine's door.
+/// A ring about the y axis, for example of a washing machine's door.
 TriangleMesh ring(Craft& craft, double radius, double thickness) {
   std::vector<Vector3d> path;
   const int n = craft.fine(48);

@@ -8,7 +8,7 @@ namespace lidarena {
 namespace {
 
 /// The output function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
-/// generators", OOPSLA 2014): every input bit reaches every output bit.
+/// generators", OOPSLA 2014): every input bit affects every output bit.
 std::uint64_t mix(std::uint64_t z) {
   z += 0x9e3779b97f4a7c15U;
   z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9U;
@@ -16,22 +16,23 @@ std::uint64_t mix(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-/// Slope of the noise at lattice point `cell` times `offset`: one of twelve gradients that point
-/// to the edges of a cube.
+/// Dot product of `offset` and the gradient of the noise at lattice point `cell`. The gradient is
+/// one of twelve vectors that point to the edges of a cube.
 double slope(std::uint64_t seed, const Eigen::Vector3i& cell, const Eigen::Vector3d& offset) {
-  // 21 bits a coordinate tell apart every lattice point of a 2 million steps wide world.
+  // 21 bits per coordinate distinguish all lattice points of a world that is 2 million steps wide.
   constexpr std::uint64_t kMask = (1U << 21) - 1;
   const std::uint64_t key = (static_cast<std::uint64_t>(cell.x()) & kMask) |
                             ((static_cast<std::uint64_t>(cell.y()) & kMask) << 21) |
                             ((static_cast<std::uint64_t>(cell.z()) & kMask) << 42);
   const std::uint64_t hash = mix(mix(seed) ^ key);
-  const auto without = static_cast<int>((hash >> 32) % 3);  // the axis that the gradient lacks
+  const auto without = static_cast<int>((hash >> 32) % 3);  // axis along which the gradient is 0
   const double a = offset[(without + 1) % 3];
   const double b = offset[(without + 2) % 3];
   return ((hash & 1) != 0 ? a : -a) + ((hash & 2) != 0 ? b : -b);
 }
 
-/// Blend of which value, slope and curvature join at the lattice points.
+/// Blending function whose first and second derivatives are 0 at 0 and 1, so that the noise has a
+/// continuous slope and curvature at the lattice points.
 double fade(double t) { return t * t * t * (t * (6 * t - 15) + 10); }
 
 }  // namespace

@@ -7,8 +7,8 @@
 namespace lidarena {
 
 /// Gradient noise on the integer lattice (Perlin, "Improving noise", SIGGRAPH 2002) with gradients
-/// drawn by hashing (seed, lattice point): smooth, mean zero, |value| < 1.04, sigma 0.27, and
-/// nearly all of its variation between one half and two lattice steps.
+/// chosen by a hash of (seed, lattice point). Smooth, mean zero, |value| < 1.04, standard deviation
+/// 0.27; nearly all of its variation has a scale between one half and two lattice steps.
 class GradientNoise {
  public:
   explicit GradientNoise(std::uint64_t seed) : seed_(seed) {}

@@ -10,11 +10,12 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kGroup = 48;           // points at most; beyond, groups only get wider
-constexpr std::size_t kWorthwhile = 4;       // points; for fewer, two walks are not saved
-constexpr std::size_t kMostTriangles = 160;  // more are slower to look at than the tree to walk
+constexpr std::size_t kGroup = 48;           // maximum number of points in a group
+constexpr std::size_t kWorthwhile = 4;       // smaller groups are searched point by point
+constexpr std::size_t kMostTriangles = 160;  // above this number, one search per point is faster
 
-/// How many of the first points fit into a box of `size`; a point that is not finite is alone.
+/// Number of points from the front of the list that fit into a box of edge `size` (m). A point that
+/// is not finite forms a group of its own.
 std::size_t group_length(std::span<const Vector3d> points, double size) {
   if (!points.front().allFinite()) return 1;
   Eigen::AlignedBox3d box(points.front());
@@ -27,7 +28,8 @@ std::size_t group_length(std::span<const Vector3d> points, double size) {
   return length;
 }
 
-/// Bounds what double arithmetic loses in distances between a mesh and points around `center`.
+/// Bound on the rounding error (m) of distances between a mesh and points within `radius` of
+/// `center` in double arithmetic.
 double rounding_at(const Vector3d& center, double radius) {
   constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
   return 64.0 * kEpsilon * (center.lpNorm<Eigen::Infinity>() + radius);
@@ -51,9 +53,9 @@ void GroupSearch::one_by_one(Points points, Answers out) {
   }
 }
 
-/// Let y be the surface point nearest to the center, and r the group's radius. A point p finds the
-/// triangle of y at some distance u(p), so its own nearest triangle is not farther from the center
-/// than u(p) + |p - center|.
+/// Let y be the surface point nearest to the group's center. For a point p of the group at distance
+/// u(p) from y, the nearest triangle is at most u(p) from p, hence at most u(p) + |p - center| from
+/// the center.
 void GroupSearch::together(Points points, Answers out) {
   if (points.size() < kWorthwhile) return one_by_one(points, out);
   Eigen::AlignedBox3d box;
@@ -98,15 +100,15 @@ bool GroupSearch::gather(const Vector3d& center, double radius) {
   return true;
 }
 
-/// `offset`: of the point from the center. Distances are compared roughly first; those that may win
-/// are computed again as closest_point_on_triangle has them.
+/// `offset`: distance of the point from the group's center. Distances are compared approximately
+/// first; for candidates that may be nearest they are recomputed by closest_point_on_triangle.
 ClosestPoint GroupSearch::choose(const Vector3d& point, double offset, double rounding) const {
   ClosestPoint best;
   double best2 = max_distance_ * max_distance_;
   double limit = (max_distance_ + rounding) * (max_distance_ + rounding);
   for (std::size_t i = 0; i < found_.size(); ++i) {
     const double least = found_[i].distance - offset - rounding;
-    if (least > 0.0 && least * least > limit) break;  // so are all that follow
+    if (least > 0.0 && least * least > limit) break;  // all that follow are farther still
     if (frames_[i].squared_distance(point, limit) > limit) continue;
     const std::uint32_t triangle = found_[i].index;
     const auto& [a, b, c] = mesh_.triangles[triangle];

@@ -11,7 +11,7 @@
 
 namespace lidarena {
 
-/// A triangle and its distance (m) to the point that was asked about.
+/// A triangle and its distance (m) to the query point.
 struct NearTriangle {
   double distance;
   std::uint32_t index;
@@ -21,18 +21,18 @@ struct NearTriangle {
 class TriangleTree {
  public:
   virtual ~TriangleTree() = default;
-  /// See World::closest_point; `guess` is a triangle that may be near (or Hit::kNone).
+  /// See World::closest_point. `guess`: a triangle that is probably near, or Hit::kNone.
   virtual ClosestPoint nearest(const Eigen::Vector3d& point, double max_distance,
                                std::uint32_t guess) const = 0;
-  /// All triangles within `radius` of `center`; false, with `found` in any state, when there are
-  /// more than `limit`.
+  /// Writes all triangles within `radius` of `center` to `found`. Returns false when there are more
+  /// than `limit`; `found` is then unspecified.
   virtual bool within(const Eigen::Vector3d& center, double radius, std::size_t limit,
                       std::vector<NearTriangle>& found) const = 0;
 };
 
-/// Nearest points of a mesh for many points of which neighbors in the list are neighbors in
-/// space: the tree is walked once for a group of them, and each then looks at the few triangles
-/// found, nearest first. The answers are those of one search a point, bit for bit.
+/// Nearest points of a mesh for a list of points in which consecutive points are near each other.
+/// The tree is searched once per group of points; each point of the group is then compared with the
+/// few triangles found, nearest first. The results are bit-identical to one search per point.
 class GroupSearch {
  public:
   GroupSearch(const TriangleMesh& mesh, const TriangleTree& tree, double group_size,
@@ -54,7 +54,7 @@ class GroupSearch {
   const TriangleTree& tree_;
   double group_size_;  ///< m, largest edge of the box around a group
   double max_distance_;
-  std::uint32_t last_ = Hit::kNone;  ///< what the last search found: a good first guess
+  std::uint32_t last_ = Hit::kNone;  ///< triangle found by the previous search, used as a guess
   std::vector<NearTriangle> found_;  ///< around the group, nearest to its center first
   std::vector<TriangleFrame> frames_;
 };

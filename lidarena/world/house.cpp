@@ -10,7 +10,7 @@
 namespace lidarena {
 namespace {
 
-/// What a piece of furniture is mostly made of; wood where nothing else is said.
+/// Main material of a piece of furniture; wood for kinds that are not listed.
 const Material& material_of(const std::string& kind) {
   using namespace materials;
   static const std::map<std::string, const Material*> kMaterials{{"sofa", &kFabric},

@@ -9,7 +9,8 @@
 namespace lidarena {
 
 /// A furnished one-story house of seven rooms, two of them (living room and hall) open over two
-/// stories. The seed moves inner walls and doors and draws the furniture and where it stands.
+/// stories. The seed determines the positions of inner walls and doors and the shapes and positions
+/// of the furniture.
 struct HouseConfig {
   double width_m = 16;
   double depth_m = 10.4;
@@ -30,18 +31,20 @@ struct HouseConfig {
     v("wall_m", self.wall_m, "m", "thickness of walls", between(0.1, 0.2));
     v("door_width_m", self.door_width_m, "m", "clear width of the doors", between(0.86, 0.9));
     v("door_height_m", self.door_height_m, "m", "clear height of the doors", between(2, 2.2));
-    v("panes", self.panes, "", "close the windows; otherwise rays leave through them");
-    v("vary_m", self.vary_m, "m", "how far the seed moves inner walls and doors", between(0, 0.3));
-    v("detail", self.detail, "", "scales the number of facets around each curved part",
+    v("panes", self.panes, "",
+      "close the windows with glass panes; otherwise rays leave the house through them");
+    v("vary_m", self.vary_m, "m", "maximum random displacement of inner walls and doors",
+      between(0, 0.3));
+    v("detail", self.detail, "", "factor on the number of facets around each curved part",
       between(0.2, 3));
   }
 };
 
-/// The house stands on [0, width] x [0, depth] (outer walls' center lines), floor at z = 0. Its one
-/// route is closed (the last point equals the first), passes every door straight between points
-/// 0.8 m before and behind, and every room; it keeps 0.5 m from furniture and 0.4 m from door
-/// posts. With panes, every ray from inside hits something. The same (config, seed) give the same
-/// bits.
+/// The house covers [0, width] x [0, depth] (center lines of the outer walls), floor at z = 0. Its
+/// one route is closed (the last point equals the first) and passes through every room and every
+/// door, straight from 0.8 m before the door to 0.8 m behind it. It keeps 0.5 m from furniture and
+/// 0.4 m from door posts. With panes, every ray from inside hits a surface. The same (config, seed)
+/// give bit-identical results.
 WorldModel make_house(const HouseConfig& config, std::uint64_t seed);
 
 }  // namespace lidarena

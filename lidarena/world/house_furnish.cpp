@@ -10,7 +10,7 @@ namespace {
 using namespace furniture;
 using enum RoomUse;
 
-/// What the rooms' furnishing needs.
+/// Arguments of the functions that furnish the rooms.
 struct Site {
   const HousePlan& plan;
   const HouseConfig& config;
@@ -120,7 +120,7 @@ void furnish_bedrooms(Site& s) {
   for (const RoomUse room : {kMainBedroom, kChildBedroom}) {
     place.against_wall(room, cabinet(c, "wardrobe", {1.1, 0.58, 2.0}, 2, 1));
     const auto work = place.against_wall(room, desk(c));
-    place.around(room, work, {chair(c), chair(c)});  // one of the two sides is the wall's
+    place.around(room, work, {chair(c), chair(c)});  // one of the two sides is at the wall
     place.on_top(work, book_pile(c));
     place.on_top(work, table_lamp(c));
     place.against_wall(room, picture(c, "picture", 0.5, 0.6), 1.4);

@@ -8,7 +8,7 @@
 
 namespace lidarena {
 
-/// A piece of furniture where it stands, in the world frame.
+/// A placed piece of furniture, in the world frame.
 struct PlacedObject {
   std::string kind;
   TriangleMesh mesh;
@@ -16,9 +16,9 @@ struct PlacedObject {
   double top = 0;  ///< height of its table top; 0: none
 };
 
-/// Furnishes every room. Pieces are tried at random places until one is free: inside the room,
-/// clear of other pieces, doors and (where they are tall) windows, and 0.5 m from the route. What
-/// finds no place in 300 tries is left out.
+/// Furnishes every room. Each piece is tried at random places until one is free: inside the room,
+/// without overlap with other pieces, doors and (if tall) windows, and 0.5 m from the route. A
+/// piece without a free place after 300 tries is left out.
 std::vector<PlacedObject> furnish_house(const HousePlan& plan, const HouseConfig& config,
                                         std::uint64_t seed);
 

@@ -6,7 +6,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kDoorApproach = 0.8;  // m before and behind a door that the route flies straight
+constexpr double kDoorApproach = 0.8;  // m before and behind a door where the route is straight
 
 /// Center lines of the inner walls. South of y: living room, dining room, kitchen; north of it:
 /// child's bedroom, hall, bathroom, main bedroom.
@@ -72,8 +72,8 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
 }
 
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
-  const double low = 0.9;                  // m, sill of ordinary windows
-  const double head = 0.82 * c.story_m;   // their upper edge
+  const double low = 0.9;                 // m, sill of ordinary windows
+  const double head = 0.82 * c.story_m;   // m, upper edge of ordinary windows
   const double upper = 1.35 * c.story_m;  // sill of the windows of the second story
   const double upper_head = 1.8 * c.story_m;
   const double north = 0.5 * (w.y + c.depth_m);
@@ -95,19 +95,19 @@ std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
           {1, 0, north, 1.3, low, head}};
 }
 
-/// Strings the route together from places in rooms and straight ways through doors.
+/// Assembles the route from points in rooms and straight passages through doors.
 class RouteBuilder {
  public:
   explicit RouteBuilder(const HousePlan& plan) : plan_(plan) {}
 
-  /// The place at fractions (u, v) of the room, z meters up.
+  /// Adds the point at fractions (u, v) of the room's floor, at height z (m).
   RouteBuilder& in(RoomUse use, double u, double v, double z) {
     const Eigen::AlignedBox2d& floor = plan_.room(use).floor;
     const Eigen::Vector2d p = floor.min() + Eigen::Vector2d(u, v).cwiseProduct(floor.sizes());
     route_.emplace_back(p.x(), p.y(), z);
     return *this;
   }
-  /// Through a door at half its height, along the wall's normal or against it.
+  /// Adds a passage through a door at half its height, along the wall's normal or against it.
   RouteBuilder& along(Door door) { return through(door, 1); }
   RouteBuilder& against(Door door) { return through(door, -1); }
 
@@ -130,8 +130,8 @@ class RouteBuilder {
   std::vector<Eigen::Vector3d> route_;
 };
 
-/// Around the ring of rooms, then living room, child's bedroom and hall once more. Heights stay
-/// within 0.8 ... 2 m but for the two high rooms.
+/// Through all rooms once around, then the living room, the child's bedroom and the hall again.
+/// Heights are 0.8 ... 2 m except in the two high rooms.
 std::vector<Eigen::Vector3d> make_route(const HousePlan& plan) {
   using enum RoomUse;
   return RouteBuilder(plan)
@@ -191,7 +191,7 @@ GalleryPlan plan_gallery(const HousePlan& plan, const HouseConfig& config) {
   constexpr double kDepth = 1.3;    // m, of the gallery
   constexpr double kSlab = 0.18;    // m
   constexpr double kFlight = 0.95;  // m, width of the stairs
-  constexpr double kFoot = 0.8;     // m of floor before the first step
+  constexpr double kFoot = 0.8;     // m of free floor in front of the first step
   const Eigen::AlignedBox2d& living = plan.room(RoomUse::kLiving).floor;
   const double face = 0.5 * config.wall_m;
   const double top = config.story_m + kSlab;

@@ -25,11 +25,11 @@ struct Opening {
   double width;
   double sill;  ///< lower edge
   double head;  ///< upper edge
-  /// The middle of the hole at height z, `ahead` meters along the positive normal of the wall.
+  /// The center of the hole at height z, displaced by `ahead` (m) along the wall's positive normal.
   Eigen::Vector3d point(double ahead, double z) const;
 };
 
-/// A house on paper.
+/// Floor plan of a house.
 struct HousePlan {
   std::vector<Room> rooms;  ///< in the order of RoomUse
   std::vector<Opening> doors;
@@ -39,7 +39,7 @@ struct HousePlan {
   const Room& room(RoomUse use) const { return rooms[static_cast<std::size_t>(use)]; }
 };
 
-/// Where gallery and stairs stand in the living room.
+/// Position of the gallery and the stairs in the living room.
 struct GalleryPlan {
   Eigen::AlignedBox3d floor;   ///< slab of the gallery, along the south wall
   Eigen::AlignedBox3d stairs;  ///< flight of stairs along the west wall, up towards -y

@@ -10,12 +10,12 @@
 namespace lidarena {
 namespace {
 
-constexpr double kSlab = 0.2;    // m, floor and ceilings
-constexpr double kFrame = 0.05;  // m, window frames
-constexpr double kPane = 0.008;  // m
+constexpr double kSlab = 0.2;    // m, thickness of floor and ceilings
+constexpr double kFrame = 0.05;  // m, width of window frames
+constexpr double kPane = 0.008;  // m, thickness of window panes
 constexpr double kTrim = 0.07;   // m, width of the trims around doors
 
-/// From a wall's own frame (x along it from the origin, y across, z up) to the world.
+/// Pose of a wall's frame (x along the wall, y across it, z up) in the world.
 Pose world_from_wall(int axis, double line) {
   Pose pose = Pose::Identity();
   if (axis == 0) {
@@ -27,7 +27,8 @@ Pose world_from_wall(int axis, double line) {
   return pose;
 }
 
-/// The height of the rooms that touch the stretch from `a` to `b` of a line, 0 when none does.
+/// The maximum height of the rooms that touch the section from `a` to `b` of a line; 0 when none
+/// does.
 double height_beside(const HousePlan& plan, int axis, double line, double a, double b) {
   double height = 0;
   for (const Room& room : plan.rooms) {
@@ -48,8 +49,8 @@ void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3
   mesh.triangles.push_back({first, first + 2, first + 3});
 }
 
-/// A plate in the xz plane, `thickness` thick, with rectangular holes, as one closed surface: the
-/// holes' edges cut it into cells, and each solid cell gets a front, a back, and a side towards
+/// A plate of the given thickness in the xz plane with rectangular holes, as one closed surface.
+/// The holes' edges divide it into cells; each solid cell gets a front, a back, and a side towards
 /// each neighbor that is not solid.
 TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
                    const std::vector<Eigen::AlignedBox2d>& holes) {
@@ -110,7 +111,8 @@ TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const HouseConf
   return plate(extent, config.wall_m, holes);
 }
 
-/// The four bars of a frame `width` wide on the inner (negative: outer) side of a hole's edge.
+/// The four bars of a frame of width `width` along the inner side of a hole's edge (outer side if
+/// negative); `foot`: with the lower bar.
 TriangleMesh frame(const Eigen::AlignedBox2d& hole, double width, double depth, bool foot) {
   const Eigen::Vector2d w = Eigen::Vector2d::Constant(width);
   Eigen::AlignedBox2d inner(hole.min() + w.cwiseMax(0), hole.max() - w.cwiseMax(0));
@@ -135,7 +137,7 @@ TriangleMesh build_window(const Opening& window, const HouseConfig& config) {
   return mesh;
 }
 
-/// Trims on both faces of the wall around a door; they leave the opening's width alone.
+/// Trims on both faces of the wall around a door; they do not narrow the opening.
 TriangleMesh build_trims(const Opening& door, const HouseConfig& config) {
   constexpr double kThick = 0.015;  // m
   TriangleMesh mesh;

@@ -13,8 +13,8 @@ struct Wall {
   double top;
 };
 
-/// The walls between and around the rooms, each as high as the higher room beside it; pieces of one
-/// line and height are one wall.
+/// The walls between and around the rooms, each as high as the higher room beside it. Adjoining
+/// sections on one line with equal height form one wall.
 std::vector<Wall> plan_walls(const HousePlan& plan);
 
 /// Floor, ceilings, walls with their openings, door trims, window frames and panes.

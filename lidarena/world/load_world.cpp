@@ -39,13 +39,14 @@ WorldConfig read_world_config(const fs::path& file) {
   WorldConfig config;
   read_config(node, config);
   if (!node.is_map() || !node.find("kind")) {
-    throw InputError(file.string(), "does not say what kind of world it is",
-                     "write kind: house, cave, mesh or sdf");
+    throw InputError(file.string(), "the key 'kind' is missing",
+                     "set kind to house, cave, mesh or sdf");
   }
   node.reject_unknown(keys_of(config.kind));
   const bool needs_file = config.kind == WorldKind::kMesh || config.kind == WorldKind::kSdf;
   if (needs_file && config.file.empty()) {
-    throw InputError(file.string(), "names no file", "write file: PATH, relative to this one");
+    throw InputError(file.string(), "the key 'file' is missing",
+                     "set file to the path of the mesh or SDF file, relative to this file");
   }
   return config;
 }
@@ -88,7 +89,7 @@ WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink
   const std::string ending = ending_of(file);
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) {
-    throw InputError(file.string(), "there is no such file", "check the name");
+    throw InputError(file.string(), "there is no such file", "check the path");
   }
   WorldModel model;
   if (ending == ".yaml" || ending == ".yml") {
@@ -98,7 +99,7 @@ WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink
   } else if (is_mesh_file(file)) {
     model.mesh = load_mesh(file);
   } else {
-    throw InputError(file.string(), "its ending names no kind of world",
+    throw InputError(file.string(), "this file extension is not that of a world",
                      "use .yaml, .sdf, .world, .obj, .ply, .stl, .dae, .gltf or .glb");
   }
   model.name = file.stem().string();

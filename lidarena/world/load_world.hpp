@@ -12,21 +12,22 @@
 
 namespace lidarena {
 
-/// What the caller wants otherwise than the world's own file says.
+/// Options that override what the world's file says.
 struct WorldOptions {
-  std::optional<ShapeKind> shapes;    ///< of an SDF world; visual where nobody says
-  std::optional<std::uint64_t> seed;  ///< of a procedural world; 1 where nobody says
-  /// Further folders that may hold `model://NAME`; searched after those beside the world file.
+  std::optional<ShapeKind> shapes;    ///< of an SDF world; visual unless the file or this says so
+  std::optional<std::uint64_t> seed;  ///< of a procedural world; 1 unless the file or this says so
+  /// Additional folders to search for `model://NAME`, after those beside the world file.
   std::vector<std::filesystem::path> model_paths;
-  /// Warn of models and meshes of an SDF world that are not there, and go on without them.
+  /// Warn about missing models and meshes of an SDF world and load the rest, instead of throwing.
   bool allow_missing = false;
 };
 
-/// Loads what `file` names, by its ending:
-///   .yaml .yml       a file of configs/worlds, see WorldConfig
+/// Loads a world; the file extension selects the format:
+///   .yaml .yml       a world file as in configs/worlds, see WorldConfig
 ///   .sdf .world      an SDF world
-///   .obj .ply .stl .dae .gltf .glb   a mesh, z up unless its format says otherwise
-/// Throws InputError when it is missing, has no faces, or names a model or mesh that is not there.
+///   .obj .ply .stl .dae .gltf .glb   a mesh, z up unless its format specifies otherwise
+/// Throws InputError when the file is missing, has no faces, or refers to a model or mesh that does
+/// not exist.
 WorldModel load_world(const std::filesystem::path& file, const WorldOptions& options, LogSink& log);
 
 }  // namespace lidarena

@@ -7,20 +7,21 @@
 
 namespace lidarena {
 
-/// What a surface does with a LiDAR's light (near infrared, about 905 nm).
+/// Optical properties of a surface for a LiDAR's light (near infrared, about 905 nm).
 struct Material {
   std::string name = "diffuse";
-  double reflectivity = 0.5;  ///< share of the light that is not swallowed, 0..1
-  double specular = 0.0;      ///< share of that which is mirrored, 0..1; the rest is scattered
+  double reflectivity = 0.5;  ///< share of the light that is reflected, 0..1
+  double specular = 0.0;      ///< share of the reflected light that is mirrored, 0..1
   bool operator==(const Material&) const = default;
 };
 
-/// Light that comes back to where it came from, relative to a white diffuse surface seen head-on.
-/// The scattered part follows Lambert, cos(incidence). The mirrored part leaves in a narrow lobe
-/// (Phong 1975, normalized: (m + 2) / 2 cos^m of the angle to the mirror direction, which is twice
-/// the incidence), so a mirror is seen head-on alone, where it exceeds 1, and is black elsewhere.
+/// Light returned towards its source, relative to a white diffuse surface at normal incidence. The
+/// diffuse part follows Lambert's law, cos(incidence). The mirrored part leaves in a narrow lobe
+/// (Phong 1975, normalized: (m + 2) / 2 cos^m of the angle between the source and the mirror
+/// direction, which is twice the incidence). A mirror thus returns light near normal incidence
+/// only; there the value exceeds 1.
 inline double backscatter(const Material& material, double cos_incidence) {
-  constexpr double kGloss = 200.0;  // m: a lobe about 6 deg wide, as of polished surfaces
+  constexpr double kGloss = 200.0;  // exponent m: a lobe about 6 deg wide, as of polished surfaces
   const double cosine = std::clamp(cos_incidence, 0.0, 1.0);
   double gain = 1.0 - material.specular;
   const double to_mirror = 2.0 * cosine * cosine - 1.0;  // cos(2 incidence)
@@ -30,7 +31,7 @@ inline double backscatter(const Material& material, double cos_incidence) {
   return material.reflectivity * gain * cosine;
 }
 
-/// Typical values; measured ones differ by make, color and wear.
+/// Typical values; measured ones vary with product, color and wear.
 namespace materials {
 inline const Material kDefault;
 inline const Material kPlaster{"plaster", 0.8, 0.0};
@@ -41,7 +42,7 @@ inline const Material kLeaf{"leaf", 0.5, 0.02};
 inline const Material kCeramic{"ceramic", 0.75, 0.1};
 inline const Material kMetal{"metal", 0.6, 0.4};
 inline const Material kDarkScreen{"dark screen", 0.06, 0.5};
-inline const Material kGlass{"glass", 0.08, 0.95};  ///< what it lets through is lost
+inline const Material kGlass{"glass", 0.08, 0.95};  ///< transmitted light is not simulated
 inline const Material kMirror{"mirror", 0.9, 0.999};
 inline const Material kRock{"rock", 0.25, 0.0};
 }  // namespace materials

@@ -14,7 +14,7 @@ namespace {
 
 struct BitsHash {
   std::size_t operator()(const std::array<double, 3>& v) const {
-    std::uint64_t hash = 1469598103934665603U;  // FNV-1a, a word at a time
+    std::uint64_t hash = 1469598103934665603U;  // FNV-1a applied to 64-bit words
     for (const double x : v) {
       hash = (hash ^ std::bit_cast<std::uint64_t>(x + 0.0)) * 1099511628211U;  // -0 + 0 is +0
       hash ^= hash >> 29U;

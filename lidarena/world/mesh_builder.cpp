@@ -18,7 +18,7 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
   if (!same(a, b) && !same(b, c) && !same(c, a)) mesh.triangles.push_back({a, b, c});
 }
 
-/// Adds quads between rings of `segments` vertices that follow one another in `mesh`.
+/// Adds quads between consecutive rings of `segments` vertices in `mesh`.
 void join_rings(TriangleMesh& mesh, std::uint32_t rings, std::uint32_t segments) {
   for (std::uint32_t r = 0; r + 1 < rings; ++r) {
     for (std::uint32_t s = 0; s < segments; ++s) {
@@ -72,7 +72,7 @@ TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells, 
       const int a = sign > 0 ? (axis + 1) % 3 : (axis + 2) % 3;
       const int b = 3 - axis - a;
       mesh.append(grid(cells, cells, [&](double u, double v) -> Eigen::Vector3d {
-        Eigen::Vector3d q;  // on the sharp box, with grid lines drawn together near its edges
+        Eigen::Vector3d q;  // on the sharp-edged box; grid lines are denser near its edges
         q[axis] = sign * half[axis];
         q[a] = std::sin(kPi * (u - 0.5)) * half[a];
         q[b] = std::sin(kPi * (v - 0.5)) * half[b];
@@ -92,7 +92,7 @@ TriangleMesh lathe(const std::vector<Eigen::Vector2d>& profile, int segments) {
   for (const Eigen::Vector2d& point : profile) {
     for (int s = 0; s < segments; ++s) {
       const double angle = 2 * kPi * s / segments;
-      // A zero radius must give one and the same point, not points that differ in a zero's sign.
+      // A zero radius must give identical points, without a difference in the sign of zero.
       const double r = point.x();
       mesh.vertices.emplace_back(r == 0 ? 0 : r * std::cos(angle), r == 0 ? 0 : r * std::sin(angle),
                                  point.y());
@@ -122,7 +122,7 @@ TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int se
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Eigen::Vector3d along =
         (path[std::min(i + 1, path.size() - 1)] - path[i == 0 ? 0 : i - 1]).normalized();
-    side = (side - side.dot(along) * along).normalized();  // carried along without twist
+    side = (side - side.dot(along) * along).normalized();  // transported without twist
     const Eigen::Vector3d other = along.cross(side);
     const bool first = i == 0;
     const bool last = i + 1 == path.size();

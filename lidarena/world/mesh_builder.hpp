@@ -7,19 +7,19 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-/// Tessellated shapes from which furniture is put together. Meters; normals point outward.
+/// Tessellated shapes from which furniture is built. Meters; normals point outward.
 namespace lidarena::shape {
 
 /// Point of a surface at (u, v) in [0, 1]^2.
 using Surface = std::function<Eigen::Vector3d(double u, double v)>;
 
-/// nu by nv quads, each cut into two triangles, with normals along du x dv.
+/// nu by nv quads, each split into two triangles, with normals along du x dv.
 TriangleMesh grid(int nu, int nv, const Surface& surface);
 
 TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high);
 
 /// A box of `size` on z = 0, centered in x and y, whose edges are rounded with `radius` and whose
-/// faces are puffed up by `bulge` in the middle; cells x cells quads a face.
+/// faces bulge outward by `bulge` (m) at their centers; cells x cells quads per face.
 TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells, double bulge = 0);
 
 /// The surface of revolution about z of a profile of (radius, height) points; a profile that goes
@@ -35,7 +35,7 @@ TriangleMesh ball(double radius, int segments);
 /// A round bar along a polyline, closed at both ends.
 TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int segments);
 
-/// Points of a circle's arc: center + radius (cos a, sin a) for `count` + 1 angles.
+/// Points of a circular arc: center + radius (cos a, sin a) for `count` + 1 angles a in [from, to].
 std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, double from,
                                  double to, int count);
 

@@ -33,13 +33,13 @@ Eigen::Affine3d to_eigen(const aiMatrix4x4& m) {
 }
 
 Eigen::Affine3d z_up_from_y_up() {
-  Eigen::Matrix3d turn;  // x stays, y becomes z
+  Eigen::Matrix3d turn;  // keeps x and maps y to z
   turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return Eigen::Affine3d(turn);
 }
 
-/// What is still to be done to what the importer gives. Told to honor a DAE's <up_axis>, it
-/// delivers y up, whichever the file's axis is.
+/// Rotation to z up that remains to be applied to the importer's output. When the importer honors a
+/// DAE's <up_axis>, its output is always y up.
 Eigen::Affine3d upright_from_file(const std::string& ending, UpAxis up) {
   const bool is_y_up =
       up == UpAxis::kY ||
@@ -57,7 +57,7 @@ TriangleMesh to_mesh(const aiMesh& source, const Eigen::Affine3d& placement) {
   const bool mirrored = placement.linear().determinant() < 0.0;
   for (unsigned i = 0; i < source.mNumFaces; ++i) {
     const aiFace& face = source.mFaces[i];
-    if (face.mNumIndices != 3) continue;  // points and lines
+    if (face.mNumIndices != 3) continue;  // skip points and lines
     Triangle triangle{face.mIndices[0], face.mIndices[1], face.mIndices[2]};
     if (mirrored) std::swap(triangle[1], triangle[2]);
     mesh.triangles.push_back(triangle);
@@ -66,7 +66,8 @@ TriangleMesh to_mesh(const aiMesh& source, const Eigen::Affine3d& placement) {
   return mesh;
 }
 
-/// The importer holds coordinates as float, which ruins meshes in map coordinates.
+/// Throws InputError when the importer's single precision is too coarse for the coordinates, as it
+/// is for meshes in map coordinates.
 void check_precision(const aiMesh& source, const Eigen::Affine3d& placement,
                      const std::string& name) {
   constexpr double kLargestRounding = 5e-3;  // m, a tenth of a good LiDAR's noise
@@ -81,7 +82,7 @@ void check_precision(const aiMesh& source, const Eigen::Affine3d& placement,
   if (rounding <= kLargestRounding) return;
   throw InputError(name,
                    "its coordinates reach " + std::to_string(largest * scale) +
-                       " m, which this format's reader would round by up to " +
+                       " m, which the reader of this format would round by up to " +
                        std::to_string(rounding) + " m",
                    "move the mesh near its origin, or save it as PLY with double coordinates");
 }
@@ -136,16 +137,16 @@ bool is_mesh_file(const std::filesystem::path& file) {
 
 std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up) {
   if (!is_mesh_file(file)) {
-    throw InputError(file.string(), "its ending names no mesh format read here",
+    throw InputError(file.string(), "this file extension is not that of a supported mesh format",
                      "use .obj, .ply, .stl, .dae, .gltf or .glb");
   }
   if (!std::filesystem::is_regular_file(file)) {
-    throw InputError(file.string(), "there is no such file", "check the name");
+    throw InputError(file.string(), "there is no such file", "check the path");
   }
   std::vector<MeshPart> parts =
       ending_of(file) == ".ply" ? ply_parts(file, up) : import_parts(file, up);
   if (parts.empty()) {
-    throw InputError(file.string(), "has no faces", "a surface is needed, not points or lines");
+    throw InputError(file.string(), "has no faces", "use a mesh of faces, not of points or lines");
   }
   return parts;
 }

@@ -10,11 +10,11 @@
 
 namespace lidarena {
 
-/// Which coordinate of a mesh file points up.
+/// Up axis of a mesh file.
 enum class UpAxis {
-  kFile,  ///< as the format says: glTF is y up, DAE says so in <up_axis>; all others z up
-  kY,     ///< y, whatever the file says; turned to z
-  kZ,     ///< z, whatever the file says: coordinates as they stand, as Gazebo takes them
+  kFile,  ///< as specified by the format: glTF is y up, DAE gives it in <up_axis>, others are z up
+  kY,     ///< y, regardless of the file; rotated to z up
+  kZ,     ///< z, regardless of the file: coordinates are used unchanged, as in Gazebo
 };
 template <>
 struct EnumNames<UpAxis> {
@@ -22,20 +22,20 @@ struct EnumNames<UpAxis> {
                                     std::pair{"z", UpAxis::kZ}};
 };
 
-/// One surface of a mesh file, with the names by which an SDF <submesh> may ask for it.
+/// One surface of a mesh file, with the names by which an SDF <submesh> may refer to it.
 struct MeshPart {
-  std::string node;  ///< node of the scene graph that places it; empty where the format has none
+  std::string node;  ///< scene graph node that contains it; empty where the format has none
   std::string name;
   TriangleMesh surface;
 };
 
-/// True for the endings that load_mesh() reads (.obj .ply .stl .dae .gltf .glb, in any case).
+/// True for the extensions that load_mesh() reads (.obj .ply .stl .dae .gltf .glb, in any case).
 bool is_mesh_file(const std::filesystem::path& file);
 
 /// The surfaces of a mesh file in meters, z up: node transforms and DAE units are applied, polygons
-/// cut into triangles, points and lines left out, equal vertices made one (but in PLY, which keeps
-/// its own). Degenerate triangles stay in (see clean_mesh). Only PLY is read in double precision;
-/// the others throw when single precision would move a vertex by more than 5 mm.
+/// are split into triangles, points and lines are skipped, equal vertices are merged (except in
+/// PLY). Degenerate triangles are kept (see clean_mesh). Only PLY is read in double precision; for
+/// the others InputError is thrown when single precision would move a vertex by more than 5 mm.
 /// Throws InputError when the file is missing, cannot be read, or has no faces.
 std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up = UpAxis::kFile);
 

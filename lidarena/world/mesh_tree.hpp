@@ -9,15 +9,16 @@
 
 namespace lidarena {
 
-/// Is shown triangles that may be near.
+/// Callback of MeshTree::visit_near.
 class TriangleVisitor {
  public:
   virtual ~TriangleVisitor() = default;
-  /// Returns the radius (m) within which triangles still matter; it never grows.
+  /// Called for a triangle that may be near. Returns the radius (m) within which further triangles
+  /// must be visited; it must not increase from call to call.
   virtual double visit(std::uint32_t triangle) = 0;
 };
 
-/// What World asks of a spatial tree over its mesh. All queries are const and thread safe.
+/// Interface of the spatial trees that World uses. All queries are const and thread-safe.
 class MeshTree {
  public:
   virtual ~MeshTree() = default;
@@ -26,8 +27,8 @@ class MeshTree {
                     RayOrder order) const = 0;
   /// True when a triangle lies between `near` and `far` meters along the ray.
   virtual bool occluded(const Ray& ray, double near, double far) const = 0;
-  /// Shows every triangle within the radius (m) around `point`, and some beyond; the radius is that
-  /// of the visitor's last answer, at first `radius`.
+  /// Calls the visitor for every triangle within a radius (m) of `point`, and for some beyond. The
+  /// search starts with `radius` and continues with the radius that the last visit returned.
   virtual void visit_near(const Eigen::Vector3d& point, double radius,
                           TriangleVisitor& visitor) const = 0;
 };

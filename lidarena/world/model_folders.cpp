@@ -25,7 +25,7 @@ std::optional<fs::path> ModelFolders::find(const std::string& uri, const fs::pat
   const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
   const fs::path path = colon == std::string::npos ? uri : uri.substr(colon + 3);
   if (!scheme.empty() && scheme != "model" && scheme != "package" && scheme != "file") {
-    return std::nullopt;  // from the network, say
+    return std::nullopt;  // other schemes, for example https
   }
   std::error_code ignored;
   if (path.empty()) return std::nullopt;

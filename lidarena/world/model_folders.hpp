@@ -8,17 +8,17 @@
 
 namespace lidarena {
 
-/// The folders in which `model://NAME/...` is looked up, in order.
+/// The folders in which `model://NAME/...` is searched, in order.
 class ModelFolders {
  public:
-  /// For a world file: ../models, models, its own folder and the one above; then `further`; then
-  /// those of the environment variable GAZEBO_MODEL_PATH (separated by colons).
+  /// Relative to the world file: ../models, models, its own folder and the one above; then
+  /// `further`; then those of the environment variable GAZEBO_MODEL_PATH (separated by colons).
   ModelFolders(const std::filesystem::path& world_file,
                const std::vector<std::filesystem::path>& further);
 
-  /// What `uri` names: model://NAME/..., package://NAME/..., file://PATH or a plain path. Paths
-  /// that are not absolute are looked for in `base` first. Empty when there is no such file or
-  /// folder.
+  /// The file or folder that `uri` refers to: model://NAME/..., package://NAME/..., file://PATH or
+  /// a plain path. Relative file:// and plain paths are searched in `base` first. Empty when there
+  /// is no such file or folder.
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& base) const;
 

@@ -12,9 +12,9 @@ using Eigen::AlignedBox3d;
 using Eigen::AlignedBox3f;
 using Eigen::Vector3d;
 
-constexpr double kFarAway = 1e30;  // m; what is infinite ends there, so that its corners can turn
+constexpr double kFarAway = 1e30;  // m; limit of infinite boxes, so that they can be rotated
 
-/// The box around a turned box, a little too large for the rounding to single precision.
+/// The axis-aligned box around a rotated box, enlarged to cover the rounding to single precision.
 AlignedBox3f box_in_world(const AlignedBox3d& box, const Pose& world_from_shape) {
   constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
   const Vector3d low = box.min().cwiseMax(-kFarAway), high = box.max().cwiseMin(kFarAway);
@@ -29,13 +29,13 @@ AlignedBox3f box_in_world(const AlignedBox3d& box, const Pose& world_from_shape)
 
 MovingWorld::MovingWorld(std::vector<PlacedShape> shapes) {
   TriangleMesh still;
-  std::vector<std::uint32_t> numbers;  // of the shapes that the still triangles are of
+  std::vector<std::uint32_t> numbers;  // for each triangle of `still`, the index of its shape
   for (std::uint32_t i = 0; i < shapes.size(); ++i) {
     const PlacedShape& placed = shapes[i];
     materials_.push_back(placed.surface);
     const TriangleMesh* mesh = mesh_of(*placed.shape);
     if (mesh != nullptr && !placed.moves) {
-      TriangleMesh plain;  // materials are the shapes'
+      TriangleMesh plain;  // without materials: these are stored per shape
       plain.vertices = mesh->vertices;
       plain.triangles = mesh->triangles;
       still.append(plain, placed.world_from_shape);

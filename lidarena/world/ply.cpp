@@ -19,7 +19,7 @@ namespace lidarena {
 
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "binary files are written as they lie");
+static_assert(std::endian::native == std::endian::little, "binary data is not byte-swapped");
 
 enum class Type { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 enum class Format { kAscii, kLittleEndian, kBigEndian };
@@ -39,8 +39,8 @@ struct Element {
 struct Header {
   Format format = Format::kAscii;
   std::vector<Element> elements;
-  std::vector<Material> palette;  ///< from our own comments
-  std::size_t size = 0;           ///< bytes, up to and with the line end_header
+  std::vector<Material> palette;  ///< from the comments that save_ply() writes
+  std::size_t size = 0;           ///< bytes, up to and including the line end_header
 };
 
 std::optional<Type> type_named(const std::string& name) {
@@ -83,8 +83,8 @@ std::optional<Property> parse_property(std::istringstream& words) {
   return property;
 }
 
-/// A material in a comment of ours: "material REFLECTIVITY SPECULAR NAME"; other comments are
-/// anyone's.
+/// The material in a comment written by save_ply(): "material REFLECTIVITY SPECULAR NAME"; empty
+/// for other comments.
 std::optional<Material> parse_material(std::istringstream& words) {
   std::string keyword;
   Material material;
@@ -97,7 +97,7 @@ std::optional<Material> parse_material(std::istringstream& words) {
   return material;
 }
 
-/// One line of the header; false when it is not understood.
+/// Parses one line of the header; returns false when it is invalid.
 bool parse_header_line(const std::string& line, Header& header) {
   std::istringstream words(line);
   std::string keyword;
@@ -131,7 +131,8 @@ Header parse_header(const std::string& bytes, const std::string& name) {
   std::size_t begin = 0;
   for (int line_number = 1;; ++line_number) {
     const std::size_t end = bytes.find('\n', begin);
-    if (end == std::string::npos) throw InputError(name, "is not a PLY file", "no header ends");
+    if (end == std::string::npos)
+      throw InputError(name, "is not a PLY file", "the line 'end_header' is missing");
     std::string line = bytes.substr(begin, end - begin);
     if (!line.empty() && line.back() == '\r') line.pop_back();
     begin = end + 1;
@@ -142,14 +143,14 @@ Header parse_header(const std::string& bytes, const std::string& name) {
     if (line == "end_header") break;
     if (!parse_header_line(line, header)) {
       throw InputError(name + ":" + std::to_string(line_number),
-                       "this line of a PLY header is not understood: " + line);
+                       "invalid line in the header of a PLY file: " + line);
     }
   }
   header.size = begin;
   return header;
 }
 
-/// The values after the header, one at a time.
+/// Reads the values after the header, one at a time.
 class Values {
  public:
   Values(const std::string& bytes, const Header& header, const std::string& name)
@@ -181,12 +182,12 @@ class Values {
     return next_binary<double>();
   }
 
-  /// A value that counts or names something.
+  /// Reads a value that is a count or an index.
   std::uint32_t next_index(Type type) {
     const double value = next(type);
     if (!(value >= 0.0 && value <= std::numeric_limits<std::uint32_t>::max()) ||
         value != std::floor(value)) {
-      throw InputError(name_, "a face holds " + std::to_string(value) + " where an index belongs");
+      throw InputError(name_, "has " + std::to_string(value) + " in place of a count or an index");
     }
     return static_cast<std::uint32_t>(value);
   }
@@ -195,8 +196,8 @@ class Values {
 
  private:
   [[noreturn]] void fail_early() const {
-    throw InputError(name_, "ends before all that its header announces",
-                     "it may be the stump of an interrupted copy");
+    throw InputError(name_, "has fewer values than its header declares",
+                     "the file may be truncated; copy it again");
   }
 
   template <class T>
@@ -246,7 +247,7 @@ void read_vertices(const Element& element, Values& values, TriangleMesh& mesh) {
   }
 }
 
-/// Reads one row of an element: the corners and the material if it is a face's.
+/// Reads one row of an element; stores the corners and the material if it is a face.
 void read_row(const Element& element, Values& values, std::vector<std::uint32_t>& corners,
               std::uint32_t& material) {
   for (const Property& property : element.properties) {
@@ -266,7 +267,7 @@ void read_row(const Element& element, Values& values, std::vector<std::uint32_t>
   }
 }
 
-/// Faces, or an element of which nothing is kept.
+/// Reads the rows of an element and keeps those of faces.
 void read_faces(const Element& element, Values& values, TriangleMesh& mesh,
                 const std::string& name) {
   std::vector<std::uint32_t> corners;
@@ -276,8 +277,8 @@ void read_faces(const Element& element, Values& values, TriangleMesh& mesh,
     read_row(element, values, corners, material);
     if (element.name != "face") continue;
     if (!mesh.palette.empty() && material >= mesh.palette.size()) {
-      throw InputError(name, "a face names material " + std::to_string(material) + " of " +
-                                 std::to_string(mesh.palette.size()));
+      throw InputError(name, "a face has material index " + std::to_string(material) +
+                                 ", number of materials: " + std::to_string(mesh.palette.size()));
     }
     for (std::size_t k = 2; k < corners.size(); ++k) {
       mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
@@ -290,8 +291,8 @@ void check_indices(const TriangleMesh& mesh, const std::string& name) {
   for (const Triangle& triangle : mesh.triangles) {
     const std::uint32_t largest = *std::ranges::max_element(triangle);
     if (largest >= mesh.vertices.size()) {
-      throw InputError(name, "a face names vertex " + std::to_string(largest) + " of " +
-                                 std::to_string(mesh.vertices.size()));
+      throw InputError(name, "a face has vertex index " + std::to_string(largest) +
+                                 ", number of vertices: " + std::to_string(mesh.vertices.size()));
     }
   }
 }
@@ -301,7 +302,7 @@ void check_indices(const TriangleMesh& mesh, const std::string& name) {
 TriangleMesh read_ply(const std::filesystem::path& file) {
   const std::string name = file.string();
   std::ifstream in(file, std::ios::binary);
-  if (!in) throw InputError(name, "cannot be opened", "check the name and its permissions");
+  if (!in) throw InputError(name, "cannot be opened", "check the path and the permissions");
   std::ostringstream buffer;
   buffer << in.rdbuf();
   const std::string bytes = std::move(buffer).str();
@@ -309,7 +310,7 @@ TriangleMesh read_ply(const std::filesystem::path& file) {
   Values values(bytes, header, name);
   TriangleMesh mesh;
   mesh.palette = header.palette;
-  if (mesh.palette.size() > 256) throw InputError(name, "has over 256 materials");
+  if (mesh.palette.size() > 256) throw InputError(name, "has more than 256 materials");
   for (const Element& element : header.elements) {
     if (element.properties.empty()) continue;
     if (element.name == "vertex") {
@@ -350,7 +351,7 @@ void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   if (!out || error) {
     std::error_code ignored;
     std::filesystem::remove(part, ignored);
-    throw Error(file.string() + ": cannot be written; check the folder, its permissions and space");
+    throw Error(file.string() + ": cannot be written; check folder, permissions and free space");
   }
 }
 

@@ -11,8 +11,8 @@ using Eigen::Vector3d;
 
 namespace {
 
-/// Turns a profile (distance from the z axis, z), from the lower pole to the upper, about z. Its
-/// first and last point lie on the axis.
+/// Surface of revolution about z of a profile of points (distance from the z axis, z), from the
+/// lower pole to the upper. The first and the last point lie on the axis.
 TriangleMesh revolve(const std::vector<Vector2d>& profile) {
   TriangleMesh mesh;
   const auto rings = static_cast<std::uint32_t>(profile.size() - 2);
@@ -39,7 +39,8 @@ TriangleMesh revolve(const std::vector<Vector2d>& profile) {
   return mesh;
 }
 
-/// Points of the half circle about (0, z), elevations from stack `first` to `last` of kStacks.
+/// Adds points of the half circle around (0, z) at the elevations of the stacks `first` to `last`
+/// (of 0 to kStacks).
 void add_arc(std::vector<Vector2d>& profile, double radius, double z, int first, int last) {
   for (int stack = first; stack <= last; ++stack) {
     const double elevation = std::numbers::pi * (static_cast<double>(stack) / kStacks - 0.5);

@@ -20,7 +20,7 @@ constexpr std::array<std::string_view, 16> kUnseen{"actor",    "atmosphere",
                                                    "state",    "wind"};
 
 struct Tag {
-  std::string_view name;  ///< empty for comments and the like
+  std::string_view name;  ///< empty for comments and CDATA sections
   std::size_t begin, end;
   bool opens, closes;
 };
@@ -53,7 +53,7 @@ std::optional<Tag> next_tag(std::string_view text, std::size_t from) {
              is_end_tag || text[end - 1] == '/'};
 }
 
-/// Where the element that `opening` begins ends.
+/// Position after the end of the element whose start tag is `opening`; empty when it is not closed.
 std::optional<std::size_t> end_of_element(std::string_view text, const Tag& opening) {
   int depth = 0;
   for (std::optional<Tag> tag = opening; tag; tag = next_tag(text, tag->end)) {

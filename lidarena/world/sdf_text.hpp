@@ -5,10 +5,10 @@
 
 namespace lidarena {
 
-/// The part of an SDF text that can have a surface: the same text with elements such as <scene>,
-/// <physics>, <gui>, <plugin>, <material> and <state> blanked out, line breaks kept. Strict SDF
-/// readers refuse a whole world for a color out of range in one of these; Gazebo Classic does not.
-/// An element that is never closed stays, for the parser to complain about.
+/// The SDF text without elements that have no surface: <scene>, <physics>, <gui>, <plugin>,
+/// <material>, <state> and others are overwritten by blanks; line breaks are kept. Strict SDF
+/// readers reject a whole world for a color out of range in one of these; Gazebo Classic does not.
+/// An element that is not closed is kept, so that the parser reports it.
 std::string without_unseen_elements(std::string sdf_text);
 
 }  // namespace lidarena

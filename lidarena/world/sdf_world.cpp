@@ -34,9 +34,10 @@ Pose to_eigen(const ignition::math::Pose3d& pose) {
 
 using FindFile = std::function<std::string(const std::string&)>;
 
-/// sdformat 12 looks up an <include> inside an included file by its process-wide configuration,
-/// whatever configuration it was given (its issue 881). While this lives, that one finds files by
-/// `find`, too; loads wait for one another.
+/// Workaround for sdformat 12, which looks up an <include> inside an included file by its
+/// process-wide configuration instead of the one that was passed (its issue 881). During the
+/// lifetime of this object the process-wide configuration finds files by `find`, too; a mutex
+/// serializes concurrent loads.
 class GlobalFindFile {
  public:
   explicit GlobalFindFile(FindFile find)
@@ -56,8 +57,8 @@ class GlobalFindFile {
   FindFile before_;
 };
 
-/// Collects a world's shapes into one mesh; what is missing is gathered on the way, so that one
-/// message can name all of it.
+/// Collects a world's shapes into one mesh. Missing models and meshes are collected, too, so that
+/// one message can list all of them.
 class SdfLoader {
  public:
   SdfLoader(const fs::path& file, const SdfOptions& options, LogSink& log)
@@ -65,7 +66,7 @@ class SdfLoader {
 
   TriangleMesh load() {
     const sdf::Root root = parse();
-    if (!options_.allow_missing) report_missing();  // of models, before meshes cost time
+    if (!options_.allow_missing) report_missing();  // of models, before meshes are loaded
     if (const sdf::Model* model = root.Model()) add_model(*model, to_eigen(model->RawPose()));
     for (std::uint64_t i = 0; i < root.WorldCount(); ++i) add_world(*root.WorldByIndex(i));
     report_missing();
@@ -98,7 +99,7 @@ class SdfLoader {
   ModelFolders folders_;
   TriangleMesh mesh_;
   std::map<fs::path, std::vector<MeshPart>> mesh_files_;  ///< each read once
-  std::map<std::string, int> missing_;                    ///< what, and how many times
+  std::map<std::string, int> missing_;                    ///< what is missing, and how many times
 };
 
 sdf::Root SdfLoader::parse() {
@@ -106,7 +107,7 @@ sdf::Root SdfLoader::parse() {
   std::ostringstream text;
   text << in.rdbuf();
   if (!in || !fs::is_regular_file(file_)) {
-    throw InputError(file_.string(), "cannot be opened", "check the name and its permissions");
+    throw InputError(file_.string(), "cannot be opened", "check the path and the permissions");
   }
   const FindFile find = [this](const std::string& uri) -> std::string {
     const auto path = folders_.find(uri, fs::absolute(file_).parent_path());
@@ -117,29 +118,30 @@ sdf::Root SdfLoader::parse() {
   sdf::ParserConfig config;
   config.SetFindCallback(find);
   const GlobalFindFile for_nested_includes(find);
-  sdf::Console::Instance()->SetQuiet(true);  // what it would print comes back as errors, too
+  sdf::Console::Instance()->SetQuiet(true);  // its messages are also returned as errors
   sdf::Root root;
   judge(root.LoadSdfString(without_unseen_elements(text.str()), config));
   if (root.WorldCount() == 0 && root.Model() == nullptr) {
-    throw InputError(file_.string(), "holds no SDF world and no model");
+    throw InputError(file_.string(), "contains neither an SDF world nor an SDF model");
   }
   return root;
 }
 
-/// A model that sdformat finds fault with is left out of its world, so most errors are holes.
+/// Throws (or warns, if `allow_missing`) on errors of sdformat. It omits a model with errors from
+/// the world, so most errors mean that something is missing from the world.
 void SdfLoader::judge(const sdf::Errors& errors) {
   for (const sdf::Error& error : errors) {
     switch (error.Code()) {
-      case sdf::ErrorCode::LINK_INERTIA_INVALID:  // shapes have no mass
+      case sdf::ErrorCode::LINK_INERTIA_INVALID:  // irrelevant to shapes
       case sdf::ErrorCode::VERSION_DEPRECATED:
       case sdf::ErrorCode::ELEMENT_DEPRECATED:
       case sdf::ErrorCode::ATTRIBUTE_DEPRECATED:
-      case sdf::ErrorCode::URI_LOOKUP:  // noted when it was looked up
+      case sdf::ErrorCode::URI_LOOKUP:  // already recorded by the find callback
         continue;
       default:
         break;
     }
-    if (error.Message() == "Failed to load a world.") continue;  // says only that others stand here
+    if (error.Message() == "Failed to load a world.") continue;  // implied by the other errors
     const std::string place = error.LineNumber()
                                   ? fmt::format("{}:{}", file_.string(), *error.LineNumber())
                                   : file_.string();
@@ -153,7 +155,7 @@ Pose SdfLoader::resolved(const sdf::SemanticPose& pose, const std::string& name)
   const sdf::Errors errors = pose.Resolve(resolved);
   if (errors.empty()) return to_eigen(resolved);
   throw InputError(file_.string(),
-                   "the pose of " + name + " leads nowhere: " + errors.front().Message());
+                   "the pose of " + name + " cannot be resolved: " + errors.front().Message());
 }
 
 void SdfLoader::add_world(const sdf::World& world) {
@@ -215,7 +217,7 @@ void SdfLoader::add_shape(const Shape& shape, const Pose& world_from_link,
   } else if (geometry->Element() && geometry->Element()->GetFirstElement() &&
              geometry->Element()->GetFirstElement()->GetName() != "empty") {
     miss("the <" + geometry->Element()->GetFirstElement()->GetName() + "> of " + name +
-         " (a kind of shape that is not supported)");
+         " (this kind of shape is not supported)");
   }
 }
 
@@ -266,10 +268,10 @@ void SdfLoader::report_missing() {
   if (!options_.allow_missing) {
     throw InputError(file_.string(), "cannot find " + list,
                      "searched " + folders_.listed() +
-                         "; name a further folder in model_paths or GAZEBO_MODEL_PATH, or set "
-                         "allow_missing to go on without");
+                         "; add a folder to model_paths or GAZEBO_MODEL_PATH, or set "
+                         "allow_missing to load the world without the missing parts");
   }
-  log_.warn(file_.string() + ": goes on without " + list);
+  log_.warn(file_.string() + ": loaded without missing parts: " + list);
 }
 
 }  // namespace
@@ -285,7 +287,7 @@ TriangleMesh load_sdf(const fs::path& file, const SdfOptions& options, LogSink& 
 namespace lidarena {
 
 TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions&, LogSink&) {
-  throw InputError(file.string(), "this build reads no SDF worlds",
+  throw InputError(file.string(), "this build cannot read SDF worlds",
                    "build with LIDARENA_WITH_SDF=ON where sdformat 12 is installed");
 }
 

@@ -12,7 +12,7 @@
 
 namespace lidarena {
 
-/// Which of an SDF model's shapes to take.
+/// Which shapes of an SDF model to load.
 enum class ShapeKind { kVisual, kCollision };
 template <>
 struct EnumNames<ShapeKind> {
@@ -22,19 +22,20 @@ struct EnumNames<ShapeKind> {
 
 struct SdfOptions {
   ShapeKind shapes = ShapeKind::kVisual;
-  /// Further folders that may hold `model://NAME`. Searched after ../models, models, the world
-  /// file's own folder and the one above, and before those of GAZEBO_MODEL_PATH.
+  /// Additional folders to search for `model://NAME`: after ../models, models, the world file's own
+  /// folder and the one above, and before those of GAZEBO_MODEL_PATH.
   std::vector<std::filesystem::path> model_paths;
-  /// Warn of models, meshes and shapes that cannot be had, and go on without them.
+  /// Warn about missing models and meshes and unsupported shapes and load the rest, instead of
+  /// throwing.
   bool allow_missing = false;
 };
 
 /// All shapes of an SDF world (or of a model.sdf) as one mesh in the world frame, with nested
-/// models, relative poses, mesh scales and sub-meshes as Gazebo places them. Mesh files are taken
-/// with their coordinates as they stand (a DAE's <up_axis> is ignored, as Gazebo ignores it).
-/// Triangles that are degenerate stay in. A <state> saved by Gazebo is not applied, actors and
-/// plugins add nothing, and `model://sun`, a lamp, may be missing.
-/// Throws InputError, naming the folders searched, for a model or mesh that is not there (unless
+/// models, relative poses, mesh scales and sub-meshes as Gazebo places them. The coordinates of
+/// mesh files are used unchanged (a DAE's <up_axis> is ignored, as in Gazebo). Degenerate triangles
+/// are kept. A <state> saved by Gazebo is not applied, actors and plugins are ignored, and
+/// `model://sun`, a light, may be missing.
+/// Throws InputError, with a list of the folders searched, for a missing model or mesh (unless
 /// `allow_missing`), and when nothing with a surface is found or the file is not SDF.
 TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions& options, LogSink& log);
 

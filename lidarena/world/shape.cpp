@@ -15,12 +15,12 @@ using Eigen::Vector3d;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Where the quadratic a t^2 + 2 b t + c passes zero, the earlier first; both NaN when it does not.
+/// The roots of a t^2 + 2 b t + c, the smaller first; both NaN when there is no real root.
 struct Roots {
   double first, second;
   Roots(double a, double b, double c) {
     const double root = std::sqrt(b * b - a * c);
-    const double q = -(b + std::copysign(root, b));  // no difference of nearly equal numbers
+    const double q = -(b + std::copysign(root, b));  // avoids cancellation
     const double one = q / a, other = q == 0.0 ? 0.0 : c / q;
     first = std::min(one, other);
     second = std::max(one, other);

@@ -11,36 +11,36 @@
 
 namespace lidarena {
 
-/// A body in its own frame that rays meet exactly, from outside and from within. Const, thread
-/// safe.
+/// A body in its own frame with exact ray intersections, from outside and from inside. Const,
+/// thread-safe.
 class Shape {
  public:
-  /// Where a ray meets it first.
+  /// First intersection of a ray with the body.
   struct Meeting {
     double range = 0.0;                                 ///< m
-    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, of either side
-    std::uint32_t triangle = 0;                         ///< of a mesh; else 0
+    Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, of either orientation
+    std::uint32_t triangle = 0;                         ///< index in a mesh; otherwise 0
   };
 
   virtual ~Shape() = default;
-  /// Infinite along the axes where the shape is.
+  /// Bounding box; infinite along the axes along which the shape is infinite.
   virtual Eigen::AlignedBox3d bounds() const = 0;
-  /// False when the ray meets nothing within `far` meters.
+  /// Returns false when the ray does not intersect the body within `far` meters.
   virtual bool meet(const Ray& ray, double far, Meeting& meeting) const = 0;
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;
 
-/// By the primitives' own equations, with no facets. Lengths in meters, above 0.
+/// Analytic shapes, not tessellated. Lengths in meters, above 0.
 ShapePtr make_sphere(double radius);
-/// Axis along z, closed at both ends; the origin is its middle.
+/// Axis along z, closed at both ends; the origin is its center.
 ShapePtr make_cylinder(double radius, double length);
 /// The unlimited plane z = 0.
 ShapePtr make_plane();
 /// The mesh must be clean (see clean_mesh).
 ShapePtr make_mesh(TriangleMesh mesh);
 
-/// The mesh of a shape made of one; nullptr for others.
+/// The mesh of a shape created by make_mesh(); nullptr for others.
 const TriangleMesh* mesh_of(const Shape& shape);
 
 }  // namespace lidarena

@@ -10,14 +10,14 @@
 
 namespace lidarena {
 
-/// Samples of a scalar field on the grid step * (i, j, k), kept in blocks of 8^3 and only near the
-/// surface: the field is negative in free space and positive in rock.
+/// Samples of a scalar field (negative in free space, positive in rock) on the grid
+/// step * (i, j, k), stored in blocks of 8^3 samples and only near the surface.
 class SparseField {
  public:
   static constexpr int kBlock = 8;
   using Values = std::array<float, kBlock * kBlock * kBlock>;
   struct Block {
-    Eigen::Vector3i coordinates;  ///< first sample / kBlock
+    Eigen::Vector3i coordinates;  ///< grid coordinates of the first sample divided by kBlock
     Values values;                ///< x runs fastest
   };
 
@@ -27,15 +27,15 @@ class SparseField {
   Eigen::Vector3d position(const Eigen::Vector3i& sample) const {
     return step_ * sample.cast<double>();
   }
-  /// In the order in which they were added.
+  /// The blocks in the order in which they were added.
   const std::vector<Block>& blocks() const { return blocks_; }
-  /// Adds a block whose values the caller fills.
+  /// Adds a block and returns its values for the caller to fill.
   Values& add_block(const Eigen::Vector3i& coordinates);
-  /// The stored sample, or null where no block is.
+  /// The stored sample, or null where there is no block.
   const float* find(const Eigen::Vector3i& sample) const;
   float* find(const Eigen::Vector3i& sample);
 
-  /// Number of a sample within its block.
+  /// Index of a sample within its block.
   static std::size_t index_in_block(const Eigen::Vector3i& sample);
   /// A key for hash tables; distinct for |coordinates| < 2^20.
   static std::uint64_t key(const Eigen::Vector3i& coordinates);

@@ -7,13 +7,13 @@
 namespace lidarena {
 namespace {
 
-/// Corner c of a cell lies at (c & 1, c >> 1 & 1, c >> 2).
+/// Corner c of a cell has the offset (c & 1, c >> 1 & 1, c >> 2).
 Eigen::Vector3i corner_offset(int corner) { return {corner & 1, (corner >> 1) & 1, corner >> 2}; }
 
 using Corners = std::array<float, 8>;
 
-/// The samples at the corners of the cell whose lowest corner is `cell`; false where one is
-/// missing.
+/// Reads the samples at the corners of the cell whose lowest corner is `cell`; returns false when
+/// one is missing.
 bool read_corners(const SparseField& field, const Eigen::Vector3i& cell, Corners& corners) {
   for (int c = 0; c < 8; ++c) {
     const float* value = field.find(cell + corner_offset(c));
@@ -30,11 +30,12 @@ unsigned free_corners(const Corners& corners) {
   return mask;
 }
 
-/// Lowest corners of the cells that the surface passes, block by block.
+/// Lowest corners of the cells that the surface passes through, block by block.
 std::vector<Eigen::Vector3i> surface_cells(const SparseField& field) {
   constexpr int kSide = SparseField::kBlock + 1;
   std::vector<Eigen::Vector3i> cells;
-  std::array<signed char, kSide * kSide * kSide> sign{};  // of one block and its upper neighbors
+  // signs of the samples of one block and of the first samples of its upper neighbors
+  std::array<signed char, kSide * kSide * kSide> sign{};
   const auto at = [&](const Eigen::Vector3i& p) -> signed char& {
     return sign[static_cast<std::size_t>(p.x() + kSide * (p.y() + kSide * p.z()))];
   };
@@ -90,7 +91,7 @@ unsigned critical_rock(unsigned free) {
   return 0;
 }
 
-/// Where along an edge from value a to value b the field is zero.
+/// Position (0 to 1) of the zero on an edge from value a to value b.
 double crossing(float a, float b) {
   return static_cast<double>(a) / (static_cast<double>(a) - static_cast<double>(b));
 }
@@ -144,7 +145,7 @@ std::size_t make_well_composed(SparseField& field) {
     if (!read_corners(field, cell, corners)) continue;
     const unsigned rock = critical_rock(free_corners(corners));
     if (rock == 0) continue;
-    int thinnest = -1;  // the critical rock corner that lies least deep
+    int thinnest = -1;  // the critical rock corner with the smallest depth
     for (int c = 0; c < 8; ++c) {
       if ((rock >> c & 1) == 0) continue;
       if (thinnest < 0 ||
@@ -153,7 +154,7 @@ std::size_t make_well_composed(SparseField& field) {
       }
     }
     const Eigen::Vector3i sample = cell + corner_offset(thinnest);
-    // Just inside free space: the crossings stay away from the samples.
+    // Slightly inside free space, so that the crossings do not coincide with the sample.
     *field.find(sample) = static_cast<float>(-0.05 * field.step());
     ++changed;
     for (int c = 0; c < 8; ++c) open.push_back(sample - corner_offset(c));
@@ -187,7 +188,8 @@ TriangleMesh surface_net(const SparseField& field) {
       const std::uint32_t right = vertex(cell - v);
       const std::uint32_t high = vertex(cell);
       const std::uint32_t left = vertex(cell - u);
-      // low, right, high, left runs about +axis; free space is where the field is negative.
+      // low, right, high, left are counterclockwise about +axis; the field is negative in free
+      // space
       if (here < 0) {
         add_quad(mesh, low, left, high, right);
       } else {

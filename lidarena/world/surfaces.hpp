@@ -10,36 +10,36 @@
 
 namespace lidarena {
 
-/// A half line; `direction` has unit length.
+/// A half-line; `direction` has unit length.
 struct Ray {
   Eigen::Vector3d origin;
   Eigen::Vector3f direction;
 };
 
-/// What the caster may expect of neighboring rays. Each ray's hit is the same up to rounding.
+/// Hint about the order of the rays, for speed. The hits are the same up to rounding.
 enum class RayOrder {
   kAny,
-  kNeighbors  ///< rays 8k ... 8k + 7 start and point nearly alike: then about twice as fast
+  kNeighbors  ///< rays 8k ... 8k + 7 have nearly equal origins and directions: about twice as fast
 };
 
-/// First surface along a ray.
+/// Result of a ray cast: the first surface along the ray.
 struct Hit {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   float range = std::numeric_limits<float>::infinity();  ///< m; infinity when nothing was hit
   std::uint32_t triangle = kNone;                        ///< its index in the world
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();      ///< unit, turned towards the ray's origin
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();      ///< unit, points to the ray's side
   bool valid() const { return triangle != kNone; }
 };
 
-/// What rays are cast at.
+/// Interface of a scene that rays can be cast into.
 class Surfaces {
  public:
   virtual ~Surfaces() = default;
-  /// First hit of each ray within `max_range` meters; `hits` has the length of `rays`. Faces are
-  /// seen from both sides.
+  /// Computes the first hit of each ray within `max_range` meters; `hits` has the length of `rays`.
+  /// Triangles are hit from both sides.
   virtual void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                     RayOrder order = RayOrder::kAny) const = 0;
-  /// Of the surface that a hit names.
+  /// Material of the surface with the triangle index of a hit.
   virtual const Material& material(std::uint32_t triangle) const = 0;
 };
 

@@ -8,8 +8,8 @@
 
 namespace lidarena {
 
-/// A triangle abc in its own plane: a at the origin, b at (base, 0), c at (x, y) with y > 0. What
-/// is worth computing once when many points ask for their distance to it.
+/// A triangle abc in coordinates of its plane: a at the origin, b at (base, 0), c at (x, y) with
+/// y > 0. Holds the precomputed values for many distance queries against the same triangle.
 class TriangleFrame {
  public:
   TriangleFrame(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c)
@@ -22,7 +22,8 @@ class TriangleFrame {
     side_ca_ = apex_x_ * apex_x_ + apex_y_ * apex_y_;
   }
 
-  /// Squared distance of `p`, up to rounding; infinity once it is known to exceed `limit`.
+  /// Squared distance of `p` to the triangle, up to rounding; infinity when its distance to the
+  /// plane alone exceeds `limit` (squared).
   double squared_distance(const Eigen::Vector3d& p, double limit) const {
     const Eigen::Vector3d d = p - origin_;
     const double height = normal_.dot(d);
@@ -32,7 +33,7 @@ class TriangleFrame {
   }
 
  private:
-  /// The nearest edge is one that the point lies outside of.
+  /// Only edges that the point lies outside of need to be checked.
   double squared_distance_in_plane(double x, double y) const {
     double nearest = std::numeric_limits<double>::infinity();
     if (y < 0.0) nearest = to_edge(x, y, base_, 0.0, base_ * base_);
@@ -46,7 +47,8 @@ class TriangleFrame {
     return nearest == std::numeric_limits<double>::infinity() ? 0.0 : nearest;
   }
 
-  /// Squared distance of (x, y) to the segment from the origin to (ux, uy) of that squared length.
+  /// Squared distance of (x, y) to the segment from the origin to (ux, uy); `length2` is the
+  /// squared length of the segment.
   static double to_edge(double x, double y, double ux, double uy, double length2) {
     const double along = std::clamp((x * ux + y * uy) / length2, 0.0, 1.0);
     const double dx = x - along * ux;

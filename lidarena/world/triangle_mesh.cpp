@@ -36,7 +36,7 @@ void TriangleMesh::paint(const Material& material) {
 
 namespace {
 
-/// Place of `material` among those of `mesh`, which gets it if it is not yet there.
+/// Index of `material` in the palette of `mesh`; it is added if it is not there.
 std::uint8_t material_id(TriangleMesh& mesh, const Material& material) {
   const auto found = std::ranges::find(mesh.palette, material);
   const auto id = static_cast<std::size_t>(found - mesh.palette.begin());
@@ -45,7 +45,7 @@ std::uint8_t material_id(TriangleMesh& mesh, const Material& material) {
   return static_cast<std::uint8_t>(id);
 }
 
-/// Makes the materials of `other` those of the triangles that `mesh` has beyond `first`.
+/// Assigns the materials of `other` to the triangles of `mesh` from index `first` on.
 void append_materials(TriangleMesh& mesh, const TriangleMesh& other, std::size_t first) {
   if (mesh.material_ids.empty() && other.material_ids.empty()) return;  // all are the default
   if (mesh.material_ids.empty() && first > 0) {
@@ -76,7 +76,8 @@ void TriangleMesh::append(const TriangleMesh& other, const Pose& placement, cons
 
 namespace {
 
-/// A triangle whose height is within the rounding of its coordinates has no direction.
+/// True when the triangle's height is within the rounding of its coordinates: its normal is then
+/// undefined.
 bool is_degenerate(const TriangleMesh& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   const Vector3d &va = mesh.vertices[a], &vb = mesh.vertices[b], &vc = mesh.vertices[c];
@@ -95,15 +96,15 @@ void check_materials(const TriangleMesh& mesh, const std::string& name) {
   }
   const std::size_t largest = *std::ranges::max_element(mesh.material_ids);
   if (largest >= mesh.palette.size()) {
-    throw InputError(name, "names material " + std::to_string(largest) + " of " +
-                               std::to_string(mesh.palette.size()));
+    throw InputError(name, "has material index " + std::to_string(largest) +
+                               ", number of materials: " + std::to_string(mesh.palette.size()));
   }
 }
 
 }  // namespace
 
 std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
-  if (mesh.empty()) throw InputError(name, "has no faces", "a surface of triangles is needed");
+  if (mesh.empty()) throw InputError(name, "has no faces", "use a mesh of triangles");
   for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
     if (!mesh.vertices[i].allFinite()) {
       throw InputError(name, "vertex " + std::to_string(i) + " is not finite");
@@ -112,9 +113,9 @@ std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
     const std::uint32_t largest = *std::ranges::max_element(mesh.triangles[i]);
     if (largest >= mesh.vertices.size()) {
-      throw InputError(name, "triangle " + std::to_string(i) + " names vertex " +
-                                 std::to_string(largest) + " of " +
-                                 std::to_string(mesh.vertices.size()));
+      throw InputError(name, "triangle " + std::to_string(i) + " has vertex index " +
+                                 std::to_string(largest) +
+                                 ", number of vertices: " + std::to_string(mesh.vertices.size()));
     }
   }
   check_materials(mesh, name);
@@ -128,8 +129,8 @@ std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name) {
     if (!mesh.material_ids.empty()) kept_materials.push_back(mesh.material_ids[i]);
   }
   if (kept.empty()) {
-    throw InputError(name, "has no faces but degenerate ones (no area)",
-                     "a surface of triangles is needed");
+    throw InputError(name, "has only degenerate faces (zero area)",
+                     "use a mesh of triangles with an area");
   }
   const std::size_t dropped = mesh.triangles.size() - kept.size();
   mesh.triangles = std::move(kept);
@@ -156,7 +157,7 @@ Vector3d closest_point_on_triangle(const Vector3d& p, const Vector3d& a, const V
   };
   const double normal2 = normal.squaredNorm();
   if (normal2 > 0.0 && left_of(a, b) && left_of(b, c) && left_of(c, a)) {
-    return p - normal * (normal.dot(p - a) / normal2);  // above the face
+    return p - normal * (normal.dot(p - a) / normal2);  // the projection lies inside the triangle
   }
   Vector3d best = closest_point_on_segment(p, a, b);
   for (const Vector3d& candidate :

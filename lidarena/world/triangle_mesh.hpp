@@ -16,17 +16,17 @@ namespace lidarena {
 /// Indices of a triangle's corners.
 using Triangle = std::array<std::uint32_t, 3>;
 
-/// A triangle soup in meters, world frame, z up. Double precision, so that a mesh far from the
-/// origin loses nothing; World re-centers it for the single-precision ray caster.
+/// A triangle soup in meters, world frame, z up. In double precision, so that a mesh far from the
+/// origin keeps its accuracy; World re-centers it for the single-precision ray caster.
 struct TriangleMesh {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<Triangle> triangles;
   std::vector<Material> palette;  ///< materials in use, at most 256
   std::vector<std::uint8_t>
-      material_ids;  ///< into `palette`, one a triangle; empty: all Material{}
+      material_ids;  ///< indices into `palette`, one per triangle; empty: all Material{}
 
   bool empty() const { return triangles.empty(); }
-  /// Box around the vertices that triangles use.
+  /// Bounding box of the vertices that triangles use.
   Eigen::AlignedBox3d bounds() const;
   /// Sum of the triangles' areas, m^2.
   double area() const;
@@ -35,22 +35,22 @@ struct TriangleMesh {
   const Material& material(std::size_t triangle) const {
     return material_ids.empty() ? materials::kDefault : palette[material_ids[triangle]];
   }
-  /// Makes the whole surface of one material.
+  /// Assigns one material to the whole surface.
   void paint(const Material& material);
-  /// Adds a transformed copy of `other`: vertices become placement * (scale .* v). A scale that
-  /// mirrors turns the triangles round, so that outward normals stay outward. Throws Error when
-  /// there come to be more than 256 materials.
+  /// Adds a transformed copy of `other`: vertices become placement * (scale .* v). If the scale
+  /// mirrors, the triangles' winding is reversed so that outward normals stay outward. Throws Error
+  /// when the result has more than 256 materials.
   void append(const TriangleMesh& other, const Pose& placement = Pose::Identity(),
               const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
 };
 
 /// Throws InputError (place `name`) when the mesh has no faces, an index out of range, a vertex
-/// that is not finite, or materials that do not fit its triangles. Drops degenerate triangles (no
-/// area beyond the rounding of their coordinates) and returns how many; a mesh of nothing else has
-/// no faces.
+/// that is not finite, or materials that do not match its triangles. Removes degenerate triangles
+/// (area zero within the rounding of their coordinates) and returns their number; a mesh of
+/// degenerate triangles only counts as one without faces.
 std::size_t clean_mesh(TriangleMesh& mesh, const std::string& name);
 
-/// Makes vertices with equal coordinates one, in order of first use; drops those no triangle uses.
+/// Merges vertices with equal coordinates, in order of first use; removes unused vertices.
 void merge_vertices(TriangleMesh& mesh);
 
 /// The point of triangle abc nearest to p.

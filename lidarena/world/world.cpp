@@ -36,7 +36,7 @@ std::unique_ptr<MeshTree> make_tree(RayCaster caster, const TriangleMesh& mesh,
 #endif
 }
 
-/// The side of a face that a ray meets.
+/// The normal, oriented towards the origin of the ray.
 Vector3f towards(const Ray& ray, const Vector3f& normal) {
   return normal.dot(ray.direction) > 0.0F ? Vector3f(-normal) : normal;
 }
@@ -48,9 +48,9 @@ std::span<const RayCaster> ray_casters() { return kRayCasters; }
 struct World::Impl : TriangleTree {
   TriangleMesh mesh;
   Vector3d center;
-  std::vector<Vector3f> normals;   ///< unit, one a triangle
+  std::vector<Vector3f> normals;   ///< unit, one per triangle
   double half_extent;              ///< largest coordinate of the re-centered mesh
-  double typical_edge;             ///< m, of a square of a triangle's mean area
+  double typical_edge;             ///< m, edge of a square with the triangles' mean area
   std::unique_ptr<MeshTree> tree;  ///< may refer to `mesh`
 
   ClosestPoint nearest(const Vector3d& point, double max_distance,
@@ -86,13 +86,13 @@ const Material& World::material(std::uint32_t triangle) const {
 
 void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                  RayOrder order) const {
-  constexpr std::size_t kBlock = 64;  // rays; their hits are still at hand when normals are sought
+  constexpr std::size_t kBlock = 64;  // rays; their hits stay cached until normals are looked up
   const auto& normals = impl_->normals;
   for (std::size_t first = 0; first < rays.size(); first += kBlock) {
     const auto part = rays.subspan(first, std::min(kBlock, rays.size() - first));
     const auto found = hits.subspan(first, part.size());
     impl_->tree->cast(part, max_range, found, order);
-    for (const Hit& hit : found) {  // normals lie far apart in memory
+    for (const Hit& hit : found) {  // the normals are scattered in memory
       if (hit.valid()) __builtin_prefetch(&normals[hit.triangle]);
     }
     for (std::size_t i = 0; i < part.size(); ++i) {
@@ -113,7 +113,7 @@ bool World::visible(const Vector3d& a, const Vector3d& b) const {
 
 namespace {
 
-/// The best so far, and what it takes to compare: exact distances to the double-precision mesh.
+/// Finds the nearest triangle by exact distances to the double-precision mesh.
 class Nearest : public TriangleVisitor {
  public:
   Nearest(const TriangleMesh& mesh, const Vector3d& point, double max_distance)
@@ -122,7 +122,7 @@ class Nearest : public TriangleVisitor {
         distance_(max_distance),
         distance2_(max_distance * max_distance) {}
 
-  /// Equal distances go to the lower index, whatever order the tree is walked in.
+  /// Of equal distances the lower index is chosen, independent of the order of the visits.
   double visit(std::uint32_t triangle) override {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
@@ -146,7 +146,7 @@ class Nearest : public TriangleVisitor {
   ClosestPoint best_;
 };
 
-/// All triangles within a radius, until there are too many.
+/// Collects all triangles within a radius; stops when there are more than `limit`.
 class Within : public TriangleVisitor {
  public:
   Within(const TriangleMesh& mesh, const Vector3d& center, double radius, std::size_t limit,
@@ -154,7 +154,7 @@ class Within : public TriangleVisitor {
       : mesh_(mesh), center_(center), radius_(radius), limit_(limit), found_(found) {}
 
   double visit(std::uint32_t triangle) override {
-    if (found_.size() > limit_) return 0.0;  // the rest of the tree does not matter
+    if (found_.size() > limit_) return 0.0;  // the rest of the tree need not be searched
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
     const Vector3d nearest = closest_point_on_triangle(center_, v[a], v[b], v[c]);
@@ -196,8 +196,8 @@ ClosestPoint World::closest_point(const Vector3d& point, double max_distance) co
 
 void World::closest_points(std::span<const Vector3d> points, double max_distance,
                            std::span<ClosestPoint> out, const Parallel& parallel) const {
-  constexpr std::size_t kBlock = 2048;  // points; a block begins without a first guess
-  constexpr double kEdgesAcross = 2.0;  // widest group, see group_search.hpp
+  constexpr std::size_t kBlock = 2048;  // points; a block starts without a guess
+  constexpr double kEdgesAcross = 2.0;  // maximum size of a group, see group_search.hpp
   const double group_size = kEdgesAcross * impl_->typical_edge;
   parallel.for_blocks(points.size(), kBlock, [&](std::size_t begin, std::size_t end) {
     GroupSearch(impl_->mesh, *impl_, group_size, max_distance)

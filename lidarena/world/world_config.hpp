@@ -23,7 +23,7 @@ struct EnumNames<WorldKind> {
       std::pair{"mesh", WorldKind::kMesh}, std::pair{"sdf", WorldKind::kSdf}};
 };
 
-/// A file of configs/worlds. Each kind has its own keys; those of another kind are refused.
+/// A world file (see configs/worlds). Each kind has its own keys; keys of another kind are errors.
 struct WorldConfig {
   WorldKind kind = WorldKind::kMesh;
   std::uint64_t seed = 1;
@@ -38,16 +38,16 @@ struct WorldConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("kind", self.kind, "", "house, cave: procedural; mesh, sdf: from a file");
-    v("seed", self.seed, "", "of a procedural world");
+    v("seed", self.seed, "", "seed of a procedural world");
     v("house", self.house, "", "parameters of kind house");
     v("cave", self.cave, "", "parameters of kind cave");
-    v("file", self.file, "", "the mesh or SDF file, relative to this one");
-    v("up_axis", self.up_axis, "", "of a mesh: file (as its format says), y or z");
-    v("shapes", self.shapes, "", "of an SDF world: visual or collision");
+    v("file", self.file, "", "the mesh or SDF file, relative to this file");
+    v("up_axis", self.up_axis, "", "up axis of a mesh: file (as specified by its format), y or z");
+    v("shapes", self.shapes, "", "shapes to load from an SDF world: visual or collision");
     v("model_paths", self.model_paths, "",
-      "further folders that may hold model://NAME, relative to this file");
+      "additional folders to search for model://NAME, relative to this file");
     v("allow_missing", self.allow_missing, "",
-      "warn of models and meshes that are not there, and go on without them");
+      "warn about missing models and meshes and load the world without them, instead of failing");
   }
 };
 

@@ -9,7 +9,7 @@
 
 namespace lidarena {
 
-/// A world before its ray caster is built: the mesh, and ways to fly where the maker knows them.
+/// A world without its ray caster: the mesh, and flight routes if its generator provides them.
 struct WorldModel {
   std::string name;
   TriangleMesh mesh;

@@ -12,9 +12,9 @@
     print(lidarena.evaluate(result.trajectory, flight.sample(result.trajectory.stamps)))
 
 Times are integer nanoseconds, lengths meters, angles radians, poses 4x4 matrices named
-a_from_b. Arrays are views without copies where the documentation says "a view"; they are read-only
-and keep their owner alive. Long calls release the GIL. What is wrong with an input is an
-InputError (a ValueError) that names place and remedy; messages go to logging.getLogger("lidarena").
+a_from_b. Arrays are views, not copies, where the documentation says "a view"; they are read-only
+and keep their owner alive. Long calls release the GIL. Bad input raises InputError (a ValueError),
+which names place and remedy; messages go to logging.getLogger("lidarena").
 """
 import os as _os
 import pathlib as _pathlib
@@ -31,7 +31,7 @@ from ._core import (  # noqa: F401
 
 
 def _find_configs():
-    """$LIDARENA_CONFIGS, else configs/ in this package, else share/lidarena/configs above it."""
+    """$LIDARENA_CONFIGS, configs/ in this package, or share/lidarena/configs in a parent folder."""
     here = _pathlib.Path(__file__).parent
     candidates = [here / "configs", *(up / "share/lidarena/configs" for up in here.parents)]
     if "LIDARENA_CONFIGS" in _os.environ:
@@ -39,7 +39,7 @@ def _find_configs():
     for folder in candidates:
         if (folder / "worlds").is_dir():
             return ConfigFolder(folder)
-    raise InputError("lidarena: no folder configs/ beside the package; set LIDARENA_CONFIGS")
+    raise InputError("lidarena: no folder configs/ found for the package; set LIDARENA_CONFIGS")
 
 
 #: Named worlds, flights, sensors, odometry, studies; assign another ConfigFolder to change it.
@@ -57,22 +57,22 @@ def matrix(pose):
 
 
 def load_world(name_or_file, seed=None):
-    """A world of configs/worlds by its name, or any mesh, SDF or YAML file."""
+    """Loads a world of configs/worlds by its name, or any mesh, SDF or YAML file."""
     return _core.load_world_file(configs.resolve("worlds", str(name_or_file)), seed)
 
 
 def make_flight(name_or_file, world):
-    """A flight of configs/flights by its name, a YAML file, or a TUM trajectory to replay."""
+    """Makes a flight of configs/flights by its name, from a YAML file, or from a TUM trajectory."""
     return _core.make_flight_file(configs.resolve("flights", str(name_or_file)), world)
 
 
 def load_sensor(name_or_file):
-    """A sensor of configs/sensors by its name, or a YAML file."""
+    """Loads a sensor of configs/sensors by its name, or a YAML file."""
     return _core.load_sensor_file(configs.resolve("sensors", str(name_or_file)))
 
 
 def simulate_dataset(world, flight, sensors, out, **options):
-    """Flies and writes a dataset folder, as `lidarena simulate` does; names or files.
+    """Simulates a flight into a dataset folder, as `lidarena simulate` does; takes names or files.
 
     Options: seed, seconds, noise, mode, truth, data, format, dialect, threads.
     """

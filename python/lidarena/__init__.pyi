@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Types of the module; tests/test_stubs.py holds them against what there is.
+# Types of the module; tests/test_stubs.py compares them with the module.
 import os
 import pathlib
 from typing import Any, Dict, Iterable, Iterator, List, Mapping, Optional, Sequence, Tuple, Union

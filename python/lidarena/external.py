@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Lets an odometry written in Python stand in a study, as a program of its own.
+"""Runs an odometry written in Python as an external program of a study.
 
     # my_odometry.py
     import lidarena, lidarena.external
@@ -16,7 +16,7 @@
       - {name: mine, command: python3 my_odometry.py {input} {output}, pose_of: body}
     algorithms: [kiss_icp, mine]
 
-It gets the recording alone: one LiDAR and its IMU, no truth.
+The program gets only the recording of one LiDAR and its IMU, not the truth.
 """
 import pathlib
 import sys
@@ -27,12 +27,12 @@ import lidarena
 def main(make, arguments=None):
     """Runs make(rig) over the recording and writes trajectory.tum and map.ply.
 
-    `arguments` are [INPUT, OUTPUT], the command line's where not given. Exits 1 when the estimate
-    diverged, 2 on wrong usage.
+    `arguments` are [INPUT, OUTPUT]; default: the command line's. Exits with 1 if the estimate
+    diverged, with 2 on wrong usage.
     """
     arguments = sys.argv[1:] if arguments is None else arguments
     if len(arguments) != 2:
-        print("usage: INPUT OUTPUT, as a study's {input} {output}", file=sys.stderr)
+        print("usage: INPUT OUTPUT (in a study: {input} {output})", file=sys.stderr)
         sys.exit(2)
     source, output = map(pathlib.Path, arguments)
     dataset = lidarena.open_dataset(source)

@@ -24,7 +24,7 @@ py::dtype point_type() {
                     sizeof(Point));
 }
 
-/// A structured array of point_type(), or (N, 3) positions alone.
+/// Points from a structured array with the fields of point_type(), or from (N, 3) positions.
 std::vector<Point> points_of(const py::array& array) {
   if (!array.dtype().attr("names").is_none()) {
     const py::array rows = array.attr("astype")(point_type());
@@ -33,7 +33,7 @@ std::vector<Point> points_of(const py::array& array) {
     return {begin, begin + packed.size()};
   }
   const auto positions = Array3f::ensure(array);
-  if (!positions) throw InputError("points", "are no numbers");
+  if (!positions) throw InputError("points", "are not numbers");
   std::vector<Point> points;
   for (const Eigen::Vector3f& p : rows_of(positions, "points")) points.emplace_back().position = p;
   return points;
@@ -52,7 +52,7 @@ Trajectory make_trajectory(const Stamps& stamps, const Matrices& poses) {
   return Trajectory(std::move(list));
 }
 
-/// A strided look at one member of every pose.
+/// A strided view of one member of every pose.
 template <class Offset>
 py::array look(const py::object& self, std::vector<py::ssize_t> shape,
                std::vector<py::ssize_t> strides, const py::dtype& type, Offset offset) {
@@ -110,7 +110,7 @@ void bind_trajectory(py::module_& m) {
           },
           py::arg("file"), py::arg("frames") = "world_from_body", "Writes a TUM file.");
   m.def("read_trajectory", &read_trajectory, py::arg("file"), py::arg("rate_hz") = 10.0,
-        "Reads TUM, KITTI poses or EuRoC csv, told apart by content.");
+        "Reads TUM, KITTI poses or EuRoC csv; the format is detected from the content.");
 }
 
 void bind_measurements(py::module_& m) {
@@ -158,7 +158,7 @@ void bind_measurements(py::module_& m) {
 void bind_base(py::module_& m) {
   static py::exception<Error> error(m, "Error", PyExc_RuntimeError);
   static py::exception<InputError> input_error(m, "InputError", PyExc_ValueError);
-  error.attr("__doc__") = "The work could not be done.";
+  error.attr("__doc__") = "A failure that is not bad input.";
   input_error.attr("__doc__") = "Bad input: place, what is wrong, remedy.";
   py::register_exception_translator([](std::exception_ptr p) {
     try {
@@ -171,8 +171,8 @@ void bind_base(py::module_& m) {
   });
   bind_trajectory(m);
   bind_measurements(m);
-  bind_config<LidarInfo>(m, "LidarInfo", "What an estimator may know of a LiDAR.");
-  bind_config<ImuInfo>(m, "ImuInfo", "What an estimator may know of an IMU.");
+  bind_config<LidarInfo>(m, "LidarInfo", "Data of a LiDAR that an estimator gets.");
+  bind_config<ImuInfo>(m, "ImuInfo", "Data of an IMU that an estimator gets.");
   bind_config<Rig>(m, "Rig", "All sensors on one body: lists of lidars and imus, as dicts.");
 }
 

@@ -46,7 +46,7 @@ Pose pose_of(const Eigen::Matrix4d& matrix) {
                      (r * r.transpose() - Eigen::Matrix3d::Identity()).norm() < kTolerance &&
                      r.determinant() > 0.0;
   if (!rigid) {
-    throw InputError("pose", "is no rigid motion",
+    throw InputError("pose", "is not a rigid transform",
                      "give a 4x4 matrix [R t; 0 0 0 1] with R orthonormal to 1e-6");
   }
   return make_pose(r, matrix.topRightCorner<3, 1>());

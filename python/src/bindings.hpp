@@ -15,8 +15,9 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/time.hpp"
 
-/// What all parts of the Python module share: views of our memory as NumPy arrays, JSON as Python's
-/// own values, poses as 4x4 matrices, times as integer nanoseconds, messages to Python's logging.
+/// Helpers of all parts of the Python module: C++ memory as NumPy arrays without copies, JSON as
+/// Python values, poses as 4x4 matrices, times as integer nanoseconds, messages to Python's
+/// logging.
 namespace lidarena::python {
 
 namespace py = pybind11;
@@ -24,17 +25,17 @@ namespace py = pybind11;
 using Array3d = py::array_t<double, py::array::c_style | py::array::forcecast>;
 using Array3f = py::array_t<float, py::array::c_style | py::array::forcecast>;
 
-/// A read-only array that looks at `data`, which lives as long as `owner`.
+/// A read-only array on `data`; keeps `owner`, which owns the data, alive.
 py::array view(const py::dtype& type, std::vector<py::ssize_t> shape,
                std::vector<py::ssize_t> strides, const void* data, const py::object& owner);
 
-/// Rows of a structured or plain type, `owner` keeping them alive.
+/// A view of the elements of a vector as rows of a structured or plain type; keeps `owner` alive.
 template <class T>
 py::array view_rows(const std::vector<T>& rows, const py::dtype& type, const py::object& owner) {
   return view(type, {static_cast<py::ssize_t>(rows.size())}, {sizeof(T)}, rows.data(), owner);
 }
 
-/// A capsule that owns `value`, and the value's place within it.
+/// A capsule that owns `value`, and a pointer to the value in it.
 template <class T>
 std::pair<const T*, py::capsule> keep(T value) {
   auto* kept = new T(std::move(value));
@@ -48,7 +49,7 @@ py::array own_points(std::vector<Eigen::Vector3f> points);
 std::span<const Eigen::Vector3d> rows_of(const Array3d& array, const char* name);
 std::span<const Eigen::Vector3f> rows_of(const Array3f& array, const char* name);
 
-/// Throws InputError when the matrix is no rigid motion (to 1e-6).
+/// Throws InputError when the matrix is not a rigid transform (to 1e-6).
 Pose pose_of(const Eigen::Matrix4d& matrix);
 inline Eigen::Matrix4d matrix_of(const Pose& pose) { return pose.matrix(); }
 
@@ -61,18 +62,18 @@ struct Field {
 py::dtype structured(const std::vector<Field>& fields, std::size_t size);
 
 py::object to_python(const Json& json);
-/// Through Python's json module; NumPy's scalars and arrays are taken, too.
+/// Serializes with Python's json module; also takes NumPy scalars and arrays.
 std::string json_text(const py::handle& value);
 
-/// Messages go to logging.getLogger("lidarena"); Ctrl-C ends the work at the next progress.
+/// Messages go to logging.getLogger("lidarena"); Ctrl-C ends the work at the next progress report.
 class PythonLog : public LogSink {
  public:
   void message(LogLevel level, std::string_view text) override;
   void progress(std::string_view stage, double done, double total) override;
 };
 
-/// A configuration struct as a Python class: its fields, their units, limits and errors come from
-/// the struct's own list. Values of fields are plain (numbers, text, lists, dicts).
+/// A configuration struct as a Python class; its fields, units, limits and errors come from the
+/// struct's own list. Values of fields are plain (numbers, text, lists, dicts).
 template <ConfigStruct C>
 py::class_<C> bind_config(py::module_& m, const char* name, const char* doc) {
   py::class_<C> type(m, name, doc);
@@ -83,7 +84,8 @@ py::class_<C> bind_config(py::module_& m, const char* name, const char* doc) {
   }));
   type.def(
       "set", [](C& c, const std::string& assignment) { set_field(c, assignment); },
-      py::arg("assignment"), "Sets one field, also of a group: 'range_noise_m=0.03'.");
+      py::arg("assignment"),
+      "Sets one field, also a nested one, e.g. sensor.set('imu.rate_hz=100').");
   type.def(
       "to_dict", [](const C& c) { return to_python(to_json(c)); }, "All fields as plain values.");
   type.def_static(

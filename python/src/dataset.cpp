@@ -42,9 +42,10 @@ WriteOptions write_options(const std::string& format, const std::string& dialect
 }
 
 void bind_writer(py::module_& m) {
-  py::class_<DatasetWriter>(m, "DatasetWriter",
-                            "Writes a dataset folder, or a single .mcap or .bag; whole only once "
-                            "finished. As a context manager it finishes where nothing went wrong.")
+  py::class_<DatasetWriter>(
+      m, "DatasetWriter",
+      "Writes a dataset folder, or a single .mcap or .bag; valid only after "
+      "finish(). A context manager that calls finish() if nothing was raised.")
       .def(py::init([](const fs::path& path, const Rig& rig, const std::string& format,
                        const std::string& dialect) {
              return std::make_unique<DatasetWriter>(path, rig, write_options(format, dialect));
@@ -55,13 +56,14 @@ void bind_writer(py::module_& m) {
           [](DatasetWriter& w, const std::string& id, const py::object& data) {
             w.write(Event{id, measurement_of(data)});
           },
-          py::arg("sensor_id"), py::arg("data"), "In order of time; a scan after its IMU samples.")
+          py::arg("sensor_id"), py::arg("data"),
+          "Writes a measurement, in order of time; a scan after its IMU samples.")
       .def(
           "write_truth",
           [](DatasetWriter& w, std::int64_t stamp, const Eigen::Matrix4d& pose) {
             w.write_truth({Time{stamp}, pose_of(pose)});
           },
-          py::arg("stamp"), py::arg("pose"), "True pose of the body, in order of time.")
+          py::arg("stamp"), py::arg("pose"), "Writes a true pose of the body, in order of time.")
       .def("finish", &DatasetWriter::close)
       .def("__enter__", [](const py::object& self) { return self; })
       .def("__exit__",
@@ -131,10 +133,11 @@ Events::Events(const py::object& given) : source_(nullptr) {
 }
 
 void bind_dataset(py::module_& m) {
-  py::class_<EventSource>(m, "EventSource", "Measurements in order, once: iterate over it.")
+  py::class_<EventSource>(m, "EventSource", "Measurements in order; can be iterated over once.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &next_event);
-  py::class_<Dataset>(m, "Dataset", "What an estimator may see; iterate over its events, once.")
+  py::class_<Dataset>(m, "Dataset",
+                      "The data that an estimator gets; its events can be iterated over once.")
       .def_property_readonly("path", [](const Dataset& d) { return d.path; })
       .def_property_readonly("rig", [](const Dataset& d) { return d.rig; })
       .def_property_readonly("scan_count", [](const Dataset& d) { return d.scan_count; })
@@ -176,7 +179,7 @@ void bind_dataset(py::module_& m) {
         } else if (file.extension() == ".ply") {
           write_ply(file, cloud);
         } else {
-          throw InputError(file.string(), "has an unknown ending", "use .ply or .pcd");
+          throw InputError(file.string(), "has an unknown file extension", "use .ply or .pcd");
         }
       },
       py::arg("file"), py::arg("points"), "Writes positions as .ply or .pcd.");

@@ -15,7 +15,8 @@ namespace fs = std::filesystem;
 
 py::object evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const std::optional<Array3f>& map, const SimulatedWorld* world, int threads) {
-  if (map.has_value() != (world != nullptr)) throw InputError("map, world", "need each other");
+  if (map.has_value() != (world != nullptr))
+    throw InputError("map, world", "only one is given; give both or neither");
   RunFiles run;
   run.trajectory = run.live = estimate;
   if (map) {
@@ -73,10 +74,10 @@ void bind_evaluation(py::module_& m) {
       .def("resolve", &ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
   m.def("evaluate", &evaluate, py::arg("estimate"), py::arg("truth"), py::arg("map") = py::none(),
         py::arg("world") = nullptr, py::arg("threads") = 0,
-        "All metrics of anyone's trajectory, and of its map against a world, as metrics.json.");
+        "All metrics of a trajectory, and of its map against a world, as in metrics.json.");
   m.def("map_error", &map_error_of, py::arg("map"), py::arg("world"),
         py::arg("mesh_from_map") = py::none(), py::arg("threads") = 0,
-        "(figures, distance of each point to the mesh in m, float32, NaN where there is none).");
+        "(figures, distance of each point to the mesh: float32, m, NaN if there is none).");
   m.def("run_algorithm", &run_algorithm_on, py::arg("algorithm"), py::arg("dataset"),
         py::arg("out"), py::arg("preset") = "improved", py::arg("sensor") = "",
         py::arg("config_file") = "", py::arg("overrides") = std::vector<std::string>{},

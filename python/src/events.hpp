@@ -8,11 +8,11 @@
 
 namespace lidarena::python {
 
-/// (sensor id, ImuSample or Scan); stops a Python iteration at the end.
+/// The next event as (sensor id, ImuSample or Scan); raises StopIteration at the end.
 py::tuple next_event(EventSource& source);
 
-/// What Python hands in as a stream of events: an EventSource, a Dataset, or any iterable of
-/// (sensor id, ImuSample or Scan). Lives while the Python object does.
+/// A stream of events given by Python: an EventSource, a Dataset, or any iterable of (sensor id,
+/// ImuSample or Scan). The Python object must outlive it.
 class Events {
  public:
   explicit Events(const py::object& given);

@@ -19,10 +19,10 @@ ScanStatus status_of(const std::string& name) {
     if (name == to_string(status)) return status;
     known += std::string(known.empty() ? "" : ", ") + to_string(status);
   }
-  throw InputError("status", "'" + name + "' is none", "use one of: " + known);
+  throw InputError("status", "unknown status '" + name + "'", "use one of: " + known);
 }
 
-/// An odometry written in Python. Only register_scan is needed; the rest has these defaults.
+/// An odometry written in Python. Only register_scan is required; the other methods have defaults.
 class PythonOdometry : public Odometry {
  public:
   OdometryTraits traits() const override {
@@ -69,7 +69,7 @@ class PythonOdometry : public Odometry {
 };
 
 void bind_results(py::module_& m) {
-  py::class_<ScanResult>(m, "ScanResult", "What became of one scan.")
+  py::class_<ScanResult>(m, "ScanResult", "Result of one scan.")
       .def(py::init([](std::int64_t stamp, const Eigen::Matrix4d& pose, const std::string& status,
                        std::optional<Eigen::Matrix<double, 6, 6>> covariance,
                        std::map<std::string, double> counters) {
@@ -81,7 +81,7 @@ void bind_results(py::module_& m) {
            py::arg("counters") = std::map<std::string, double>{})
       .def_property_readonly(
           "stamp", [](const ScanResult& r) { return r.estimate.stamp.count(); },
-          "Instant that the pose holds for, ns")
+          "Instant that the pose refers to, ns")
       .def_property_readonly(
           "pose", [](const ScanResult& r) { return matrix_of(r.estimate.world_from_body); },
           "4x4 world_from_body")
@@ -90,7 +90,7 @@ void bind_results(py::module_& m) {
           "covariance", [](const ScanResult& r) { return r.covariance; },
           "6x6 of (translation, rotation), or None")
       .def_property_readonly("counters", [](const ScanResult& r) { return r.counters; });
-  py::class_<OdometryTraits>(m, "OdometryTraits", "What kind of method it is.")
+  py::class_<OdometryTraits>(m, "OdometryTraits", "Properties of an odometry.")
       .def(py::init([](bool needs_imu, bool revises_past, bool gravity_aligned) {
              return OdometryTraits{needs_imu, revises_past, gravity_aligned, false, "body"};
            }),
@@ -148,7 +148,7 @@ void bind_odometry(py::module_& m) {
   py::class_<Odometry, PythonOdometry>(
       m, "Odometry", py::dynamic_attr(),
       "A LiDAR(-inertial) odometry. Derive from it and define register_scan(scan) -> ScanResult, "
-      "and where there is need register_imu, finish, trajectory, map, memory, traits.")
+      "and where needed register_imu, finish, trajectory, map, memory, traits.")
       .def(py::init<>())
       .def("traits", &Odometry::traits)
       .def("register_imu", &Odometry::register_imu, py::arg("sample"),
@@ -156,30 +156,32 @@ void bind_odometry(py::module_& m) {
       .def("register_scan", &Odometry::register_scan, py::arg("scan"),
            py::call_guard<py::gil_scoped_release>())
       .def("finish", &Odometry::finish, py::call_guard<py::gil_scoped_release>())
-      .def("trajectory", &Odometry::trajectory, "Best estimate of everything so far.")
+      .def("trajectory", &Odometry::trajectory, "Best estimate of all poses so far.")
       .def(
           "map", [](const Odometry& o) { return own_points(o.map()); },
           "The method's own map, (N, 3) float32, world frame, m.")
-      .def("memory", &Odometry::memory, "Bytes held, by part.");
-  m.def("list_algorithms", &algorithms, "name, summary, presets and needs_imu of each.");
+      .def("memory", &Odometry::memory, "Memory in bytes, by part.");
+  m.def("list_algorithms", &algorithms, "Name, summary, presets and needs_imu of each algorithm.");
   m.def("make_odometry", &make, py::arg("rig"), py::arg("algorithm"), py::arg("lidar_id") = "",
         py::arg("preset") = "improved", py::arg("config_file") = "",
         py::arg("overrides") = std::vector<std::string>{}, py::arg("threads") = 0,
-        "Builds an algorithm by its name; `overrides` are 'key=value'. Its whole configuration "
-        "is the attribute `config`.");
-  py::class_<RunResult>(m, "RunResult", "What came out of a run.")
+        "Makes an algorithm by its name; `overrides` are 'key=value'. Its complete "
+        "configuration is the attribute `config`.");
+  py::class_<RunResult>(m, "RunResult", "Results of a run.")
       .def_property_readonly(
           "trajectory", [](const RunResult& r) { return r.files.trajectory; },
-          "Final, after finish()")
+          "Final trajectory, after finish()")
       .def_property_readonly(
-          "live", [](const RunResult& r) { return r.files.live; }, "As known at each scan")
+          "live", [](const RunResult& r) { return r.files.live; },
+          "Poses as estimated right after each scan")
       .def_property_readonly(
           "map", [](const RunResult& r) { return own_points(r.files.map.points); },
-          "(N, 3) float32: what the method publishes")
+          "Map published by the method, (N, 3) float32")
       .def_property_readonly("summary", [](const RunResult& r) { return summary_of(r.summary); });
   m.def("run", &run_events, py::arg("odometry"), py::arg("events"), py::arg("lidar_id") = "",
         py::arg("imu_id") = "",
-        "Feeds events (a Dataset, an EventSource, or any iterable of (sensor id, measurement)).");
+        "Runs an odometry on events: a Dataset, an EventSource, or an iterable of "
+        "(sensor id, measurement).");
 }
 
 }  // namespace lidarena::python

@@ -71,7 +71,7 @@ void bind_flight(py::module_& m) {
           "m/s^2, world, without gravity")
       .def_property_readonly(
           "angular_rate", [](const Motion& s) { return s.angular_rate_body; }, "rad/s, body");
-  py::class_<Flight>(m, "Flight", "Where the body is at any instant.")
+  py::class_<Flight>(m, "Flight", "Motion of the body as a function of time.")
       .def_property_readonly(
           "duration", [](const Flight& f) { return f.duration().count(); }, "ns")
       .def(
@@ -98,7 +98,7 @@ void bind_sensor(py::module_& m) {
   bind_config<SensorConfig>(m, "Sensor", "A LiDAR, its mounting, its noise and its IMU.");
   m.def("load_sensor_file", &load_sensor, py::arg("file"));
   m.def("make_rig", &make_rig, py::arg("sensors"), "The rig of these sensors on one body.");
-  py::class_<Lidar>(m, "Lidar", "A LiDAR flown through a world.")
+  py::class_<Lidar>(m, "Lidar", "A simulated LiDAR that moves through a world.")
       .def(py::init([](const SensorConfig& sensor, std::uint64_t seed, bool noise) {
              return std::make_unique<Lidar>(sensor, make_pattern(sensor), sensor.name, seed, noise);
            }),
@@ -110,7 +110,7 @@ void bind_sensor(py::module_& m) {
            "Shots of a scan in firing order: structured direction, dt_ns, ring, origin.")
       .def("measure", &measure, py::arg("world"), py::arg("flight"), py::arg("index"),
            py::arg("truth") = false, py::arg("threads") = 0,
-           "Scan `index`; with truth also what each point hit: (Scan, structured array).");
+           "Scan `index`; with truth: (Scan, structured array of what each point hit).");
   m.def(
       "simulate",
       [](const SimulatedWorld& world, const Flight& flight,
@@ -125,7 +125,7 @@ void bind_sensor(py::module_& m) {
       py::arg("world"), py::arg("flight"), py::arg("sensors"), py::arg("seed") = 1,
       py::arg("seconds") = 0.0, py::arg("noise") = true, py::arg("threads") = 0,
       py::keep_alive<0, 1>(), py::keep_alive<0, 2>(),
-      "The measurements of a flight, made as they are asked for: (sensor id, Scan or ImuSample).");
+      "Simulates a flight; yields (sensor id, Scan or ImuSample), each when it is requested.");
 }
 
 }  // namespace lidarena::python

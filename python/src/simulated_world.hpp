@@ -6,7 +6,7 @@
 
 namespace lidarena::python {
 
-/// A world with the routes that its maker knows (the model's mesh is moved into `world`).
+/// A world with its model's routes (the model's mesh is moved into `world`).
 struct SimulatedWorld {
   explicit SimulatedWorld(WorldModel m)
       : model(std::move(m)), world(std::move(model.mesh), model.name) {}

@@ -46,7 +46,7 @@ py::array cast(const SimulatedWorld& self, const Array3d& origins, const Array3f
   const auto from = rows_of(origins, "origins");
   const auto to = rows_of(directions, "directions");
   if (from.size() != to.size() && from.size() != 1) {
-    throw InputError("origins", "are neither one nor as many as the directions");
+    throw InputError("origins", "must be one, or as many as the directions");
   }
   std::vector<Hit> hits(to.size());
   {
@@ -79,7 +79,8 @@ py::array closest_points(const SimulatedWorld& self, const Array3d& points, doub
 }  // namespace
 
 void bind_world(py::module_& m) {
-  py::class_<SimulatedWorld>(m, "World", "A triangle mesh and what answers questions about it.")
+  py::class_<SimulatedWorld>(m, "World",
+                             "A triangle mesh with ray casting and nearest-point queries.")
       .def(py::init(&make_world), py::arg("vertices"), py::arg("triangles"),
            py::arg("name") = "mesh")
       .def_property_readonly("name", [](const SimulatedWorld& w) { return w.model.name; })
@@ -101,7 +102,7 @@ void bind_world(py::module_& m) {
           "(M, 3) uint32, indices of vertices; a view")
       .def("cast", &cast, py::arg("origins"), py::arg("directions"),
            py::arg("max_range") = kInfinity, py::arg("threads") = 0,
-           "First hit of each ray: structured range (m, inf for none), triangle, normal.")
+           "First hit of each ray: structured range (m, inf if none), triangle, normal.")
       .def("closest_points", &closest_points, py::arg("points"),
            py::arg("max_distance") = kInfinity, py::arg("threads") = 0,
            "Nearest surface point of each point: structured point, distance, triangle.")
@@ -110,7 +111,7 @@ void bind_world(py::module_& m) {
           [](const SimulatedWorld& w, const std::filesystem::path& file) {
             save_world(file, w.world.mesh());
           },
-          py::arg("file"), "Writes .ply, .obj or .sdf, by the ending.");
+          py::arg("file"), "Writes .ply, .obj or .sdf, by the file extension.");
   m.def(
       "load_world_file",
       [](const std::filesystem::path& file, std::optional<std::uint64_t> seed) {

@@ -6,7 +6,7 @@ import lidarena
 
 
 def room_mesh(size=(8.0, 6.0, 3.0)):
-    """A box around the origin's upper side, with a pillar, seen from inside."""
+    """A box centered above the origin, floor at z = 0, with a pillar inside; seen from inside."""
     def box(low, high):
         corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1])
                             for z in (low[2], high[2])], float)
@@ -25,7 +25,7 @@ def room():
 
 @pytest.fixture(scope="session")
 def flight():
-    """2 s on a circle arc at 1.5 m height, looking along x."""
+    """2 s on a circular arc at 1.5 m height, facing along x."""
     stamps = np.arange(0, 2_000_000_001, 50_000_000)
     angles = 0.4 * stamps * 1e-9
     poses = np.tile(np.eye(4), (len(stamps), 1, 1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Our odometries and a Python one over the same events; files written and read; scores."""
+"""C++ odometries and one in Python on the same events; files written and read back; scores."""
 import os
 import pathlib
 import subprocess
@@ -13,7 +13,7 @@ import lidarena
 
 
 class Knowing(lidarena.Odometry):
-    """Answers with poses it was given: what it says must come out unchanged."""
+    """Returns the true poses, which must come out unchanged."""
 
     def __init__(self, flight):
         super().__init__()
@@ -89,7 +89,7 @@ def test_what_python_raises_comes_out_of_the_run(recorded):
 
     with pytest.raises(KeyError, match="my own fault"):
         lidarena.run(Failing(), lidarena.open_dataset(recorded))
-    with pytest.raises(lidarena.InputError, match="is no rigid motion"):
+    with pytest.raises(lidarena.InputError, match="is not a rigid transform"):
         lidarena.ScanResult(0, np.ones((4, 4)))
     with pytest.raises(lidarena.InputError, match="use one of: tracked"):
         lidarena.ScanResult(0, np.eye(4), status="fine")
@@ -102,7 +102,7 @@ def test_our_odometry_follows_the_flight(recorded, flight):
     result = lidarena.run(odometry, dataset)
     truth = flight.sample(result.trajectory.stamps)
     moved = result.trajectory.positions[-1] - result.trajectory.positions[0]
-    # The flight begins at 0.4 m/s, which no odometry can know of its first scan of 0.1 s: 4 cm.
+    # The flight begins at 0.4 m/s, which no odometry can know in its first scan of 0.1 s: 4 cm.
     # The rest is the range noise of 2 cm over thousands of points.
     np.testing.assert_allclose(moved, truth.positions[-1] - truth.positions[0], atol=0.06)
     assert len(result.map) > 1000
@@ -141,7 +141,7 @@ def test_a_written_pose_becomes_its_matrix():
     q = np.array([0.1, -0.2, 0.3, 0.9])
     rotation = lidarena.matrix([0, 0, 0, *q])[:3, :3]
     np.testing.assert_allclose(rotation @ rotation.T, np.eye(3), atol=1e-14)
-    np.testing.assert_allclose(rotation @ q[:3], q[:3], atol=1e-15)  # its axis stays
+    np.testing.assert_allclose(rotation @ q[:3], q[:3], atol=1e-15)  # the axis is unchanged
 
 
 def test_map_errors_are_distances_to_the_mesh(room, tmp_path):
@@ -155,7 +155,7 @@ def test_map_errors_are_distances_to_the_mesh(room, tmp_path):
 
 
 def test_a_python_odometry_stands_in_a_study(tmp_path, room, flight):
-    """Beside one of ours, with the program's own study verb."""
+    """Together with a C++ odometry, with the command `lidarena study`."""
     program = os.environ.get("LIDARENA_PROGRAM")
     if not program:
         pytest.skip("LIDARENA_PROGRAM is not set")

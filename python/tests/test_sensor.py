@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Scans of a known room, their layout, and that the same seed gives the same bytes."""
+"""Scans of a known room, their layout, and identical bytes for the same seed."""
 import numpy as np
 import pytest
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""The type stubs name what there is, no more and no less."""
+"""The type stubs declare exactly the public names of the module."""
 import ast
 import importlib
 import pathlib

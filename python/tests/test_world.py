@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""Rays and nearest points against closed forms; views that copy nothing."""
+"""Rays and nearest points against closed forms; views without copies."""
 import gc
 import threading
 import time
@@ -72,4 +72,4 @@ def test_other_threads_go_on_during_a_long_call(room):
     stop.set()
     thread.join()
     assert np.isfinite(hits["range"]).all()
-    assert during > 20  # held, it would be 0 or 1
+    assert during > 20  # with the GIL held it would be 0 or 1

@@ -12,8 +12,7 @@ namespace lidarena {
 enum class Color { kRed, kBlue };
 template <>
 struct EnumNames<Color> {
-  static constexpr std::array names{std::pair{"red", Color::kRed},
-                                    std::pair{"blue", Color::kBlue}};
+  static constexpr std::array names{std::pair{"red", Color::kRed}, std::pair{"blue", Color::kBlue}};
 };
 
 namespace {
@@ -99,7 +98,7 @@ TEST(Config, WrongTypesRangesChoicesAndDuplicatesAreErrorsWithTheirPlace) {
   EXPECT_THAT(error_of("inner: {count: 2.5}"), HasSubstr("not an integer"));
   EXPECT_THAT(error_of("inner: 5"), HasSubstr("a map"));
   EXPECT_THAT(error_of("threshold: .nan"), HasSubstr("not a finite number"));
-  EXPECT_THAT(error_of("deskew: maybe"), HasSubstr("not a truth value"));
+  EXPECT_THAT(error_of("deskew: maybe"), HasSubstr("not a boolean"));
   EXPECT_THAT(error_of("color: green"), HasSubstr("use one of red, blue"));
   EXPECT_THAT(error_of("offset: [1, 2]"), HasSubstr("2 numbers"));
   EXPECT_THAT(error_of("pose: [0,0,0, 0,0,0,2]"), HasSubstr("norm 2"));

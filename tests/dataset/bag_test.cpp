@@ -36,7 +36,7 @@ std::string text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// 60 texts of seeded length on two topics.
+/// 60 strings of random (seeded) length and content on two topics.
 std::vector<Copy> sample_messages() {
   std::vector<Copy> messages;
   SequentialRandom random(1);
@@ -64,7 +64,7 @@ void write_sample(const fs::path& file, BagCompression compression,
   finish(out);
 }
 
-/// What can be read, and the complaint that ended the reading, if any.
+/// The messages that can be read, and the error that ended the reading, if any.
 struct Reading {
   std::vector<Copy> messages;
   std::string error;
@@ -130,8 +130,8 @@ TEST_P(BagFiles, TheIndexTellsWhatAReadingFinds) {
   EXPECT_EQ(reader.info().start, info.start);
 }
 
-// What the format asks for: the bag header takes 4096 bytes behind its lengths, so that the first
-// chunk starts at byte 4117.
+// As the format requires: header and padding of the bag header record take 4096 bytes, in addition
+// to their two lengths, so that the first chunk starts at byte 4117.
 TEST_P(BagFiles, StartsAsTheFormatSays) {
   write_sample(file_, GetParam());
   const std::string bytes = file_text(file_);
@@ -140,7 +140,7 @@ TEST_P(BagFiles, StartsAsTheFormatSays) {
   std::memcpy(&header, bytes.data() + 13, sizeof header);
   const bag::Fields fields(std::as_bytes(std::span(bytes)).subspan(17, header));
   EXPECT_EQ(fields.op(), bag::Op::kBagHeader);
-  EXPECT_EQ(fields.number<std::uint32_t>("conn_count"), 2U);  // silent ones are left out
+  EXPECT_EQ(fields.number<std::uint32_t>("conn_count"), 2U);  // only those with messages
   std::memcpy(&header, bytes.data() + 4117, sizeof header);
   const bag::Fields chunk(std::as_bytes(std::span(bytes)).subspan(4121, header));
   EXPECT_EQ(chunk.op(), bag::Op::kChunk);
@@ -174,7 +174,7 @@ TEST_P(BagFiles, ACutAnywhereIsNoticedAndWhatComesBeforeIsGivenOut) {
   EXPECT_EQ(longest, whole.size());  // a cut in the index loses no message
 }
 
-// Stored chunks have no check sum: a flipped bit in a message's text cannot be found.
+// Uncompressed chunks have no checksum: a flipped bit in a message's text cannot be detected.
 TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
   write_sample(file_, GetParam());
   const std::string bytes = file_text(file_);
@@ -201,7 +201,7 @@ TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
       ++complaints;
     }
   }
-  EXPECT_LT(complaints, noticed);  // a broken bag header
+  EXPECT_LT(complaints, noticed);  // only a damaged bag header makes read_bag_info() throw
   EXPECT_GT(noticed, kTrials / 10);
 }
 
@@ -219,7 +219,7 @@ TEST(Bags, OfOtherKindsAreNamed) {
     write_file(file, bytes);
     return input_error([&] { BagReader reader(file); });
   };
-  EXPECT_THAT(complaint("#ROSBAG V1.2\nxxxxxxx"), HasSubstr("another version"));
+  EXPECT_THAT(complaint("#ROSBAG V1.2\nxxxxxxx"), HasSubstr("not of version 2.0"));
   EXPECT_THAT(complaint("PK\x03\x04 something else"), HasSubstr("is not a ROS 1 bag"));
   EXPECT_THAT(complaint("#ROSBAG V2.0\n"), HasSubstr("cut off"));
   EXPECT_THAT(input_error([&] { BagReader reader(folder.path() / "none.bag"); }),

@@ -46,7 +46,7 @@ std::vector<Event> events() {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       Scan other = *scan;
       other.points.resize(kPoints / 2);
-      other.points.back().dt_ns = scan->points.back().dt_ns;  // ends with the first
+      other.points.back().dt_ns = scan->points.back().dt_ns;  // ends like the first
       events.push_back({"second", other});
     }
   }
@@ -68,7 +68,7 @@ fs::path write_dataset(const fs::path& path, const WriteOptions& options) {
   return path;
 }
 
-/// A place to write to: a folder of a format, or a single file.
+/// An output: a folder of some format, or a single file.
 struct Place {
   const char* name;
   DatasetFormat format;
@@ -81,7 +81,7 @@ constexpr Place kPlaces[] = {{"mcap", DatasetFormat::kMcap},   {"bag", DatasetFo
 bool is_kitti(const Place& place) { return place.format == DatasetFormat::kKitti; }
 bool is_file(const Place& place) { return std::string(place.name).starts_with("file"); }
 
-/// What KITTI keeps of a scan.
+/// The part of a scan that KITTI keeps.
 Scan as_kitti(Scan scan) {
   scan.timed = false;
   for (Point& point : scan.points) point = {point.position, point.intensity, 0, 0, 0};
@@ -126,7 +126,7 @@ TEST_P(CopyDataset, KeepsEverythingThatTheFormatsCanHold) {
     for (Event& event : expected) {
       if (auto* scan = std::get_if<Scan>(&event.data)) *scan = as_kitti(std::move(*scan));
     }
-    // a scan that does not tell when it ends may come earlier among the IMU samples
+    // a scan without point times has an unknown end and may come earlier among the IMU samples
     for (const char* id : {"mid360", "second"}) {
       for (const std::size_t kind : {0U, 1U}) {
         expect_same(stream_of(found, id, kind), stream_of(expected, id, kind));

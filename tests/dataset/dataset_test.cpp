@@ -26,7 +26,7 @@ ReadOptions only(const std::string& sensor) {
   return options;
 }
 
-/// Writes `events` and truth to a dataset folder; `finished` false leaves it as a crash would.
+/// Writes `events` and ground truth to a dataset folder; with `finished` false, as after a crash.
 void write_dataset(const fs::path& folder, const std::vector<Event>& events, bool finished = true) {
   DatasetWriter out(folder, sample::rig());
   int next_truth = 0;
@@ -115,7 +115,7 @@ TEST_F(DatasetFolder, AnInterruptedOneIsCalledUnfinished) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is an unfinished dataset: it has no manifest.json"));
   }
-  // Its data can still be had, up to where it stops.
+  // Its data can still be read, up to the point where they stop.
   Dataset part = open_dataset(folder_ / "data.mcap.part");
   EXPECT_THAT(part.notes, testing::Contains(HasSubstr("is cut off after")));
   EXPECT_THROW(drain(*part.events), InputError);
@@ -137,7 +137,7 @@ TEST_F(DatasetFolder, ACutDataFileGivesTheEventsBeforeTheCut) {
   std::size_t scans = 0;
   try {
     while (auto event = dataset.events->next()) scans += std::holds_alternative<Scan>(event->data);
-    FAIL() << "the cut went unnoticed";
+    FAIL() << "the cut was not detected";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("is cut off after"));
   }
@@ -242,7 +242,7 @@ TEST_F(DatasetFolder, OneLidarOfSeveralCanBeAskedFor) {
     }
   }
   EXPECT_THROW(open_dataset(folder_, only("os1")), InputError);
-  options.sensor.clear();  // which of them is mounted so?
+  options.sensor.clear();  // ambiguous: body_from_lidar with two LiDARs
   EXPECT_THROW(open_dataset(folder_, options), InputError);
   EXPECT_FALSE(open_dataset(folder_).scan_count.has_value());
 }
@@ -258,10 +258,10 @@ TEST_F(DatasetFolder, FoldersThatAreNoDatasetAreRefused) {
   EXPECT_THROW(open_dataset(folder_), InputError);
   std::ofstream(folder_ / "manifest.json")
       << R"({"format": "lidarena dataset", "format_version": 1})";
-  EXPECT_THROW(open_dataset(folder_), InputError);  // a manifest alone: no data
+  EXPECT_THROW(open_dataset(folder_), InputError);  // a manifest without data
 }
 
-/// A bag of others: topics and frames of their own, scans written when they start.
+/// Writes a third-party recording: other topics and frames, scans logged at their start.
 void write_foreign(const fs::path& file, const std::vector<Event>& events) {
   McapWriter out(file);
   const auto schema = [&](std::string_view type) {

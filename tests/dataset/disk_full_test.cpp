@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a full disk leaves behind, for every format: an error that names the file, nothing that
-// looks whole, and in recordings everything up to the last chunk.
+// A full disk, for every format: the error names the file, no output looks complete, and recordings
+// can be read up to the last chunk.
 #include <gmock/gmock.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// What `action` complains of in a process of its own whose files may not grow beyond `bytes`.
+/// The error message of `action`, run in a separate process with a file size limit of `bytes`.
 template <class Action>
 std::string complaint_with_files_up_to(std::size_t bytes, const fs::path& report, Action&& action) {
   const pid_t child = ::fork();
@@ -52,7 +52,7 @@ class FullDisk : public testing::TestWithParam<DatasetFormat> {
 
 TEST_P(FullDisk, LeavesNothingThatLooksWhole) {
   const bool is_recording = GetParam() == DatasetFormat::kMcap || GetParam() == DatasetFormat::kBag;
-  // Some of the chunks of a bag, two of the five of an MCAP file; no whole sweep.
+  // Room for some chunks of a bag, for two of five chunks of an MCAP file, for no complete sweep.
   const std::size_t room = GetParam() == DatasetFormat::kBag    ? 2'500'000
                            : GetParam() == DatasetFormat::kMcap ? 5'000'000
                                                                 : 100'000;
@@ -76,7 +76,7 @@ TEST_P(FullDisk, LeavesNothingThatLooksWhole) {
   EXPECT_GT(found.size(), 50U);
   std::vector<Event> expected = sample::events(24, 16'000);
   expected.resize(found.size());
-  // the last scan may come before IMU samples that are lost
+  // the last scan may come before IMU samples that were not written
   found.resize(found.size() - 30);
   expected.resize(found.size());
   expect_same(found, expected);

@@ -36,7 +36,7 @@ LidarInfo mid360() {
   return lidar;
 }
 
-/// Shots 0.5 ms apart; about every third brings nothing back.
+/// Shots 0.5 ms apart; about every third has no return.
 Scan livox_scan() {
   Scan scan{std::chrono::seconds(12) + Time{345}, {}, true};
   SequentialRandom random(3);
@@ -78,7 +78,7 @@ TEST_P(Encodings, LivoxCustomMessagesHaveEveryShotInTheDriversOrder) {
     in.get<float>();
     in.get<float>();
     EXPECT_EQ(in.get<std::uint8_t>(), x == 0.0F ? 0 : i);  // reflectivity
-    EXPECT_EQ(in.get<std::uint8_t>(), 0);                  // tag: sure
+    EXPECT_EQ(in.get<std::uint8_t>(), 0);                  // tag: high confidence
     EXPECT_EQ(in.get<std::uint8_t>(), i % kLines);
     returns += x == 0.0F ? 0 : 1;
   }
@@ -151,7 +151,7 @@ LidarInfo small_ouster() {
   return lidar;
 }
 
-/// One return of every second pixel, at 10 m along a beam that looks `pixel_shifts` columns ahead.
+/// A return in every second pixel, 9 m along a beam that points `pixel_shifts` columns ahead.
 Scan ouster_scan() {
   Scan scan{std::chrono::seconds(7), {}, true};
   for (int column = 0; column < kColumns; ++column) {
@@ -175,7 +175,7 @@ TEST_P(Encodings, OusterCloudsGiveTheSamePointsBack) {
   expect_same(ros::decode_scan(message_.bytes(), "test", GetParam()), ouster_scan());
 }
 
-// Destaggered means: pixels of one column of the image look into one direction.
+// Destaggered: all pixels of one image column have the same direction.
 TEST_P(Encodings, OusterCloudsAreImagesWhoseColumnsAreDirections) {
   encode_ouster_cloud(ouster_scan(), small_ouster(), "os_lidar", message_);
   MessageReader in(message_.bytes(), "test", GetParam());
@@ -206,9 +206,9 @@ TEST_P(Encodings, OusterCloudsAreImagesWhoseColumnsAreDirections) {
     ++returns;
     const double azimuth = std::atan2(load(4, 0.0F), x);
     const double pixel_azimuth = 2.0 * std::numbers::pi * (1.0 - static_cast<double>(pixel) / 8.0);
-    // the beam's start, 28 mm off the axis, turns a point at 9 m by at most 0.0031 rad
+    // the beam's origin, 28 mm off the axis, changes the azimuth at 9 m by at most 0.0031 rad
     EXPECT_NEAR(std::remainder(azimuth - pixel_azimuth, 2.0 * std::numbers::pi), 0.0, 0.0032);
-    EXPECT_EQ(load(32, std::uint32_t{}), 9028U);  // 9 m from the beam's start 27.67 mm off the axis
+    EXPECT_EQ(load(32, std::uint32_t{}), 9028U);  // 9 m from an origin 27.67 mm off the axis
     EXPECT_EQ(load(16, 0.0F), 17.25F);
     EXPECT_EQ(load(24, std::uint16_t{}), 17U);
   }
@@ -286,7 +286,8 @@ class DriverDialect : public testing::TestWithParam<DatasetFormat> {
     out.close();
   }
 
-  /// The events up to the rounding of accelerations that went through g.
+  /// Compares with events_of_both(), up to rounding of accelerations that were converted to g and
+  /// back.
   static void expect_nearly_same(std::vector<Event> events) {
     const std::vector<Event> expected = events_of_both();
     ASSERT_EQ(events.size(), expected.size());

@@ -13,7 +13,7 @@
 
 namespace lidarena {
 
-/// Writes `bytes` and returns the file.
+/// Writes `bytes` to `file` and returns `file`.
 inline std::filesystem::path write_file(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::create_directories(file.parent_path());
   std::ofstream out(file, std::ios::binary);
@@ -35,7 +35,7 @@ std::string packed(T... values) {
   return bytes;
 }
 
-/// What the InputError says that `action` throws; a failure when it throws none.
+/// The message of the InputError that `action` throws; the test fails if it throws none.
 template <class Action>
 std::string input_error(Action&& action) {
   try {
@@ -54,8 +54,8 @@ inline std::filesystem::path shared_data(const std::string& name) {
 }  // namespace lidarena
 
 /// Skips the test when the real data file or folder `path` is not there.
-#define LIDARENA_NEEDS(path)                                                   \
-  if (!std::filesystem::exists(path)) {                                        \
-    GTEST_SKIP() << "real data not at hand, not tried: " << (path).filename(); \
-  }                                                                            \
+#define LIDARENA_NEEDS(path)                                      \
+  if (!std::filesystem::exists(path)) {                           \
+    GTEST_SKIP() << "real data not found: " << (path).filename(); \
+  }                                                               \
   static_assert(true)

@@ -17,8 +17,8 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Writes a file anew: overwriting one that was just written makes some file systems wait for the
-/// disk.
+/// Rewrites a file: removed first, because overwriting a file just written makes some file systems
+/// wait for the disk.
 void rewrite(const std::filesystem::path& file, std::string_view bytes) {
   std::filesystem::remove(file);
   write_file(file, bytes);
@@ -38,7 +38,7 @@ std::string text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// 24 messages of seeded content on two topics, in several chunks, with a metadata record.
+/// 24 messages of random (seeded) content on two topics.
 std::vector<Copy> sample_messages() {
   std::vector<Copy> messages;
   SequentialRandom random(1);
@@ -67,7 +67,7 @@ void write_sample(const std::filesystem::path& file, int zstd_level,
   finish(out);
 }
 
-/// What can be read, and the complaint that ended the reading, if any.
+/// The messages that can be read, and the error that ended the reading, if any.
 struct Reading {
   std::vector<Copy> messages;
   std::string error;
@@ -87,7 +87,7 @@ Reading read_sample(const std::filesystem::path& file) {
   return reading;
 }
 
-/// Messages of `part` that are not in `whole`, or not in its order.
+/// Number of messages of `part` that are not in `whole`, or not in its order.
 std::size_t strangers(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
   std::size_t count = 0;
   auto next = whole.begin();
@@ -135,22 +135,22 @@ TEST_P(McapFiles, AFileCutAnywhereIsReadUpToTheCutAndSaysSo) {
     const Reading reading = read_sample(file_);
     ASSERT_NE(reading.error, "") << "cut after " << size;
     EXPECT_THAT(reading.error, HasSubstr(file_.string()));
-    if (size > 40) {  // behind the header
+    if (size > 40) {  // after the header
       EXPECT_THAT(reading.error, HasSubstr("is cut off after " +
                                            std::to_string(reading.messages.size()) + " messages"));
       EXPECT_THAT(reading.error, HasSubstr("byte " + std::to_string(size)));
     }
     ASSERT_TRUE(is_beginning_of(reading.messages, expected)) << "cut after " << size;
-    EXPECT_GE(reading.messages.size(), most);  // a longer beginning holds no less
+    EXPECT_GE(reading.messages.size(), most);  // a longer part has at least as many messages
     most = reading.messages.size();
   }
   EXPECT_EQ(most, expected.size());
 }
 
-// Every byte is covered by a check sum or by a rule. What lies in a chunk never comes changed. The
-// records around the chunks are covered by the data section's check sum alone, at its end: until
-// then a chunk whose opcode is damaged is skipped, and an index may pass for a message (opcodes 7
-// and 5).
+// Every byte is covered by a checksum or by a rule. The messages of a chunk are never returned
+// changed. The records around the chunks are covered only by the checksum at the end of the data
+// section: until then a chunk with a damaged opcode is skipped, and an index can be taken for a
+// message (opcodes 7 and 5).
 TEST_P(McapFiles, AFlippedBitAnywhereIsNoticed) {
   write_sample(file_, GetParam());
   const std::string whole = file_text(file_);
@@ -164,7 +164,7 @@ TEST_P(McapFiles, AFlippedBitAnywhereIsNoticed) {
     const std::size_t strange = strangers(reading.messages, expected);
     EXPECT_LE(strange, 1U) << "byte " << at;
     if (strange > 0) {
-      EXPECT_THAT(reading.error, HasSubstr("the data section's check sum (CRC) is wrong"));
+      EXPECT_THAT(reading.error, HasSubstr("the data section's checksum (CRC) is wrong"));
     }
   }
 }
@@ -237,7 +237,7 @@ INSTANTIATE_TEST_SUITE_P(StoredAndZstd, McapFiles, testing::Values(0, 1),
                          [](const auto& level) { return "level" + std::to_string(level.param); });
 
 TEST(Mcap, AFullDiskIsNoticedAndNamed) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: full disk not tried";
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: not tested";
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.mcap";
   std::filesystem::create_symlink("/dev/full", folder.path() / "a.mcap.part");
@@ -245,10 +245,10 @@ TEST(Mcap, AFullDiskIsNoticedAndNamed) {
   const std::uint16_t channel = out.add_channel("/a", 0, "raw");
   const std::vector<std::byte> data(10'000);
   out.write(channel, Time{0}, Time{0}, data);
-  for (int attempt = 0; attempt < 2; ++attempt) {  // and it stays an error
+  for (int attempt = 0; attempt < 2; ++attempt) {  // the second attempt fails as well
     try {
       out.close();
-      FAIL() << "a full disk went unnoticed";
+      FAIL() << "a full disk was not detected";
     } catch (const Error& error) {
       EXPECT_THAT(error.what(), HasSubstr(file.string()));
       if (attempt == 0) {
@@ -260,7 +260,7 @@ TEST(Mcap, AFullDiskIsNoticedAndNamed) {
 }
 
 TEST(Mcap, AFullDiskIsNoticedWhileWriting) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: full disk not tried";
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: not tested";
   const TemporaryFolder folder;
   std::filesystem::create_symlink("/dev/full", folder.path() / "a.mcap.part");
   McapWriter out(folder.path() / "a.mcap", {.zstd_level = 0});
@@ -293,8 +293,8 @@ TEST(Mcap, NegativeTimesAreRefused) {
   EXPECT_THROW(out.write(channel, Time{-1}, Time{0}, {}), InputError);
 }
 
-// The layout of the specification, built by hand with nothing but the list of records: messages
-// outside chunks, no summary, no check sums.
+// A file built record by record according to the specification: messages outside chunks, no
+// summary, no checksums.
 TEST(Mcap, ReadsMessagesOutsideChunks) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.mcap";
@@ -332,11 +332,11 @@ TEST(Mcap, AChunkThatLiesAboutItsSizeClaimsNoMemory) {
   const auto file = folder.path() / "a.mcap";
   const std::vector<std::byte> zeros(100);
   write_one_chunk(file, "zstd", ZstdCompressor(1).compress(zeros), std::uint64_t{1} << 60);
-  EXPECT_THAT(read_sample(file).error, HasSubstr("holds less than it says"));
+  EXPECT_THAT(read_sample(file).error, HasSubstr("holds fewer bytes than stated"));
   write_one_chunk(file, "zstd", ZstdCompressor(1).compress(zeros), 50);
-  EXPECT_THAT(read_sample(file).error, HasSubstr("holds more than it says"));
+  EXPECT_THAT(read_sample(file).error, HasSubstr("holds more bytes than stated"));
   write_one_chunk(file, "", zeros, 50);
-  EXPECT_THAT(read_sample(file).error, HasSubstr("another size"));
+  EXPECT_THAT(read_sample(file).error, HasSubstr("size differs from the stated"));
   write_one_chunk(file, "brotli", zeros, 100);
   EXPECT_THAT(read_sample(file).error, HasSubstr("unknown method 'brotli'"));
 }
@@ -349,7 +349,7 @@ TEST(Mcap, ReadsLz4Frames) {
   const std::string data = "hello";
   append(records, mcap::Message{1, 0, 1, 1, std::as_bytes(std::span(data))});
   // An LZ4 frame with one stored block (LZ4 frame format 1.6.1): magic, FLG version 1 and
-  // independent blocks, BD 64 KiB, header check sum, block size with the top bit set, the block,
+  // independent blocks, BD 64 KiB, header checksum, block size with the top bit set, the block,
   // end mark.
   ByteWriter frame;
   frame.put(std::uint32_t{0x184D2204});
@@ -367,7 +367,7 @@ TEST(Mcap, ReadsLz4Frames) {
 }
 
 TEST(Mcap, TheCheckSumIsCrc32OfIeee) {
-  const std::string text = "123456789";  // the usual check value
+  const std::string text = "123456789";  // the usual test value
   EXPECT_EQ(crc32_of(std::as_bytes(std::span(text))), 0xCBF43926U);
   for (const std::size_t cut : {0UL, 4UL, 9UL}) {
     const auto bytes = std::as_bytes(std::span(text));

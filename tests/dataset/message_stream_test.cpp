@@ -15,8 +15,8 @@ std::vector<int> numbers(Bytes bytes) {
   return values;
 }
 
-// Worked out by hand from the rules of CDR: a number of N bytes starts at a multiple of N, counted
-// from behind the header of four bytes.
+// Derived by hand from the rules of CDR: a number of N bytes starts at a multiple of N, counted
+// from the end of the header of four bytes.
 TEST(Cdr, PadsNumbersToTheirOwnSize) {
   MessageWriter out;
   out.put(std::uint8_t{1});
@@ -85,7 +85,7 @@ TEST(Cdr, WhatIsWrittenIsRead) {
 
 TEST(Cdr, AMessageThatEndsTooEarlyIsBadInput) {
   MessageWriter out;
-  out.put(std::uint32_t{1000});  // a length with nothing behind it
+  out.put(std::uint32_t{1000});  // a length with nothing after it
   EXPECT_THROW(MessageReader(out.bytes(), "test").get_string(), InputError);
   EXPECT_THROW(MessageReader(out.bytes(), "test").get_octets(), InputError);
   EXPECT_THROW(MessageReader(out.bytes(), "test").get_length(1), InputError);

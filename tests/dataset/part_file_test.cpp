@@ -49,7 +49,7 @@ TEST(PartFile, KeepsTheOrderOfSmallAndLargePieces) {
 }
 
 TEST(PartFile, SaysThatTheDiskIsFullAndLeavesNoWholeFile) {
-  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: full disk not tried";
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "no /dev/full: not tested";
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.txt";
   std::filesystem::create_symlink("/dev/full", folder.path() / "a.txt.part");
@@ -57,7 +57,7 @@ TEST(PartFile, SaysThatTheDiskIsFullAndLeavesNoWholeFile) {
   out.write("hello");
   try {
     out.commit();
-    FAIL() << "a full disk went unnoticed";
+    FAIL() << "a full disk was not detected";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr(file.string()),
                                              testing::HasSubstr("No space left")));

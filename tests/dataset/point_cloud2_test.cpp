@@ -13,11 +13,11 @@
 namespace lidarena::ros {
 namespace {
 
-constexpr Time kStamp{1'700'000'000'123'456'789};  // of today's epoch
+constexpr Time kStamp{1'700'000'000'123'456'789};  // November 2023
 constexpr double kStampSeconds = 1'700'000'000.0;
 constexpr double kAfterStampSeconds = 0.123456789;
 
-/// A cloud put together field by field, as drivers do.
+/// A cloud message built field by field, as drivers do.
 class CloudMessage {
  public:
   CloudMessage(Time stamp, std::uint32_t point_step, std::vector<PointField> fields)
@@ -80,7 +80,7 @@ std::vector<std::int32_t> times(const Scan& scan) {
   return ns;
 }
 
-// Layout of the Ouster driver ("original" points, step 48): rows by ring, so times jump back.
+// Layout of the Ouster driver ("original" points, step 48): ordered by ring, so times jump back.
 TEST(PointCloud2, ReadsAnOusterCloudAndPutsItInFiringOrder) {
   CloudMessage cloud(kStamp, 48,
                      with_position({{"intensity", 16, FieldType::kFloat32},
@@ -107,7 +107,8 @@ TEST(PointCloud2, ReadsAnOusterCloudAndPutsItInFiringOrder) {
   EXPECT_EQ(scan.points[1].intensity, 7.5F);
 }
 
-// Velodyne's ROS driver stamps the last packet: times are negative, float seconds.
+// Velodyne's ROS driver uses the time of the last packet as stamp: point times are negative float
+// seconds.
 TEST(PointCloud2, TheStampBecomesTheFirstFiringWhereADriverStampsTheLast) {
   CloudMessage cloud(kStamp, 22,
                      with_position({{"intensity", 12, FieldType::kFloat32},
@@ -123,7 +124,7 @@ TEST(PointCloud2, TheStampBecomesTheFirstFiringWhereADriverStampsTheLast) {
   EXPECT_THAT(times(scan), testing::ElementsAre(0, 31'250'000, 62'500'000));
 }
 
-// Livox driver 2: absolute ns in a double, which resolves 256 ns at this epoch.
+// Livox driver 2: absolute ns in a double, with a resolution of 256 ns at this epoch.
 TEST(PointCloud2, ReadsAbsoluteNanoseconds) {
   CloudMessage cloud(kStamp, 26,
                      with_position({{"intensity", 12, FieldType::kFloat32},
@@ -144,7 +145,7 @@ TEST(PointCloud2, ReadsAbsoluteNanoseconds) {
   EXPECT_EQ(scan.points[2].ring, 2);
 }
 
-// Hesai and RoboSense: absolute seconds in a double, which resolves 0.24 us at this epoch.
+// Hesai and RoboSense: absolute seconds in a double, with a resolution of 0.24 us at this epoch.
 TEST(PointCloud2, ReadsAbsoluteSeconds) {
   CloudMessage cloud(kStamp, 26,
                      with_position({{"intensity", 12, FieldType::kFloat32},
@@ -214,7 +215,7 @@ TEST(PointCloud2, DropsWhatIsNoReturn) {
 void expect_refused(const CloudMessage& cloud, const std::string& why) {
   try {
     cloud.decode();
-    ADD_FAILURE() << "accepted, but: " << why;
+    ADD_FAILURE() << "accepted, expected error: " << why;
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr(why));
   }
@@ -239,7 +240,7 @@ TEST(PointCloud2, SaysWhatItDoesNotUnderstand) {
   for (int i = 1; i < 3; ++i) {
     std::byte* point = odd.add_point();
     CloudMessage::set_position(point, 1, 2, 3);
-    CloudMessage::set(point, 12, 1e6 + 0.05 * i);  // neither since the stamp nor near it
+    CloudMessage::set(point, 12, 1e6 + 0.05 * i);  // neither relative to the stamp nor close to it
   }
   expect_refused(odd, "field 'timestamp' runs from");
 
@@ -249,7 +250,7 @@ TEST(PointCloud2, SaysWhatItDoesNotUnderstand) {
   expect_refused(nan, "field 'time' of a return is not finite");
 }
 
-// CDR aligns the uint32 of the next point, so points take 20 bytes but for the last.
+// CDR aligns the uint32 of the next point, so every point except the last takes 20 bytes.
 TEST(LivoxMessage, ReadsACustomMsg) {
   MessageWriter out;
   put_header(kStamp, "livox_frame", out);

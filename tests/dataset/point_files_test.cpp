@@ -50,7 +50,7 @@ std::string pcd_header(std::string_view fields, std::string_view sizes, std::str
       fields, sizes, types, counts, points, points, data);
 }
 
-/// LZF of literals alone.
+/// LZF data that consist of literals only.
 std::string as_literals(std::string_view bytes) {
   std::string out;
   for (; !bytes.empty(); bytes.remove_prefix(std::min<std::size_t>(32, bytes.size()))) {
@@ -99,7 +99,8 @@ TEST_F(PointFile, AnEmptyCloudIsACloud) {
 
 TEST_F(PointFile, OtherEndingsAreRefused) {
   EXPECT_THAT(error_of("c.xyz", "1 2 3\n"),
-              AllOf(HasSubstr("'.xyz' is no point format"), HasSubstr("give a .ply or .pcd file")));
+              AllOf(HasSubstr("'.xyz' is not a supported point format"),
+                    HasSubstr("give a .ply or .pcd file")));
 }
 
 TEST_F(Ply, AsciiReadsAnyPropertiesInAnyOrderAndIgnoresFaces) {
@@ -134,16 +135,16 @@ TEST_F(Ply, BrokenFilesAreNamedByLineOrByte) {
   const std::string vertex = std::string("element vertex 2\n") + kXyz;
   EXPECT_THAT(error_of("a.ply", "solid\n"), HasSubstr("a.ply:1: is not a PLY file"));
   EXPECT_THAT(error_of("a.ply", ply_header("binary_big_endian", vertex)),
-              AllOf(HasSubstr("a.ply:2: PLY format 'binary_big_endian' is not read"),
+              AllOf(HasSubstr("a.ply:2: PLY format 'binary_big_endian' is not supported"),
                     HasSubstr("save it as ascii or binary_little_endian")));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "element vertex -1\n")),
               HasSubstr("a.ply:4: '-1' is not a count"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "element vertex 1\nproperty half x\n")),
-              HasSubstr("a.ply:5: 'half' is no PLY type"));
+              HasSubstr("a.ply:5: 'half' is not a PLY type"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "property float x\n")),
-              HasSubstr("a.ply:4: a property stands before any element"));
+              HasSubstr("a.ply:4: a property precedes the first element"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "elements\n")),
-              HasSubstr("'elements' is no PLY keyword"));
+              HasSubstr("'elements' is not a PLY keyword"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "element face 0\n")),
               HasSubstr("has no element 'vertex'"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", "element vertex 0\nproperty float x\n")),
@@ -159,19 +160,19 @@ TEST_F(Ply, BrokenFilesAreNamedByLineOrByte) {
               AllOf(HasSubstr("ends after line 9"), HasSubstr("cut short")));
   EXPECT_THAT(error_of("a.ply", ply_header("binary_little_endian", vertex) + packed(1.0F)),
               AllOf(HasSubstr("a.ply: byte 136"),
-                    HasSubstr("2 times 12 bytes are promised, 4 bytes are left")));
+                    HasSubstr("2 times 12 bytes are announced, but 4 bytes are left")));
 }
 
 TEST_F(Ply, CountsThatNoMemoryCouldHoldAreRefusedAtOnce) {
   const std::string huge = std::string("element vertex 18446744073709551615\n");
   EXPECT_THAT(error_of("a.ply", ply_header("binary_little_endian", huge + kXyz)),
-              HasSubstr("are promised"));
+              HasSubstr("are announced"));
   EXPECT_THAT(error_of("a.ply", ply_header("ascii", huge + kXyz)), HasSubstr("ends after line"));
   EXPECT_THAT(error_of("a.ply", ply_header("binary_little_endian", huge)),
               HasSubstr("points have no fields"));
   EXPECT_THAT(error_of("a.ply", ply_header("binary_little_endian",
                                            "element face 18446744073709551615\n" + huge + kXyz)),
-              HasSubstr("are promised"));
+              HasSubstr("are announced"));
 }
 
 TEST_F(Pcd, AsciiReadsFieldsOfEveryType) {
@@ -234,7 +235,7 @@ TEST_F(Pcd, CompressedPointsAreStoredFieldByField) {
 }
 
 TEST_F(Pcd, PointsCountWhereWidthAndHeightAreNotGiven) {
-  // as one sensor driver writes it
+  // as written by one sensor driver
   const std::string text =
       "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 0\nHEIGHT 0\nPOINTS 1\nDATA ascii\n1 2 3\n";
   EXPECT_EQ(read_cloud(put("a.pcd", text)).points.size(), 1U);
@@ -244,7 +245,7 @@ TEST_F(Pcd, PointsCountWhereWidthAndHeightAreNotGiven) {
 }
 
 TEST_F(Pcd, BrokenHeadersAreNamedByLine) {
-  EXPECT_THAT(error_of("a.pcd", "FIELDS x\nTYPES F\n"), HasSubstr("a.pcd:2: 'TYPES' is no PCD"));
+  EXPECT_THAT(error_of("a.pcd", "FIELDS x\nTYPES F\n"), HasSubstr("a.pcd:2: 'TYPES' is not a PCD"));
   EXPECT_THAT(error_of("a.pcd", "FIELDS x\nSIZE 4\nPOINTS 1\nDATA ascii\n"),
               HasSubstr("the PCD header has no line TYPE"));
   EXPECT_THAT(error_of("a.pcd", "FIELDS x\nSIZE 4\nTYPE F\nDATA ascii\n"),
@@ -252,11 +253,11 @@ TEST_F(Pcd, BrokenHeadersAreNamedByLine) {
   EXPECT_THAT(error_of("a.pcd", "FIELDS x y\nSIZE 4\nTYPE F\nPOINTS 1\nDATA ascii\n"),
               HasSubstr("a.pcd:1: FIELDS, SIZE, TYPE and COUNT differ in length"));
   EXPECT_THAT(error_of("a.pcd", "FIELDS x\nSIZE 3\nTYPE F\nPOINTS 1\nDATA ascii\n"),
-              HasSubstr("a.pcd:3: TYPE F with SIZE 3 is no PCD type"));
+              HasSubstr("a.pcd:3: TYPE F with SIZE 3 is not a PCD type"));
   EXPECT_THAT(error_of("a.pcd", "FIELDS x\nSIZE 4\nTYPE F\nCOUNT 0\nPOINTS 1\nDATA ascii\n"),
-              HasSubstr("a.pcd:4: COUNT 0 is out of reason"));
+              HasSubstr("a.pcd:4: COUNT 0 is out of range"));
   EXPECT_THAT(error_of("a.pcd", "FIELDS x\nSIZE 4\nTYPE F\nPOINTS 1\nDATA zip\n"),
-              HasSubstr("a.pcd:5: DATA 'zip' is not read"));
+              HasSubstr("a.pcd:5: DATA 'zip' is not supported"));
   EXPECT_THAT(
       error_of("a.pcd", "FIELDS x\nSIZE 4\nTYPE F\nWIDTH 2\nHEIGHT 2\nPOINTS 5\nDATA ascii\n"),
       HasSubstr("WIDTH 2 x HEIGHT 2 is not POINTS 5"));
@@ -266,7 +267,7 @@ TEST_F(Pcd, BrokenHeadersAreNamedByLine) {
               HasSubstr("WIDTH 18446744073709551615 x HEIGHT 3"));
 }
 
-/// A small file of each binary format: three points, and for PLY a face before them.
+/// A small file of each binary format: three points, in PLY preceded by a face.
 std::vector<std::pair<bool, std::string>> small_binary_files() {
   const std::string three = packed(1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 9.0F);
   const std::string lzf = as_literals(three);
@@ -279,7 +280,7 @@ std::vector<std::pair<bool, std::string>> small_binary_files() {
 }
 
 PointTable parse(bool is_ply, const std::string& bytes) {
-  // a copy of exactly this size, so that a sanitizer sees any step past its end
+  // a copy of exactly this size, so that a sanitizer detects any read past its end
   const std::vector<char> exact(bytes.begin(), bytes.end());
   const std::string_view view(exact.data(), exact.size());
   return is_ply ? parse_ply_table(view, "file") : parse_pcd_table(view, "file");
@@ -319,7 +320,7 @@ TEST(BrokenPointFiles, WithAnyOneByteChangedAreReadOrRefusedButDoNoHarm) {
         broken[at] = static_cast<char>(value);
         try {
           const PointTable table = parse(is_ply, broken);
-          // every value that is promised is there
+          // every announced value can be read
           for (const Column& column : table.columns) {
             if (table.size > 0) table.number(column, table.size - 1);
           }
@@ -330,7 +331,7 @@ TEST(BrokenPointFiles, WithAnyOneByteChangedAreReadOrRefusedButDoNoHarm) {
       }
     }
   }
-  EXPECT_GT(read, 1000U);  // changes of coordinates and comments cannot be seen
+  EXPECT_GT(read, 1000U);  // changes of coordinates and comments cannot be detected
   EXPECT_GT(refused, 1000U);
 }
 
@@ -376,7 +377,7 @@ TEST(RealClouds, ACompressedSweepHasItsValues) {
   const auto file = shared_data("lidar/pjlab_lidar2imu/2021-10-26-16-21-29-468.pcd");
   LIDARENA_NEEDS(file);
   const PointTable table = read_point_table(file);
-  // extremes as an independent decoder gives them
+  // extreme values according to an independent decoder
   double low = 1e9;
   double high = -1e9;
   double ring = 0;

@@ -21,7 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-/// Made-up truth of a scan: every value is a function of the point's index.
+/// Synthetic ground truth of a scan: every value is a function of the point's index.
 ScanTruth truth_of(const Scan& scan, const std::string& id) {
   ScanTruth truth{id, scan.stamp, {}};
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -40,7 +40,7 @@ void expect_same(const ScanTruth& a, const ScanTruth& b) {
   EXPECT_EQ(std::memcmp(a.points.data(), b.points.data(), a.points.size() * sizeof(PointTruth)), 0);
 }
 
-/// A sink that offers the truth just before its scan, as the simulator does.
+/// Writes the ground truth of each scan just before the scan, as the simulator does.
 void write_with_truth(DatasetWriter& out, const std::vector<Event>& events) {
   for (const Event& event : events) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
@@ -120,7 +120,7 @@ TEST_F(PointTruthFiles, ACloudOfMeasurementsIsNotTakenForTruth) {
   MessageWriter message;
   ros::encode_scan(sample::scan(0, 5), "lidar", message);
   EXPECT_THAT(input_error([&] { ros::decode_scan_truth(message.bytes(), "here"); }),
-              HasSubstr("is no truth of points"));
+              HasSubstr("is not a cloud of ground-truth points"));
 }
 
 /// Resident memory of this process, bytes.
@@ -132,11 +132,11 @@ std::size_t resident_bytes() {
   return resident * 4096;
 }
 
-// Ten minutes of truth at 1 kHz are 600,000 poses, 58 MB as poses in memory; a tenth of them is
-// enough to tell: it would be 8 MB.
+// Ten minutes of ground truth at 1 kHz are 600,000 poses, some 86 MB in memory; the test writes a
+// tenth of them, which would take 8 MB if they were kept.
 TEST_F(PointTruthFiles, PosesAreWrittenAsTheyComeAndNotKept) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "sanitizers keep memory of their own: resident memory not measured";
+  GTEST_SKIP() << "sanitizers use memory themselves: resident memory is not measured";
 #endif
   DatasetWriter out(folder_, sample::rig());
   auto write_until = [&, next = 0](int end) mutable {
@@ -144,7 +144,7 @@ TEST_F(PointTruthFiles, PosesAreWrittenAsTheyComeAndNotKept) {
       out.write_truth({Time{std::chrono::milliseconds(next)}, sample::truth(next).world_from_body});
     }
   };
-  write_until(30'000);  // buffers, a chunk and the compressor have their sizes
+  write_until(30'000);  // buffers, chunk and compressor have reached their final sizes
   const std::size_t before = resident_bytes();
   write_until(90'000);
   const std::size_t after = resident_bytes();

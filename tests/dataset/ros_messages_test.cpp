@@ -87,7 +87,7 @@ TEST(Ros2Messages, TransformsComeBack) {
 TEST(Ros2Messages, EveryShorterMessageIsBadInputAndNoCrash) {
   MessageWriter out;
   encode_scan(sample::scan(0, 3), "mid360", out);
-  // Only the closing is_dense is not looked at.
+  // Only is_dense, the last byte, is not read.
   for (std::size_t size = 0; size + 1 < out.bytes().size(); ++size) {
     EXPECT_THROW(decode_scan(out.bytes().first(size), "test"), InputError) << size;
   }

@@ -8,8 +8,9 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/event.hpp"
 
-/// A small made-up flight with a LiDAR of 10 Hz and an IMU of 200 Hz that share the id "mid360":
-/// every value is a smooth function of its index, so tests and the official reader know it.
+/// A small synthetic flight with a LiDAR of 10 Hz and an IMU of 200 Hz that share the id "mid360":
+/// every value is a smooth function of its index, so that tests and the scripts for the official
+/// readers can compute it.
 namespace lidarena::sample {
 
 inline constexpr Time kStart = std::chrono::seconds(100);
@@ -62,7 +63,7 @@ inline StampedPose truth(int index) {
   return {kStart + index * kImuPeriod, make_pose(turn, Eigen::Vector3d(t, 2.0 * t, 1.5))};
 }
 
-/// `scans` scans with the IMU samples around them, in the order that EventSource promises.
+/// `scans` scans with the IMU samples around them, in the order that EventSource guarantees.
 inline std::vector<Event> events(int scans, int points) {
   std::vector<Event> events;
   int next_scan = 0;

@@ -21,7 +21,7 @@ Event scan_between(Time start, Time end, const std::string& id = "lidar") {
   return {id, scan};
 }
 
-/// Everything that the merge gives out now.
+/// All events that the merge has released.
 std::vector<Event> popped(StreamMerge& merge) {
   std::vector<Event> events;
   while (auto event = merge.pop()) events.push_back(*std::move(event));
@@ -45,7 +45,7 @@ TEST(StreamMerge, AScanWaitsForTheImuSampleThatCoversItsLastPoint) {
   merge.push(scan_between(milliseconds(0), milliseconds(99)));
   EXPECT_TRUE(popped(merge).empty());
   merge.push(imu_at(milliseconds(98)));
-  EXPECT_THAT(popped(merge), testing::SizeIs(1));  // the sample alone
+  EXPECT_THAT(popped(merge), testing::SizeIs(1));  // only the sample
   merge.push(imu_at(milliseconds(99)));
   const std::vector<Event> events = popped(merge);
   ASSERT_EQ(events.size(), 2U);
@@ -73,7 +73,7 @@ TEST(StreamMerge, WhatKeepsThePromisePassesUnchanged) {
   expect_same(merged(events, {"mid360"}), events);
 }
 
-// Files have scans too early (written when they start) or late, by varying delays.
+// In files, scans come too early (written at their start) or too late, with varying delays.
 TEST(StreamMerge, KeepsThePromiseForAnyDelayOfTheScans) {
   const std::vector<Event> ordered = sample::events(20, 20);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
@@ -131,7 +131,7 @@ TEST(StreamMerge, AnImuThatFallsSilentIsNamedBeforeMemoryFills) {
   };
   try {
     push_scans();
-    FAIL() << "scans piled up without a word";
+    FAIL() << "scans accumulated without an error";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr("IMU 'imu' has no sample from"),
                                              testing::HasSubstr("0.099000000 s")));

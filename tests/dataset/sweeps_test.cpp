@@ -69,7 +69,7 @@ TEST(SweepTimes, Of32BitsCountFromTheStamp) {
       table_of({"x", "y", "z", "t"}, {{1, 0, 0, 2000}, {2, 0, 0, 5000}}, ScalarType::kUint32),
       Time{1'000'000});
   EXPECT_TRUE(scan.timed);
-  EXPECT_EQ(scan.stamp, Time{1'000'000});  // the first firing may have had no return
+  EXPECT_EQ(scan.stamp, Time{1'000'000});  // earlier firings may have no return
   EXPECT_EQ(scan.points[0].dt_ns, 2000);
   EXPECT_EQ(scan.points[1].dt_ns, 5000);
 }
@@ -132,7 +132,7 @@ TEST(SweepPoints, NoReturnsAreLeftOutAndTheRestIsInFiringOrder) {
   ASSERT_EQ(scan.points.size(), 3U);
   EXPECT_EQ(scan.stamp, Time{100'000'000});
   EXPECT_EQ(scan.points[0].position.x(), 2.0F);
-  EXPECT_EQ(scan.points[1].position.x(), 3.0F);  // same instant: as stored
+  EXPECT_EQ(scan.points[1].position.x(), 3.0F);  // same time: order as stored
   EXPECT_EQ(scan.points[2].position.x(), 1.0F);
   EXPECT_EQ(scan.points[2].ring, 2);
   EXPECT_EQ(scan.points[2].intensity, 9.0F);
@@ -242,10 +242,10 @@ TEST_F(Sweeps, RawLayoutsSayWhatEachNumberIs) {
               HasSubstr("span more than two seconds"));
   options.layout = "xyzrgb";
   EXPECT_THAT(open_error(options),
-              AllOf(HasSubstr("'xyzrgb' is no layout"), HasSubstr("xyz, xyzi, xyzt, xyztr")));
+              AllOf(HasSubstr("'xyzrgb' is not a layout"), HasSubstr("xyz, xyzi, xyzt, xyztr")));
   options.layout = "xyz";
   EXPECT_THAT(input_error([&] { all_scans(open_sweep_folder(folder_.path(), options)); }),
-              HasSubstr("0.bin: its 16 bytes are no whole number of xyz points of 12 bytes"));
+              HasSubstr("0.bin: its 16 bytes are not a whole number of xyz points of 12 bytes"));
 }
 
 TEST_F(Sweeps, ARawLayoutIsInferredOnlyWhenAllSizesLeaveOne) {
@@ -253,13 +253,13 @@ TEST_F(Sweeps, ARawLayoutIsInferredOnlyWhenAllSizesLeaveOne) {
   put("0.bin", row);
   EXPECT_THAT(open_error(),
               AllOf(HasSubstr("0.bin: no file states the layout"), HasSubstr("xyz, xyzi, xyzt"),
-                    HasSubstr("say --layout xyz|xyzi|xyzt|xyztr")));
+                    HasSubstr("choose one with --layout xyz|xyzi|xyzt|xyztr")));
   put("1.bin", row.substr(0, 12));
   const Dataset dataset = open_sweep_folder(folder_.path());
   EXPECT_THAT(dataset.notes, ElementsAre(HasSubstr("taken as xyz"), HasSubstr("10 Hz"),
-                                         HasSubstr("in the body frame")));
+                                         HasSubstr("the body frame")));
   put("2.bin", row.substr(0, 16));
-  EXPECT_THAT(open_error(), HasSubstr("none of the known ones fit"));
+  EXPECT_THAT(open_error(), HasSubstr("fit their sizes: none"));
 }
 
 TEST_F(Sweeps, BadInputIsNamed) {
@@ -275,16 +275,16 @@ TEST_F(Sweeps, BadInputIsNamed) {
   options.layout = "xyz";
   options.sensor = "ouster";
   EXPECT_THAT(open_error(options),
-              AllOf(HasSubstr("has no LiDAR 'ouster'"), HasSubstr("its only one is 'lidar'")));
+              AllOf(HasSubstr("has no LiDAR 'ouster'"), HasSubstr("its only LiDAR is 'lidar'")));
   options.sensor = "lidar";
   options.rate_hz = 0.0;
-  EXPECT_THAT(open_error(options), HasSubstr("rate_hz: 0 is no rate"));
+  EXPECT_THAT(open_error(options), HasSubstr("rate_hz: 0 is not a valid"));
   EXPECT_THAT(input_error([&] { open_sweep_files({folder_.path() / "none.ply"}); }),
-              HasSubstr("is no sweep file"));
+              HasSubstr("is not a sweep file"));
 }
 
 TEST_F(Sweeps, StampsMustIncrease) {
-  // two sweeps whose 64-bit times both start at 0: they were relative after all
+  // two sweeps whose 64-bit times both start at 0, i.e. are relative instead of absolute
   const std::string header =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
       "property float z\nproperty double timestamp\nend_header\n";
@@ -305,7 +305,7 @@ TEST(RealSweeps, KittiDriveIsFifteenUntimedSweeps) {
     EXPECT_EQ(scans[i].stamp, Time{100'000'000} * static_cast<int>(i));
     points += static_cast<double>(scans[i].points.size()) / 15.0;
   }
-  EXPECT_EQ(scans[0].points.size(), 122'692U - 1U);  // one is at the origin
+  EXPECT_EQ(scans[0].points.size(), 122'692U - 1U);  // one point is at the origin
   EXPECT_NEAR(points, 122'500, 100);                 // "about 122 500 points a sweep"
 }
 
@@ -335,10 +335,10 @@ TEST(RealSweeps, Vlp16StampsItsPointsInAbsoluteSeconds) {
   for (const Scan& scan : scans) {
     EXPECT_GE(scan.points.size(), 14'672U);
     EXPECT_LE(scan.points.size(), 14'916U);
-    EXPECT_NEAR(to_seconds(end_of(scan) - scan.stamp), 0.1, 0.002);  // one turn at 10 Hz
+    EXPECT_NEAR(to_seconds(end_of(scan) - scan.stamp), 0.1, 0.002);  // one revolution at 10 Hz
     for (const Point& point : scan.points) ASSERT_LT(point.ring, 16);
   }
-  // file names are the instants the sweeps were handed over, after their last point
+  // file names are the times at which the sweeps were published, after their last point
   const Time named{1673400472138016708};
   EXPECT_LT(end_of(scans[0]), named);
   EXPECT_GT(end_of(scans[0]), named - Time{2'000'000});

@@ -41,7 +41,7 @@ TEST_F(Tum, ReadsTimesToTheNanosecondAndQuaternionsAsXyzw) {
   EXPECT_EQ(t.begin_time(), Time{1690309709285305601});
   const Pose pose = t.poses()[0].world_from_body;
   EXPECT_EQ(pose.translation(), Eigen::Vector3d(1, 2, 3));
-  // 2 atan2(0.6, 0.8) about z turns x to (0.28, 0.96)
+  // a rotation by 2 atan2(0.6, 0.8) about z maps x to (0.28, 0.96)
   EXPECT_LT((pose.linear() * Eigen::Vector3d::UnitX() - Eigen::Vector3d(0.28, 0.96, 0)).norm(),
             1e-15);
 }
@@ -74,7 +74,7 @@ TEST_F(Tum, ARoundTripKeepsNineDigits) {
     EXPECT_EQ(back.poses()[i].stamp, poses[i].stamp);
     // half a unit in the 9th digit of at most 1e3 m, per axis
     EXPECT_LT((a.translation() - b.translation()).cwiseAbs().maxCoeff(), 5.1e-7);
-    // four components off by at most 5e-10 turn the rotation by at most 2 * 2 * 5e-10 rad
+    // errors of up to 5e-10 in four components change the rotation by at most 2 * 2 * 5e-10 rad
     EXPECT_LT(so3::angle(a.linear().transpose() * b.linear()), 2.1e-9);
   }
 }
@@ -160,7 +160,7 @@ TEST_F(Kitti, RowsThatAreNoRotationAreRefused) {
     return input_error([&] { read_kitti_poses(put(text, "p.txt")); });
   };
   EXPECT_THAT(error("2 0 0 0 0 2 0 0 0 0 2 0\n"), HasSubstr("p.txt:1: the 3x3 part is not a rot"));
-  EXPECT_THAT(error("1 0 0 0 0 1 0 0 0 0 -1 0\n"), HasSubstr("determinant -1"));  // a mirror
+  EXPECT_THAT(error("1 0 0 0 0 1 0 0 0 0 -1 0\n"), HasSubstr("determinant -1"));  // a reflection
   EXPECT_THAT(error("0 0 0 0 0 0 0 0 0 0 0 0\n"), HasSubstr("not a rotation"));
   EXPECT_THAT(error("1 0 0 0 0 1 0 0 0 0 1\n"), HasSubstr("holds 11 columns"));
   EXPECT_THAT(error("1 0 0 nan 0 1 0 0 0 0 1 0\n"), HasSubstr("not finite"));
@@ -179,7 +179,7 @@ TEST_F(Kitti, RoundedRotationsComeOutOrthonormal) {
   const auto t = read_kitti_poses(put(row + "\n", "p.txt"));
   const Eigen::Matrix3d r = t.poses()[0].world_from_body.linear();
   EXPECT_LT((r * r.transpose() - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-  EXPECT_LT(so3::angle(truth.transpose() * r), 2e-4);  // nine entries off by at most 5e-5 each
+  EXPECT_LT(so3::angle(truth.transpose() * r), 2e-4);  // nine entries with errors of at most 5e-5
 }
 
 TEST_F(Kitti, TimesMustIncrease) {
@@ -251,7 +251,7 @@ TEST_F(TrajectoryFile, CutAnywhereItIsReadInPartOrRefused) {
 struct RealFile {
   const char* name;
   std::size_t poses;
-  double length_m;  ///< sum of the steps, computed independently; 0 where it was not
+  double length_m;  ///< path length, computed independently; 0 if it was not
 };
 
 class RealTrajectory : public testing::TestWithParam<RealFile> {};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // usage: write_recording_sample FOLDER [mcap|bag [driver]]
-//            writes the dataset that the official readers' scripts know
+//            writes the dataset that the scripts for the official readers expect
 //        write_recording_sample check FILE
-//            reads a recording and compares it with that
+//            reads a recording and compares it with that dataset
 #include <cstdio>
 #include <exception>
 #include <string_view>
@@ -48,7 +48,7 @@ void check_sample(const char* file) {
   const std::vector<Event> found = drain(*dataset.events);
   if (!std::ranges::equal(found, expected,
                           [](const Event& a, const Event& b) { return is_same(a, b); })) {
-    throw Error(std::string(file) + ": its events are not those of the sample");
+    throw Error(std::string(file) + ": its events differ from those of the sample");
   }
 }
 

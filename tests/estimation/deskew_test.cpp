@@ -18,8 +18,8 @@ Vector6 twist(double vx, double vy, double vz, double wx, double wy, double wz) 
   return xi;
 }
 
-/// Landmarks within 5 m, each seen at its own instant from a lidar that starts at the origin and
-/// moves with the constant twist `xi` for 0.1 s.
+/// Landmarks within 5 m, each measured at a different instant by a lidar that starts at the origin
+/// and moves with the constant twist `xi` for 0.1 s.
 Scan sweep(const std::vector<Eigen::Vector3d>& landmarks, const Vector6& xi) {
   Scan scan;
   scan.stamp = Time{1'700'000'000'123'456'789};

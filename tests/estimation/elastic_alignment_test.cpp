@@ -49,7 +49,7 @@ TEST(ElasticMotion, PlacesPointsAsItsInterpolatedPoseDoes) {
     const ElasticMotion motion{{from, to, from}};
     const ElasticTrack track(motion);
     for (const double alpha : {0.0, 0.1, 0.49, 0.5, 0.77, 1.0})
-      // 8 m, and an angle whose rounding is that of an arc cosine near one: 1e-8 squared and more
+      // lever of 8 m; the angle is rounded like an arc cosine near one: 1e-8 squared and more
       EXPECT_LT((track.place(point, alpha) - motion.at(alpha) * point).norm(), 1e-11) << angle;
   }
 }
@@ -71,17 +71,17 @@ TEST(ElasticMotion, DerivativeIsTheNumericOneAtAnyTurn) {
           return direction.dot(moved(from, to, s * Vector12::Unit(k)).place(point, a));
         };
         const double slope = (at(h) - at(-h)) / (2.0 * h);
-        // h^2 / 6 of a third derivative of some 8 m, and rounding of 8 m by 1e-16 over h
-        EXPECT_NEAR(row[k], slope, 2e-9) << "turn " << angle << " a " << a << " column " << k;
-        // The stand-in leaves out terms of the order of the turn, times a lever of 8.2 m, half
+        // h^2 / 6 times a third derivative of about 8 m, and rounding of 8 m by 1e-16, over h
+        EXPECT_NEAR(row[k], slope, 2e-9) << "angle " << angle << " a " << a << " column " << k;
+        // The approximation leaves out terms of half the rotation angle times a lever of 8.2 m
         EXPECT_NEAR(first_order[k], slope, 2e-9 + 4.1 * angle);
       }
     }
   }
 }
 
-/// Points all around at random times of a true motion, each with a plane (or line, or all three
-/// directions) through where it really lies.
+/// Points in all directions at random times of a true motion, each with a plane (or line) through
+/// its true position.
 struct Scene {
   ElasticMotion truth;
   std::vector<ElasticMatch> matches;
@@ -148,7 +148,7 @@ TEST(ElasticAlignment, FindsTheTrueMotionFromPerfectMatches) {
     const auto guess = ElasticMotion::still(pose_of(0.1, 0.0, 0.0, 0, 0, 0.2), segments);
     const auto ours = align_by_gauss_newton(problem, guess, 30, Parallel(1));
     EXPECT_LT(largest_gap(ours, s.truth), 1e-9) << segments;
-    // Ceres ends at a relative change of cost of 1e-6, here of a cost near zero
+    // Ceres stops at a relative change of cost of 1e-6, here of a cost near zero
     EXPECT_LT(largest_gap(align_by_ceres(problem, guess, 60), s.truth), 1e-6) << segments;
   }
 }
@@ -162,7 +162,7 @@ TEST(ElasticAlignment, BothSolversFindTheSameMinimumWithEveryTermAndLoss) {
       const ElasticProblem problem{s.matches, full_prior(s.truth), kernel, scale, true};
       const auto ours = align_by_gauss_newton(problem, s.truth, 60, Parallel(1));
       const auto theirs = align_by_ceres(problem, s.truth, 60);
-      // Ceres ends when a step lowers the cost by less than 1e-6 of it. A knot's curvature is at
+      // Ceres stops when a step lowers the cost by less than 1e-6 of it. A knot's curvature is at
       // least 1 / 9 / segments of all matches: a third for the direction, a third for the mean
       // square of a hat function over the scan.
       const double curvature = static_cast<double>(s.matches.size()) / (9.0 * segments);
@@ -197,8 +197,9 @@ TEST(ElasticAlignment, ALossHoldsOutliersBack) {
     const ElasticProblem problem{s.matches, {}, kernel, 0.05, true};
     return largest_gap(align_by_gauss_newton(problem, s.truth, 30, Parallel(1)), s.truth);
   };
-  // 60 of 600 are off by 0.7 m one way: 7 cm without a loss. Cauchy's pull of such an error is
-  // 0.05^2 / 0.7 = 3.6 mm, a tenth of all: 0.4 mm, beside noise of 1 cm / sqrt(100) a direction.
+  // 60 of 600 points are off by 0.7 m in the same direction: an error of 7 cm without a robust
+  // kernel. With a Cauchy kernel the influence of such an error is 0.05^2 / 0.7 = 3.6 mm, for a
+  // tenth of all points 0.4 mm, beside noise of 1 cm / sqrt(100) per direction.
   EXPECT_GT(error(RobustKernel::kNone), 0.05);
   EXPECT_LT(error(RobustKernel::kCauchy), 0.01);
   EXPECT_LT(error(RobustKernel::kTukey), error(RobustKernel::kNone) / 5.0);
@@ -213,7 +214,7 @@ TEST(ElasticAlignment, TheFirstOrderStandInEndsAtTheSamePlaceForASmallTurn) {
   const auto a = align_by_gauss_newton(exact, guess, 6, Parallel(1));
   const auto b = align_by_gauss_newton(first_order, guess, 6, Parallel(1));
   EXPECT_LT(largest_gap(a, s.truth), 1e-9);
-  EXPECT_LT(largest_gap(b, s.truth), 1e-4) << "converges, yet linearly";
+  EXPECT_LT(largest_gap(b, s.truth), 1e-4) << "converges, but only linearly";
 }
 
 TEST(ElasticAlignment, IsTheSameBitsOnAnyNumberOfThreads) {

@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 constexpr double kGravity = 9.81;
 
-/// Twenty samples of `rate` (rad/s) and `force`, each axis off by its error to either side in turn.
+/// Twenty samples of `rate` (rad/s) and `force`, with an error of alternating sign on each axis.
 std::vector<ImuSample> samples_of(const Vector3d& rate, const Vector3d& force,
                                   double rate_error = 0.0, double force_error = 0.0) {
   std::vector<ImuSample> samples;
@@ -26,7 +26,7 @@ std::vector<ImuSample> samples_of(const Vector3d& rate, const Vector3d& force,
   return samples;
 }
 
-/// A body that has turned by `pitch` about its y axis and then by `roll` about its x axis.
+/// Attitude of a body rotated by `pitch` about its y axis and then by `roll` about its x axis.
 Eigen::Matrix3d leaning(double pitch, double roll) {
   return so3::exp({0.0, pitch, 0.0}) * so3::exp({roll, 0.0, 0.0});
 }
@@ -75,7 +75,7 @@ TEST(ImuAtRest, UprightTurnsAnyDirectionToZWithoutYaw) {
     const Eigen::Matrix3d rotation = upright(up);
     EXPECT_LT((rotation * up.normalized() - Vector3d::UnitZ()).norm(), 1e-14) << up.transpose();
     EXPECT_NEAR(rotation(1, 0), 0.0, 1e-15) << "the body's x axis stays in the x-z plane";
-    EXPECT_GT(rotation(0, 0), -1e-15) << "and looks forward";
+    EXPECT_GT(rotation(0, 0), -1e-15) << "and points forward";
   }
 }
 
@@ -86,13 +86,14 @@ TEST(ImuAtRest, WhatMovesOrIsTooShortDoesNotStand) {
   };
   const Vector3d none = Vector3d::Zero();
   EXPECT_TRUE(standing(samples_of(none, up, 0.015, 0.15)));
-  EXPECT_FALSE(standing(samples_of(none, up, 0.025, 0.0))) << "it rocks";
-  EXPECT_FALSE(standing(samples_of(none, up, 0.0, 0.25))) << "it shakes";
-  EXPECT_FALSE(standing(samples_of({0.0, 0.0, 0.06}, up))) << "it turns";
-  EXPECT_FALSE(standing(samples_of(none, 1.04 * up))) << "it rises";
-  EXPECT_FALSE(standing(samples_of(none, 0.96 * up))) << "it sinks";
-  EXPECT_TRUE(standing(samples_of(none, up + Vector3d(1.0, 0.0, 0.0)))) << "not to be seen";
-  EXPECT_FALSE(standing({{Time{0}, none, up}, {Time{1}, none, up}})) << "two samples say nothing";
+  EXPECT_FALSE(standing(samples_of(none, up, 0.025, 0.0))) << "varying rate";
+  EXPECT_FALSE(standing(samples_of(none, up, 0.0, 0.25))) << "varying force";
+  EXPECT_FALSE(standing(samples_of({0.0, 0.0, 0.06}, up))) << "constant rotation";
+  EXPECT_FALSE(standing(samples_of(none, 1.04 * up))) << "force too large";
+  EXPECT_FALSE(standing(samples_of(none, 0.96 * up))) << "force too small";
+  EXPECT_TRUE(standing(samples_of(none, up + Vector3d(1.0, 0.0, 0.0))))
+      << "a horizontal force is not detected";
+  EXPECT_FALSE(standing({{Time{0}, none, up}, {Time{1}, none, up}})) << "two samples are too few";
   EXPECT_FALSE(standing({}));
 }
 

@@ -10,7 +10,7 @@ namespace {
 
 Time ms(double t) { return from_seconds(1e-3 * t); }
 
-/// Every 5 ms from 0 to 100 ms a rate that grows by 1 rad/s each second.
+/// Samples every 5 ms from 0 to 100 ms, with a rate that grows by 1 rad/s per second.
 ImuBuffer ramp() {
   ImuBuffer buffer(0.02);
   for (int i = 0; i <= 20; ++i) {
@@ -78,7 +78,7 @@ TEST(ImuBuffer, ForgettingChangesNoLaterAnswer) {
   EXPECT_EQ(turn(some.between(ms(42.0), ms(80.0))), turn(all.between(ms(42.0), ms(80.0))));
   EXPECT_EQ(some.samples(ms(42.0), ms(80.0)).size(), 8U);
   some.forget_before(ms(500.0));
-  EXPECT_FALSE(some.empty()) << "the last one says what comes next";
+  EXPECT_FALSE(some.empty()) << "the last sample is used for all later times";
 }
 
 TEST(ImuBuffer, BadSamplesAreRefusedAndCounted) {

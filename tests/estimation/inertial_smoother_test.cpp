@@ -19,7 +19,7 @@ using State = NavState;
 const Vector3d kGravity(0.0, 0.0, -9.8);
 constexpr ImuNoise kNoise{1e-3, 1e-2, 1e-4, 1e-3};
 constexpr double kDt = 0.005;
-constexpr int kSteps = 20;  // of the IMU from one pose to the next
+constexpr int kSteps = 20;  // IMU samples from one pose to the next
 constexpr double kTurnSigma = 2e-3;
 constexpr double kPlaceSigma = 5e-3;
 
@@ -36,14 +36,15 @@ PoseMeasurement::Information usual_information() {
   return information;
 }
 
-/// A flight as it was, what its IMU felt, and what was measured of its poses.
+/// A flight: its true states, the samples of its IMU, and the measured poses.
 struct Flight {
   std::vector<State> truth;
   std::vector<std::vector<std::pair<Vector3d, Vector3d>>> imu;  ///< by measurement
   std::vector<PoseMeasurement> measured;
 };
 
-/// A swing with turns about all axes. `noise` scales that of the IMU and of the poses.
+/// A swinging motion with rotation about all axes. `noise` scales the noise of the IMU and of the
+/// poses.
 Flight fly(int measurements, const ImuBias& bias, double noise, std::uint64_t seed) {
   SequentialRandom random(seed, 1);
   Flight flight;
@@ -105,8 +106,8 @@ TEST(InertialSmoother, FindsBiasesAndVelocityOfAPerfectFlight) {
   smoother.start(start);
   play(flight, smoother);
   const State::Vector error = minus(smoother.latest(), flight.truth.back());
-  // what the walk of the biases and the start's sigmas leave open: within the covariance it gives,
-  // whose largest parts these are
+  // The bounds are the largest standard deviations in the covariance of the smoother, from the
+  // random walk of the biases and the initial sigmas.
   EXPECT_LT(error.segment<3>(State::kGyroBias).norm(), 1e-4);
   EXPECT_LT(error.segment<3>(State::kAccelBias).norm(), 5e-3);
   EXPECT_LT(error.segment<3>(State::kVelocity).norm(), 1e-3);
@@ -127,8 +128,8 @@ TEST(InertialSmoother, AShortLagGivesWhatAllMeasurementsAtOnceGive) {
   EXPECT_EQ(some.size(), 6U);
   const State::Vector apart = minus(some.latest(), all.latest());
   const State::Vector sigma = all.covariance().diagonal().cwiseSqrt();
-  // Marginalizing keeps the Jacobians of the time: the difference is of second order in errors that
-  // are small beside one radian, so small beside one sigma.
+  // Marginalization keeps the Jacobians computed at that time: the difference is of second order in
+  // errors that are small compared to one radian, hence small compared to one sigma.
   EXPECT_LT(apart.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1);
   const State::Vector ratio = some.covariance().diagonal().cwiseQuotient(sigma.cwiseAbs2());
   EXPECT_LT((ratio.array() - 1.0).abs().maxCoeff(), 0.05);
@@ -143,7 +144,7 @@ TEST(InertialSmoother, ItsCovarianceIsHonest) {
     const ImuBias bias{random_vector(random, 0.02), random_vector(random, 0.2)};
     const Flight flight = fly(20, bias, 1.0, static_cast<std::uint64_t>(seed));
     InertialStart start = start_at(flight.truth.front());
-    State::Vector off;  // position and attitude at the start are as good as known
+    State::Vector off;  // initial position and attitude are nearly known
     off << random_vector(random, 1e-3), random_vector(random, 0.1), random_vector(random, 1e-3),
         Vector3d::Zero(), Vector3d::Zero();
     start.state = plus(start.state, off);
@@ -153,7 +154,8 @@ TEST(InertialSmoother, ItsCovarianceIsHonest) {
     const State::Vector error = minus(smoother.latest(), flight.truth.back());
     sum += error.dot(smoother.covariance().ldlt().solve(error)) / kFlights;
   }
-  // The truth's biases do not walk and the smoother believes they do, so a little less.
+  // The true biases are constant and the smoother assumes random walks, so the value is a little
+  // lower.
   EXPECT_GT(sum, 15.0 - 5.0 * 0.71);
   EXPECT_LT(sum, 15.0 + 3.0 * 0.71);
 }
@@ -166,14 +168,14 @@ TEST(InertialSmoother, AWorldThatIsNotUprightShowsInGravity) {
   InertialSmoother smoother;
   smoother.start(start);
   play(flight, smoother);
-  EXPECT_LT((smoother.gravity() - kGravity).norm(), 0.02) << "it began at 0.35";
+  EXPECT_LT((smoother.gravity() - kGravity).norm(), 0.02) << "the initial error is 0.35 m/s^2";
   EXPECT_NEAR(smoother.gravity().norm(), 9.8, 1e-9);
 
   start.gravity_sigma = 0.0;
   InertialSmoother sure;
   sure.start(start);
   play(flight, sure);
-  EXPECT_GT((sure.gravity() - kGravity).norm(), 0.3) << "it was told so";
+  EXPECT_GT((sure.gravity() - kGravity).norm(), 0.3) << "the given direction is taken as exact";
 }
 
 TEST(InertialSmoother, AMeasurementWithoutInformationIsAPrediction) {

@@ -66,7 +66,7 @@ TEST(InertialState, GravityAcrossTheSphere) {
   State up;
   up.gravity = -up.gravity;
   const State down;
-  EXPECT_NEAR(minus(up, down).norm(), M_PI, 1e-12) << "the way to the opposite is half a turn";
+  EXPECT_NEAR(minus(up, down).norm(), M_PI, 1e-12) << "the opposite direction is half a turn away";
   EXPECT_LT((plus(down, minus(up, down)).gravity - up.gravity).norm(), 1e-9);
   EXPECT_EQ(minus(up, up).norm(), 0.0);
 }
@@ -117,7 +117,7 @@ TEST(InertialState, FreeFallAndATurnInClosedForm) {
   state.nav.velocity = {1.0, 0.0, 2.0};
   state.nav.bias.gyro = {0.0, 0.0, 0.1};
   const double dt = 0.005;
-  for (int i = 0; i < 200; ++i) {  // 1 s in which the IMU feels nothing but its bias and a turn
+  for (int i = 0; i < 200; ++i) {  // 1 s: free fall and a rotation, with a gyro bias
     propagate(state, {0.0, 0.0, 0.6}, Eigen::Vector3d::Zero(), dt, Integration::kSecondOrder);
   }
   const double g = 9.80665;
@@ -131,7 +131,7 @@ TEST(InertialState, FreeFallAndATurnInClosedForm) {
     propagate(first_order, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), dt,
               Integration::kFirstOrder);
   }
-  // The sum of v dt with v at each step's begin: short of the integral by g T dt / 2.
+  // The sum of v dt with v at the beginning of each step differs from the integral by g T dt / 2.
   EXPECT_NEAR(first_order.position.z(), 2.0 - 0.5 * g + 0.5 * g * dt, 1e-9);
 }
 
@@ -143,7 +143,7 @@ TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {
   EXPECT_NEAR(sum(State::kVelocity + 2, State::kVelocity + 2), 1e-4, 1e-13);
   EXPECT_NEAR(sum(State::kGyroBias, State::kGyroBias), 1e-10, 1e-19);
   EXPECT_NEAR(sum(State::kAccelBias, State::kAccelBias), 1e-8, 1e-17);
-  EXPECT_NEAR(sum.trace(), 3.0 * (1e-6 + 1e-4 + 1e-10 + 1e-8), 1e-12) << "and nowhere else";
+  EXPECT_NEAR(sum.trace(), 3.0 * (1e-6 + 1e-4 + 1e-10 + 1e-8), 1e-12) << "all others are zero";
 }
 
 }  // namespace

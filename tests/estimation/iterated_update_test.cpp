@@ -18,7 +18,7 @@ namespace {
 
 using State = InertialState;
 
-/// A point seen by the LiDAR that lies on the plane normal . x = offset of the world.
+/// A LiDAR point that lies on the plane normal . x = offset in the world.
 struct Seen {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
@@ -31,7 +31,7 @@ Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
   return sigma * Eigen::Vector3d(x, y, random.normal());
 }
 
-/// Points all around that a LiDAR at `truth` sees, each with `sigma` m of noise across its plane.
+/// Points in all directions from a LiDAR at `truth`, each with `sigma` m of noise across its plane.
 std::vector<Seen> look_around(const State& truth, SequentialRandom& random, double sigma) {
   std::vector<Seen> seen;
   for (int i = 0; i < 60; ++i) {
@@ -73,7 +73,7 @@ State::Matrix some_covariance(SequentialRandom& random, double sigma) {
          (State::Matrix::Identity() + 0.3 * root * root.transpose() / double{State::kDof});
 }
 
-/// -log of the posterior, but for a constant.
+/// -log of the posterior, up to a constant.
 double cost(const Belief& prior, const std::vector<Seen>& seen, double variance, const State& x) {
   const State::Vector moved = minus(x, prior.state);
   double sum = 0.5 * moved.dot(prior.covariance.ldlt().solve(moved));
@@ -114,7 +114,7 @@ TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
 }
 
 TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
-  // Position alone is seen, along three directions: the textbook's gain, with H of 3 rows.
+  // Only the position is measured, along three directions: the textbook gain, with an H of 3 rows.
   SequentialRandom random(6, 1);
   Belief prior;
   prior.covariance = some_covariance(random, 0.1);
@@ -180,8 +180,8 @@ TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   EXPECT_EQ(updated.belief.covariance, prior.covariance);
 }
 
-/// Errors of a second of motion: a state drawn from the prior, an IMU with the noise that the
-/// filter is told, and each tenth of a second 60 points on planes that are known. Returns the
+/// Errors of the filter after one second of motion: an initial state drawn from the prior, an IMU
+/// with the noise that the filter assumes, and 60 points on known planes every 0.1 s. Returns the
 /// normalized estimation error squared of pose (6) and of the whole state (23) at the end.
 std::pair<double, double> normalized_errors(std::uint64_t seed) {
   constexpr double kStep = 0.005;
@@ -228,7 +228,7 @@ TEST(IteratedUpdate, IsConsistentWhenTheNoiseIsAsItIsTold) {
   }
   RecordProperty("nees_pose", std::to_string(pose));
   RecordProperty("nees_state", std::to_string(all));
-  // 0.5 % and 99.5 % points of chi-square with 120 and 460 degrees of freedom, over 20.
+  // 0.5 % and 99.5 % quantiles of chi-squared with 120 and 460 degrees of freedom, over 20.
   EXPECT_GT(pose, 83.85 / kSeeds);
   EXPECT_LT(pose, 163.65 / kSeeds);
   EXPECT_GT(all, 385.9 / kSeeds);

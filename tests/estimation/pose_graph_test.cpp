@@ -18,7 +18,7 @@ namespace {
 using Covariance = PoseGraph::Covariance;
 using Eigen::Vector3d;
 
-constexpr double kExact = 1e-6;  // where the solver stops
+constexpr double kExact = 1e-6;  // accuracy of the solver
 
 Vector3d random_vector(SequentialRandom& random, double sigma) {
   const double x = random.normal();
@@ -38,7 +38,7 @@ double distance(const Pose& a, const Pose& b) {
          so3::angle(a.linear().transpose() * b.linear());
 }
 
-/// Edges between neighbors as they are in `truth`, each off by `off`.
+/// A chain of edges between neighbors in `truth`, each with the error `off`.
 PoseGraph chain(const std::vector<Pose>& truth, const Pose& off, const Covariance& covariance) {
   PoseGraph graph;
   graph.nodes.push_back(truth.front());
@@ -77,8 +77,9 @@ TEST(PoseGraph, PerfectMeasurementsPullWrongGuessesHome) {
 }
 
 TEST(PoseGraph, ALoopsErrorIsSharedOutByVariance) {
-  // On a line, four odometry steps of 1 m; the loop says 4.4 m in all. Steps have variances 1, 2, 3
-  // and 4, the loop 2: the surplus of 0.4 m is shared out in these parts of 12.
+  // On a line, four odometry steps of 1 m; the loop measures 4.4 m in total. Steps have variances
+  // 1, 2, 3 and 4, the loop 2, in total 12: the excess of 0.4 m is distributed in proportion to
+  // them.
   PoseGraph graph;
   graph.nodes.assign(5, Pose::Identity());
   graph.priors.push_back({0, Pose::Identity(), 1e-10 * Covariance::Identity()});
@@ -98,8 +99,8 @@ TEST(PoseGraph, ALoopsErrorIsSharedOutByVariance) {
 }
 
 TEST(PoseGraph, ATurnTooMuchIsTakenBackEvenlyAllAroundACircle) {
-  // 12 equal steps around a circle, each turned 1 degree too far; a perfect loop back to the start.
-  // By symmetry every edge turns the same in the solution, so each takes back the same: 1 degree.
+  // 12 equal steps around a circle, the closing one included, each rotated 1 degree too far. By
+  // symmetry every edge has the same rotation in the solution, so each is corrected by 1 degree.
   const double step = std::numbers::pi / 6.0;
   const auto on_circle = [&](int i) {
     return make_pose(so3::exp({0, 0, step * i}),
@@ -108,7 +109,7 @@ TEST(PoseGraph, ATurnTooMuchIsTakenBackEvenlyAllAroundACircle) {
   std::vector<Pose> truth;
   for (int i = 0; i < 12; ++i) truth.push_back(on_circle(i));
   const Pose off = make_pose(so3::exp({0.0, 0.0, std::numbers::pi / 180.0}), Vector3d::Zero());
-  // Translations count so little that they do not resist the turning.
+  // Translations have so little weight that they do not resist the rotation.
   Covariance loose = Covariance::Identity();
   loose.topLeftCorner<3, 3>() *= 1e6;
   loose.bottomRightCorner<3, 3>() *= 1e-6;
@@ -124,7 +125,7 @@ TEST(PoseGraph, ATurnTooMuchIsTakenBackEvenlyAllAroundACircle) {
 }
 
 TEST(PoseGraph, AWrongLoopBendsTheChainUnlessItsKernelIsRobust) {
-  // 20 m straight on, and a loop that claims that the end is the start.
+  // 20 m straight ahead, and a false loop that puts the end at the start.
   std::vector<Pose> truth;
   for (int i = 0; i <= 20; ++i) truth.push_back(along_x(i));
   const auto end_with = [&](RobustLoss loss) {
@@ -132,16 +133,19 @@ TEST(PoseGraph, AWrongLoopBendsTheChainUnlessItsKernelIsRobust) {
     graph.betweens.push_back({0, 20, Pose::Identity(), 1e-4 * Covariance::Identity(), loss});
     return optimize(graph).nodes.back().translation().x();
   };
-  EXPECT_NEAR(end_with({}), 20.0 / 21.0, 0.01) << "believed like any step: a 21st of it is left";
-  EXPECT_LT(end_with({RobustKernel::kHuber, 1.0}), 19.9) << "linear: it still pulls";
+  EXPECT_NEAR(end_with({}), 20.0 / 21.0, 0.01)
+      << "same weight as any step: 1/21 of the length is left";
+  EXPECT_LT(end_with({RobustKernel::kHuber, 1.0}), 19.9)
+      << "linear kernel: the loop still has influence";
   EXPECT_GT(end_with({RobustKernel::kCauchy, 1.0}), 19.98);
-  EXPECT_NEAR(end_with({RobustKernel::kTukey, 5.0}), 20.0, kExact) << "not believed at all";
+  EXPECT_NEAR(end_with({RobustKernel::kTukey, 5.0}), 20.0, kExact)
+      << "the loop has no influence";
 }
 
 TEST(PoseGraph, ATrueLoopCountsUnderARobustKernel) {
   std::vector<Pose> truth;
   for (int i = 0; i <= 20; ++i) truth.push_back(along_x(i));
-  // odometry 2 cm a step too long; the loop knows better
+  // odometry 2 cm per step too long; the loop is correct
   PoseGraph graph = chain(truth, along_x(0.02), 1e-3 * Covariance::Identity());
   EXPECT_NEAR(graph.nodes.back().translation().x(), 20.4, 1e-9);
   graph.betweens.push_back(
@@ -198,7 +202,7 @@ TEST(PoseGraph, WhatCannotBeSolvedIsRefused) {
   graph.betweens.push_back({0, 1, Pose::Identity(), Covariance::Identity()});
   EXPECT_THROW(optimize(graph), InputError) << "no node 1";
   graph.priors.push_back({1, Pose::Identity(), Covariance::Identity()});
-  EXPECT_THROW(optimize(graph), InputError) << "a prior of no node";
+  EXPECT_THROW(optimize(graph), InputError) << "a prior of a node that does not exist";
   graph.priors.clear();
   graph.nodes.push_back(Pose::Identity());
   graph.betweens.front().covariance(2, 2) = 0.0;

@@ -32,7 +32,7 @@ NavState some_state(SequentialRandom& random) {
   return state;
 }
 
-/// What a tumbling, accelerating IMU feels at `t`.
+/// True rate and specific force at `t` of an IMU that tumbles and accelerates.
 Vector3d rate_at(double t) {
   return {0.9 * std::sin(3.0 * t), -0.6 + 0.5 * std::cos(2.0 * t), 1.1 * std::cos(4.0 * t)};
 }
@@ -40,7 +40,7 @@ Vector3d force_at(double t) {
   return {2.0 * std::sin(5.0 * t), 1.0 + t, 9.8 + 3.0 * std::cos(3.0 * t)};
 }
 
-/// The motion over `seconds` in `steps` steps, each with rate and force of its middle.
+/// The motion over `seconds` in `steps` steps, each with the rate and force at its middle.
 Preintegration summed(const ImuBias& true_bias, const ImuBias& assumed, double seconds, int steps) {
   Preintegration sum(assumed, kNoise);
   const double dt = seconds / steps;
@@ -51,7 +51,8 @@ Preintegration summed(const ImuBias& true_bias, const ImuBias& assumed, double s
   return sum;
 }
 
-/// The same by Runge-Kutta on rotation matrix, velocity and position: an independent, fine answer.
+/// The same by Runge-Kutta on rotation matrix, velocity and position: an independent, accurate
+/// reference.
 NavState integrated(const NavState& first, double seconds) {
   struct Rates {
     Eigen::Matrix3d rotation;
@@ -90,7 +91,7 @@ TEST(Preintegration, PredictsWhatRungeKuttaFindsToSecondOrder) {
     const NavState found = summed(first.bias, first.bias, 0.5, steps).predict(first, kGravity);
     const double error = minus(found, last).norm();
     if (before > 0.0) {
-      EXPECT_NEAR(before / error, 4.0, 0.2) << "half the step, a quarter of it";
+      EXPECT_NEAR(before / error, 4.0, 0.2) << "half the step, a quarter of the error";
     }
     before = error;
   }
@@ -187,7 +188,7 @@ TEST(Preintegration, TheCovarianceIsThatOfManyNoisyRuns) {
     const Eigen::Matrix<double, 9, 1> r = all.head<9>();
     spread += r * r.transpose() / kRuns;
   }
-  // In the units of the predicted spread: the identity, +-1/sqrt(runs) in each entry, sqrt(2) times
+  // Whitened by the predicted covariance: the identity, +-1/sqrt(runs) in each entry, sqrt(2) times
   // that on the diagonal; five sigma.
   const Eigen::Matrix<double, 9, 9> predicted = clean.covariance().topLeftCorner<9, 9>();
   const Eigen::LLT<Eigen::Matrix<double, 9, 9>> root(predicted);

@@ -49,7 +49,7 @@ TEST(Umeyama, AgreesWithEigenOnNoisyAndMirroredPositions) {
     Eigen::Matrix3Xd p(3, 40);
     Eigen::Matrix3Xd q(3, 40);
     const Pose truth_from_estimate = flights::random_pose(random, 3.0);
-    const double mirror = trial % 5 == 0 ? -1.0 : 1.0;  // the case that det(U) det(V) < 0 is for
+    const double mirror = trial % 5 == 0 ? -1.0 : 1.0;  // gives det(U) det(V) < 0
     for (int i = 0; i < 40; ++i) {
       p.col(i) = Vector3d(random.normal(), random.normal(), random.normal());
       const Vector3d noise(random.normal(), random.normal(), random.normal());
@@ -73,7 +73,7 @@ TEST(FirstPoseGauge, LaysTheFirstCommonPosesOnEachOtherAndFitsNothing) {
   const Trajectory truth = sample(tour, 10ms, 20s);
   const Trajectory estimate = flights::mapped(
       flights::with_gap(sample(tour, 100ms, 20s), -1s, 3s), [&](const StampedPose& pose) {
-        // drifts after the first pose, so that any fit would end elsewhere
+        // drifts after the first pose, so that any fit would give another transform
         const double drift = 0.1 * (to_seconds(pose.stamp) - 3.0);
         return truth_from_estimate.inverse() * level({drift, 0, 0}) * pose.world_from_body;
       });
@@ -94,7 +94,7 @@ TEST(PosYawGauge, WarnsWhenTheEstimateLeans) {
   const Trajectory estimate = sample(tour, 100ms, 20s);
   const Alignment found = align(estimate, moved(estimate, leaning), Gauge::kPosYaw);
   EXPECT_TRUE(found.determined());
-  EXPECT_THAT(found.warning, HasSubstr("leans 11.5 deg"));  // 0.2 rad
+  EXPECT_THAT(found.warning, HasSubstr("tilted by 11.5 deg"));  // 0.2 rad
   EXPECT_NEAR(found.tilt_rad, 0.2, 1e-12);
 }
 

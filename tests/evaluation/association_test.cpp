@@ -26,7 +26,7 @@ TEST(Association, ACompleteEstimateCoversAllAndMatchesEveryPose) {
 }
 
 TEST(Association, CoverageIsTheShareOfTruthTimeBetweenNeighboringEstimates) {
-  // 2..17 s of 0..20 s with a hole of 3 s: 12 of 20 s
+  // 2..17 s of 0..20 s with a gap of 3 s: 12 of 20 s
   const Trajectory cut = with_gap(with_gap(sample(tour, 100ms, 20s), -1s, 2s), 17s, 30s);
   const Association found = associate(with_gap(cut, 8s, 11s), sample(tour, 5ms, 20s));
   EXPECT_NEAR(found.coverage, 0.6, 1e-12);
@@ -36,7 +36,7 @@ TEST(Association, CoverageIsTheShareOfTruthTimeBetweenNeighboringEstimates) {
 
 TEST(Association, EstimatesBeforeAndAfterTheTruthOrInItsGapsAreNotMatched) {
   const Trajectory estimate = sample(tour, 100ms, 20s);
-  // truth 5..15 s with nothing strictly between 8 and 9 s: the stamps 8.1 .. 8.9 s are lost
+  // truth 5..15 s with no pose strictly between 8 and 9 s: the stamps 8.1 .. 8.9 s are not matched
   const Trajectory truth = with_gap(flights::shifted(sample(tour, 10ms, 10s), 5s), 8s, 9s);
   EXPECT_EQ(matched_poses(estimate, truth).size(), 101U - 9U);
   EXPECT_EQ(associate(estimate, truth).matched, 101U - 9U);

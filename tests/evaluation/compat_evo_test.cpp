@@ -34,7 +34,7 @@ E named(const std::string& text) {
   throw std::runtime_error("no such name: " + text);
 }
 
-/// "evo_rpe tum REF EST -r full -d 1 -u m ..." as options.
+/// The command line "evo_rpe tum REF EST -r full -d 1 -u m ..." as options.
 struct Command {
   std::string reference, estimate;
   EvoOptions options;
@@ -66,9 +66,9 @@ struct Command {
   }
 };
 
-// Coordinates of some ten meters and angles of some ten degrees are rounded to 64 times less than
-// this: errors that are nothing but rounding, and deviations of errors that are all alike, are
-// known no better.
+// Limit below which differences are ignored. Coordinates of about ten meters and angles of about
+// ten degrees have a rounding error of 1/64 of this, so errors that consist only of rounding, and
+// deviations of equal errors, are not known more accurately.
 constexpr double kRounding = 1e-13;
 
 /// Largest relative difference of the seven statistics.
@@ -90,7 +90,7 @@ double difference(const EvoStatistics& ours, const Json& theirs) {
 
 TEST(CompatEvo, GivesTheFiguresAndRefusalsOfEvoItself) {
   std::ifstream in(tum_text::shared("../reference/evo_figures.json"));
-  if (!in) GTEST_SKIP() << "the figures of evo are not here: its comparison is skipped";
+  if (!in) GTEST_SKIP() << "evo_figures.json with the results of evo not found";
   const Json document = Json::parse(in);
   std::map<std::string, Trajectory> files;
   for (const auto& [name, text] : document["files"].items()) {
@@ -124,7 +124,7 @@ TEST(CompatEvo, GivesTheFiguresAndRefusalsOfEvoItself) {
               document["runs"].size(), refused, worst_plain, worst_aligned);
 }
 
-// --- what it does, in closed form
+// --- behavior in closed form
 
 std::vector<Pose> poses_along(const std::function<Pose(int)>& pose, int count) {
   std::vector<Pose> poses;
@@ -165,7 +165,7 @@ TEST(EvoPieces, FramesFollowOneAnotherOrStartAtEveryPose) {
 }
 
 TEST(EvoPieces, OfMetersTheFirstIsLostAndNoneIsShorter) {
-  // steps of 0.375 m are exact: 1 m is passed at 1.125 m, every third pose
+  // steps of 0.375 m are exact: 1 m is exceeded at 1.125 m, at every third pose
   EXPECT_THAT(evo_pieces(steps_of(0.375, 11), pieces(EvoUnit::kMeters, 1.0)),
               ElementsAre(Pair(3, 6), Pair(6, 9)));
   EXPECT_THAT(evo_pieces(steps_of(0.25, 13), pieces(EvoUnit::kMeters, 1.0)),
@@ -196,7 +196,7 @@ TEST(EvoAssociation, EveryStampOfTheShorterFindsTheNearestOfTheLongerEvenTwice) 
   const auto still = [](double) { return level({0, 0, 0}); };
   const Trajectory slow = sample(still, 400ms, 1200ms);
   const Trajectory fast = flights::shifted(sample(still, 100ms, 800ms), 10ms);
-  // 1.2 s finds 0.81 s again, 0.39 s away
+  // 1.2 s is paired with 0.81 s again, 0.39 s away
   EXPECT_THAT(evo_association(slow, fast, 0.4, 0.0),
               ElementsAre(Pair(0, 0), Pair(1, 4), Pair(2, 8), Pair(3, 8)));
   EXPECT_THAT(evo_association(fast, slow, 0.4, 0.0),
@@ -213,7 +213,7 @@ TEST(EvoAssociation, TheOffsetIsAddedToTheEstimate) {
   EXPECT_TRUE(evo_association(reference, late, 0.001, 0.237).empty());
 }
 
-/// 1 m/s along x, and the same 1 % too long.
+/// 1 m/s along x, with the positions multiplied by `scale`.
 Trajectory line(double scale) {
   return sample([&](double t) { return level({scale * t, 0, 0}); }, 100ms, 10s);
 }
@@ -276,7 +276,7 @@ TEST(CompatEvo, AlignmentsTakeAwayWhatTheySay) {
   EXPECT_NEAR(compat_evo(flight, estimate, o).reference_from_estimate.scale, 0.5, 1e-12);
   o.n_to_align = 20;
   EXPECT_LT(compat_evo(flight, estimate, o).statistics.max, 1e-11);
-  o.align = false;  // scale alone: the turn and the move stay
+  o.align = false;  // scale only: rotation and translation stay
   const EvoResult scaled = compat_evo(flight, estimate, o);
   EXPECT_NEAR(scaled.reference_from_estimate.scale, 0.5, 1e-12);
   EXPECT_TRUE(scaled.reference_from_estimate.rotation.isIdentity(0.0));
@@ -287,7 +287,7 @@ TEST(CompatEvo, AlignmentsTakeAwayWhatTheySay) {
   EXPECT_LT(compat_evo(flight, estimate, origin).statistics.max, 1e-12);
 }
 
-/// The message of the refusal; empty when there is none.
+/// The message of the error; empty when there is none.
 std::string refusal(const Trajectory& reference, const Trajectory& estimate,
                     const EvoOptions& options) {
   try {
@@ -306,16 +306,16 @@ TEST(CompatEvo, RefusesInWords) {
   EXPECT_THAT(of(pieces(EvoUnit::kMeters, 0.0)), HasSubstr("not a positive number"));
   EXPECT_THAT(of(pieces(EvoUnit::kMeters, std::nan(""))), HasSubstr("not a positive number"));
   EXPECT_THAT(of(pieces(EvoUnit::kFrames, 1.5)), HasSubstr("whole number of frames"));
-  EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 181.0)), HasSubstr("more than half a turn"));
-  EXPECT_THAT(of(pieces(EvoUnit::kRadians, 3.2)), HasSubstr("more than half a turn"));
-  EXPECT_THAT(of(pieces(EvoUnit::kMeters, 50.0)), HasSubstr("no two poses as far apart"));
-  EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 10.0)), HasSubstr("no two poses as far apart"));
-  EXPECT_THAT(of(absolute(EvoRelation::kPointDistanceRatio)), HasSubstr("rpe alone"));
+  EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 181.0)), HasSubstr("more than 180 degrees"));
+  EXPECT_THAT(of(pieces(EvoUnit::kRadians, 3.2)), HasSubstr("more than 180 degrees"));
+  EXPECT_THAT(of(pieces(EvoUnit::kMeters, 50.0)), HasSubstr("no two poses are as far apart"));
+  EXPECT_THAT(of(pieces(EvoUnit::kDegrees, 10.0)), HasSubstr("no two poses are as far apart"));
+  EXPECT_THAT(of(absolute(EvoRelation::kPointDistanceRatio)), HasSubstr("rpe only"));
   EvoOptions align;
   align.align = true;
   EXPECT_THAT(of(align), HasSubstr("lie on a line"));
   align.align_origin = true;
-  EXPECT_THAT(of(align), HasSubstr("cannot both be aligned"));
+  EXPECT_THAT(of(align), HasSubstr("cannot be combined with --align"));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What rays saw of a mesh, and how much of that a map has.
+// The surface of a mesh that rays hit, and how much of it a map has.
 #include "lidarena/evaluation/completeness.hpp"
 #include "tests/evaluation/listed_sources.hpp"
 
@@ -21,7 +21,7 @@ using listed::Truths;
 
 const Parallel kTwo(2);
 
-/// Hits on the floor z = 0 for x in [0, length], |y| < 1, every centimeter, met from above.
+/// Hits on the floor z = 0 for x in [0, length], |y| < 1, one per centimeter, from above.
 Truths hits_on_floor(double length) {
   Truths truths;
   ScanTruth scan{"front", Time(0), {}};
@@ -73,7 +73,7 @@ TEST(ObservedSurface, FreeSpaceIsWhereTheRaysCameFromHoweverTrianglesAreWound) {
     truths.scans[0].points.push_back({Vector3f(0, 0, 0.5F), 1.0F, Vector3f(0, 0, 1), 0});
     const ObservedSurface seen = observe(truths, world, kTwo);
     EXPECT_EQ(seen.returns, 200U * 200U + 1U);
-    EXPECT_EQ(seen.off_mesh, 1U);  // that point is nowhere on the floor
+    EXPECT_EQ(seen.off_mesh, 1U);  // the added point is not on the floor
     EXPECT_EQ(seen.hits.size(), 100U * 100U);
     for (const FreeSide side : seen.free_side) {
       EXPECT_EQ(side, turned ? FreeSide::kBack : FreeSide::kFront);
@@ -84,7 +84,7 @@ TEST(ObservedSurface, FreeSpaceIsWhereTheRaysCameFromHoweverTrianglesAreWound) {
 TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
   const World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
-  // the second triangle is that with y > x: turn half of its hits round
+  // the second triangle is that with y > x: flip the side of half of its hits
   std::size_t turned = 0;
   for (PointTruth& hit : truths.scans[0].points) {
     if (hit.position.y() > hit.position.x() && turned++ % 2 == 0) hit.normal = -hit.normal;
@@ -133,18 +133,18 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
   const ObservedSurface seen = observe(source, "front", body_from_lidar, truth, world, kTwo);
   EXPECT_EQ(seen.off_mesh, 0U);
   EXPECT_GT(seen.hits.size(), 10000U);
-  for (const Vector3f& hit : seen.hits) {  // on a wall, though the returns are 3 cm off
+  for (const Vector3f& hit : seen.hits) {  // on a wall, although the returns have 3 cm of noise
     const Vector3d at = hit.cast<double>();
     const double off = (Vector3d(7, 8, 4) - at.cwiseAbs()).cwiseAbs().minCoeff();
     ASSERT_LT(off, 2e-5);
   }
   for (std::size_t t = 0; t < seen.free_side.size(); ++t) {
-    EXPECT_EQ(seen.free_side[t], FreeSide::kBack) << t;  // the box is wound outward, seen inside
+    EXPECT_EQ(seen.free_side[t], FreeSide::kBack) << t;  // outward normals, rays from inside
   }
 }
 
 TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles) {
-  // 2 m of floor as two triangles, and 2 m more as two thousand
+  // 2 m of floor as two triangles, and 2 m more as two thousand triangles
   TriangleMesh mesh;
   mesh.vertices = {{0, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -162,11 +162,12 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
   Truths truths = hits_on_floor(4.0);
   const ObservedSurface seen = observe(truths, world, kTwo);
   const SurfaceSamples samples = seen_samples(world, seen, kTwo);
-  EXPECT_NEAR(samples.area_m2(), 8.0, 0.02);  // 2 in 1000
+  EXPECT_NEAR(samples.area_m2(), 8.0, 0.02);  // 0.25 %
   const auto coarse = std::count_if(samples.offsets.begin(), samples.offsets.end(),
                                     [](const Vector3f& p) { return p.x() < 0.0F; });
   EXPECT_NEAR(static_cast<double>(coarse) / 4000.0, 1.0, 0.002);
-  // each tenth of a square meter has its hundred, nearly: they are stratified (100 +- 10 if random)
+  // each tile of 0.2 m^2 has about its 200 samples, because they are stratified (200 +- 14 if
+  // random)
   std::vector<int> tiles(20, 0);
   for (const Vector3f& p : samples.offsets) {
     if (p.x() < 0.0F) ++tiles[static_cast<std::size_t>((p.x() + 2.0F) * 10.0F)];
@@ -179,7 +180,7 @@ TEST(SeenSamples, AreOfWhatWasSeenAndNotOfTheWholeMesh) {
   const World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(3.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
-  // 3 x 2 m, and a rim of up to 2 cm around it
+  // 3 x 2 m, and a margin of up to 2 cm around it
   EXPECT_GT(samples.area_m2(), 6.0 - 0.05);
   EXPECT_LT(samples.area_m2(), 3.04 * 2.04 + 0.05);
 }
@@ -203,7 +204,7 @@ TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
   for (const PointTruth& hit : hits_on_floor(2.0).scans[0].points) map.push_back(hit.position);
   const Completeness c = Scored{map, world}.rate(samples);
   for (std::size_t row = 0; row < c.rows.size(); ++row) {
-    // half, and what lies within reach beyond the border at x = 2 m
+    // half, plus what lies within the distance beyond the border at x = 2 m
     const double expected = (2.0 + Completeness::kWithin_m[row] + 0.02) / 4.04;
     EXPECT_NEAR(c.rows[row].recall_percent, 100.0 * expected, 0.5);
     EXPECT_EQ(c.rows[row].precision_percent, 100.0);

@@ -26,7 +26,7 @@ using ::testing::IsEmpty;
 const Parallel kTwo(2);
 const Vector3d kHalf(1.6, 1.2, 0.8);
 
-/// Hits all over the room's walls but for 5 cm along the corners, seen from inside.
+/// Hits on all walls of the room except within 5 cm of the corners, from inside.
 ScanTruth hits_of_room(std::size_t count) {
   SequentialRandom random(91);
   ScanTruth scan{"front", Time(0), {}};
@@ -55,7 +55,7 @@ struct Room {
     return make_seen_surface({observe(truths, world, kTwo), {}}, world, kTwo);
   }();
 
-  /// The hits, each `before` meters before the wall, in a frame that is off by `offset`.
+  /// The hits, each `before` meters in front of the wall, in a frame that differs by `offset`.
   std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
     std::vector<Vector3f> points;
     for (const PointTruth& hit : hits.points) {
@@ -73,7 +73,7 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
     const Json& g = m[gauge];
     EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << gauge;
     EXPECT_NEAR(g["per_voxel"]["distance"]["rmse_m"], 0.03, 1e-3);
-    EXPECT_NEAR(g["signed"]["median_m"], 0.03, 1e-3);  // in free space: before the wall
+    EXPECT_NEAR(g["signed"]["median_m"], 0.03, 1e-3);  // in free space: in front of the wall
     EXPECT_LT(g["signed"]["behind_percent"], 0.1);
     EXPECT_EQ(g["cdf_percent"].size(), 20U);
     EXPECT_LT(g["cdf_percent"][1], 5.0);
@@ -81,15 +81,16 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
     EXPECT_EQ(g["ghosting"]["double_patches"], 0);
     const Json& rows = g["completeness"]["rows"];
     ASSERT_EQ(rows.size(), 4U);
-    // 3 cm lie between the limits of 2 and 5 cm; the robust gauge may lay a room that is 3 cm too
-    // small on all sides a little to one side
+    // 3 cm is between the limits of 2 and 5 cm; the robust gauge may move a room that is 3 cm too
+    // small on all sides slightly to one side
     EXPECT_LT(rows[0]["precision_percent"], 5.0);
     EXPECT_GT(rows[1]["precision_percent"], 99.5);
     EXPECT_LT(rows[0]["recall_percent"], 5.0);
     EXPECT_GT(rows[1]["recall_percent"], 99.5);
     EXPECT_GT(rows[1]["f_score_percent"], 99.5);
   }
-  // rectangles with lattices of diagonals between 4.93 and 5 cm: diagonal^2 / 12 in the mean square
+  // rectangular lattices with diagonals between 4.93 and 5 cm add diagonal^2 / 12 to the mean
+  // square
   const Json& vertices = m["se3"]["point_vertex"];
   EXPECT_EQ(vertices["edge_m"], 0.05);
   EXPECT_GT(vertices["rmse_m"], std::hypot(0.03, 0.049 / std::sqrt(12.0)));
@@ -101,13 +102,13 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
 
 TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
   const Room room;
-  // the trajectory is right, the map is 20 cm and 1 degree off
+  // the trajectory is correct, the map is 20 cm and 1 degree off
   const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));
   const Json m = evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwo);
   EXPECT_GT(m["se3"]["distance"]["rmse_m"], 0.05);
   EXPECT_LT(m["robust"]["distance"]["rmse_m"], 0.001);
   EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);
-  EXPECT_TRUE(m["se3"]["signed"].is_null());  // nothing is known of the rays
+  EXPECT_TRUE(m["se3"]["signed"].is_null());  // no ground truth of the rays
   EXPECT_TRUE(m["se3"]["completeness"].is_null());
 }
 

@@ -19,8 +19,8 @@ using flights::sample;
 using flights::tour;
 using ::testing::HasSubstr;
 
-/// A run whose world frame is `truth_from_estimate` away and whose live trajectory drifts, in a
-/// room of 16 x 12 x 8 m whose walls its map shows without error.
+/// A run whose world frame differs from the truth's by `truth_from_estimate` and whose live
+/// trajectory drifts, in a room of 16 x 12 x 8 m whose walls its map has without error.
 RunFiles perfect_run(const Pose& truth_from_estimate) {
   const Pose back = truth_from_estimate.inverse();
   RunFiles run;
@@ -64,7 +64,7 @@ TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
   EXPECT_TRUE(m["warnings"].empty()) << m["warnings"];
   EXPECT_EQ(m["final"]["association"]["matched"], 301);
   EXPECT_EQ(m["final"]["rpe"]["1m"]["used"], m["final"]["rpe"]["1m"]["total"]);
-  // what linear interpolation at 10 Hz leaves: a T^2 / 8 = 1.6 mm at each end
+  // error of linear interpolation at 10 Hz: a T^2 / 8 = 1.6 mm at each end
   EXPECT_LT(m["final"]["rpe"]["1m"]["translation"]["rmse_m"], 0.0033);
   EXPECT_LT(m["final"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"], 1e-9);
   const Json& rpe = m["final"]["rpe"]["1m"];
@@ -162,7 +162,7 @@ TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
 }
 
 TEST_F(EvaluateRun, WhatARunCostIsThereEvenWhenItDiverged) {
-  EXPECT_TRUE(evaluate()["resources"].is_null());  // anyone's files say nothing of it
+  EXPECT_TRUE(evaluate()["resources"].is_null());  // no resources.csv
   run_.resources = {{0.1, 0.02, 100, 90, 50, 5, 0}, {0.2, 0.03, 120, 100, 60, 5, 0}};
   run_.manifest = {{"status", "diverged"}, {"reason", "a pose was not finite"}};
   const Json m = evaluate();

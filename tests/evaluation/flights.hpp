@@ -11,12 +11,12 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/base/trajectory.hpp"
 
-/// Small flights whose errors are known in closed form.
+/// Small flights whose errors have a closed form.
 namespace lidarena::flights {
 
 using Eigen::Vector3d;
 
-/// `motion` (of seconds) sampled every `period` from 0 to `duration`, both inclusive.
+/// `motion` (a function of seconds) sampled every `period` from 0 to `duration`, both inclusive.
 inline Trajectory sample(const std::function<Pose(double)>& motion, Time period, Time duration) {
   std::vector<StampedPose> poses;
   for (Time t{0}; t <= duration; t += period) poses.push_back({t, motion(to_seconds(t))});
@@ -27,7 +27,7 @@ inline Pose level(const Vector3d& position) {
   return make_pose(Eigen::Quaterniond::Identity(), position);
 }
 
-/// A tour with curves, climbs and tilts: nothing about it is degenerate.
+/// A flight with curves, climbs and tilts, in which no direction is degenerate.
 inline Pose tour(double t) {
   const Vector3d position(4.0 * std::sin(0.35 * t), 3.0 * std::sin(0.5 * t + 0.4),
                           1.5 + 0.8 * std::sin(0.3 * t + 1.0));
@@ -58,7 +58,7 @@ inline Trajectory with_gap(const Trajectory& trajectory, Time from, Time to) {
   return Trajectory(std::move(poses));
 }
 
-/// Every stamp `shift` later.
+/// Every stamp later by `shift`.
 inline Trajectory shifted(const Trajectory& trajectory, Time shift) {
   std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
   for (StampedPose& pose : poses) pose.stamp += shift;

@@ -38,8 +38,8 @@ TEST(HoverJitter, IsTheNoiseOfTheHoversWhateverTheFlightBetweenAndTheFrame) {
   const HoverJitter jitter = jitter_of(estimate, truth);
   EXPECT_EQ(jitter.poses, 2U * 51U);
   EXPECT_NEAR(jitter.seconds, 10.0, 1e-9);
-  // 3 axes, each mean taken off 51 values; 300 free values: relative error 1 / sqrt(600), four of
-  // it
+  // 3 axes, each with a mean over 51 values; 300 degrees of freedom: relative error 1 / sqrt(600),
+  // tolerance four times that
   const double expected = sigma * std::sqrt(3.0 * 50.0 / 51.0);
   EXPECT_NEAR(jitter.rms_m, expected, 4.0 * expected / std::sqrt(600.0));
 }

@@ -29,7 +29,7 @@ class Queue : public Base {
 };
 
 /// A thin wall of 4 cm whose faces are x = 5 and x = 5.04; every return is of the near face, and
-/// `moved` from where it hit. The sensor stands still at the origin.
+/// displaced by `moved` from its true hit. The sensor stands still at the origin.
 struct Wall {
   Queue<EventSource, Event> events;
   Queue<ScanTruthSource, ScanTruth> truth;
@@ -51,7 +51,7 @@ struct Wall {
         scan.points.push_back({(at + moved).cast<float>(), 0.0F, 1000 * i, 0, 0});
         hits.points.push_back({at.cast<float>(), 5.0F, Vector3f(-1, 0, 0), 0});
       }
-      events.items.push_back({"rear", Scan{stamp, {{}}, true}});  // another sensor's is not counted
+      events.items.push_back({"rear", Scan{stamp, {{}}, true}});  // of another sensor: not counted
       events.items.push_back({"front", std::move(scan)});
       truth.items.push_back(std::move(hits));
     }
@@ -91,7 +91,8 @@ TEST(IdentityError, SeesAGhostBehindAThinWallWhichTheDistanceToTheMeshDoesNot) {
 
 TEST(IdentityError, FollowsPointsThroughScansThatWereDropped) {
   Wall wall(Vector3d(0.03, 0.0, 0.04));
-  // no pose before 0.35 s: the first scans give no points, the others must not be mistaken for them
+  // no pose before 0.35 s: the first scans give no points, and the scans after them keep their
+  // numbers
   const Trajectory late = flights::with_gap(still(), -1s, 350ms);
   const IdentifiedMap map = wall.identified(late);
   EXPECT_GT(map.points.size(), 1000U);

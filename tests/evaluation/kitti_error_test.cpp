@@ -19,7 +19,7 @@ using flights::level;
 using flights::sample;
 using ::testing::HasSubstr;
 
-/// `meters` in steps of exactly 1 m, 10 Hz.
+/// Path of length `meters` in steps of exactly 1 m, 10 Hz.
 Trajectory drive(int meters, double scale = 1.0, double yaw_per_m = 0.0) {
   return sample(
       [&](double t) {
@@ -56,7 +56,7 @@ TEST(KittiError, TheLadderOfShortLengthsFollowsTheSameRule) {
   const KittiError error = kitti_error(drive(60, 1.01), drive(60), kLadder_m);
   ASSERT_EQ(error.lengths.size(), 6U);
   EXPECT_NEAR(error.lengths[0].translation_percent, 2.0, 1e-9);  // 2 m for 1 m: 1 is not beyond 1
-  EXPECT_EQ(error.lengths[5].pieces, 1U);                        // 51 m from 0 m alone
+  EXPECT_EQ(error.lengths[5].pieces, 1U);                        // 51 m, only from 0 m
   EXPECT_NEAR(error.lengths[5].translation_percent, 1.02, 1e-9);
 }
 
@@ -69,7 +69,8 @@ TEST(KittiError, AFlightTooShortIsRefusedInWordsNotScoredAsNotANumber) {
 }
 
 TEST(KittiError, PathIsTheTruthsOwnAlsoWhereEstimatesAreMissing) {
-  // a square of 4 m sides every 16 m would be cut at its corners by the estimate's 5 m chords
+  // a square with sides of 4 m, one round in 16 m: the 5 m chords between the estimates would cut
+  // its corners
   const Trajectory truth = sample(
       [](double t) {
         const double s = std::fmod(t, 16.0);
@@ -85,9 +86,9 @@ TEST(KittiError, PathIsTheTruthsOwnAlsoWhereEstimatesAreMissing) {
   EXPECT_EQ(error.lengths[1].pieces, 1U);
 }
 
-// tests/oracle/kitti_error.py, written apart from the library, gave these. (The source of the
-// trajectories states no figures in its text.) Rows are printed with 7 digits: rotations are
-// orthonormal to 1e-6 alone, and made so by us and not by the script.
+// Results of tests/oracle/kitti_error.py, which was written independently of the library. (The
+// source of the trajectories publishes no numbers as text.) The rows have 7 digits: rotations are
+// orthonormal only to 1e-6; the library makes them orthonormal, the script does not.
 struct Sequence09 {
   const char* file;
   std::size_t pieces, pieces_100, pieces_800;
@@ -99,7 +100,7 @@ class KittiSequence09 : public ::testing::TestWithParam<Sequence09> {};
 TEST_P(KittiSequence09, GivesWhatAnIndependentScriptGave) {
   const auto folder = tum_text::shared("trajectories/kitti_odometry");
   if (!std::filesystem::exists(folder)) {
-    GTEST_SKIP() << "KITTI's sequence 09 is not here: its figures are not compared";
+    GTEST_SKIP() << "trajectories of KITTI's sequence 09 not found";
   }
   const Sequence09& known = GetParam();
   const KittiError error = kitti_error(read_trajectory(folder / known.file),

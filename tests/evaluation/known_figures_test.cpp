@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Figures of other tools on the same trajectories, where their definitions meet ours.
+// Results of other tools on the same trajectories, where their definitions agree with ours.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -25,27 +25,27 @@ constexpr double kDegree = M_PI / 180.0;
 
 using tum_text::shared;
 
-/// Small synthetic trajectories and what evo v1.36.5 says of them.
+/// Small synthetic trajectories and the results of evo v1.36.5 for them.
 class EvoFigures : public ::testing::Test {
  protected:
   void SetUp() override {
     std::ifstream in(shared("../reference/evo_figures.json"));
-    if (!in) GTEST_SKIP() << "the figures of evo are not here: its comparison is skipped";
+    if (!in) GTEST_SKIP() << "evo_figures.json with the results of evo not found";
     document_ = Json::parse(in);
   }
   Trajectory trajectory(const std::string& name) const {
     return tum_text::parse(document_["files"][name].get<std::string>());
   }
-  /// RMSE that evo printed for `command`; a test that asks for one that is not there fails.
+  /// RMSE that evo printed for `command`; fails the test if it is missing.
   double rmse(const std::string& command) const {
     for (const Json& run : document_["runs"]) {
       if (run["command"] == command) return run["stats"]["rmse"];
     }
-    ADD_FAILURE() << "no figure for " << command;
+    ADD_FAILURE() << "evo_figures.json has no result for " << command;
     return std::nan("");
   }
-  /// evo pairs the pose of the estimate with the nearest stamp of the reference, 13 ms before; with
-  /// its stamps made equal, nearest and interpolated reference are the same poses.
+  /// evo pairs each pose of the estimate with the nearest stamp of the reference, 13 ms earlier;
+  /// with equal stamps the nearest and the interpolated reference poses are the same.
   Trajectory uav_estimate_on_reference_stamps() const {
     return flights::shifted(trajectory("uav_est.tum"), -13ms);
   }
@@ -63,8 +63,8 @@ double rms_of(const Errors& errors, Value value) {
   return std::sqrt(sum / static_cast<double>(errors.size()));
 }
 
-// The inputs are written with 6 decimals (quaternions 9), which both tools read alike; 1e-7 leaves
-// room for evo's quaternions, which it does not normalize (1e-9 off).
+// The inputs have 6 decimals (quaternions 9), which both tools read as the same numbers; 1e-7
+// covers evo's quaternions, which it does not normalize (1e-9 off).
 constexpr double kSame = 1e-7;
 
 TEST_F(EvoFigures, RotationErrorAfterSe3AlignmentAndFromTheOriginIsTheSame) {
@@ -101,7 +101,7 @@ TEST_F(EvoFigures, AStraightLineIsRefusedByBothAndUnalignedTheSame) {
   EXPECT_FALSE(align(estimate, truth, Gauge::kSe3).determined());
   EXPECT_FALSE(align(trajectory("quarter_est.tum"), trajectory("quarter_ref.tum"), Gauge::kSe3)
                    .determined());
-  // first poses are equal, so that the first-pose gauge is no alignment
+  // first poses are equal, so the first-pose gauge changes nothing
   const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
   EXPECT_NEAR(ate.translation_m.rmse, rmse("evo_ape tum line_ref.tum line_est.tum -r trans_part"),
               kSame);
@@ -126,7 +126,7 @@ TEST_F(EvoFigures, WhereSegmentsEndOnPosesTheRelativeErrorsAreTheSame) {
   // Steps of exactly 0.25 m: evo's all pairs 1 m apart are our segments starting every 0.25 m.
   const Trajectory truth = trajectory("quarter_ref.tum");
   const Trajectory estimate = trajectory("quarter_est.tum");
-  // (Not so for 5 m: within its tolerance of 10 % evo adds shorter pairs at the end.)
+  // (Not for 5 m: within its tolerance of 10 % evo adds shorter pairs at the end.)
   const RelativePoseError rpe = relative_pose_error(estimate, truth, 1.0, 0.25);
   EXPECT_EQ(rpe.used, 45U);  // 48 steps
   const double full = rms_of(rpe.segments, [](const SegmentError& e) {
@@ -139,8 +139,8 @@ TEST_F(EvoFigures, WhereSegmentsEndOnPosesTheRelativeErrorsAreTheSame) {
               kSame / kDegree);
 }
 
-// tests/oracle/relative_pose_error.py, written apart from the library, gave these (cm, 6 decimals)
-// and these counts.
+// Results (cm, 6 decimals) and counts of tests/oracle/relative_pose_error.py, which was written
+// independently of the library.
 TEST_F(EvoFigures, TheDefinitionGivesWhatAnIndependentScriptOfItGave) {
   const Trajectory truth = trajectory("uav_ref.tum");
   const RelativePoseError whole = relative_pose_error(trajectory("uav_est.tum"), truth);
@@ -166,14 +166,14 @@ TEST_F(EvoFigures, StampsMadeLateBy237MillisecondsAreFoundToBe) {
   EXPECT_LT(late->sigma_s, 0.005);
 }
 
-// 0.01347 m is known from a script that took the nearest stamp of the truth (100 Hz, so up to 5 ms
-// away) instead of interpolating it. At the 0.2 .. 0.4 m/s of this sequence that is a random error
-// of about 1 mm a pose: in RMSE, sqrt(13.47^2 +- 1^2) - 13.47 = 0.04 mm.
+// 0.01347 m was computed by a script that used the nearest stamp of the truth (100 Hz, so up to 5
+// ms away) instead of interpolating it. At the 0.2 .. 0.4 m/s of this sequence that is a random
+// error of about 1 mm per pose: in RMSE, sqrt(13.47^2 +- 1^2) - 13.47 = 0.04 mm.
 TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
   std::ifstream truth_file(shared("trajectories/tum_rgbd/freiburg1_xyz-groundtruth.txt"));
   std::ifstream estimate_file(shared("trajectories/tum_rgbd/freiburg1_xyz-rgbdslam.txt"));
   if (!truth_file || !estimate_file) {
-    GTEST_SKIP() << "the TUM RGB-D trajectories are not here: their figure is not compared";
+    GTEST_SKIP() << "TUM RGB-D trajectories not found";
   }
   const auto ate = absolute_trajectory_error(tum_text::parse(estimate_file),
                                              tum_text::parse(truth_file), Gauge::kSe3);
@@ -181,12 +181,12 @@ TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
   RecordProperty("ate_rmse_m", std::to_string(ate.translation_m.rmse));
 }
 
-/// Trajectories of others as they come, whatever their rates, frames and clocks.
+/// Public trajectories of other programs, with various rates, frames and clocks.
 class RealTrajectories : public ::testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(shared("trajectories"))) {
-      GTEST_SKIP() << "the real trajectories are not here: they are not scored";
+      GTEST_SKIP() << "folder of real trajectories not found";
     }
   }
   static Trajectory read(const std::string& name) {
@@ -206,7 +206,7 @@ TEST_F(RealTrajectories, EurocsTwoEstimatesAreOfTheTruthsBodyAndLateByTheSameTim
     EXPECT_EQ(suspect_quaternion_order(estimate, truth), "");
     const auto arm = find_lever_arm(estimate, truth);
     ASSERT_TRUE(arm);
-    // both are of the IMU: what is left is the estimators' error and that of the clocks
+    // both are of the IMU: what remains are errors of the estimators and of the clocks
     EXPECT_LT(arm->body_from_estimate.translation().norm(), 0.05);
     EXPECT_EQ(warning_of(*arm), "");
     late.push_back(*time_offset(estimate, truth));
@@ -219,7 +219,7 @@ TEST_F(RealTrajectories, AKeyframeTrajectorySaysHowLittleItCovers) {
   const Trajectory truth = read("tum_rgbd/freiburg1_xyz-groundtruth.txt");
   const Trajectory keyframes = read("tum_rgbd/freiburg1_xyz-ORB_kf_mono.txt");
   EXPECT_LT(associate(keyframes, truth).coverage, 0.1);
-  // the camera's z axis looks ahead: a heading-only fit is warned of
+  // the camera's z axis points forward: a heading-only fit causes a warning
   EXPECT_NE(align(keyframes, truth, Gauge::kPosYaw).warning, "");
 }
 

@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 const Pose kArm = make_pose(so3::exp({0.1, -0.2, 0.3}), Vector3d(0.25, -0.10, 0.15));
 
-/// What a perfect estimator of another frame of the body gives, in a world of its own.
+/// A perfect estimate of another frame of the body, in its own world frame.
 Trajectory of_the_sensor(const Trajectory& truth, const Pose& body_from_estimate) {
   SequentialRandom random(11);
   const Pose elsewhere = flights::random_pose(random, 5.0);
@@ -41,7 +41,7 @@ TEST(MovedToBody, UndoesTheArmExactly) {
   EXPECT_LT(relative_pose_error(body, truth).translation_m.max, 1e-9);
   EXPECT_LT(absolute_trajectory_error(body, truth, Gauge::kSe3).translation_m.max, 1e-9);
   EXPECT_LT(absolute_trajectory_error(body, truth, Gauge::kFirstPose).rotation_rad.max, 1e-9);
-  // no alignment repairs it
+  // no alignment corrects it
   EXPECT_GT(absolute_trajectory_error(sensor, truth, Gauge::kSe3).translation_m.rmse, 0.1);
 }
 
@@ -53,7 +53,7 @@ TEST(LeverArm, OfAPerfectEstimateIsFoundToRounding) {
   EXPECT_LT(arm->misfit_m, 1e-9);
   EXPECT_GT(arm->misfit_without_m, 0.1);
   // 0.31 m and 0.374 rad
-  EXPECT_THAT(warning_of(*arm), HasSubstr("0.308 m away and turned by 21.4 deg"));
+  EXPECT_THAT(warning_of(*arm), HasSubstr("0.308 m away and rotated by 21.4 deg"));
 }
 
 TEST(LeverArm, AHalfTurnOfTheMountingIsFoundToo) {
@@ -79,10 +79,11 @@ TEST(LeverArm, OfANoisyEstimateLiesWithinItsSigmas) {
   const Vector3d turn = so3::log(off.linear());
   const Vector3d move = kArm.linear() * off.translation();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    // overlapping pieces share poses: allow five formal sigmas
+    // overlapping pieces share poses, which makes the formal sigmas too small: allow five of them
     EXPECT_LT(std::abs(move[i]), 5.0 * arm->sigma[i]);
     EXPECT_LT(std::abs(turn[i]), 5.0 * arm->sigma[3 + i]);
-    // 1 cm over the turns of a second: 0.4 rad about z, but 0.1 rad about x and y, which show z
+    // 1 cm of noise over the rotation within a second: 0.4 rad about z, but only 0.1 rad about x
+    // and y, which determine z
     EXPECT_LT(arm->sigma[i], i == 2 ? 0.05 : 0.01);
   }
 }
@@ -95,7 +96,7 @@ TEST(LeverArm, NoneIsSeenAndNoneWarnedOfWhereTheFramesAreTheSame) {
   });
   const auto arm = find_lever_arm(drifting, truth);
   ASSERT_TRUE(arm);
-  // the drift of 2 cm a second looks like an arm of 25 cm along z, which the tilts hardly show
+  // the drift of 2 cm/s looks like an arm of 25 cm along z, which the small tilts hardly determine
   EXPECT_LT(arm->body_from_estimate.translation().head<2>().norm(), 0.05);
   EXPECT_GT(2.0 * arm->misfit_m, arm->misfit_without_m);
   EXPECT_EQ(warning_of(*arm), "");
@@ -110,7 +111,7 @@ TEST(LeverArm, AFlightThatOnlyYawsDoesNotShowTheHeight) {
   ASSERT_TRUE(arm);
   EXPECT_NEAR(arm->body_from_estimate.translation().x(), 0.2, 1e-4);
   EXPECT_NEAR(arm->body_from_estimate.translation().y(), 0.1, 1e-4);
-  EXPECT_NEAR(arm->body_from_estimate.translation().z(), 0.0, 1e-3);  // nothing says so: left alone
+  EXPECT_NEAR(arm->body_from_estimate.translation().z(), 0.0, 1e-3);  // not observable: stays 0
 }
 
 TEST(LeverArm, AFlightThatDoesNotTurnShowsNone) {
@@ -122,7 +123,7 @@ TEST(LeverArm, AFlightThatDoesNotTurnShowsNone) {
 
 TEST(LeverArm, OfTheFixtureIsTheOneItWasMadeWith) {
   std::ifstream in(tum_text::shared("../reference/evo_figures.json"));
-  if (!in) GTEST_SKIP() << "the synthetic trajectories are not here: their lever arm is not found";
+  if (!in) GTEST_SKIP() << "evo_figures.json with the synthetic trajectories not found";
   const Json files = Json::parse(in)["files"];
   const auto arm = find_lever_arm(tum_text::parse(files["uav_ref_lever.tum"].get<std::string>()),
                                   tum_text::parse(files["uav_ref.tum"].get<std::string>()));

@@ -8,10 +8,10 @@
 #include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
-/// Sources that give what a test lists.
+/// Sources that return the items that a test has put into a list.
 namespace lidarena::listed {
 
-/// Takes the first of `items`, if there is one.
+/// Removes and returns the first of `items`; empty when there is none.
 template <class Item>
 std::optional<Item> take_first(std::deque<Item>& items) {
   if (items.empty()) return std::nullopt;

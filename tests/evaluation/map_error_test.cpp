@@ -18,7 +18,8 @@ using Eigen::Vector3f;
 
 constexpr double kSingle = 2e-6;  // float positions within 10 m, and the ray caster's precision
 
-/// Points over the middle 8 x 8 m of the plane z = 0, off it by normal noise: nearest is the foot.
+/// Points over the middle 8 x 8 m of the plane z = 0 with normal noise along z, so that the nearest
+/// point of the plane is the vertical projection.
 std::vector<Vector3f> noisy_plane(std::size_t count, double sigma) {
   SequentialRandom random(21);
   std::vector<Vector3f> points(count);
@@ -35,8 +36,8 @@ TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
   const World world(meshes::plane(10.0));
   const MapError e = map_error(noisy_plane(n, sigma), Pose::Identity(), world, Parallel(1));
   EXPECT_EQ(e.points, n);
-  // standard error of an RMSE of n normals is sigma / sqrt(2 n); of quantiles of |normal| likewise
-  // sqrt(p (1 - p) / n) / density; four of them
+  // standard error of the RMSE of n normals is sigma / sqrt(2 n); of quantiles of |normal|, sqrt(p
+  // (1 - p) / n) / density; tolerance four times these
   const double root = std::sqrt(static_cast<double>(n));
   EXPECT_NEAR(e.distance_m.rmse, sigma, 4.0 * sigma / (std::sqrt(2.0) * root));
   EXPECT_NEAR(e.distance_m.median, 0.67449 * sigma, 4.0 * 0.787 * sigma / root);
@@ -51,7 +52,7 @@ TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
 }
 
 TEST(MapError, MeasuresToTheSurfaceNotToItsCorners) {
-  // Noise-free points of a plane of two triangles: vertices are meters away, the surface is not.
+  // Noise-free points on a plane of two triangles: vertices are meters away, the surface is not.
   const World world(meshes::plane(10.0));
   const MapError e = map_error(noisy_plane(1000, 0.0), Pose::Identity(), world, Parallel(1));
   EXPECT_LT(e.distance_m.max, kSingle);

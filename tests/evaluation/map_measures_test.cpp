@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Voxel weights, sides and double walls, on maps whose figures are known in closed form.
+// Voxel weights, signed distances and double walls, on maps whose metrics have a closed form.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(MortonOrder, HoldsEachFinitePointOnceAndTheSameOnAnyNumberOfThreads) {
     seen[i] = true;
     if (k > 0) length += double{(points[i] - points[one.entries[k - 1].index]).norm()};
   }
-  // as they came, neighbors lie 11 m apart
+  // in the original order, neighbors are 11 m apart
   EXPECT_LT(length / static_cast<double>(points.size()), 1.0);
 }
 
@@ -125,7 +125,7 @@ TEST(SignedDistance, BinsStartAtMinusTwentyCentimetersAndTheRestIsCountedApart) 
 }
 
 TEST(SignedDistance, BesideAnEdgeOrWhereNoRayFellThereIsNoSign) {
-  // beyond the floor's rim, 45 degrees and 80 degrees off the normal; one over the floor
+  // beyond the floor's border, 45 degrees and 80 degrees off the normal; one point over the floor
   const std::vector<Vector3f> map{{5.1F, 0, 0.1F}, {5.567F, 0, 0.1F}, {0, 0, 0.1F}};
   const Scored s{map, World(meshes::plane(10.0))};
   EXPECT_EQ(signed_distance(s.scores, std::vector(2, FreeSide::kFront)).points, 2U);
@@ -141,10 +141,11 @@ TEST(Ghosting, ThicknessOfANoisyFloorIsItsQuantileRange) {
       World(meshes::plane(10.0))};
   const Ghosting g = ghosting(s.scores, s.world, kTwo);
   EXPECT_EQ(g.patches, 400U);  // 4 x 4 m in squares of 20 cm, 500 points each
-  // 2 x 1.645 sigma. A quantile of 500 has a standard error of 2.11 sigma / sqrt(500), the mean
-  // range of 400 patches one of 0.007 sigma; and quantiles of 500 are 0.7 % low (Blom)
+  // 2 x 1.645 sigma. A quantile of 500 values has a standard error of 2.11 sigma / sqrt(500), hence
+  // the mean range of 400 patches 0.007 sigma; and quantiles of 500 values are biased by -0.7 %
+  // (Blom)
   EXPECT_NEAR(g.thickness_m.mean, 3.2897 * sigma, 0.05 * sigma);
-  EXPECT_EQ(g.double_patches, 0U);  // no single sheet taken for two
+  EXPECT_EQ(g.double_patches, 0U);  // no single sheet is judged double
 }
 
 TEST(Ghosting,
@@ -158,12 +159,12 @@ TEST(Ghosting,
                  World(meshes::plane(10.0))};
   // 10 % of P(z > 2.5) are beyond 20 cm: 0.06 %
   EXPECT_NEAR(s.error.outliers_percent, 0.062, 0.03);
-  // sqrt(sigma^2 + 0.1 x 15^2): no more than a bad sensor would have
+  // sqrt(sigma^2 + 0.1 x 15^2): not more than for a bad sensor
   EXPECT_NEAR(s.error.distance_m.rmse, std::hypot(sigma, 0.15 * std::sqrt(0.1)), 0.001);
   const Ghosting g = ghosting(s.scores, s.world, kTwo);
   EXPECT_EQ(g.patches, 1600U);
-  // a patch of 125 has 12.5 +- 3.4 ghosts; fewer than 7 are not 5 % (3 of 100 patches), and of few
-  // ghosts one or two in the valley are too many
+  // a patch of 125 points has 12.5 +- 3.4 ghost points; fewer than 7 are less than 5 % (3 of 100
+  // patches), and with few ghost points one or two in the valley are too many
   EXPECT_GT(g.double_percent, 85.0);
   EXPECT_NEAR(g.median_separation_m, 0.15, 0.005);
   EXPECT_GT(g.thickness_m.median, 0.14);
@@ -183,7 +184,7 @@ TEST(Ghosting, WindingDoesNotMatter) {
   EXPECT_EQ(found.thickness_m.mean, expected.thickness_m.mean);
 }
 
-/// Share of patches of `count` heights that are taken for two sheets.
+/// Share of patches of `count` heights that are judged to have two sheets.
 double share_of_two(std::size_t count, const std::function<double(SequentialRandom&)>& height) {
   SequentialRandom random(64);
   constexpr int kTrials = 2000;

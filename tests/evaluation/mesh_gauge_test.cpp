@@ -31,7 +31,7 @@ TriangleMesh room() {
   return mesh;
 }
 
-/// Points on `mesh`, everywhere equally dense, off it by normal noise.
+/// Points on `mesh` with uniform density and normal noise along the surface normal.
 std::vector<Vector3d> points_on(const TriangleMesh& mesh, std::size_t count, double sigma) {
   SequentialRandom random(71);
   std::vector<double> until;
@@ -80,7 +80,8 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
     ASSERT_TRUE(a.determined()) << a.refusal;
     EXPECT_EQ(a.agreeing_starts, MeshAlignment::kStarts);
     EXPECT_THAT(a.frozen, IsEmpty());
-    // some 10 000 voxels of 2 cm noise, a third of them across each axis: 0.4 mm; four of these
+    // some 10 000 voxels with 2 cm of noise, a third of them for each axis: 0.4 mm; tolerance four
+    // times that
     const Pose left = a.mesh_from_map * moved;
     EXPECT_LT(left.translation().norm(), 0.0016);
     EXPECT_LT(so3::angle(left.linear()), 0.0016 / 1.5);
@@ -90,19 +91,19 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
 }
 
 TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
-  // A hall of 40 m whose map swings by 20 cm to either side: no rigid move can undo that.
+  // A hall of 40 m whose map is bent by 20 cm to either side: no rigid motion can undo that.
   const World world(meshes::box(Vector3d(20, 2, 1.5)));
   std::vector<Vector3d> points = points_on(world.mesh(), 30000, 0.01);
   for (Vector3d& p : points) p.y() += 0.2 * std::cos(2.0 * std::numbers::pi * p.x() / 40.0);
   const std::vector<Vector3f> map = as_map(points, Pose::Identity());
   const double before = rmse(map, Pose::Identity(), world);
-  // by area half of the points lie on the two side walls: 20 cm / sqrt(2) there; elsewhere noise
+  // half of the area are the two side walls: 20 cm / sqrt(2) there; elsewhere only noise
   EXPECT_GT(before, 0.08);
   const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwo);
   ASSERT_TRUE(a.determined()) << a.refusal;
   const double after = rmse(map, a.mesh_from_map, world);
   EXPECT_GT(after, 0.9 * before);
-  EXPECT_LT(after, 1.25 * before);  // nor is one half laid onto the mesh and the rest given up
+  EXPECT_LT(after, 1.25 * before);  // nor is only one half aligned with the mesh
   std::cout << "bent map: RMSE " << 100 * before << " cm before, " << 100 * after << " cm after\n";
 }
 
@@ -120,7 +121,7 @@ TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
   EXPECT_LT(a.eigenvalues[0], 1e-4);
   EXPECT_GT(a.eigenvalues[1], 0.05);
   const Pose left = a.mesh_from_map * moved;
-  EXPECT_NEAR(left.translation().x(), 0.4, 0.02);  // as the start had it, but for the turns
+  EXPECT_NEAR(left.translation().x(), 0.4, 0.02);  // as in the start, except for the rotation
   EXPECT_LT(left.translation().tail<2>().norm(), 0.002);
   EXPECT_LT(so3::angle(left.linear()), 0.001);
 }
@@ -149,7 +150,7 @@ TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
   const MeshAlignment a =
       align_to_mesh(as_map(elsewhere, Pose::Identity()), Pose::Identity(), world, kTwo);
   EXPECT_FALSE(a.determined());
-  EXPECT_THAT(a.refusal, HasSubstr("% of the map come within 20 cm"));
+  EXPECT_THAT(a.refusal, HasSubstr("% of the map's points lie within 20 cm"));
 }
 
 TEST(MeshGauge, AHandfulOfPointsAndAnEmptyMapAreRefused) {

@@ -3,7 +3,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-/// Surfaces whose distances are known in closed form.
+/// Surfaces to which distances have a closed form.
 namespace lidarena::meshes {
 
 /// Square in z = 0, centered, as two triangles.
@@ -15,7 +15,7 @@ inline TriangleMesh plane(double edge) {
   return mesh;
 }
 
-/// Box around the origin, two triangles a face.
+/// Box around the origin, two triangles per face.
 inline TriangleMesh box(const Eigen::Vector3d& half) {
   TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {

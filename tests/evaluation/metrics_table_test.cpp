@@ -16,7 +16,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A run with an RPE of `cm` per meter, as metrics.json has it.
+/// A run with an RPE of `cm` per meter, in the form of metrics.json.
 ScoredRun run_of(const std::string& name, const std::string& algorithm, const std::string& flight,
                  double cm) {
   ScoredRun run{name, algorithm, flight, "1", Json::object()};
@@ -52,7 +52,7 @@ ScoredRun diverged(const std::string& name, const std::string& algorithm,
           {{"status", "diverged"}, {"reason", "900 m from the truth, 50 % & more"}}};
 }
 
-/// Gives it a re-projected map with a recall of `percent` within 5 cm and none within others.
+/// Adds a re-projected map with a recall of `percent` within 5 cm and 0 within the other distances.
 ScoredRun with_map(ScoredRun run, double percent) {
   Completeness complete;
   complete.samples = 5000;
@@ -86,7 +86,7 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
   const std::string text = metrics_text(run_of("run_a", "x:y", "house", 1.25));
   EXPECT_THAT(text, HasSubstr("warning: the estimate covers 87 % of the flight"));
   EXPECT_THAT(text, HasSubstr("290 of 300 poses matched, coverage 87.1 %, overlap 26.00 s"));
-  EXPECT_THAT(text, HasSubstr("at 0.25 -0.1 ? m, turned by 0 0 5.73 deg"));
+  EXPECT_THAT(text, HasSubstr("at 0.25 -0.1 ? m, rotated by 0 0 5.73 deg"));
   EXPECT_THAT(text, HasSubstr("SE(3) gauge refused: the flight is a line"));
   EXPECT_THAT(text, HasSubstr("refused: the common path is 45 m"));
   EXPECT_LT(text.find("coverage"), text.find("RPE per meter"));
@@ -95,16 +95,17 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
     EXPECT_THAT(line, HasSubstr("1.250 cm"));
     EXPECT_THAT(line, HasSubstr("coverage 87 %, 38 of 45 pieces"));
   }
-  EXPECT_THAT(text, Not(HasSubstr("live")));  // the same as the final one: said once
+  EXPECT_THAT(text, Not(HasSubstr("live")));  // equal to the final one: shown once
   EXPECT_THAT(text, HasSubstr("12.300 ms"));
 }
 
 TEST(MetricsText, AFigureThatMeansLittleSaysSo) {
   ScoredRun run = run_of("run_a", "", "house", 1.25);
-  run.metrics["final"]["ate"]["posyaw"] = {{"warning", "the estimate's z axis leans 11.5 deg"},
-                                           {"translation", {{"rmse_m", 0.2}, {"count", 300}}}};
+  run.metrics["final"]["ate"]["posyaw"] = {
+      {"warning", "the estimate's z axis is tilted by 11.5 deg"},
+      {"translation", {{"rmse_m", 0.2}, {"count", 300}}}};
   EXPECT_THAT(metrics_text(run),
-              HasSubstr("coverage 87 %, 300 poses (the estimate's z axis leans"));
+              HasSubstr("coverage 87 %, 300 poses (the estimate's z axis is tilted"));
 }
 
 TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
@@ -179,7 +180,7 @@ TEST(MetricsMarkdown, MarksTheBestOfSeveralAndKeepsTheFailed) {
   EXPECT_THAT(lines[2], HasSubstr("| a | 87.1 | 2 |"));
   EXPECT_THAT(lines[3], HasSubstr("| b\\|c | 87.1 | **1** |"));
   EXPECT_THAT(lines[4], AllOf(HasSubstr("| bad | - | - |"), HasSubstr("diverged: 900 m")));
-  // of one run nothing is the best
+  // with one run no value is marked as the best
   EXPECT_THAT(metrics_markdown(std::vector{run_of("a", "", "house", 2.0)}), Not(HasSubstr("**")));
 }
 
@@ -263,9 +264,9 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
   EXPECT_EQ(paired["missing"].size(), 1U);
   const std::string text = statistics_text(json);
   EXPECT_THAT(text, HasSubstr("second minus first, on the same flights and seeds"));
-  EXPECT_THAT(text, HasSubstr("without: flight3 1: diverged"));
+  EXPECT_THAT(text, HasSubstr("no value: flight3 1: diverged"));
   EXPECT_THAT(text, HasSubstr("3 of 4 runs"));
-  // a figure that was refused says why
+  // a refused figure has its reason
   EXPECT_EQ(json["algorithms"]["first"]["ate_se3_translation"]["failures"][0],
             "flight0 1: the flight is a line");
 }

@@ -21,8 +21,8 @@ using listed::Events;
 
 const Pose kBodyFromLidar = make_pose(so3::exp({0.3, -0.2, 1.1}), Vector3d(0.1, -0.05, 0.2));
 
-/// What a LiDAR on `truth` sees of the wall x = 7 m: scans at 10 Hz, 500 returns each, spread over
-/// the scan.
+/// Returns of a LiDAR moving along `truth` from the wall x = 7 m: scans at 10 Hz, 500 returns each,
+/// spread over the scan.
 Events scans_of_a_wall(const Trajectory& truth) {
   SequentialRandom random(31);
   Events source;
@@ -40,13 +40,13 @@ Events scans_of_a_wall(const Trajectory& truth) {
 }
 
 TEST(Reproject, EveryReturnLandsOnTheWallItCameFromThoughTheBodyTurnsWithinTheScan) {
-  const Trajectory truth = sample(tour, 100ms, 10s);  // the motion between poses is theirs
+  const Trajectory truth = sample(tour, 100ms, 10s);  // its interpolation is the true motion
   Events source = scans_of_a_wall(truth);
   ReprojectionCounts counts;
   const Cloud cloud = reproject(source, "front", kBodyFromLidar, truth, 0.02, &counts);
   EXPECT_EQ(counts.returns, 100U * 500U);
   EXPECT_EQ(counts.without_pose, 0U);
-  EXPECT_GT(cloud.points.size(), 30000U);  // 16 x 4 m have room for 160 000
+  EXPECT_GT(cloud.points.size(), 30000U);  // 16 x 4 m have 160 000 voxels
   EXPECT_EQ(cloud.intensity.size(), cloud.points.size());
   for (const Eigen::Vector3f& p : cloud.points) ASSERT_NEAR(p.x(), 7.0F, 1e-5F);
 }

@@ -6,8 +6,8 @@
 namespace lidarena {
 namespace {
 
-/// 100 scans at 10 Hz that take 20 ms, every twentieth 150 ms; the map grows by 1 kB a scan, the
-/// buffer stays, the backlog has one peak.
+/// 100 scans at 10 Hz that take 20 ms, every twentieth 150 ms; the map grows by 1 kB per scan, the
+/// buffer is constant, the backlog has one peak.
 std::vector<ResourceRow> rows_of_a_run() {
   std::vector<ResourceRow> rows;
   for (int i = 0; i < 100; ++i) {
@@ -29,7 +29,7 @@ TEST(Resources, LatencyAndRealTimeFactorOfAKnownRun) {
   EXPECT_EQ(figures.scans, 100U);
   EXPECT_DOUBLE_EQ(figures.latency_s.median, 0.02);
   EXPECT_DOUBLE_EQ(figures.latency_s.max, 0.15);
-  // five of a hundred are slow: rank 0.95 * 99 = 94.05 is 5 % of the way to them
+  // five of a hundred are slow: rank 0.95 * 99 = 94.05 is 5 % of the way to the first of them
   EXPECT_NEAR(figures.latency_s.p95, 0.02 + 0.05 * 0.13, 1e-12);
   EXPECT_DOUBLE_EQ(figures.latency_s.p99, 0.15);
   EXPECT_NEAR(figures.real_time_factor, 10.0 / (95 * 0.02 + 5 * 0.15), 1e-12);

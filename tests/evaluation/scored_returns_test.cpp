@@ -36,7 +36,7 @@ TEST(ScoredReturns, NeverMoreThanTheLimitAndNeverFarFewer) {
 }
 
 TEST(ScoredReturns, ALongRecordingGivesFewerOfEachScan) {
-  EXPECT_EQ(scored_returns(0), 20'000U);    // how many scans there are is not known
+  EXPECT_EQ(scored_returns(0), 20'000U);    // unknown number of scans
   EXPECT_EQ(scored_returns(200), 20'000U);  // 20 s at 10 Hz
   EXPECT_EQ(scored_returns(3000), 3'333U);
   EXPECT_EQ(scored_returns(100'000'000), 1U);

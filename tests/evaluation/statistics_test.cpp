@@ -14,7 +14,7 @@ namespace {
 
 using ::testing::ElementsAre;
 
-/// A flight each, named by its place.
+/// One flight per value, named by its index.
 std::vector<RunFigure> flights_of(const std::vector<double>& values) {
   std::vector<RunFigure> runs;
   for (std::size_t i = 0; i < values.size(); ++i) {
@@ -66,7 +66,7 @@ TEST(Bootstrap, OfEqualValuesIsThatValueAndOfTwoFlightsIsNone) {
 }
 
 TEST(Bootstrap, OfThreeFlightsIsTheRange) {
-  // the smallest of three is the median of a resample with probability 7/27, far above 2.5 %
+  // the minimum of three is the median of a resample with probability 7/27, far above 2.5 %
   const auto interval = spread_of(flights_of({1.0, 2.0, 4.0})).median_95;
   ASSERT_TRUE(interval);
   EXPECT_EQ(interval->low, 1.0);
@@ -107,8 +107,8 @@ TEST(Bootstrap, IsTheSameBitsForTheSameSeedInWhateverOrderTheRunsCome) {
 }
 
 TEST(Bootstrap, CoversTheTrueMedianAboutAsOftenAsItSays) {
-  // Percentile intervals of a median are a little off for 25 samples (they jump between order
-  // statistics), hence 91 .. 99 %; 400 trials have a standard deviation of 1.1 %.
+  // Percentile intervals of a median are slightly inaccurate for 25 samples (they jump between
+  // order statistics), hence 91 .. 99 %; 400 trials have a standard deviation of 1.1 %.
   SequentialRandom random(10);
   int covered = 0;
   constexpr int kTrials = 400;
@@ -142,13 +142,13 @@ TEST(Wilcoxon, AgreesWithTheTextbookExample) {
   EXPECT_NEAR(*wilcoxon_signed_rank_p(differences), 20.0 / 512.0, 1e-15);
 }
 
-/// Counts all signs one by one.
+/// The p value by enumerating all combinations of signs.
 double slow_p(const std::vector<double>& magnitudes, std::size_t observed_signs) {
   const auto sum_of = [&](std::size_t signs) {
     double sum = 0.0;
     for (std::size_t i = 0; i < magnitudes.size(); ++i) {
       if ((signs >> i & 1) == 0) continue;
-      double rank = 0.5;  // mean rank: those below, and half of the equals and oneself
+      double rank = 0.5;  // mean rank: those below, and half of the equal ones and itself
       for (const double other : magnitudes) {
         rank += other < magnitudes[i] ? 1.0 : other == magnitudes[i] ? 0.5 : 0.0;
       }

@@ -15,14 +15,14 @@ using flights::sample;
 using flights::tour;
 using ::testing::HasSubstr;
 
-/// Stamps `times` as long.
+/// All stamps multiplied by `times`.
 Trajectory stretched(const Trajectory& trajectory, std::int64_t times) {
   std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
   for (StampedPose& pose : poses) pose.stamp *= times;
   return Trajectory(std::move(poses));
 }
 
-/// Columns w x y z taken for x y z w.
+/// Quaternion columns w x y z read as x y z w.
 Trajectory misread(const Trajectory& trajectory) {
   return mapped(trajectory, [](const StampedPose& pose) {
     const Eigen::Quaterniond q(pose.world_from_body.linear());
@@ -35,8 +35,9 @@ Trajectory misread(const Trajectory& trajectory) {
 TEST(SuspectTimes, NamesTheUnitThatTheTimesSeemToBeIn) {
   const Trajectory truth = sample(tour, 10ms, 20s);
   const Trajectory estimate = sample(tour, 100ms, 18s);
-  EXPECT_THAT(suspect_times(stretched(estimate, 1000), truth),
-              HasSubstr("lasts 1.8e+04 s, the truth 20 s: its times look like milliseconds"));
+  EXPECT_THAT(
+      suspect_times(stretched(estimate, 1000), truth),
+      HasSubstr("lasts 1.8e+04 s, the truth 20 s: the estimate's times look like milliseconds"));
   EXPECT_THAT(suspect_times(stretched(estimate, 1'000'000), truth), HasSubstr("microseconds"));
   EXPECT_THAT(
       suspect_times(stretched(sample(tour, 100ms, 5s), 1'000'000'000), sample(tour, 10ms, 5s)),

@@ -17,7 +17,7 @@ TEST(TimeOffset, FindsHowLateTheStampsAre) {
   for (const Time late : {Time(0ms), Time(13ms), Time(-87ms), Time(237ms)}) {
     const auto found = time_offset(flights::shifted(sample(tour, 100ms, 30s), late), truth);
     ASSERT_TRUE(found);
-    EXPECT_NEAR(found->late_s, to_seconds(late), 1e-4);  // the parabola's share of its 10 ms grid
+    EXPECT_NEAR(found->late_s, to_seconds(late), 1e-4);  // parabola on a 10 ms grid
   }
 }
 

@@ -21,7 +21,7 @@ using flights::tour;
 using flights::with_gap;
 using std::numbers::pi;
 
-constexpr double kRounding = 1e-9;  // of meters ~ 10, and of times in whole nanoseconds at 1 m/s
+constexpr double kRounding = 1e-9;  // of lengths ~ 10 m, and of times in whole nanoseconds at 1 m/s
 
 /// 1 m/s along x.
 Pose line(double t) { return level({t, 0, 0}); }
@@ -68,7 +68,7 @@ TEST(RelativePoseError, BetweenPosesOnePercentOfScaleIsOneCentimeterPerMeter) {
 }
 
 TEST(RelativePoseError, BetweenPosesTooSeldomForAMeterThePiecesAreLonger) {
-  // At 1 m/s a pose every 3 s: of three pieces one has ends that come to different poses.
+  // At 1 m/s with a pose every 3 s: of three pieces only one has ends at different poses.
   const Trajectory truth = sample(line, 10ms, 30s);
   const RelativePoseError rpe = relative_pose_error_at_poses(sample(line, 3s, 30s), truth);
   EXPECT_EQ(rpe.total, 30U);
@@ -81,7 +81,7 @@ TEST(RelativePoseError, BetweenPosesNothingIsTakenAcrossAGap) {
   const Trajectory estimate = with_gap(sample(line, 100ms, 20s), 5500ms, 8250ms);
   const RelativePoseError rpe = relative_pose_error_at_poses(estimate, truth);
   EXPECT_EQ(rpe.total, 20U);
-  EXPECT_EQ(rpe.used, 16U);  // those that begin or end in meters 5.5 to 8.25 are out
+  EXPECT_EQ(rpe.used, 16U);  // those that begin or end between 5.5 and 8.25 m are dropped
   EXPECT_LT(rpe.translation_m.max, kRounding);
 }
 
@@ -108,8 +108,8 @@ TEST(RelativePoseError, SlidingSegmentsStartEveryStep) {
 }
 
 TEST(RelativePoseError, AHeadingThatDriftsTurnsTheChordSeenFromTheStart) {
-  // Estimate yaws w rad per meter more than the truth: over [s, s + 1] the rotation error is w and
-  // the chord, seen from the start frame, is turned by w s: 2 sin(w s / 2).
+  // The estimate yaws w rad per meter more than the truth: over [s, s + 1] the rotation error is w,
+  // and the chord, seen from the start frame, is rotated by w s: 2 sin(w s / 2).
   const double w = 0.03;
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory estimate = mapped(sample(line, 100ms, 20s), [&](const StampedPose& pose) {
@@ -126,8 +126,7 @@ TEST(RelativePoseError, AHeadingThatDriftsTurnsTheChordSeenFromTheStart) {
 }
 
 TEST(RelativePoseError, ALeverArmShowsOnlyWhereTheBodyTurns) {
-  // Q flies a line yawing at w; P = Q * lever: error 2 |lever| sin(w / 2) over one second and
-  // meter.
+  // Q flies a line yawing at w; P = Q * lever: error 2 |lever| sin(w / 2) per second and meter.
   const double w = 0.5;
   const double lever = 0.3;
   const auto turning = [&](double t) {
@@ -135,7 +134,7 @@ TEST(RelativePoseError, ALeverArmShowsOnlyWhereTheBodyTurns) {
   };
   const Trajectory truth = sample(turning, 10ms, 20s);
   const auto with_lever = [&](const StampedPose& pose) {
-    return pose.world_from_body * level({0.0, lever, 0.7});  // 0.7 m along the axis do not show
+    return pose.world_from_body * level({0.0, lever, 0.7});  // 0.7 m along the axis have no effect
   };
   const RelativePoseError turned =
       relative_pose_error(mapped(sample(turning, 100ms, 20s), with_lever), truth);
@@ -174,18 +173,18 @@ TEST(RelativePoseError, DoesNotDependOnEitherWorldFrame) {
   ASSERT_EQ(here.used, there.used);
   ASSERT_GT(here.used, 20U);
   for (std::size_t k = 0; k < here.used; ++k) {
-    // another frame rounds the arc length differently, hence an end by a nanosecond
+    // another frame rounds the arc length differently, so an end may move by a nanosecond
     EXPECT_NEAR(here.segments[k].translation_m, there.segments[k].translation_m, kRounding);
     EXPECT_NEAR(here.segments[k].rotation_rad, there.segments[k].rotation_rad, kRounding);
   }
 }
 
 TEST(RelativePoseError, NeverInterpolatesAcrossATrackingLoss) {
-  // 1 m/s; estimates between 5.3 and 8.3 s are missing: the meters that start or end there go.
+  // 1 m/s; estimates between 5.3 and 8.3 s are missing: pieces that start or end there are dropped.
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory whole = sample([](double t) { return level({1.01 * t, 0, 0}); }, 100ms, 20s);
   const Trajectory lost = mapped(with_gap(whole, 5300ms, 8300ms), [](const StampedPose& pose) {
-    // and it comes back 2 m off, which no piece may show
+    // after the gap it is 2 m off, which must not affect any piece
     const Vector3d jump(pose.stamp > 6s ? 2.0 : 0.0, 0, 0);
     return level(pose.world_from_body.translation() + jump);
   });
@@ -217,7 +216,8 @@ TEST(RelativePoseError, AHoverHasNoMetersToScoreButHasSeconds) {
 }
 
 TEST(RelativePoseError, LateStampsShowAsTheChangeOfVelocity) {
-  // Accelerating at a, an estimate dt late is off by dt (v_end - v_begin) over each piece.
+  // At acceleration a, an estimate that is late by dt is off by dt (v_end - v_begin) over each
+  // piece.
   const double a = 0.6;
   const auto accelerating = [&](double t) { return level({0.5 * a * t * t, 0, 0}); };
   const Trajectory truth = sample(accelerating, 10ms, 10s);
@@ -228,7 +228,7 @@ TEST(RelativePoseError, LateStampsShowAsTheChangeOfVelocity) {
 }
 
 TEST(RelativePoseError, OnACircleLateStampsTurnTheChord) {
-  // Without turning the body: chord c = 2 r sin(w / 2) a second, turned by w dt.
+  // Without rotation of the body: chord c = 2 r sin(w / 2) per second, rotated by w dt.
   const double w = 0.5;
   const double r = 2.0;
   const auto circle = [&](double t) {
@@ -276,7 +276,7 @@ TEST(AbsoluteTrajectoryError, DoesNotDependOnTheEstimatesWorldFrame) {
 }
 
 TEST(AbsoluteTrajectoryError, LateStampsOfASteadyFlightAreSpeedTimesDelay) {
-  // 2 s of hover give the gauge, then 3 m/s along x; the estimate is 40 ms late.
+  // 2 s of hover define the gauge, then 3 m/s along x; the estimate is 40 ms late.
   const auto start = [](double t) { return level({std::max(0.0, 3.0 * (t - 2.0)), 0, 0}); };
   const Trajectory truth = sample(start, 10ms, 12s);
   const Trajectory late = flights::shifted(truth, 40ms);
@@ -301,7 +301,7 @@ TEST(AbsoluteTrajectoryError, ARotationErrorFoldsBackBeyondHalfATurn) {
 }
 
 TEST(RelativePoseError, OfATurnInPlaceIsSeenByTheSecondAlone) {
-  // no meters are flown; the estimate turns 2 % too fast
+  // zero path length; the estimate rotates 2 % too fast
   const auto spin = [](double rate) {
     return [rate](double t) { return make_pose(so3::exp({0, 0, rate * t}), Vector3d(1, 2, 3)); };
   };
@@ -320,7 +320,7 @@ TEST(RelativePoseError, OfATurnInPlaceIsSeenByTheSecondAlone) {
 }
 
 TEST(RelativePoseError, MotionsOfMoreThanHalfATurnAreComparedTheShortWay) {
-  // 3.0 and 3.4 rad a second, either side of pi: they differ by 0.4 rad, not by 2 pi - 6.4
+  // 3.0 and 3.4 rad per second, below and above pi: they differ by 0.4 rad, not by 2 pi - 6.4
   const auto spin = [](double rate) {
     return [rate](double t) { return make_pose(so3::exp({0, rate * t, 0}), Vector3d::Zero()); };
   };
@@ -332,7 +332,7 @@ TEST(RelativePoseError, MotionsOfMoreThanHalfATurnAreComparedTheShortWay) {
 }
 
 TEST(RelativePoseError, ADriftThatGrowsWithTheSquareOfTimeGrowsAlongTheLadder) {
-  // x too long by a t^2 / 2 at 1 m/s: over [s, s + L] by a (s L + L^2 / 2)
+  // x is too large by a t^2 / 2 at 1 m/s: over [s, s + L] by a (s L + L^2 / 2)
   const double a = 1e-3;
   const Trajectory truth = sample(line, 10ms, 100s);
   const Trajectory estimate = sample(

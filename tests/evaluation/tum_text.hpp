@@ -9,7 +9,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-/// TUM rows read apart from the library's reader.
+/// A reader of TUM files that is independent of the library.
 namespace lidarena::tum_text {
 
 /// "1305031102.160407" to nanoseconds without passing through a double.
@@ -40,7 +40,7 @@ inline Trajectory parse(const std::string& text) {
   return parse(in);
 }
 
-/// A file of the data that may lie beside the repository.
+/// Path of a file of the optional test data, which are not part of the repository.
 inline std::filesystem::path shared(const std::string& name) {
   return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
 }

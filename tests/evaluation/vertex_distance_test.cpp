@@ -33,7 +33,7 @@ Vector3d random_point(SequentialRandom& random, double half) {
   return {x, y, random.uniform(-half, half)};
 }
 
-/// A soup of triangles of all sizes and shapes, far from the origin.
+/// Unconnected triangles of various sizes and shapes, far from the origin.
 TriangleMesh soup(std::uint64_t seed, const Vector3d& far) {
   SequentialRandom random(seed);
   TriangleMesh mesh;
@@ -47,8 +47,8 @@ TriangleMesh soup(std::uint64_t seed, const Vector3d& far) {
   return mesh;
 }
 
-/// Nearest of the points (i a + j b + k c) / n of all triangles, n the least for which all sides
-/// are at most `edge`, by a look at all of them.
+/// Brute-force distance to the nearest of the points (i a + j b + k c) / n of all triangles, n the
+/// smallest number for which all sides are at most `edge`.
 double slow_distance(const TriangleMesh& mesh, const Vector3d& point, double edge) {
   double best = std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.triangles) {
@@ -73,11 +73,11 @@ TEST(VertexDistance, IsWhatALookAtAllVerticesFindsOrFarOffWhatTheSurfaceTellsOfT
     std::vector<Vector3f> map;
     std::vector<double> expected;
     for (int i = 0; i < 60; ++i) {
-      const double half = i % 10 == 0 ? 100.0 : 2.5;  // some far off
+      const double half = i % 10 == 0 ? 100.0 : 2.5;  // some of them far away
       map.push_back(random_point(random, half).cast<float>());
       expected.push_back(
           slow_distance(world.mesh(), mesh_from_map * map.back().cast<double>(), edge));
-      // one at a time, so that each distance is seen
+      // one at a time, to check each distance
       const VertexDistance one = distance_of({map.back()}, world, mesh_from_map, edge);
       const bool beyond = expected.back() > 20.0 * edge;
       ASSERT_NEAR(one.error.distance_m.rmse, expected.back(),
@@ -94,7 +94,7 @@ TEST(VertexDistance, IsWhatALookAtAllVerticesFindsOrFarOffWhatTheSurfaceTellsOfT
 
 TEST(VertexDistance, OfAPlaneIsThatOfASquareLattice) {
   // Legs of 0.9 m, diagonal 1.273 m: 26 pieces, a lattice of h = 3.46 cm. Points at height z over
-  // the midpoints of m x m parts of each cell have the mean square z^2 + h^2 / 6 (1 - 1 / m^2),
+  // the midpoints of the m x m parts of each cell have the mean square z^2 + h^2 / 6 (1 - 1 / m^2),
   // m even: twice the mean of squares of m / 2 midpoints of [0, h / 2].
   const World world(meshes::plane(0.9));
   constexpr int kPieces = 26, kParts = 4;
@@ -121,7 +121,8 @@ TEST(SubdividedVertices, AreAsManyAsCountedWithCornersOnceAndNoEdgeLongerThanAsk
   EXPECT_EQ(count_subdivided(plane, 0.05), 2U * 378U - 2U);
   EXPECT_EQ(subdivided_vertices(plane, 0.05, Vector3d::Zero()).size(), 2U * 378U - 2U);
   EXPECT_EQ(subdivided_vertices(plane, 2.0, Vector3d::Zero()).size(), 4U);
-  // a diagonal of 3, 4, 5: 100 pieces of 5 cm, and one more as soon as 5 cm are too many
+  // a right triangle with sides 3, 4 and 5 m: 100 pieces of 5 cm, and one more if 5 cm is not
+  // allowed
   TriangleMesh triangle;
   triangle.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {9, 9, 9}};  // the last is unused
   triangle.triangles = {{0, 1, 2}};
@@ -151,7 +152,8 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
     return vertex_distance(map, order, scores, Pose::Identity(), small, kTwo, 0.05, most).refusal;
   };
   EXPECT_EQ(with(754), "");
-  EXPECT_THAT(with(753), HasSubstr("0.000754 million vertices, more than the 0.000753 million"));
+  EXPECT_THAT(with(753),
+              HasSubstr("0.000754 million vertices, more than the limit of 0.000753 million"));
 }
 
 TEST(VertexDistance, OfPointsThatAreNotFiniteIsLeftOutAndOfNoneIsNull) {

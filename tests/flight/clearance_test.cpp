@@ -32,7 +32,7 @@ TEST(Clearance, ReportsTimePlaceAndDistanceOfTheFirstBreach) {
   const SplineFlight into = straight({-2, 1.5, 1}, {2, 1.5, 1});
   const auto encounter = first_encounter(into, walls(), 0.3);
   ASSERT_TRUE(encounter.has_value());
-  // the wall's face stands at x = -0.05; one step of 5 ms is at most 2.5 m/s * 5 ms
+  // the face of the wall is at x = -0.05; one step of 5 ms is at most 2.5 m/s * 5 ms
   EXPECT_NEAR(encounter->position.x(), -0.35, 0.0125);
   EXPECT_LE(encounter->distance, 0.3);
   EXPECT_GE(encounter->distance, 0.3 - 0.0125);

@@ -18,7 +18,7 @@ double share(const Seen& seen) {
 
 TEST(Coverage, SamplesAreSpreadByArea) {
   const TriangleMesh mesh = scenes::box({0, 0, 0}, {1, 2, 10});
-  const auto samples = sample_surface(mesh, 6400);  // 64 m^2: one on each square decimeter
+  const auto samples = sample_surface(mesh, 6400);  // 64 m^2: one per square decimeter
   std::vector<int> count(mesh.triangles.size(), 0);
   Vector3d mean = Vector3d::Zero();
   for (const SurfaceSample& s : samples) {
@@ -46,7 +46,7 @@ TEST(Coverage, FromInsideABoxAllIsSeenAndFromOutsideTheFacesTurnedThere) {
 TEST(Coverage, BeyondTheRangeNothingIsSeen) {
   const World world(scenes::box({0, 0, 0}, {2, 2, 2}));
   const auto samples = sample_surface(world.mesh(), 6000);
-  // from the middle, each face is seen within a circle of radius sqrt(1.2^2 - 1)
+  // from the center, each face is seen within a circle of radius sqrt(1.2^2 - 1)
   const double expected = std::acos(-1.0) * (1.44 - 1.0) / 4.0;
   EXPECT_NEAR(share(seen_from(world, {1, 1, 1}, samples, 1.2)), expected, 0.02);
   EXPECT_EQ(count_seen(seen_from(world, {1, 1, 1}, samples, 0.99)), 0U);
@@ -61,13 +61,13 @@ TEST(Coverage, EveryInnerFaceOfTwoRoomsIsSeenFromBothAndNothingElse) {
     add_seen(seen, view);
   }
   const double inner = scenes::two_rooms_inner_area() / world.mesh().area();
-  // a stratified count of 8000; samples up to 2 mm behind 84 m of edges may count as seen, too
+  // 8000 stratified samples; those up to 2 mm behind 84 m of edges may also count as seen
   EXPECT_NEAR(share(seen), inner, 0.005);
 }
 
 TEST(Coverage, ViewsAreChosenGreedilyUntilTheShareIsReached) {
   const std::vector<Seen> views{{1, 1, 0, 0, 0, 0}, {0, 1, 1, 1, 0, 0}, {0, 0, 0, 1, 1, 0}};
-  // five of six can be seen; view 1 sees three, then views 0 and 2 add one each
+  // five of six samples are visible; view 1 sees three, then views 0 and 2 add one each
   EXPECT_EQ(choose_views(views, 0.6), (std::vector<std::size_t>{1}));
   EXPECT_EQ(choose_views(views, 0.8), (std::vector<std::size_t>{1, 0}));
   EXPECT_EQ(choose_views(views, 1.0), (std::vector<std::size_t>{1, 0, 2}));

@@ -6,7 +6,7 @@
 namespace lidarena {
 namespace {
 
-/// 10 s in each of which a second begins: 3 m/s in the first two, turning at 2 rad/s in the third.
+/// 10 s: 3 m/s in the first two seconds, rotation at 2 rad/s in the third, slow motion afterwards.
 class StagedFlight final : public Flight {
  public:
   Motion at(Time t) const override {

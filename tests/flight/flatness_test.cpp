@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector4d;
 
-/// A closed form with every derivative known: each coordinate a sine.
+/// Flat outputs with all derivatives in closed form: each coordinate is a sine.
 FlatOutputs lissajous(double t) {
   const Vector4d amplitude{2.0, 1.5, 0.6, 1.2};
   const Vector4d frequency{1.1, 1.7, 2.3, 0.9};
@@ -48,7 +48,7 @@ TEST(Flatness, BodyRateAndAngularAccelerationAreTheAttitudesDerivatives) {
     const Motion after = motion_of(lissajous(t + h));
     const Eigen::Matrix3d turn =
         before.world_from_body.linear().transpose() * after.world_from_body.linear();
-    // h^2 / 6 times third derivatives of order 100 rad/s^3, and rounding 1e-15 / h
+    // h^2 / 6 times third derivatives of the order of 100 rad/s^3, and rounding 1e-15 / h
     EXPECT_NEAR((so3::log(turn) / (2.0 * h) - now.angular_rate_body).norm(), 0.0, 3e-6);
     const Vector3d gained = after.angular_rate_body - before.angular_rate_body;
     EXPECT_NEAR((gained / (2.0 * h) - now.angular_acceleration_body).norm(), 0.0, 3e-5);

@@ -8,11 +8,11 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/flight/flight.hpp"
 
-/// Laws that every Flight obeys.
+/// Properties that every Flight must have.
 namespace lidarena::conformance {
 
-/// Largest differences between what a flight states and central differences (step h) of what it
-/// states one derivative lower.
+/// Maximum differences between the derivatives that a flight returns and central differences (step
+/// h) of the next lower derivatives.
 struct Disagreement {
   double velocity = 0.0, acceleration = 0.0, angular_rate = 0.0, angular_acceleration = 0.0;
 };
@@ -33,7 +33,7 @@ inline Disagreement disagreement(const Flight& flight, Time h, Time spacing) {
     raise(most.velocity, step / span - now.velocity_world);
     raise(most.acceleration,
           (after.velocity_world - before.velocity_world) / span - now.acceleration_world);
-    // exp(a) ~ R(t-h)^T R(t+h) is a rotation about the mean axis, seen from the middle to O(h^2)
+    // R(t-h)^T R(t+h) is a rotation by the mean rate; it equals the rate at t up to O(h^2)
     raise(most.angular_rate, so3::log(turn.linear()) / span - now.angular_rate_body);
     raise(most.angular_acceleration, (after.angular_rate_body - before.angular_rate_body) / span -
                                          now.angular_acceleration_body);
@@ -41,9 +41,9 @@ inline Disagreement disagreement(const Flight& flight, Time h, Time spacing) {
   return most;
 }
 
-/// The stated derivatives are the limits of the numeric ones: halving the step divides the
-/// difference by 2^order (a fifth is allowed for higher terms), down to rounding. Order 2 holds
-/// where the third derivative of what is differentiated is continuous, order 1 where it jumps.
+/// The derivatives that a flight returns are the limits of numeric ones: halving the step divides
+/// the difference by 2^order (20 % are allowed for higher-order terms), down to rounding. The order
+/// is 2 if the third derivative of the differentiated quantity is continuous, 1 if it has jumps.
 inline void expect_derivatives_converge(const Flight& flight, int order, Time spacing) {
   constexpr double kRounding = 1e-8;  // 1e-14 m or rad over steps of 1 us
   const Time h = std::chrono::microseconds(400);
@@ -88,7 +88,7 @@ inline void expect_rest_outside(const Flight& flight) {
 
 inline void expect_lawful(const Flight& flight, int order) {
   ASSERT_GT(flight.duration(), Time{0});
-  const Time spacing = std::chrono::microseconds(3137);  // falls nowhere twice on a knot's phase
+  const Time spacing = std::chrono::microseconds(3137);  // not commensurable with the knots
   expect_rotations_are_rotations(flight, spacing);
   expect_pose_at_is_the_pose_of_at(flight, spacing);
   expect_rest_outside(flight);

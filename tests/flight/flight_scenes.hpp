@@ -23,7 +23,7 @@ inline TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
   return mesh;
 }
 
-/// Two walls in the plane x = 0 that leave a door 0.9 m wide: |y| < 0.45.
+/// Two walls in the plane x = 0 with a door of 0.9 m width between them: |y| < 0.45.
 inline TriangleMesh wall_with_door() {
   TriangleMesh mesh = box({-0.05, 0.45, 0.0}, {0.05, 3.0, 2.5});
   mesh.append(box({-0.05, -3.0, 0.0}, {0.05, -0.45, 2.5}));

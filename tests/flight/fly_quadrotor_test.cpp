@@ -39,7 +39,7 @@ DynamicsConfig gusty(double speed, std::uint64_t seed = 1) {
   return config;
 }
 
-/// Hovers at one place, then from 1 s on at another, without a way between.
+/// Hovers at one position and jumps to another one at 1 s.
 class StepFlight final : public Flight {
  public:
   Motion at(Time t) const override {
@@ -62,14 +62,14 @@ TEST_P(FlownStyles, ObeyTheLawsOfFlightsInStillAirAndInGusts) {
 }
 
 TEST_P(FlownStyles, FollowTheirReferenceWithinCentimeters) {
-  // Seen in still air: 3, 10 and 42 mm; what is left of it is the motors' lag, which grows with the
-  // jerk. In gusts of 1 m/s: 70, 70 and 94 mm, of the order of the drag they change over the
+  // Observed in still air: 3, 10 and 42 mm, caused by the motors' lag and increasing with the jerk.
+  // In gusts of 1 m/s: 70, 70 and 94 mm, of the order of the change of drag divided by the
   // stiffness of the position control, 0.3/s * 3 m/s / (3 rad/s)^2 = 100 mm.
   const double still_bound = GetParam() == FlightStyle::kAggressive ? 0.06 : 0.015;
   const SplineFlight line = reference(GetParam());
   const TrackingError still = tracking_error(*fly_quadrotor(line, {}, "test"), line);
   EXPECT_LT(still.max_m, still_bound);
-  EXPECT_GT(still.max_m, 1e-4);  // it is flown, not copied
+  EXPECT_GT(still.max_m, 1e-4);  // the flight is simulated, not a copy of the reference
   const TrackingError gusts = tracking_error(*fly_quadrotor(line, gusty(1.0), "test"), line);
   EXPECT_LT(gusts.max_m, still_bound + 0.1);
   EXPECT_GT(gusts.rms_m, still.rms_m);
@@ -88,8 +88,8 @@ TEST_P(FlownStyles, AccelerateByThrustAlongTheBodysZAxisAndDragAlone) {
     ASSERT_GT(force.z(), 0.0);
     ASSERT_LE(force.z(), 4.0 * config.max_thrust / config.mass_kg);
   }
-  // seen: 1e-9, 3e-9 and 5e-4; the last where a rotor meets its stop between two knots: there the
-  // angular jerk jumps, which a smooth spline rounds off
+  // observed: 1e-9, 3e-9 and 5e-4; the last where a rotor reaches its limit between two knots: the
+  // angular jerk jumps there, which the spline smooths
   EXPECT_LT(most, GetParam() == FlightStyle::kAggressive ? 2e-3 : 1e-7);
 }
 
@@ -129,8 +129,8 @@ TEST(FlyQuadrotor, SettlesOnAStepOfItsReference) {
     if (std::abs(x - 0.5) > 0.025) late = t;
   }
   EXPECT_LT(most, 0.51);
-  // damping 0.9 at 3 rad/s: the envelope exp(-0.9 * 3 t) is 5 % after 1.1 s, and the tilt comes
-  // late
+  // damping 0.9 at 3 rad/s: the envelope exp(-0.9 * 3 t) is 5 % after 1.1 s, and the response of
+  // the tilt adds a delay
   EXPECT_LT(to_seconds(late), 1.0 + 2.0);
   const Motion end = flight->at(flight->duration());
   EXPECT_NEAR((end.world_from_body.translation() - Vector3d(0.5, 0, 0)).norm(), 0.0, 1e-6);
@@ -143,8 +143,9 @@ TEST(FlyQuadrotor, HoversInSteadyWindWhereControlAndDragBalance) {
   config.gusts.wind = {0.0, 2.0, 0.0};
   const auto flight = fly_quadrotor(step, config, "test");
   const Pose end = flight->pose_at(flight->duration());
-  // across the thrust: d w cos(tilt) of wind, tilt by tan = d w / g; the force along the thrust
-  // cancels gravity, the rest is the spring's: exactly d w to second order in the tilt
+  // The drag of the wind w perpendicular to the thrust is d w cos(tilt), with tan(tilt) = d w / g;
+  // the thrust balances gravity. The remaining force, d w to second order in the tilt, is balanced
+  // by the position controller.
   EXPECT_NEAR(end.translation().y(), 0.3 * 2.0 / 9.0, 1e-3);
   EXPECT_NEAR(end.linear()(1, 2), -0.3 * 2.0 / kGravity, 1e-3);  // leans into the wind
 }
@@ -174,14 +175,14 @@ TEST(FlyQuadrotor, BeginsAtRestWhereTheReferenceBegins) {
 TEST(FlyQuadrotor, ARealFlightThatWasRecordedIsWithinItsReach) {
   const std::filesystem::path file = std::filesystem::path(LIDARENA_SHARED_DATA) /
                                      "trajectories/euroc_V1_02/stamped_groundtruth.txt";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC flight was skipped: no data";
-  // the recorded frame has x up: a quarter turn about y brings our z there
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC data is missing";
+  // the recorded frame is x up: a rotation by 90 degrees about y maps z to x
   const Eigen::Quaterniond up(std::sqrt(0.5), 0.0, std::sqrt(0.5), 0.0);
   const ReplayFlight recorded(placed(thinned(read_recording(file), 0.1), Pose::Identity(),
                                      make_pose(up, Vector3d::Zero())));
   const TrackingError error =
       tracking_error(*fly_quadrotor(recorded, DynamicsConfig{}, "test"), recorded);
-  // seen: 25 and 68 mm; the recording begins in motion and is flown from rest
+  // observed: 25 and 68 mm; the recording begins in motion, the simulated flight at rest
   EXPECT_LT(error.rms_m, 0.05);
   EXPECT_LT(error.max_m, 0.15);
 }
@@ -201,7 +202,7 @@ TEST(FlyQuadrotor, SaysWhenItCannotLiftItselfOrIsBlownAway) {
   EXPECT_THAT(error_of(heavy), HasSubstr("here.yaml: the quadrotor cannot lift itself"));
   DynamicsConfig storm;
   storm.gusts.wind = {60.0, 0.0, 0.0};
-  EXPECT_THAT(error_of(storm), HasSubstr("here.yaml: the quadrotor is lost"));
+  EXPECT_THAT(error_of(storm), HasSubstr("here.yaml: the quadrotor has lost the path"));
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ TEST(FreeSpace, EveryCellKeepsTheLeastDistanceInsideTheBox) {
 
 TEST(FreeSpace, FillsTheRoomsShrunkByTheDistance) {
   const FreeSpace space(rooms(), {1, 1, 1.2}, {0.4, 0.4}, 0.1, 100'000, Parallel(2));
-  // both rooms of 3.2 x 3.2 x 1.7 m, and the door's passage of 0.9 x 0.1 x 1.2 m, within half a
-  // cell on each side
+  // both rooms of 3.2 x 3.2 x 1.7 m, and the passage of the door of 0.9 x 0.1 x 1.2 m, to within
+  // half a cell on each side
   const double low = 2 * 3.1 * 3.1 * 1.6;
   const double high = 2 * 3.3 * 3.3 * 1.8 + 1.0 * 0.2 * 1.3;
   const double volume = static_cast<double>(space.cells().size()) * 1e-3;
@@ -79,7 +79,7 @@ TEST(FreeSpace, IsEmptyAtAStartInAWallOrOutsideTheBox) {
 TEST(FreeSpace, ShortestWaysAreThoseOfTheRelaxedGraph) {
   const FreeSpace space(rooms(), {1, 1, 1.2}, {0.4, 0.5}, 0.2, 100'000, Parallel(1));
   const auto cells = space.cells();
-  // Bellman and Ford: relax every edge until nothing changes
+  // Bellman-Ford: relax every edge until nothing changes
   std::vector<std::int32_t> slow(cells.size(), 1'000'000);
   slow[0] = 0;
   for (bool changed = true; changed;) {
@@ -132,7 +132,7 @@ TEST(FreeSpace, IsTheSameOnAnyNumberOfThreads) {
 }
 
 TEST(FreeSpace, AStraightWayIsClearUpToItsNearestSurface) {
-  // past the door post at (4 .. 4.1, 0.58) at 0.3 m
+  // passes the door post at (4 .. 4.1, 0.58) at a distance of 0.3 m
   const Vector3d from(1, 0.88, 1.2), to(7, 0.88, 1.2);
   EXPECT_TRUE(is_clear(rooms(), from, to, 0.299));
   EXPECT_FALSE(is_clear(rooms(), from, to, 0.301));

@@ -22,7 +22,7 @@ TEST(Gusts, AreOffByDefaultAndBeforeTheFlight) {
 }
 
 TEST(Gusts, HaveTheMeanTheDeviationAndTheCorrelationOfTheirSpectrum) {
-  // one seed is one draw of phases: average over seeds and a long time
+  // each seed is one sample of frequencies and phases: average over seeds and a long time
   constexpr int kSeeds = 20;
   constexpr double kSpan = 400.0, kStep = 0.05;
   const double lag = 0.8;
@@ -40,11 +40,11 @@ TEST(Gusts, HaveTheMeanTheDeviationAndTheCorrelationOfTheirSpectrum) {
     }
   }
   mean /= count;
-  // 20 * 400 s / (2 * 0.8 s) = 5000 independent draws: 0.6 / sqrt(5000) = 0.008, four of them
+  // 20 * 400 s / (2 * 0.8 s) = 5000 independent samples: 0.6 / sqrt(5000) = 0.008, four sigma
   EXPECT_NEAR((mean - Vector3d(1.0, -0.5, 0.0)).norm(), 0.0, 0.035);
-  // the sines' mean square is the variance but for what a finite span leaves of slow ones
+  // the mean square of the sines is the variance, except for slow ones over a finite time span
   EXPECT_NEAR(variance / count, 0.36, 0.05 * 0.36);
-  // a first-order spectrum has the correlation exp(-lag / T); the cut at 30 rad/s takes 2.7 %
+  // a first-order spectrum has the correlation exp(-lag / T); the cutoff at 30 rad/s removes 2.7 %
   EXPECT_NEAR(product / variance, std::exp(-1.0), 0.06);
 }
 

@@ -66,13 +66,13 @@ TEST_F(MakeFlight, ARouteIsTheWorldsOwn) {
   const Eigen::Vector3d end = flight->pose_at(flight->duration()).translation();
   EXPECT_NEAR((end - Eigen::Vector3d(2, 0, 1)).norm(), 0.0, 1e-12);
   EXPECT_THAT(error_of("b.yaml", "kind: route\nroute: 2\n"),
-              HasSubstr("the world 'walls' has 2 route(s); route 2 is asked for"));
+              HasSubstr("the world 'walls' has 2 route(s), but route 2 (from 0) is selected"));
 }
 
 TEST_F(MakeFlight, AFlightThroughAWallIsRefusedWithItsPlaceAndTime) {
   EXPECT_THAT(error_of("wall.yaml", "kind: route\nroute: 1\n"),
               AllOf(HasSubstr("wall.yaml: the flight comes within 0.2"),
-                    HasSubstr("m of a surface at (-0."), HasSubstr(" s after its begin"),
+                    HasSubstr("m of a surface at (-0."), HasSubstr(" s after its start"),
                     HasSubstr("clearance_m (0.3)")));
   EXPECT_THAT(error_of("wall.yaml", "kind: route\nroute: 1\nclearance_m: 0\n"),
               HasSubstr("the flight passes through a surface at (-0.0"));
@@ -107,7 +107,7 @@ TEST_F(MakeFlight, BadRowsOfARecordingAreNamed) {
   EXPECT_THAT(error_of("a.tum", "0 0 0 1 0 0 0 1\n"), HasSubstr("a.tum: has 1 pose"));
   EXPECT_THAT(error_of("a.yaml", "kind: replay\nreplay: none.tum\n"),
               HasSubstr("none.tum: cannot be opened"));
-  EXPECT_THAT(error_of("a.yaml", "kind: replay\n"), HasSubstr("names no file to replay"));
+  EXPECT_THAT(error_of("a.yaml", "kind: replay\n"), HasSubstr("the key 'replay' is missing"));
 }
 
 TEST_F(MakeFlight, BadConfigurationsAreNamedByFileLineAndKey) {
@@ -147,7 +147,7 @@ TEST_F(MakeFlight, DynamicsAreOffByDefaultAndTakenFromTheFile) {
 
 TEST_F(MakeFlight, ClearanceHoldsForThePathAsFlownNotAsPlanned) {
   const std::string path = "kind: route\n";
-  make(folder_.write("a.yaml", path));  // the reference passes the door in its middle
+  make(folder_.write("a.yaml", path));  // the reference passes through the center of the door
   EXPECT_THAT(error_of("a.yaml", path + "dynamics: {gusts: {wind: [0, 5, 0]}}\n"),
               HasSubstr("m of a surface"));
 }
@@ -171,7 +171,7 @@ tour: {cell_m: 0.2, samples: 500, max_views: 50, start: [1, 2, 1.2]}
               1e-12);
   conformance::expect_lawful(*flight, 2);
   EXPECT_THAT(told.all, HasSubstr("a.yaml: a tour of "));
-  EXPECT_THAT(told.all, HasSubstr(" % of what can be seen from the "));
+  EXPECT_THAT(told.all, HasSubstr(" % of what is visible from the "));
   EXPECT_THAT(error_of("b.yaml", "kind: auto\ntour: {coverage: 1.5}\n"),
               HasSubstr("b.yaml:2: tour.coverage: 1.5 is out of range"));
 }
@@ -184,7 +184,7 @@ TEST_F(MakeFlight, AWorldWithoutRoutesSaysSo) {
 TEST(Recordings, ARealFlightIsReplayedThroughItsPoses) {
   const std::filesystem::path file = std::filesystem::path(LIDARENA_SHARED_DATA) /
                                      "trajectories/euroc_V1_02/stamped_groundtruth.txt";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC replay was skipped: no data";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC data is missing";
   WorldModel model;
   model.mesh = scenes::box({100, 100, 100}, {101, 101, 101});
   LogSink log;

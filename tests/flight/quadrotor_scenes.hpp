@@ -7,7 +7,7 @@
 
 namespace lidarena::scenes {
 
-/// The state after `seconds` by steps of h.
+/// The state after `seconds`, integrated with steps of `h` (s).
 template <class Derivative>
 QuadrotorState integrated(QuadrotorState state, double seconds, double h,
                           const Derivative& derivative) {

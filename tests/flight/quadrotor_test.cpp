@@ -63,7 +63,7 @@ TEST(Quadrotor, ARotorsSpeedReachesItsCommandWithTheLagsTimeConstant) {
     const QuadrotorState end = integrated({}, t, lag / 100.0, towards_half);
     const double speed = 0.5 * (1.0 - std::exp(-t / lag));
     EXPECT_NEAR(end.rotor_speed[0], speed, 1e-9);
-    // seen from outside: the thrust is the speed's square
+    // the thrust is proportional to the square of the speed
     EXPECT_NEAR(quad.wrench(end.rotor_speed).thrust, 4.0 * 7.1 * speed * speed, 1e-7);
   }
 }

@@ -33,7 +33,7 @@ Trajectory recorded(const Flight& flight, Time step) {
   return Trajectory(std::move(poses));
 }
 
-/// Poses at uneven instants with steps of up to 1 m and 1 rad.
+/// Poses at irregular instants with steps of up to 1 m and 1 rad.
 Trajectory jagged() {
   SequentialRandom random(5);
   std::vector<StampedPose> poses;
@@ -49,7 +49,7 @@ Trajectory jagged() {
   return Trajectory(std::move(poses));
 }
 
-/// Largest errors of a replay between the recorded instants, against the motion that was recorded.
+/// Maximum errors of a replay, also between the recorded instants, against the recorded motion.
 struct ReplayError {
   double position = 0.0, rotation = 0.0, acceleration = 0.0, angular_acceleration = 0.0;
 };
@@ -93,7 +93,7 @@ TEST(ReplayFlight, VelocityAndAccelerationAreContinuousAtRecordedPoses) {
     const Time t = recording.poses()[i].stamp;
     const Motion before = replay.at(t - Time{1});
     const Motion after = replay.at(t);
-    // derivatives here reach 1e3 per s; over 1 ns that is 1e-6
+    // derivatives are up to 1e3 per s; over 1 ns that is 1e-6
     EXPECT_NEAR((before.velocity_world - after.velocity_world).norm(), 0.0, 1e-6);
     EXPECT_NEAR((before.acceleration_world - after.acceleration_world).norm(), 0.0, 1e-6);
     EXPECT_NEAR((before.angular_rate_body - after.angular_rate_body).norm(), 0.0, 1e-6);
@@ -106,8 +106,8 @@ TEST(ReplayFlight, FinerRecordingsConvergeToTheRecordedMotion) {
   const ReplayError coarse = replay_error(std::chrono::milliseconds(40));
   const ReplayError fine = replay_error(std::chrono::milliseconds(10));
   // The recorded position is five times continuously differentiable and the attitude three times:
-  // O(h^5) and O(h^4), for the accelerations O(h^3) and O(h^2). h is four times smaller; a quarter
-  // of the gain is left to higher terms.
+  // the errors are O(h^5) and O(h^4), those of the accelerations O(h^3) and O(h^2). h is four times
+  // smaller; 25 % are allowed for higher-order terms.
   EXPECT_LT(fine.position, coarse.position / (0.75 * 1024.0));
   EXPECT_LT(fine.rotation, coarse.rotation / (0.75 * 256.0));
   EXPECT_LT(fine.acceleration, coarse.acceleration / (0.75 * 64.0));
@@ -194,7 +194,7 @@ TEST(RotationRates, AgreeWithNumericDerivativesForSmallAndLargeRotations) {
     const double h = 1e-4;
     const Vector3d rate = so3::log(so3::exp(v(-h)).transpose() * so3::exp(v(h))) / (2.0 * h);
     const Vector3d gain = (body_rate(v(h), dv(h)) - body_rate(v(-h), dv(-h))) / (2.0 * h);
-    // h^2 / 6 times third derivatives of order 100, and rounding 1e-15 / h
+    // h^2 / 6 times third derivatives of the order of 100, and rounding 1e-15 / h
     EXPECT_NEAR((body_rate(v0, v1) - rate).norm(), 0.0, 3e-7) << size;
     EXPECT_NEAR((body_acceleration(v0, v1, v2) - gain).norm(), 0.0, 3e-7) << size;
   }

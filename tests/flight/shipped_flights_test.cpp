@@ -28,7 +28,7 @@ struct Scene {
   World world;
 };
 
-/// Kept for the next test: to make the Cave takes longer than to fly through it.
+/// Cached between tests: generating the cave takes longer than the flight.
 const Scene& scene_of(const std::filesystem::path& world_file) {
   static std::map<std::filesystem::path, Scene> scenes;
   auto found = scenes.find(world_file);
@@ -41,7 +41,7 @@ const Scene& scene_of(const std::filesystem::path& world_file) {
   return found->second;
 }
 
-/// Lawful, and clear of the mesh at every 20 ms.
+/// Conforming (see flight_conformance.hpp) and clear of the mesh at samples 20 ms apart.
 void expect_lawful_and_clear(const Flight& flight, const World& world, double clearance) {
   conformance::expect_lawful(flight, 2);
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
@@ -50,7 +50,7 @@ void expect_lawful_and_clear(const Flight& flight, const World& world, double cl
   }
 }
 
-/// The flight as made in the world, and within its limits.
+/// The flight can be made in the world and stays within its limits.
 void expect_flyable(const std::filesystem::path& world_file, const std::string& name) {
   LogSink log;
   const auto file = kConfigs / "flights" / (name + ".yaml");
@@ -79,7 +79,7 @@ TEST(ShippedFlights, EveryFileIsAValidConfiguration) {
 class OwnWorlds : public testing::TestWithParam<const char*> {};
 INSTANTIATE_TEST_SUITE_P(ShippedFlights, OwnWorlds, testing::Values("house", "cave"));
 
-/// What the paper asks for: "sudden and drastic changes in both heading and speed".
+/// Checks the paper's requirement: "sudden and drastic changes in both heading and speed".
 void expect_aggressive(const Scene& scene, const std::string& name) {
   LogSink log;
   const auto file = kConfigs / "flights" / (name + ".yaml");
@@ -100,11 +100,11 @@ TEST_P(OwnWorlds, AreFlownAlongTheirRoutesBrisklyAndAggressively) {
 
 TEST(ShippedFlights, TheSmallHouseIsFlownThroughItsRooms) {
   const auto world = kMeshes / "aws_small_house/worlds/small_house.world";
-  if (!std::filesystem::exists(world)) GTEST_SKIP() << "the small house was skipped: no mesh";
+  if (!std::filesystem::exists(world)) GTEST_SKIP() << "the mesh of the small house is missing";
   expect_flyable(world, "aws_house");
 }
 
-/// The shipped tour with a coarse plan: clear of the mesh, and showing 80 % of what can be seen.
+/// The shipped tour, planned coarsely, is clear of the mesh and sees 80 % of the visible surface.
 void expect_tour(const WorldModel& model, const World& world, double cell_m) {
   auto config = load_config<FlightConfig>(kConfigs / "flights/auto.yaml");
   config.tour.cell_m = cell_m;
@@ -129,7 +129,8 @@ TEST(ShippedTour, ReachesEveryRoomOfTheHouseThroughDoorsThatLeaveFiveCentimeters
     for (const FreeSpace::Cell& cell : space.cells()) {
       nearest = std::min(nearest, (cell.point - point).norm());
     }
-    // a cell's center lies at most half a diagonal away, 0.17 m, its settled point as far again
+    // a cell's center is at most half a diagonal (0.17 m) away, and its point as far from the
+    // center
     EXPECT_LT(nearest, 0.35) << point.transpose();
   }
 }
@@ -146,14 +147,14 @@ TEST(ShippedTour, ShowsACaveOfOneLoop) {
 
 TEST(ShippedTour, ShowsTheLavaTube) {
   const auto file = kMeshes / "lava_tube/models/indian_tunnel/indian_tunnel.dae";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the lava tube was skipped: no mesh";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the mesh of the lava tube is missing";
   const auto& [model, world] = scene_of(file);
   expect_tour(model, world, 0.7);
 }
 
 TEST(ShippedTour, ShowsTheSmallHouseThatHasNoCeiling) {
   const auto file = kMeshes / "aws_small_house/worlds/small_house.world";
-  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the small house was skipped: no mesh";
+  if (!std::filesystem::exists(file)) GTEST_SKIP() << "the mesh of the small house is missing";
   const auto& [model, world] = scene_of(file);
   expect_tour(model, world, 0.2);
 }

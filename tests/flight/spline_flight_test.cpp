@@ -35,7 +35,7 @@ double distance_to_line(const Vector3d& p, const std::vector<Vector3d>& line) {
   return nearest;
 }
 
-/// Yaw of the flat outputs: what is left of the attitude when its tilt is taken away.
+/// Yaw of the flat outputs: the attitude without its tilt.
 double yaw_of(const Pose& pose) {
   const Vector3d z = pose.linear().col(2);
   const Eigen::Matrix3d tilt =
@@ -79,14 +79,14 @@ TEST_P(Styles, EveryLimitHoldsAtEveryInstant) {
     c.heading = {.mode = mode, .amplitude = 0.2, .period_s = 4.0};
     const SplineFlight flight(crooked(), c, "test");
     const FlightLimits limits = limits_of(c);
-    const double slack = 1.0 + 1e-9;  // rounding alone
+    const double slack = 1.0 + 1e-9;  // for rounding only
     for (Time t{0}; t < flight.duration(); t += kMs) {
       const Motion now = flight.at(t);
       const Motion next = flight.at(t + kMs);
       const Vector3d z = now.world_from_body.linear().col(2);
       ASSERT_LE(now.velocity_world.norm(), limits.max_speed * slack);
       ASSERT_LE(now.acceleration_world.norm(), limits.max_acceleration * slack);
-      // a difference over 1 ms is an average of the jerk: it obeys the same bound
+      // a difference over 1 ms is an average of the jerk, to which the same limit applies
       const Vector3d gained = next.acceleration_world - now.acceleration_world;
       ASSERT_LE(gained.norm(), limits.max_jerk * 1e-3 * (1.0 + 1e-6));
       ASSERT_LE(std::atan2(z.head<2>().norm(), z.z()), limits.max_tilt * slack);
@@ -111,7 +111,7 @@ TEST_P(Styles, ThePathStaysInsideTheCorridorAroundTheLineAndPassesEveryCorner) {
         nearest[i] = std::min(nearest[i], (p - line[i]).norm());
       }
     }
-    // between two samples lies at most 5 m/s * 1 ms
+    // two samples are at most 5 m/s * 1 ms apart
     EXPECT_THAT(nearest, testing::Each(testing::Le(corner + 0.0025)));
   }
 }
@@ -124,7 +124,7 @@ TEST_P(Styles, RestsUprightAtTheFirstWaypointBeforeAndAtTheLastAfterwards) {
                                     {flight.duration() - hover, crooked().back()},
                                     {flight.duration(), crooked().back()}}) {
     const Motion m = flight.at(t);
-    // the last knots' rounding is multiplied by knot^-4 in the angular acceleration
+    // the rounding of the last knots is multiplied by knot^-4 in the angular acceleration
     EXPECT_NEAR((m.world_from_body.translation() - waypoint).norm(), 0.0, 1e-12);
     EXPECT_NEAR(m.velocity_world.norm(), 0.0, 1e-11);
     EXPECT_NEAR(m.acceleration_world.norm(), 0.0, 1e-10);
@@ -149,7 +149,7 @@ TEST_P(Styles, ThrustAlongTheBodysZAxisExplainsTheAcceleration) {
 TEST(SplineFlight, AStraightLineTakesTheTimeOfAccelerationCruiseAndBrake) {
   FlightConfig config;
   config.hover_s = 0.5;
-  config.corner_m = 100.0;  // so that the corner rule takes nothing from the acceleration
+  config.corner_m = 100.0;  // so large that it does not limit the acceleration
   const FlightLimits l = limits_of(FlightStyle::kBrisk);
   const double length = 10.0;
   const std::vector<Vector3d> line{{0, 0, 0}, {length, 0, 0}};
@@ -157,8 +157,8 @@ TEST(SplineFlight, AStraightLineTakesTheTimeOfAccelerationCruiseAndBrake) {
   const double knot = 2.0 * l.max_acceleration / l.max_jerk;
   const double expected =
       length / l.max_speed + l.max_speed / l.max_acceleration + 2.0 * config.hover_s + 7.0 * knot;
-  // the change from accelerating to cruising, and that to braking, may fall inside a cell of 2 cm,
-  // where one constant acceleration stands for both: a ds^2 / (8 v^3) is lost at the most
+  // The changes from acceleration to cruise and from cruise to braking may be inside a cell of 2
+  // cm, in which the acceleration is constant: each adds at most a ds^2 / (8 v^3) to the duration.
   const double lost = l.max_acceleration * 0.02 * 0.02 / (8.0 * std::pow(l.max_speed, 3));
   EXPECT_GT(to_seconds(flight.duration()), expected - 1e-8);
   EXPECT_LT(to_seconds(flight.duration()), expected + 2.0 * lost + 1e-8);
@@ -185,7 +185,8 @@ TEST(SplineFlight, ARightAngleIsFlownAtTheSpeedThatItsArcAllows) {
     }
     slowest = std::min(slowest, m.velocity_world.norm());
   }
-  // smoothing averages the velocity's direction over the arc: cos of up to half its angle is lost
+  // smoothing averages the direction of the velocity over the arc: the speed is reduced by up to
+  // the cosine of half the arc's angle
   EXPECT_LE(slowest, arc_speed * 1.02);
   EXPECT_GE(slowest, arc_speed * std::cos(pi / 4.0));
 }
@@ -202,7 +203,7 @@ TEST(SplineFlight, DurationIsKeptByLoopingOrStoppingEarly) {
       most = std::max(most, distance_to_line(flight.pose_at(t).translation(), crooked()));
     }
     EXPECT_LE(most, config.corner_m);
-    // it keeps moving until the end: the last 2 s before the hover are not spent at rest
+    // it moves until the end: it is not at rest 2 s before the hover
     const Time late = flight.duration() - from_seconds(config.hover_s + 2.0);
     EXPECT_GT((flight.pose_at(late).translation() - flight.pose_at(flight.duration()).translation())
                   .norm(),
@@ -299,13 +300,13 @@ TEST(SplineFlight, RefusesOneWaypointAndRepeatedOnes) {
   EXPECT_THAT(error_of({{1, 2, 3}}, {}), HasSubstr("here.yaml: has 1 waypoint"));
   EXPECT_THAT(error_of({}, {}), HasSubstr("has 0 waypoint"));
   EXPECT_THAT(error_of({{0, 0, 0}, {1, 2, 3}, {1, 2, 3}}, {}),
-              HasSubstr("waypoint 3 repeats the one before it: (1, 2, 3)"));
+              HasSubstr("waypoint 3 repeats the previous one: (1, 2, 3)"));
 }
 
 TEST(SplineFlight, RefusesASweepThatTheYawRateForbidsAndADurationThatIsAllHover) {
   FlightConfig config;
   config.heading = {.mode = HeadingMode::kSweep, .amplitude = 1.0, .period_s = 2.0};
-  EXPECT_THAT(error_of(crooked(), config), HasSubstr("rad/s of at most 1.50"));
+  EXPECT_THAT(error_of(crooked(), config), HasSubstr("limit of 1.50 rad/s"));
   config.heading.period_s = 0.1;
   EXPECT_THAT(error_of(crooked(), config), HasSubstr("heading's sweep"));
   FlightConfig brief;

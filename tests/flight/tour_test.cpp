@@ -67,7 +67,7 @@ TEST(TourOrder, VisitsAllAndIsNearTheBestOfAllOrders) {
     do best = std::min(best, round_trip(lengths, any));
     while (std::next_permutation(any.begin() + 1, any.end()));
     auto order = order_of_visits(lengths);
-    // 2-opt is known to stay within about 5 % of the best on the mean; 15 % for a single one
+    // 2-opt is on average about 5 % above the optimum; 15 % are allowed for a single tour
     EXPECT_LE(static_cast<double>(round_trip(lengths, order)), 1.15 * static_cast<double>(best));
     std::sort(order.begin(), order.end());
     for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(order[i], i);
@@ -115,8 +115,8 @@ TEST(Tour, ShowsBothRoomsAndKnowsHowMuchOfTheMeshCanBeSeen) {
   config.tour.coverage = 0.95;
   const Tour tour = planned(config);
   const double inner = scenes::two_rooms_inner_area() / rooms().world.mesh().area();
-  EXPECT_NEAR(tour.seeable, inner, 0.02);  // 2000 samples: sqrt(0.25 / 2000) = 0.011 at the most
-  // the views see 95 %; the flight passes them within corner_m and is looked at every 0.2 m
+  EXPECT_NEAR(tour.seeable, inner, 0.02);  // 2000 samples: at most sqrt(0.25 / 2000) = 0.011
+  // the viewpoints see 95 %; the flight passes them within corner_m and is sampled every 0.2 m
   EXPECT_GE(tour.seen, 0.9 * tour.seeable);
   EXPECT_LE(tour.seen, tour.seeable);
   EXPECT_EQ(tour.waypoints.front(), tour.waypoints.back());
@@ -187,7 +187,7 @@ TEST(Tour, SaysWhenItsStartIsInAWallOrThereIsNone) {
               HasSubstr("auto.yaml: the tour's start (4.05, 3.00, 1.00) is 0.050"));
   config.tour.start.reset();
   config.clearance_m = 3.0;
-  EXPECT_THAT(error_of(config), HasSubstr("finds no place in the world 'rooms' that keeps 3 m"));
+  EXPECT_THAT(error_of(config), HasSubstr("no starting point in the world 'rooms' keeps 3 m"));
 }
 
 }  // namespace

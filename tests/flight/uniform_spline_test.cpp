@@ -22,7 +22,7 @@ Controls sampled(double (*f)(double), double knot, std::size_t count) {
   return controls;
 }
 
-/// Cox-de Boor, straight from the definition, knots at the integers.
+/// Basis function by the Cox-de Boor recursion, with knots at the integers.
 double basis(int degree, int first, double x) {
   if (degree == 0) return first <= x && x < first + 1 ? 1.0 : 0.0;
   return (x - first) / degree * basis(degree - 1, first, x) +
@@ -82,7 +82,7 @@ TEST(UniformSpline, AllDerivativesUpToTheFifthAreContinuousAcrossKnots) {
   }
 }
 
-/// Largest distance between a function and the spline through its samples.
+/// Maximum distance between a function and the spline fitted to its samples.
 double fit_error(double (*f)(double), double knot) {
   const auto count = static_cast<std::size_t>(3.0 / knot) + 6;
   Controls samples;
@@ -107,7 +107,7 @@ TEST(SplineFit, ErrsByTheSeventhPowerOfTheKnot) {
   const auto wave = [](double t) { return std::sin(4.0 * t + 0.3); };
   const double ratio = fit_error(wave, 0.1) / fit_error(wave, 0.05);
   EXPECT_GT(ratio, 110.0);
-  EXPECT_LT(ratio, 260.0);  // between 2^7 and 2^8: the leading term vanishes at the centers
+  EXPECT_LT(ratio, 260.0);  // between 2^7 and 2^8: the leading term is zero at the centers
 }
 
 TEST(UniformSpline, HoldsItsEnds) {

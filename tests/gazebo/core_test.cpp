@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The engine of the Gazebo plugin, without Gazebo.
+// Tests the core of the Gazebo plugin without Gazebo.
 #include <gtest/gtest.h>
 
 #include "lidarena/sensor/stepped_sensor.hpp"
@@ -38,14 +38,14 @@ TEST(GazeboCore, ASensorSeesABallFallAsPhysicsHasIt) {
     for (const Point& point : scan->points) {
       if (point.position.z() < -0.999F) continue;  // the ground
       ++on_ball;
-      // at the end of the shot's step
+      // the ball is seen where it is at the end of the shot's step
       const Time shot = scan->stamp + Time{point.dt_ns};
       const Time end = std::max((shot + kStep - Time{1}) / kStep, std::int64_t{1}) * kStep;
       const Eigen::Vector3d middle(12, 0, height_at(end));
       ASSERT_NEAR((point.position.cast<double>() - middle).norm(), kRadius, 1e-5);
     }
   }
-  EXPECT_EQ(scans, 9U);  // the tenth ends with the last step but for the IMU's sample
+  EXPECT_EQ(scans, 9U);  // the tenth scan still waits for an IMU sample after the last step
   EXPECT_EQ(samples, 200U);
   EXPECT_GT(on_ball, 50U);
 }

@@ -10,7 +10,7 @@ namespace {
 
 Pose at_x(double meters) { return make_pose(Eigen::Matrix3d::Identity(), {meters, 0.0, 0.0}); }
 
-/// Keyframes at 0, 10 and 20 s, 1 m after each other; a pose each second, 0.1 m further.
+/// Keyframes at 0, 10 and 20 s, 1 m apart; a pose every second, each 0.1 m further.
 AnchoredTrajectory straight() {
   AnchoredTrajectory trajectory;
   for (int i = 0; i <= 25; ++i) {

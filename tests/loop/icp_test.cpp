@@ -34,12 +34,13 @@ TEST(Icp, LaysPlanesOnPlanes) {
   LoopConfig config = careful_loops();
   const IcpResult result = align_clouds(pair.source, pair.target, guess, config, Parallel(1));
   EXPECT_TRUE(result.converged);
-  // 1 cm of noise a point, over some thousand points on each wall: far below 1 mm; but the clouds
-  // are the same points with other noise, which a plane through 6 of them has 1/sqrt(6) of
+  // Noise of 1 cm per point, over about a thousand points on each wall, gives far below 1 mm. But
+  // both clouds are the same points with different noise, of which a plane through 6 points still
+  // has 1/sqrt(6).
   EXPECT_LT(apart(result.target_from_source, pair.truth), 2e-3);
   EXPECT_LT(so3::angle(pair.truth.linear().transpose() * result.target_from_source.linear()), 1e-3);
   EXPECT_GT(result.overlap, 0.99);
-  // the nearest of two noisy copies of a point: 6 * (1 cm)^2 at most
+  // squared distance between two noisy copies of a point: 6 * (1 cm)^2 at most
   EXPECT_LT(result.fitness, 6e-4);
   EXPECT_GT(result.constraint, 0.01);
 }

@@ -13,7 +13,7 @@ namespace {
 
 using places::Points;
 
-/// A path of keyframes a second apart, as it was and as an odometry with a steady error has it.
+/// A path of keyframes one second apart: the truth, and odometry with a constant error per step.
 struct Walk {
   std::vector<Pose> truth;
   std::vector<Points> clouds;
@@ -32,7 +32,8 @@ Walk walk(const std::vector<Pose>& truth, const Points& world, double reach,
   return walk;
 }
 
-/// 1.3 times around the block; the odometry is 1 % too long and turns 0.06 degrees a meter too far.
+/// 1.3 times around the block; the odometry is 1 % too long and rotates 0.06 degrees per meter too
+/// far.
 Walk round_trip() {
   std::vector<Pose> truth;
   for (int i = 0; i <= 104; ++i) truth.push_back(places::around_the_block(i));
@@ -71,11 +72,11 @@ TEST(LoopCloser, ComingBackCuresTheDrift) {
   EXPECT_GT(drifted, 0.6);
   EXPECT_GT(closer.accepted(), 0U);
   EXPECT_LT(rms_error(trip, closer.poses()), 0.4 * drifted)
-      << "a steady error is shared out evenly, which it was not";
+      << "not lower: the error is distributed evenly, unlike the true one";
   for (const LoopRecord& loop : closer.records()) {
     if (loop.verdict != LoopVerdict::kAccepted) continue;
     const Pose truth = trip.truth[loop.first].inverse() * trip.truth[loop.second];
-    // the old place is laid out by the odometry, too: over 8 keyframes on a side, 1 cm each
+    // the odometry also adds errors to the target: over 8 keyframes on each side, 1 cm each
     EXPECT_LT((truth.inverse() * loop.first_from_second).translation().norm(), 0.08);
   }
 }
@@ -89,7 +90,7 @@ TEST(LoopCloser, LioSamsRuleDoesSoToo) {
   config.correspondence_m = 2.0;
   config.keyframes_per_search = 4;
   const LoopCloser closer = closed(trip, config);
-  EXPECT_GT(closer.accepted(), 2U) << "whenever one is looked for after the round";
+  EXPECT_GT(closer.accepted(), 2U) << "one for every search after the first round";
   EXPECT_LT(rms_error(trip, closer.poses()),
             0.5 * rms_error(trip, closed(trip, no_loops()).poses()));
 }
@@ -104,8 +105,8 @@ TEST(LoopCloser, IsFoundByLooksAloneToo) {
   for (const LoopRecord& loop : closer.records()) EXPECT_TRUE(loop.by_appearance);
 }
 
-/// Through one room, a passage, and a second room that is the same, thrice as long in each as would
-/// be needed.
+/// Through a room, a passage, and an identical second room, three times as long in each as
+/// necessary.
 Walk identical_rooms() {
   Points world;
   places::add_room(world, 0.0F);
@@ -141,11 +142,12 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
     }
     if (wrong > 10.0 && loop.verdict == LoopVerdict::kBeyondDrift) ++refused;
   }
-  EXPECT_GT(refused, 0) << "the rooms fit each other: only the odometry knows better";
-  EXPECT_GT(closer.accepted(), 0U) << "true ones, within each room";
+  EXPECT_GT(refused, 0) << "the rooms match each other: only the limit on drift can reject that";
+  EXPECT_GT(closer.accepted(), 0U) << "correct ones, within each room";
   EXPECT_LT(rms_error(tour, closer.poses()), 0.1);
 
-  // Without that knowledge false loops are believed; the graph's robust kernel is the last defense.
+  // Without the limit on drift, false loops are accepted; then only the graph's robust kernel
+  // limits the damage.
   config.drift_per_meter = 0.0;
   const LoopCloser trusting = closed(tour, config);
   int believed = 0;
@@ -155,10 +157,10 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
   EXPECT_LT(rms_error(tour, trusting.poses()), 0.1);
   LoopConfig lio_sams;
   lio_sams.leaf_m = 0.3;
-  lio_sams.source_points = 400;  // quicker
+  lio_sams.source_points = 400;  // faster
   lio_sams.target_keyframes = 10;
   lio_sams.max_iterations = 60;
-  EXPECT_GT(rms_error(tour, closed(tour, lio_sams).poses()), 1.0) << "one room on top of the other";
+  EXPECT_GT(rms_error(tour, closed(tour, lio_sams).poses()), 1.0) << "the rooms are merged";
 }
 
 TEST(LoopCloser, StandingStillNoLoopIsTried) {
@@ -170,7 +172,7 @@ TEST(LoopCloser, StandingStillNoLoopIsTried) {
   lio_sams.leaf_m = 0.3;
   lio_sams.target_keyframes = 2;
   lio_sams.keyframes_per_search = 10;
-  EXPECT_FALSE(closed(still, lio_sams).records().empty()) << "LIO-SAM's rule tries all";
+  EXPECT_FALSE(closed(still, lio_sams).records().empty()) << "LIO-SAM has no minimum path length";
 }
 
 TEST(LoopCloser, IsTheSameBitsOnAnyNumberOfThreads) {

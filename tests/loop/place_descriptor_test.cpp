@@ -21,8 +21,8 @@ TEST(PlaceDescriptor, TheSamePlaceLooksTheSameAndTellsTheTurn) {
   for (const double sectors : {0.0, 1.0, 7.0, -12.0, 29.0}) {
     const double turn = sectors * 2.0 * std::acos(-1.0) / PlaceDescriptor::kSectors;
     const Resemblance found = compare(at(13.0, 0.0, 1), at(13.0, turn, 2));
-    EXPECT_LT(found.distance, 0.1) << "noise pushes points over the cells' borders";
-    EXPECT_NEAR(found.turn, turn, 1e-9) << "the second place was seen turned by it";
+    EXPECT_LT(found.distance, 0.1) << "noise moves points across borders of cells";
+    EXPECT_NEAR(found.turn, turn, 1e-9) << "the second place was seen rotated by it";
   }
 }
 

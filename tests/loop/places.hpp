@@ -9,12 +9,12 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-/// Places made of points on walls, and paths through them, to try loop closure on.
+/// Simulated places made of points on walls, and paths through them, for tests of loop closure.
 namespace lidarena::places {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// The walls, floor and ceiling (each if asked for) of a box, a point every `step` m.
+/// Adds the walls and, if `flat`, the floor and ceiling of a box, with a point every `step` m.
 inline void add_box(Points& points, const Eigen::Vector3f& low, const Eigen::Vector3f& high,
                     bool flat, float step = 0.25F) {
   const Eigen::Vector3f size = high - low;
@@ -60,7 +60,7 @@ inline Points ring_corridor() {
   return points;
 }
 
-/// A room of 8 x 6 x 3 m about (x, 0) with three things in it.
+/// Adds a room of 8 x 6 x 3 m around (x, 0) with three boxes in it.
 inline void add_room(Points& points, float x) {
   add_box(points, {x - 4, -3, 0}, {x + 4, 3, 3}, true);
   add_box(points, {x - 3, 1.5F, 0}, {x - 2, 2.5F, 1}, true, 0.12F);
@@ -68,7 +68,7 @@ inline void add_room(Points& points, float x) {
   add_box(points, {x + 1.5F, 2, 0}, {x + 2, 2.5F, 3}, true, 0.12F);
 }
 
-/// The points within `reach` of the pose, in its frame, with some noise.
+/// The points within `reach` (m) of the pose, in its frame, with 1 cm of noise per axis.
 inline Points seen_from(const Pose& pose, const Points& world, double reach, std::uint64_t seed) {
   SequentialRandom random(seed, 7);
   const Pose back = pose.inverse();
@@ -83,12 +83,13 @@ inline Points seen_from(const Pose& pose, const Points& world, double reach, std
   return seen;
 }
 
-/// At (x, y), 1.5 m up, facing `yaw`.
+/// Pose at (x, y), at a height of 1.5 m, with heading `yaw`.
 inline Pose standing(double x, double y, double yaw) {
   return make_pose(so3::exp({0.0, 0.0, yaw}), {x, y, 1.5});
 }
 
-/// `meters` along a square of 20 x 20 m in the corridor's middle, facing onwards.
+/// Pose after `meters` along a square of 20 x 20 m in the middle of the corridor, heading along the
+/// path.
 inline Pose around_the_block(double meters) {
   const double along = std::fmod(meters, 80.0);
   const int side = static_cast<int>(along / 20.0);

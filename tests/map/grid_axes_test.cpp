@@ -11,7 +11,7 @@
 namespace lidarena {
 namespace {
 
-/// A wall of 8 m x 8 m a centimeter beside a border of cells of 0.2 m, with 2 cm of noise across.
+/// A wall of 8 m x 8 m, 1 cm away from a border of cells of 0.2 m, with 2 cm of noise across it.
 std::vector<Eigen::Vector3f> noisy_wall(std::size_t count, std::uint64_t seed) {
   SequentialRandom random(seed);
   std::vector<Eigen::Vector3f> points;
@@ -23,7 +23,7 @@ std::vector<Eigen::Vector3f> noisy_wall(std::size_t count, std::uint64_t seed) {
   return points;
 }
 
-/// Where the cells' means see the wall, each as much as another (m).
+/// Position of the wall (m) as the mean of the cells' means, each of the same weight.
 double seen_at(std::size_t count, GridAxes axes) {
   const std::vector<Eigen::Vector3f> means = voxel_means(noisy_wall(count, 1), 0.2, axes);
   double sum = 0.0;
@@ -32,10 +32,10 @@ double seen_at(std::size_t count, GridAxes axes) {
 }
 
 TEST(GridAxes, AScanIsSeenWhereAMapOfManyIsOnlyIfTheGridIsAskew) {
-  constexpr std::size_t kScan = 3000, kMap = 100'000;  // some two points a cell, and sixty
+  constexpr std::size_t kScan = 3000, kMap = 100'000;  // about 2 and 60 points per cell
   EXPECT_GT(std::abs(seen_at(kScan, GridAxes::kParallel) - seen_at(kMap, GridAxes::kParallel)),
             3e-3);
-  // 2 cm of each of 3,000 points: 0.4 mm
+  // standard error: 2 cm / sqrt(3000) = 0.4 mm
   EXPECT_NEAR(seen_at(kScan, GridAxes::kAskew), seen_at(kMap, GridAxes::kAskew), 1.2e-3);
   EXPECT_NEAR(seen_at(kMap, GridAxes::kAskew), 0.21, 1e-3);
 }
@@ -45,7 +45,8 @@ TEST(GridAxes, AreARotationFarFromTheFramesAxes) {
   const Eigen::Matrix3d turn = grid_turn(GridAxes::kAskew);
   EXPECT_TRUE(turn.isUnitary(1e-12));
   EXPECT_GT(turn.determinant(), 0.0);
-  EXPECT_LT(turn.cwiseAbs().maxCoeff(), std::cos(0.4)) << "rad, 23 degrees, between any two axes";
+  EXPECT_LT(turn.cwiseAbs().maxCoeff(), std::cos(0.4))
+      << "0.4 rad (23 degrees) between any two axes";
 }
 
 }  // namespace

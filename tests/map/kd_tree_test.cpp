@@ -13,7 +13,7 @@
 namespace lidarena {
 namespace {
 
-/// The same operations on a list, each in the most obvious way.
+/// Reference: the same operations on a list, implemented in the simplest way.
 class SlowPoints {
  public:
   void insert(const Eigen::Vector3f& point) { points_.push_back(point); }
@@ -82,8 +82,9 @@ std::vector<Eigen::Vector3f> sorted(std::vector<Eigen::Vector3f> points) {
   return points;
 }
 
-/// Depth that a tree can have when no child has more than 0.7 of its parent's points, down to
-/// subtrees of 64, which are left alone: at worst a chain that sheds half a leaf of 16 a step.
+/// Maximum depth of a tree in which no child has more than 0.7 of its parent's points, down to
+/// subtrees of 64 points, which are not balanced: at worst a chain that loses half a leaf of 16 per
+/// level.
 std::size_t allowed_depth(std::size_t points) {
   return static_cast<std::size_t>(std::log(static_cast<double>(points) / 64.0) /
                                   std::log(1 / 0.7)) +
@@ -95,7 +96,8 @@ void expect_same(const KdTree& tree, const SlowPoints& slow) {
   EXPECT_EQ(sorted(tree.points()), sorted(slow.points()));
 }
 
-/// LIDARENA_KD_TREE_OPERATIONS says how many, for a long run of them (2,000,000 take minutes).
+/// Number of operations; LIDARENA_KD_TREE_OPERATIONS sets it for long tests (2,000,000 take
+/// minutes).
 int random_operations() {
   const char* given = std::getenv("LIDARENA_KD_TREE_OPERATIONS");
   return given == nullptr ? 120'000 : std::max(2, std::atoi(given));

@@ -20,7 +20,7 @@ namespace {
 using Points = std::vector<Eigen::Vector3f>;
 using Cell = std::array<long, 3>;
 
-/// The slow, obvious way to a cell.
+/// Reference: the cell of a point, computed in the simplest way.
 Cell cell_of(const Eigen::Vector3f& p, double size) {
   return {std::lround(std::floor(p.x() / size)), std::lround(std::floor(p.y() / size)),
           std::lround(std::floor(p.z() / size))};
@@ -37,8 +37,8 @@ Points random_points(std::size_t count, double reach) {
   return points;
 }
 
-/// First points of their cells, by a std::set. 0.5 m is a power of two, so float and double agree
-/// on every cell's edge.
+/// Reference: the first points of their cells, by a std::set. 0.5 m is a power of two, so float and
+/// double agree on the edges of all cells.
 Points first_ones(const Points& points, double size) {
   std::set<Cell> seen;
   Points kept;
@@ -86,7 +86,7 @@ TEST(PointMap, TakesSome20BytesAVoxelHoweverManyPointsFallIntoIt) {
   PointMap map(0.5);
   const Points points = random_points(20000, 6.0);
   for (int repeat = 0; repeat < 10; ++repeat) map.insert(points);
-  // 12 B a point, in a vector up to twice as large; 24 B for up to 64 voxels in a table at least
+  // 12 B per point, in a vector up to twice as large; 24 B for up to 64 voxels in a table at least
   // a quarter full
   EXPECT_LE(map.memory_bytes(), map.size() * (2 * 12 + 4 * 24 / 16));
   const std::size_t voxels = map.size();
@@ -112,14 +112,14 @@ TEST(VoxelFilter, ThinningKeepsTheSamePointsInAnOrderOfItsOwn) {
   const Points points = random_points(5000, 3.0);
   Points expected = first_ones(points, 0.5);
   Points thinned = thin(points, 0.5);
-  EXPECT_EQ(thinned, thin(points, 0.5)) << "the order must depend on the input alone";
+  EXPECT_EQ(thinned, thin(points, 0.5)) << "the order must depend only on the input";
   EXPECT_NE(thinned, expected) << "the order must not be that of the input";
   std::sort(expected.begin(), expected.end(), before);
   std::sort(thinned.begin(), thinned.end(), before);
   EXPECT_EQ(thinned, expected);
 }
 
-/// A hash table by the letter: each point takes the first free slot from its own on.
+/// Reference: a hash table in which each point takes the first free slot from its own on.
 Points in_slots(const Points& points, double size, std::uint32_t y_factor, std::size_t slot_count) {
   std::map<std::size_t, Eigen::Vector3f> slots;
   for (const auto& p : points) {
@@ -127,7 +127,7 @@ Points in_slots(const Points& points, double size, std::uint32_t y_factor, std::
     const auto hash = static_cast<std::uint32_t>(cell[0]) * 73856093U ^
                       static_cast<std::uint32_t>(cell[1]) * y_factor ^
                       static_cast<std::uint32_t>(cell[2]) * 83492791U;
-    std::size_t slot = hash % slot_count * 1000;  // 1000 places for who wants the same slot
+    std::size_t slot = hash % slot_count * 1000;  // room for 1000 points with the same slot
     while (slots.contains(slot)) ++slot;
     slots[slot] = p;
   }
@@ -139,7 +139,7 @@ Points in_slots(const Points& points, double size, std::uint32_t y_factor, std::
 TEST(VoxelFilter, ThinnedPointsStandInTheOrderOfTheHashTheyAreToldToHave) {
   const Points points = random_points(5000, 3.0);
   const Points first = first_ones(points, 0.5);
-  constexpr std::size_t kSlots = 16384;  // the power of two that holds twice 5000
+  constexpr std::size_t kSlots = 16384;  // the power of two above twice 5000
   EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschner}),
             in_slots(first, 0.5, 19349663U, kSlots));
   EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschnerPrime}),
@@ -155,15 +155,15 @@ TEST(VoxelFilter, RoundedTowardsZeroTheCellAroundTheOriginIsTwiceAsWide) {
 }
 
 TEST(VoxelFilter, ASecondPassTakesItsPointsFromTheWholeScan) {
-  // A line of points 1 cm apart is a scan in order of time. Of each 1.5 m cell one of 3 points
-  // remains (0.5 m cells); taken in input order it would always be the first.
+  // A line of points 1 cm apart is a scan in order of time. In each 1.5 m cell, one of 3 points
+  // remains (0.5 m cells); if taken in input order, it would always be the first.
   Points line;
   for (int i = 0; i < 150000; ++i) line.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   const Points twice = thin(thin(line, 0.5), 1.5);
   ASSERT_EQ(twice.size(), 1000U);
   std::array<int, 3> thirds{};
   for (const auto& p : twice) ++thirds[static_cast<std::size_t>(std::fmod(p.x(), 1.5F) / 0.499F)];
-  // 1000 draws among 3: 333 each, standard deviation 15; 5 of these
+  // 1000 draws among 3: 333 each, standard deviation 15; 5 sigma
   for (const int count : thirds) EXPECT_NEAR(count, 333, 75);
 }
 

@@ -39,7 +39,7 @@ Points random_points(std::size_t count, double reach, std::uint64_t seed = 3) {
   return points;
 }
 
-/// The map by the letter of its description, in std::map.
+/// Reference: the map as documented, with std::map.
 struct SlowMap {
   VoxelHashMap::Options options;
   std::map<Cell, Points> cells{};
@@ -84,7 +84,7 @@ Points sorted(Points points) {
 void compare_with_the_slow_map(const VoxelHashMap::Options& options) {
   VoxelHashMap map(options);
   SlowMap slow{options};
-  for (std::uint64_t round = 0; round < 5; ++round) {  // wander, so that freed blocks come back
+  for (std::uint64_t round = 0; round < 5; ++round) {  // move, so that freed blocks are reused
     const Eigen::Vector3f center(static_cast<float>(round), 0.5F * static_cast<float>(round), 0.0F);
     for (Eigen::Vector3f p : random_points(4000, 2.0, round)) {
       p += center;
@@ -137,7 +137,7 @@ TEST(VoxelHashMap, ACellTakesNoMoreThanItsLimitAndNothingNearerThanTheSpacing) {
   EXPECT_TRUE(map.insert({0.5F, 0.5F, 0.71F}));
   EXPECT_TRUE(map.insert({0.5F, 0.1F, 0.5F}));
   EXPECT_FALSE(map.insert({0.9F, 0.9F, 0.1F})) << "the cell is full";
-  EXPECT_TRUE(map.insert({1.05F, 0.5F, 0.5F})) << "the next cell does not mind its neighbors";
+  EXPECT_TRUE(map.insert({1.05F, 0.5F, 0.5F})) << "the spacing holds only within a cell";
   EXPECT_EQ(map.size(), 4U);
 }
 
@@ -147,15 +147,15 @@ TEST(VoxelHashMap, MemoryFollowsTheContentsUpAndReturnsToUseWhenCellsAreDropped)
   map.insert(random_points(20000, 10.0));
   const std::size_t full = map.memory_bytes();
   EXPECT_GE(full, empty + map.size() * sizeof(Eigen::Vector3f));
-  // 12 B a point in blocks at least half used, the blocks left behind while growing (less than the
-  // final block), 32 B a bucket at a load of 1/4 to 1/2, one page of 48 KiB
+  // 12 B per point in blocks at least half used, the blocks left behind while growing (less than
+  // the final block), 32 B per bucket at a load of 1/4 to 1/2, one page of 48 KiB
   EXPECT_LE(full, map.size() * 12 * 2 * 2 + map.cell_count() * 32 * 4 * 2 + 49152 + empty);
   for (int i = 0; i < 5; ++i) {
     map.remove_far(Eigen::Vector3f::Zero(), 1e-3);
     EXPECT_TRUE(map.empty());
     map.insert(random_points(20000, 10.0));
   }
-  // freed blocks are reused level by level; what grows is the lists of them
+  // freed blocks are reused by level; only the lists of free blocks grow
   EXPECT_LE(map.memory_bytes(), full * 5 / 4);
 }
 
@@ -203,10 +203,10 @@ TEST(VoxelHashMap, CellsOfFewPointsOrOfALineHaveNoShape) {
   EXPECT_FALSE(shapeless(9.0F));
   map.insert(random_points(20, 0.4).front().array() + 0.5F);
   map.insert(Eigen::Vector3f(0.1F, 0.9F, 0.2F));
-  EXPECT_FALSE(shapeless(0.0F)) << "six points have one";
+  EXPECT_FALSE(shapeless(0.0F)) << "six points are enough";
   VoxelHashMap without({.voxel_size = 1.0});
   without.insert(Eigen::Vector3f(0.5F, 0.5F, 0.5F));
-  EXPECT_FALSE(without.nearest({0.5F, 0.5F, 0.5F}, 1.0F).shapeless) << "nobody asked";
+  EXPECT_FALSE(without.nearest({0.5F, 0.5F, 0.5F}, 1.0F).shapeless) << "planes are not fitted";
 }
 
 TEST(VoxelHashMap, ACellThatLosesItsShapeLosesItsPlaneAndFreedPlanesServeAgain) {
@@ -260,7 +260,7 @@ TEST(VoxelHashMap, NearestFewAreThoseOfTheWholeMapWithinTheRadius) {
         const std::size_t count = map.nearest(query, radius, out);
         std::vector<float> found;
         for (std::size_t i = 0; i < count; ++i) {
-          EXPECT_EQ((*out[i].point - query).squaredNorm(), out[i].squared_distance);
+          EXPECT_EQ((out[i].point - query).squaredNorm(), out[i].squared_distance);
           found.push_back(out[i].squared_distance);
         }
         std::sort(found.begin(), found.end());

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""The KITTI odometry error by the definition of docs/metrics.md, written apart from the library.
+"""The KITTI odometry error as defined in docs/metrics.md, written independently of the library.
 
-    kitti_error.py TRUTH ESTIMATE [LENGTH ...]     rows of 12 numbers (13: the frame first)
+    kitti_error.py TRUTH ESTIMATE [LENGTH ...]     rows of 12 numbers (13: frame number first)
 
-prints pieces, translation % and rotation deg/100 m, for each length and for all together.
-tests/evaluation/kitti_error_test.cpp holds its answers.
+Prints the number of pieces, translation error in % and rotation error in deg/100 m, for each length
+and for all together. tests/evaluation/kitti_error_test.cpp contains its results.
 """
 import math
 import sys

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""RPE per meter by the definition of docs/metrics.md, written apart from the library and slowly.
+"""RPE per meter as defined in docs/metrics.md; simple, slow, independent of the library.
 
     relative_pose_error.py FILE.json      with {"files": {name: TUM text}}; prints used, total, cm
 
-tests/evaluation/known_figures_test.cpp holds its answers.
+tests/evaluation/known_figures_test.cpp contains its results.
 """
 import bisect
 import json
@@ -37,7 +37,7 @@ def slerp(a, b, s):
 
 
 def into_frame(q, v):
-    """v seen from a frame turned by q: R(q)^T v."""
+    """v in a frame rotated by q: R(q)^T v."""
     x, y, z, w = -q[0], -q[1], -q[2], q[3]
     t = [2 * (y * v[2] - z * v[1]), 2 * (z * v[0] - x * v[2]), 2 * (x * v[1] - y * v[0])]
     return [v[0] + w * t[0] + y * t[2] - z * t[1],

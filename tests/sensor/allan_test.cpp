@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The Allan deviation of a long static run gives back the densities that were asked for (IEEE Std
-// 952-1997, annex C): white noise N gives N^2 / tau, a bias that walks with K gives K^2 tau / 3.
+// The Allan deviation of a long recording at rest reproduces the configured densities (IEEE Std
+// 952-1997, annex C): white noise N gives N^2 / tau, a bias random walk K gives K^2 tau / 3.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,11 +31,11 @@ Record record(const ImuConfig& config, int samples) {
   return out;
 }
 
-/// Allan variance over clusters of `length` samples side by side, mean of three axes, and its
-/// relative sigma. With M clusters an axis, M - 1 differences are averaged. Neighbors correlate by
-/// -1/2 for white noise and by +1/4 for a random walk, so the variance of the mean square is at
-/// most 2 (1 + 2 (1/2)^2) / (M - 1) = 3 / (M - 1) of its square, and a third of that over three
-/// axes.
+/// Allan variance over adjacent clusters of `length` samples, mean of three axes, and its relative
+/// sigma. With M clusters per axis, M - 1 differences are averaged. Neighboring differences
+/// correlate by -1/2 for white noise and by +1/4 for a random walk, so the variance of the mean
+/// square is at most 2 (1 + 2 (1/2)^2) / (M - 1) = 3 / (M - 1) of its square, and a third of that
+/// over three axes.
 struct Allan {
   double variance;
   double relative_sigma;
@@ -61,7 +61,7 @@ void expect_densities(const std::vector<Eigen::Vector3d>& samples, double rate_h
     const double tau = static_cast<double>(length) / rate_hz;
     const double expected = noise * noise / tau + walk * walk * tau / 3.0;
     const Allan found = allan(samples, length);
-    // four sigma, and 1 / (2 * 8^2) by which a walk in steps exceeds the continuous one
+    // four sigma, plus 1 / (2 * 8^2) by which a discrete random walk exceeds the continuous one
     EXPECT_NEAR(found.variance / expected, 1.0, 4.0 * found.relative_sigma + 0.008) << tau << " s";
   }
 }
@@ -86,13 +86,13 @@ TEST(Allan, WhiteNoiseFallsAndABiasWalkRisesWithTheRootOfTheTime) {
   config.rate_hz = 100.0;
   config.gyro_noise_density = 1e-4;  // crosses the walk at sqrt(3) N / K = 17 s
   config.gyro_bias_walk = 1e-5;
-  config.accel_noise_density = 1e-3;  // at 0.017 s: less than two samples
+  config.accel_noise_density = 1e-3;  // crosses at 0.017 s: less than two samples
   config.accel_bias_walk = 1e-1;
   const Record run = record(config, 200'000);
   expect_densities(run.gyro, 100.0, 1e-4, 1e-5);
   expect_densities(run.accel, 100.0, 1e-3, 1e-1);
-  // The ratio of two variances has at most the sum of their sigmas; a slope is half its logarithm
-  // over that of the ratio of times.
+  // The relative sigma of the ratio of two variances is at most the sum of theirs; a slope is half
+  // the logarithm of that ratio, divided by the logarithm of the ratio of times.
   const auto error = [](std::size_t a, std::size_t b) {
     const double sigma = std::sqrt(static_cast<double>(a) / 200'000.0) +
                          std::sqrt(static_cast<double>(b) / 200'000.0);

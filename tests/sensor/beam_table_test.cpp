@@ -33,7 +33,7 @@ TEST(BeamTable, GivesThePatternsBeamsToTheLastBitInEveryTurnOfIt) {
 TEST(BeamTable, TheMid360RepeatsAfterTwelveSecondsAndAnOusterAtOnce) {
   EXPECT_EQ(make_pattern(mid360())->repeats_after(), 120U);
   EXPECT_EQ(make_pattern(ouster())->repeats_after(), 1U);
-  // 2.4 million directions and one scan of whole beams; without a table, the scan alone.
+  // 2.4 million directions and one scan of whole beams; without a table, only the scan.
   EXPECT_EQ(BeamTable(*make_pattern(mid360())).bytes(), 2'400'000 * 12U + 20'000 * 32U);
   EXPECT_EQ(BeamTable(*make_pattern(ouster())).bytes(), 512 * 128 * 32U);
 }
@@ -50,7 +50,7 @@ TEST(BeamTable, ManyThreadsMayAskForTheSameScanAtOnce) {
   EXPECT_EQ(std::ranges::count(right, 1), 64);
 }
 
-/// Never the same twice, and its lasers wander in time.
+/// A pattern whose firing times differ from scan to scan.
 class WanderingPattern : public ScanPattern {
  public:
   explicit WanderingPattern(std::uint64_t repeats) : repeats_(repeats) {}

@@ -19,7 +19,7 @@ std::vector<Time> seconds(std::initializer_list<double> instants) {
   return times;
 }
 
-/// Fires once along each of `directions`, 10 ms apart, again and again.
+/// Fires once along each of `directions`, 10 ms apart, and repeats.
 class FewRays : public ScanPattern {
  public:
   explicit FewRays(std::vector<Eigen::Vector3f> directions) : directions_(std::move(directions)) {}
@@ -45,7 +45,7 @@ Eigen::Vector3f ray(double azimuth_deg, double elevation_deg) {
 
 TEST(Coverage, IsTheSolidAngleOfTheCellsThatWereHit) {
   const FieldOfView fov{-180, 180, -30, 30};
-  // Four quarter turns, two rows of equal solid angle: each cell is an eighth.
+  // Four columns of 90 deg, two rows of equal solid angle: each cell is an eighth.
   const FewRays pattern({ray(45, 10), ray(50, 20), ray(-45, 10), ray(45, -10), ray(10, 40)});
   const auto shares = coverage(pattern, {-180, 180, -90, 90}, 90.0,
                                seconds({0.0, 0.005, 0.015, 0.025, 0.035, 0.045, 1.0}));
@@ -53,17 +53,17 @@ TEST(Coverage, IsTheSolidAngleOfTheCellsThatWereHit) {
   ASSERT_EQ(shares.size(), eighths.size());
   for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_NEAR(shares[i], eighths[i] / 8, 1e-12);
 
-  // Rows further from the equator are narrower; rays outside do not count.
+  // Rows farther from the equator have a smaller solid angle; rays outside do not count.
   const auto of_rows = coverage(FewRays({ray(7, 29), ray(7, 31)}), fov, 20.0, seconds({1.0}));
   const double row = std::sin(testing::radians(30)) - std::sin(testing::radians(10));
   EXPECT_NEAR(of_rows[0], row / 18 / (2 * std::sin(testing::radians(30))), 1e-12);
 }
 
 TEST(Coverage, InAConeCountsTheCellsWhoseCenterLiesInIt) {
-  const FieldOfView fov{-10, 10, -10, 10,
-                        8.0};  // of four cells' centers none is 8 deg off the axis
+  // The centers of all four cells are less than 8 deg off the axis.
+  const FieldOfView fov{-10, 10, -10, 10, 8.0};
   EXPECT_NEAR(coverage(FewRays({ray(1, 1)}), fov, 10.0, seconds({1.0}))[0], 0.25, 1e-12);
-  const FieldOfView narrow{-15, 15, -15, 15, 8.0};  // of nine only the one ahead
+  const FieldOfView narrow{-15, 15, -15, 15, 8.0};  // of nine cells only the central one
   EXPECT_NEAR(coverage(FewRays({ray(1, 1)}), narrow, 10.0, seconds({1.0}))[0], 1.0, 1e-12);
   EXPECT_NEAR(coverage(FewRays({ray(9, 1)}), narrow, 10.0, seconds({1.0}))[0], 0.0, 1e-12);
 }
@@ -86,7 +86,7 @@ TEST(Coverage, OfTheMid360IsThatOfTheMakersTable) {
       for (auto& [cell, grid] : grids) grid.add(shots.beam().direction);
     }
     for (const auto& [cell, grid] : grids) {
-      // half a unit of the third decimal, and the cells that rounding to single precision moves
+      // half a unit of the third decimal, plus the cells that change due to single precision
       EXPECT_NEAR(grid.share(), expected.at(cell)[i], 6e-4) << cell << " deg";
     }
   }
@@ -104,8 +104,8 @@ TEST(Coverage, OfTheMid40AndMid70IsThatOfTheMakersTables) {
                          Row{livox_mid70(), 35.216, 0.5, {0.194, 0.683, 0.923, 1.000}},
                          Row{livox_mid70(), 35.216, 0.25, {0.093, 0.390, 0.644, 0.993}}}) {
     const LivoxPattern pattern(row.model, 10.0, "test");
-    // How the reference's cells lie is not told. With one centered on the axis all 16 figures agree;
-    // shifted by half a cell they differ by up to 0.004.
+    // The reference does not say how its cells are placed. With one cell centered on the axis all
+    // 16 figures agree; shifted by half a cell they differ by up to 0.004.
     const double edge = 40.0 + row.cell_deg / 2;
     const FieldOfView fov{-edge, edge, -edge, edge, row.half_fov_deg};
     const auto found = coverage(pattern, fov, row.cell_deg, instants);

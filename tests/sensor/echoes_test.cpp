@@ -33,7 +33,7 @@ TEST(Echoes, SurfacesAPulseApartAreEchoesOfTheirOwnNearestFirst) {
   ASSERT_EQ(echoes.size(), 2U);
   EXPECT_DOUBLE_EQ(echoes[0].range, 5.05);
   EXPECT_DOUBLE_EQ(echoes[1].range, (9.0 + 3.0 * 9.3) / 4.0);
-  EXPECT_EQ(echoes[0].sub_ray, 1U);  // equally strong: the nearer
+  EXPECT_EQ(echoes[0].sub_ray, 1U);  // equal signals: the nearer part
   EXPECT_EQ(echoes[1].sub_ray, 2U);
 }
 
@@ -70,7 +70,8 @@ TEST(SubRays, HaveTheProfilesSpreadAlikeInBothDirections) {
     squares += offset * offset.transpose() / kCount;
     if (offset.x() > 1.0) ++beyond_one_sigma;
   }
-  // A regular spiral of n rays meets integrals to about 1 / sqrt(n), the width of a cell.
+  // The mean over a regular spiral of n rays approximates integrals to about 1 / sqrt(n), the width
+  // of a cell.
   EXPECT_LT(sum.norm(), 0.02);
   EXPECT_LT((squares - Eigen::Matrix2d::Identity()).norm(), 0.02);
   EXPECT_NEAR(beyond_one_sigma / static_cast<double>(kCount), 0.158655, 0.01);
@@ -86,7 +87,7 @@ TEST(SubRays, AreTurnedAsideByTheAnglesAsked) {
     if (axis.z() < 1) {
       EXPECT_NEAR(left.z() - axis.z(), 0.0, 1e-6);
       EXPECT_GT(up.z(), axis.z());
-      EXPECT_GT(axis.cross(left).z(), 0.0);  // left is counter-clockwise seen from above
+      EXPECT_GT(axis.cross(left).z(), 0.0);  // left is counterclockwise seen from above
     }
   }
 }

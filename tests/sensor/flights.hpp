@@ -10,7 +10,7 @@
 /// Flights in closed form.
 namespace lidarena::testing {
 
-/// Constant velocity and constant body rate from `start`; by default at rest.
+/// Constant velocity and constant body rate from `start`.
 class UniformFlight : public Flight {
  public:
   UniformFlight(Pose start, Eigen::Vector3d velocity_world, Eigen::Vector3d rate_body,
@@ -57,7 +57,7 @@ struct Wave {
   double second(double t) const { return -amplitude * rate * rate * std::sin(rate * t + phase); }
 };
 
-/// Every coordinate and every one of yaw, pitch, roll (R = Rz Ry Rx) swings as a sinusoid.
+/// Position and yaw, pitch, roll (R = Rz Ry Rx) are sinusoids of time.
 class SwingingFlight : public Flight {
  public:
   explicit SwingingFlight(double seconds) : duration_(from_seconds(seconds)) {}

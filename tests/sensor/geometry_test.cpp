@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Scans against what they scanned: round walls in closed form, whole worlds by the nearest surface.
+// Compares scans with the scanned surfaces: round walls in closed form, whole worlds by the nearest
+// surface.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -25,7 +26,7 @@ using namespace testing;
 constexpr double kTolerance = 1e-4;  // m: single precision leaves 1e-5 m at 40 m
 const Parallel kOneThread(1);
 
-/// An upright cylinder wall of `facets` around the z axis, 200 m high.
+/// A vertical cylinder of `facets` around the z axis, 200 m high.
 TriangleMesh cylinder_mesh(double radius, int facets) {
   TriangleMesh mesh;
   for (int i = 0; i < facets; ++i) {
@@ -43,7 +44,7 @@ TriangleMesh cylinder_mesh(double radius, int facets) {
   return mesh;
 }
 
-/// A scan of the world in world coordinates, put there with the pose of each point's instant.
+/// The points of a scan in world coordinates, each transformed by the pose at its own instant.
 std::vector<Vector3d> in_world(const Scan& scan, const Flight& flight, const Pose& mount) {
   std::vector<Vector3d> points;
   points.reserve(scan.points.size());
@@ -63,7 +64,7 @@ TEST(Geometry, AFinelyFacetedCylinderIsRoundToATenthOfAMillimeter) {
     config.max_range_m = 120.0;
     const Lidar lidar = make_lidar(config);
     const Scan scan = lidar.measure(world, flight, 2, kOneThread);
-    // Steep shots meet the wall beyond the range.
+    // Steep shots hit the wall beyond the maximum range.
     EXPECT_GT(scan.points.size(), lidar.pattern().beams_per_scan() * 8 / 10);
     double worst = 0.0;
     for (const Vector3d& p : in_world(scan, flight, config.body_from_lidar)) {
@@ -88,12 +89,13 @@ TEST(Geometry, AFinelyFacetedSphereIsRoundToItsFacets) {
   EXPECT_EQ(scan.points.size(), 20'000U);
   for (const Vector3d& p : in_world(scan, flight, mid360().body_from_lidar)) {
     ASSERT_LT(p.norm(), radius + kTolerance);
-    ASSERT_GT(p.norm(), deepest - kTolerance - 1e-4);  // a facet's middle is not its deepest point
+    ASSERT_GT(p.norm(),
+              deepest - kTolerance - 1e-4);  // the center of a facet is not its deepest point
   }
 }
 
-// Figure 3 of Vultaggio et al. 2023: what the official plugin makes of round and flat walls. It
-// reports every range short by the minimum range m, so along the beam the point lies m too near.
+// Figure 3 of Vultaggio et al. 2023: round and flat walls as the official plugin reports them.
+// Every range is too short by the minimum range m, so along its beam each point is m too near.
 TEST(Geometry, TheOfficialFaultNarrowsACylinderByTheCosineOfElevation) {
   const double radius = 2.0, m = 0.1;
   const World world(cylinder_mesh(radius, 1440));
@@ -136,7 +138,7 @@ TEST(Geometry, TheOfficialFaultBowsAFlatWallTowardsTheSensor) {
   }
 }
 
-/// The fastest that a flight's velocity and body rate change, sampled every 5 ms.
+/// Largest accelerations of a flight's velocity and body rate, sampled every 5 ms.
 struct Agility {
   double acceleration = 0.0;          ///< m/s^2
   double angular_acceleration = 0.0;  ///< rad/s^2
@@ -161,9 +163,10 @@ Trajectory sampled(const Flight& flight, Time end) {
   return Trajectory(std::move(poses));
 }
 
-/// Flies scans through a world and holds every `kStride`th point against the nearest surface: put
-/// back with the flight's own pose, and with truth of 1 kHz between whose samples one interpolates.
-/// That is off by at most h^2 / 8 times the acceleration, and the angular one times the range.
+/// Simulates scans in a world and compares every `kStride`th point with the nearest surface,
+/// transformed once with the pose of the flight and once with the truth sampled at 1 kHz and
+/// interpolated. The interpolation error is at most h^2 / 8 times (acceleration + angular
+/// acceleration * range).
 void expect_on_surface(const World& world, const Flight& flight, const std::string& name) {
   constexpr std::size_t kStride = 7;
   const Time last = std::min<Time>(flight.duration(), std::chrono::seconds(8));
@@ -196,7 +199,7 @@ void expect_on_surface(const World& world, const Flight& flight, const std::stri
     const double interpolation =
         kStep * kStep / 8.0 * (agility.acceleration + agility.angular_acceleration * longest);
     EXPECT_LT(worst_truth, kTolerance + interpolation) << name << " " << config.name;
-    EXPECT_GT(worst_frozen, 0.02) << name;  // and that it moves is seen
+    EXPECT_GT(worst_frozen, 0.02) << name;  // the motion during a scan is relevant
     ::testing::Test::RecordProperty(name + "_" + config.name + "_flight_m", std::to_string(worst));
     ::testing::Test::RecordProperty(name + "_" + config.name + "_truth_1khz_m",
                                     std::to_string(worst_truth));
@@ -230,13 +233,13 @@ TEST(Geometry, EveryDeskewedPointOfTheLavaTubeLiesOnItsSurface) {
   const auto file =
       std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes/lava_tube/worlds/lava_tube.world";
   if (!std::filesystem::exists(file)) {
-    GTEST_SKIP() << "the shared test data is not here: the lava tube is not scanned";
+    GTEST_SKIP() << "the shared test data is missing: the lava tube is not scanned";
   }
   WorldOptions options;
   options.allow_missing = true;
   LogSink log;
   const World world(load_world(file, options, log).mesh);
-  // Up and down over the middle of the tube's box: wherever that is, rays meet rock.
+  // Up and down over the center of the tube's bounding box, where rays hit rock in any case.
   const Vector3d middle = world.closest_point(world.mesh().bounds().center()).point;
   const std::vector<Vector3d> tour{middle + Vector3d(-3, -3, 1), middle + Vector3d(3, -3, 2),
                                    middle + Vector3d(3, 3, 1), middle + Vector3d(-3, 3, 2),

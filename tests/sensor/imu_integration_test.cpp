@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Integrating the samples of a noise-free IMU must give back the flight: rate, specific force,
-// lever arm, gravity and stamps are right together or not at all.
+// Integrating the samples of an error-free IMU must reproduce the flight; it does only if rate,
+// specific force, lever arm, gravity and stamps are all correct.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -45,7 +45,7 @@ State advanced(const State& s, const Rate& rate, double h) {
   return next;
 }
 
-/// One step of the classical Runge-Kutta method over three samples, h apart from first to last.
+/// One step of the classical Runge-Kutta method over three samples; h: from the first to the last.
 State runge_kutta(State s, const ImuSample* imu, double h) {
   const Rate k1 = rate_of(s, imu[0]);
   const Rate k2 = rate_of(advanced(s, k1, h / 2), imu[1]);
@@ -59,8 +59,8 @@ State runge_kutta(State s, const ImuSample* imu, double h) {
   return next;
 }
 
-/// One step over three samples as many an estimator takes it: mean rate over each interval, mean of
-/// the forces at its ends (second order).
+/// One step over three samples with the second-order method of many estimators: mean rate over each
+/// interval, mean of the forces at its ends.
 State midpoint(State s, const ImuSample* imu, double h) {
   for (int i = 0; i < 2; ++i) {
     const double dt = h / 2;
@@ -77,7 +77,7 @@ State midpoint(State s, const ImuSample* imu, double h) {
 
 using Method = State (*)(State, const ImuSample*, double);
 
-/// How far off the end of `flight` the integral of an IMU's samples comes out.
+/// Error at the end of `flight` of the integral of an IMU's samples.
 struct Miss {
   double position_m;
   double angle_deg;
@@ -112,12 +112,13 @@ const Pose kMount = testing::tilted_pose({0.2, -0.1, 0.3}, 0.5, -1.0, 2.0);
 
 TEST(ImuIntegration, GivesBackAFlightInClosedForm) {
   const Miss miss = integrate(testing::SwingingFlight(10.0), kMount, 4000, runge_kutta);
-  // The method's error is of order h^4 = 6e-14 per second of second-long motions.
+  // The error of the method is of order h^4 = 6e-14 per second, for motions with periods of
+  // seconds.
   EXPECT_LT(miss.position_m, 1e-8);
   EXPECT_LT(miss.angle_deg, 1e-7);
 }
 
-/// A minute of racing through a hall.
+/// One minute of aggressive flight through a hall.
 std::unique_ptr<Flight> aggressive_minute() {
   FlightConfig config;
   config.style = FlightStyle::kAggressive;
@@ -129,14 +130,14 @@ std::unique_ptr<Flight> aggressive_minute() {
 
 TEST(ImuIntegration, GivesBackAMinuteOfAggressiveFlight) {
   const Miss miss = integrate(*aggressive_minute(), kMount, 4000, runge_kutta);
-  EXPECT_LT(miss.position_m, 1e-3);  // 8e-9 seen: what rounding leaves
-  EXPECT_LT(miss.angle_deg, 1e-4);   // 8e-11 seen
+  EXPECT_LT(miss.position_m, 1e-3);  // 8e-9 measured, the rounding error
+  EXPECT_LT(miss.angle_deg, 1e-4);   // 8e-11 measured
 }
 
-// The spline's pieces join smoothly up to the second derivative of the rate and the third of the
-// force. A step over a joint so costs an error of the order of h^4, and the number of joints does
-// not grow: the fourth order holds over the whole flight. Seen at 200 Hz: midpoint 3.03 m and 0.032
-// deg, fourth order 0.18 mm and 2.1e-6 deg.
+// The pieces of the spline join smoothly up to the second derivative of the rate and the third of
+// the force. So a step across a joint causes an error of the order of h^4, and the number of joints
+// is fixed: the fourth order holds over the whole flight. Measured at 200 Hz: midpoint 3.03 m and
+// 0.032 deg, fourth order 0.18 mm and 2.1e-6 deg.
 TEST(ImuIntegration, ConvergesAtTheMethodsOrder) {
   const auto flight = aggressive_minute();
   for (const auto& [method, order] :

@@ -26,7 +26,7 @@ TEST(Imu, AtRestFeelsGravityUpwardsInItsOwnFrame) {
   EXPECT_LT((sample.accel - Vector3d(0, 0, kGravity)).norm(), 1e-14);
   EXPECT_TRUE(sample.gyro.isZero());
 
-  // Lying on its left side, up is the body's -y; an IMU turned half about x calls that +y.
+  // Lying on its left side, up is -y of the body; for an IMU rotated by 180 deg about x it is +y.
   const Pose on_side = testing::tilted_pose({1, 2, 3}, testing::radians(-90), 0, 0.4);
   sample = perfect(200, level).measure(testing::rest(on_side));
   EXPECT_LT((sample.accel - Vector3d(0, -kGravity, 0)).norm(), 1e-12);
@@ -91,7 +91,7 @@ TEST(Imu, BiasBeginsAtTheTurnOnBiasAndSpreadsAsARandomWalk) {
     ImuSample last = first;
     for (int k = 0; k < samples; ++k) last = imu.measure(flight);
     first_squares += first.gyro.squaredNorm();
-    EXPECT_EQ(first.gyro, last.gyro);  // nothing but the turn-on bias moves this gyro
+    EXPECT_EQ(first.gyro, last.gyro);  // the gyro has no bias but the turn-on bias
     walk_squares += (last.accel - first.accel).squaredNorm();
   }
   const double seconds = samples / 100.0;
@@ -130,15 +130,15 @@ TEST(Imu, KnowsItsFirstSampleAtOrAfterAnInstantWhateverItsRate) {
   }
 }
 
-/// The first sample of an IMU with these errors alone, spinning steadily.
+/// The first sample of an IMU with only these errors, rotating at a constant rate.
 ImuSample first_sample(const ImuConfig& config, std::uint64_t seed) {
   return Imu(config, Pose::Identity(), "test", seed, true)
       .measure(testing::UniformFlight(Pose::Identity(), Vector3d::Zero(), {0.3, -0.5, 0.8}, 1.0));
 }
 
 TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
-  // Turning steadily about one axis at a time at 1 rad/s, the gyro reads the columns of its
-  // response.
+  // While the body rotates at 1 rad/s about one axis at a time, the gyro measures the columns of
+  // its response matrix.
   ImuConfig config;
   config.gyro_scale_error = 0.004;
   config.gyro_misalignment = 0.002;
@@ -157,7 +157,7 @@ TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
       response.col(axis) = sample.gyro;
       EXPECT_EQ(imu.measure(spin).gyro, sample.gyro);  // constant for a unit
       if (axis == 0) accel_scale += std::pow(sample.accel.z() / kGravity - 1.0, 2);
-      EXPECT_EQ(sample.accel.x(), 0.0);  // the accelerometer's axes do not lean
+      EXPECT_EQ(sample.accel.x(), 0.0);  // the accelerometer has no misalignment
     }
     response -= Eigen::Matrix3d::Identity();
     on_diagonal += response.diagonal().squaredNorm();
@@ -185,7 +185,7 @@ TEST(Imu, ReadsInStepsOfItsResolutionAndNoFartherThanItsRange) {
   EXPECT_EQ(first_sample(config, 1).accel, Vector3d(0, 0, 10.0));
 }
 
-/// Hovers for a second, then climbs at half of gravity.
+/// Hovers for one second, then climbs with half of gravity.
 class Climb : public Flight {
  public:
   Motion at(Time t) const override {
@@ -217,7 +217,7 @@ TEST(Imu, VibratesWithItsTonesAndHarderUnderMoreThrust) {
       gyro_squares[k / 1000] += sample.gyro.cwiseAbs2();
     }
     for (int half = 0; half < 2; ++half) {
-      // Over whole periods, the mean square of a sine is half the amplitude's, whatever its phase.
+      // Over whole periods, the mean square of a sine is half its squared amplitude, for any phase.
       const double gain = half == 1 && grows ? 1.5 : 1.0;
       const Vector3d accel = (accel_squares[half] / 500).cwiseSqrt();
       const Vector3d gyro = (gyro_squares[half] / 500).cwiseSqrt();

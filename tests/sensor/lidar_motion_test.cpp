@@ -15,12 +15,12 @@ namespace {
 using Eigen::Vector3d;
 using namespace testing;
 
-constexpr std::int32_t kScan = 99'995'000;  // ns, a Mid-360's last shot
+constexpr std::int32_t kScan = 99'995'000;  // ns, last shot of a Mid-360's scan
 const Pose kMount = tilted_pose({0.1, 0.05, 0.1}, 0.2, -0.1, 0.4);
 
 struct Worst {
   double position = 0.0;  ///< m
-  double at_100_m = 0.0;  ///< m, of a point that far away, in the direction where it is worst
+  double at_100_m = 0.0;  ///< m, of a point at 100 m, in the worst direction
 };
 
 /// Largest difference between the motion of scans 0, 1, ... and the flight itself at 777 instants
@@ -43,7 +43,7 @@ Worst worst_error(const Flight& flight, int scans) {
   return worst;
 }
 
-/// Rests, and from `start` on moves and turns at a constant speed: a jump in velocity.
+/// At rest until `start`, then constant velocity and rotation rate: a jump in velocity.
 class JoltedFlight : public Flight {
  public:
   explicit JoltedFlight(double start) : start_(start) {}

@@ -19,7 +19,8 @@ using namespace testing;
 constexpr double kTolerance = 1e-4;
 const Parallel kOneThread(1);
 
-/// Shots that made the points of `scan`, for sensors whose (dt, ring) tell shots apart.
+/// The shots that returned the points of `scan`, for sensors whose shots are identified by (dt,
+/// ring).
 std::vector<Beam> shots_of(const Lidar& lidar, const Scan& scan, std::uint64_t index) {
   std::vector<Beam> beams;
   lidar.pattern().beams(index, beams);
@@ -33,13 +34,13 @@ std::vector<Beam> shots_of(const Lidar& lidar, const Scan& scan, std::uint64_t i
   return shots;
 }
 
-/// Range of a point from where its beam started.
+/// Range of a point from the origin of its beam.
 double range_of(const Point& point, const Beam& beam) {
   return static_cast<double>((point.position - beam.origin).norm());
 }
 
-/// Largest difference between the ranges of a scan and expected(origin, direction, time), both in
-/// the world, with the lidar at its place of each instant.
+/// Largest difference between the ranges of a scan and expected(origin, direction), both in the
+/// world frame, with the lidar at its pose of each instant.
 template <class Expected>
 double worst_range_error(const Lidar& lidar, const Scan& scan, const Flight& flight,
                          const Pose& body_from_lidar, std::uint64_t index, Expected&& expected) {
@@ -117,11 +118,11 @@ TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
 }
 
 struct Offsets {
-  double worst_at_own_instant = 0.0;  ///< m from the box, each point put back with its own pose
-  double worst_at_stamp = 0.0;        ///< m from the box, all points with the pose at the stamp
+  double worst_at_own_instant = 0.0;  ///< m from the box, each point transformed by its own pose
+  double worst_at_stamp = 0.0;  ///< m from the box, all points transformed by the pose at the stamp
 };
 
-/// Scan 5 of a sensor on a swinging flight in a box, put back into the world in two ways.
+/// Scan 5 of a sensor on a swinging flight in a box, transformed to the world in two ways.
 Offsets offsets_in_box(const SensorConfig& config) {
   const Vector3d low(-12, -10, -6);
   const Vector3d high(11, 9, 7);
@@ -194,8 +195,9 @@ TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
     const double yaw = rate * (0.6 + 1e-9 * shots[i].dt_ns);
     const Vector3d u = shots[i].direction.cast<double>();
     const double towards_wall = std::cos(yaw) * u.x() - std::sin(yaw) * u.y();
-    EXPECT_NEAR(range_of(scan.points[i], shots[i]), distance / towards_wall,
-                kTolerance * std::max(1.0, 0.1 / towards_wall));  // grazing rays magnify
+    EXPECT_NEAR(
+        range_of(scan.points[i], shots[i]), distance / towards_wall,
+        kTolerance * std::max(1.0, 0.1 / towards_wall));  // error grows at grazing incidence
   }
 }
 
@@ -231,7 +233,7 @@ TEST(Lidar, SomethingTooNearHidesWhatIsBehindIt) {
   for (const Point& point : make_lidar(config).measure(world, flight, 0, kOneThread).points) {
     EXPECT_LT(point.position.x(), 0.051F);
   }
-  // The official plugin's fault: shots that start at the minimum range look through it.
+  // With the fault of the official plugin, shots start at the minimum range, behind the near wall.
   config.mode = ScanMode::kOfficial;
   std::size_t seen_through = 0;
   for (const Point& point : make_lidar(config).measure(world, flight, 0, kOneThread).points) {

@@ -24,7 +24,7 @@ using testing::radians;
 
 namespace fs = std::filesystem;
 
-/// A folder for the process.
+/// A temporary folder, one per process.
 const TemporaryFolder& scratch() {
   static const TemporaryFolder folder;
   return folder;
@@ -34,7 +34,8 @@ fs::path written(const std::string& text) {
   return scratch().write("pattern_under_test.csv", text);
 }
 
-/// The first rows of our own Mid-360 as the maker prints its table, angles with four decimals.
+/// The first rows of the built-in Mid-360 in the format of the manufacturer's table, angles with
+/// four decimals.
 std::string mid360_table(std::uint64_t rows) {
   std::string csv = "Time/s,Azimuth/deg,Zenith/deg\r\n";
   for (std::uint64_t row = 0; row < rows; ++row) {
@@ -113,7 +114,7 @@ TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
   EXPECT_THROW(read_livox_csv("no_such.csv"), InputError);
 }
 
-/// The message with which a sensor of these keys fails to load.
+/// The error message when loading a sensor with these keys.
 std::string sensor_failure(const std::string& yaml) {
   try {
     load_sensor(scratch().write("csv_sensor.yaml", "model: livox_csv\n" + yaml));

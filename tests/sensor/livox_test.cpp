@@ -61,7 +61,7 @@ TEST(Livox, AScanOfTheMid360Is20000RowsFiveMicrosecondsApart) {
   ASSERT_EQ(pattern.beams_per_scan(), 20'000U);
   std::vector<Beam> beams;
   const LivoxModel model = livox_mid360();
-  for (const std::uint64_t scan : {7U, 0U, 119U}) {  // any order: a scan depends on its index alone
+  for (const std::uint64_t scan : {7U, 0U, 119U}) {  // any order: a scan depends only on its index
     pattern.beams(scan, beams);
     ASSERT_EQ(beams.size(), 20'000U);
     for (std::size_t i = 0; i < beams.size(); ++i) {
@@ -91,7 +91,7 @@ TEST(Livox, TheMid360PatternReturnsAfterTwelveSecondsAndNotAfterFour) {
   std::vector<Beam> first;
   std::vector<Beam> later;
   pattern.beams(3, first);
-  pattern.beams(3 + 120 * 1'000'000ULL, later);  // a year on, to the bit
+  pattern.beams(3 + 120 * 1'000'000ULL, later);  // months later, bit for bit
   for (std::size_t i = 0; i < first.size(); ++i) {
     ASSERT_EQ(first[i].direction, later[i].direction);
   }
@@ -130,11 +130,11 @@ TEST(Livox, TheMid40AndMid70SeeTheirCirclesAndRepeatAfterThirtySeconds) {
 TEST(Livox, TheAviaSpansTheFieldOfViewOfItsDataSheet) {
   const LivoxModel model = livox_avia();
   double low = 0.0, high = 0.0, left = 0.0, right = 0.0;
-  for (std::uint64_t row = 0; row < 240'000; ++row) {  // a second
+  for (std::uint64_t row = 0; row < 240'000; ++row) {  // one second
     const Eigen::Vector3d ray = livox_direction(model, row);
     ASSERT_NEAR(ray.norm(), 1.0, 1e-12);  // no total reflection
     const double elevation = degrees(std::asin(ray.z()));
-    const double aside = degrees(std::asin(ray.y()));  // from the vertical plane ahead
+    const double aside = degrees(std::asin(ray.y()));  // from the vertical plane through x
     low = std::min(low, elevation);
     high = std::max(high, elevation);
     right = std::min(right, aside);

@@ -76,7 +76,7 @@ TEST(Ouster, TheHeadTurnsClockwiseFromTheConnector) {
   std::vector<Beam> beams;
   pattern.beams(0, beams);
   EXPECT_GT(beams[0].origin.x(), 0.0F);                // column 0: along x
-  EXPECT_LT(beams[128U * 128U].origin.y(), -0.0276F);  // a quarter turn on: along -y
+  EXPECT_LT(beams[128U * 128U].origin.y(), -0.0276F);  // a quarter revolution later: along -y
 }
 
 TEST(Ouster, HasTheFiveModesOfTheMakerAndNoOthers) {

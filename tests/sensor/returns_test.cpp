@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What comes back of a shot, against closed forms: noise, dropouts, rounding, mixed pixels, echoes.
+// Returns of shots, compared with closed forms: noise, dropouts, rounding, mixed pixels, echoes.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -17,7 +17,7 @@ using namespace testing;
 
 const Parallel kOneThread(1);
 
-/// Fires again and again in the directions of the given azimuths, level.
+/// Fires repeatedly in the directions of the given azimuths, horizontally.
 class FixedPattern : public ScanPattern {
  public:
   FixedPattern(std::vector<double> azimuths, std::size_t times)
@@ -54,7 +54,8 @@ TriangleMesh painted(TriangleMesh mesh, double reflectivity) {
   return mesh;
 }
 
-/// The Mid-360's sheet: 10 % at 40 m, 80 % at 70 m. 1 for a 10 % target at 40 m.
+/// Signal according to the Mid-360's data sheet: 10 % at 40 m, 80 % at 70 m. 1 for a 10 % target at
+/// 40 m.
 double mid360_signal(double reflectivity, double cosine, double range) {
   const double extinction = std::log(8.0 * 40.0 * 40.0 / (70.0 * 70.0)) / (2.0 * 30.0);
   return reflectivity * cosine / 0.1 * (40.0 * 40.0) / (range * range) *
@@ -78,7 +79,7 @@ Measured measure(const Lidar& lidar, const World& world, std::uint64_t index = 0
   return measured;
 }
 
-/// Standard deviation of `values` about zero against its expected 1, within four standard errors.
+/// Checks that `values` have mean 0 and standard deviation 1, within four standard errors.
 void expect_unit_sigma(const std::vector<double>& values, const std::string& what) {
   ASSERT_GT(values.size(), 500U) << what;
   double sum = 0.0, squares = 0.0;
@@ -103,7 +104,7 @@ TEST(Returns, NearRangesAreAsNoisyAsTheSheetSays) {
       const Measured measured = measure(make_lidar(config), world, index);
       for (std::size_t i = 0; i < measured.truth.size(); ++i) {
         const double range = static_cast<double>(measured.truth[i].range);
-        // Head-on: within 2 % in range, so within 2 % of the change of sigma.
+        // Near normal incidence: within 2 % in range, so within 2 % of the change of sigma.
         if (range < 1.02 * distance) errors.push_back(measured.error(i) / sigma);
       }
     }
@@ -116,7 +117,7 @@ TEST(Returns, WeakSignalsAreNoisierByTheRootOfTheSignalAtEveryRangeAndIncidence)
   config.range_noise_m = 0.02;
   config.noise.weak_signal_noise = true;
   config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
-  // A dark wall: the signal is 1 head-on at 24 m, and falls to all sides.
+  // A dark wall: the signal is 1 at normal incidence at 24 m, and falls off in all directions.
   const double reflectivity = 1.0 / mid360_signal(1.0, 1.0, 24.0);
   const World world(painted(wall_mesh(24.0), reflectivity));
   std::map<int, std::vector<double>> by_incidence;  // in steps of 15 deg
@@ -140,8 +141,8 @@ TEST(Returns, EchoesDropOutAsOftenAsTheReceiverMissesThem) {
   SensorConfig config = level_mid360();
   config.noise.dropouts = true;
   config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
-  const double threshold = 3.719016485455709;           // a Gaussian exceeds it once in 10,000
-  const double rated = threshold + 1.2815515655446004;  // and this less in nine of ten
+  const double threshold = 3.719016485455709;  // a Gaussian exceeds it with probability 1e-4
+  const double rated = threshold + 1.2815515655446004;  // and with this offset in nine of ten cases
   for (const auto& [distance, reflectivity] :
        {std::pair{40.0, 0.1}, {60.0, 0.8}, {30.0, 0.04}, {10.0, 0.5}}) {
     const World world(painted(wall_mesh(distance), reflectivity));
@@ -214,7 +215,7 @@ TEST(Returns, RangesAreRoundedToTheStepAndNotMoved) {
       EXPECT_LT(std::abs(error), 0.025 + 1e-5);
       squares += error * error;
     }
-    // Evenly spread over a step: variance step^2 / 12, to 5 % over a box's many ranges.
+    // Uniform distribution over a step: variance step^2 / 12, to 5 % over the many ranges in a box.
     EXPECT_NEAR(std::sqrt(squares / static_cast<double>(beams.size())), 0.05 / std::sqrt(12.0),
                 0.05 * 0.05 / std::sqrt(12.0));
   }
@@ -242,7 +243,7 @@ TEST(Returns, DirectionsAreReportedWithTheAngularNoiseOfTheSheet) {
   expect_unit_sigma(up, "up");
 }
 
-/// To the left (y > 0) a plate at x = 5 m, behind it a wall at `far`.
+/// A plate at x = 5 m for y > 0 (to the left), behind it a wall at `far`.
 World edge_world(double far) {
   TriangleMesh mesh = wall_mesh(far);
   TriangleMesh plate;
@@ -258,7 +259,8 @@ SensorConfig wide_beam(int sub_rays) {
   return config;
 }
 
-constexpr double kSigma = 0.3 / 2.3548200450309493 * std::numbers::pi / 180.0;  // rad, of its width
+constexpr double kSigma =
+    0.3 / 2.3548200450309493 * std::numbers::pi / 180.0;  // rad, from the beam width
 const std::vector<double> kAside{-2.5 * kSigma, -kSigma, -0.3 * kSigma, 0.0,
                                  0.5 * kSigma,  kSigma,  3.0 * kSigma};
 
@@ -277,7 +279,7 @@ TEST(Returns, ABeamOnAnEdgeMixesTheTwoRangesByTheShareThatFallsOnEach) {
     const double near_signal = on_plate / (5.0 * 5.0);
     const double far_signal = (1.0 - on_plate) / (far * far);
     const double expected = (near_signal * 5.0 + far_signal * far) / (near_signal + far_signal);
-    // The share is met to half a sub-ray of 64.
+    // The share is accurate to half a sub-ray of 64.
     EXPECT_NEAR(mean[static_cast<int>(i)], expected, 0.3 * 0.5 / 64 + 1e-4) << i;
   }
 }
@@ -294,7 +296,7 @@ TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
     const bool is_near = point.position.x() < 7.0F;
     EXPECT_NEAR(point.position.x(), is_near ? 5.0 : 9.0, 1e-3);  // nothing in between
     EXPECT_NEAR(measured.truth[i].position.x(), is_near ? 5.0 : 9.0, 1e-5);
-    // Half of the light comes back (Material{}); 255 is white.
+    // Default reflectivity 50 % (Material{}); 255 is white.
     if (is_near) near_share[point.ring] += static_cast<double>(point.intensity) / 127.5 / 400.0;
   }
   for (std::size_t i = 0; i < kAside.size(); ++i) {
@@ -305,8 +307,8 @@ TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
 
 TEST(Returns, TheChoiceOfEchoesIsTheSensors) {
   const World world = edge_world(9.0);
-  // Most of the beam passes the plate, but the wall is farther: with n = 2 the signals are as
-  // 0.31 / 25 to 0.69 / 81, so the plate is stronger.
+  // Most of the beam misses the plate, but the wall is farther: with the square law the signals of
+  // plate and wall are as 0.31 / 25 to 0.69 / 81, so the plate is stronger.
   const std::vector<double> aside{-0.5 * kSigma};
   const auto xs = [&](EchoChoice choice, int count) {
     SensorConfig config = wide_beam(64);
@@ -335,8 +337,9 @@ TEST(Returns, ASplitBeamOnAPlainWallMeasuresTheWall) {
   const Measured measured = measure(lidar, world);
   ASSERT_EQ(measured.scan.points.size(), 200U);
   for (const Point& point : measured.scan.points) {
-    // Sub-rays stray by a few sigma of 2.2e-3 rad: on average second order, at 0.3 rad aside the
-    // mean of 19 leaves a tenth of the first order, 10 m * 2.2e-3 * tan(0.3) / cos(0.3).
+    // Sub-rays deviate by a few sigma of 2.2e-3 rad. On average this is a second-order effect; at
+    // 0.3 rad the mean of 19 sub-rays leaves a tenth of the first-order effect, 10 m * 2.2e-3 *
+    // tan(0.3) / cos(0.3).
     EXPECT_NEAR(point.position.x(), 10.0, 1e-3);
   }
 }

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
 
-/// The message with which loading `yaml` fails.
+/// The error message when loading `yaml`.
 std::string failure(const std::string& yaml) {
   const TemporaryFolder folder;
   try {

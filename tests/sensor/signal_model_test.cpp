@@ -37,7 +37,7 @@ TEST(SignalModel, ATargetAtItsRatedRangeIsSeenAsOftenAsTheSheetSays) {
 }
 
 TEST(SignalModel, StrongSignalsAreSeenForCertain) {
-  EXPECT_EQ(normal_cdf(8.3), 1.0);  // what the shortcut for them takes for granted
+  EXPECT_EQ(normal_cdf(8.3), 1.0);  // assumed by the shortcut for strong signals
   const SignalModel model(mid360_sheet());
   EXPECT_EQ(model.detection_probability(1e3), 1.0);
   double last = 0.0;
@@ -87,7 +87,7 @@ TEST(SignalModel, QuantilesInvertTheNormalDistribution) {
 
 TEST(RangeSigma, IsTheSheetsNearMiddleAndFar) {
   NoiseConfig noise;
-  EXPECT_EQ(range_sigma(0.02, noise, 0.1, 1e-3), 0.02);  // one figure, unless more is asked for
+  EXPECT_EQ(range_sigma(0.02, noise, 0.1, 1e-3), 0.02);  // constant unless more is configured
   noise.near_range_noise_m = 0.03;
   noise.weak_signal_noise = true;
   EXPECT_DOUBLE_EQ(range_sigma(0.02, noise, 0.1, 5.0), 0.03);

@@ -37,7 +37,7 @@ std::vector<Event> fly(const std::vector<SensorConfig>& sensors, double seconds,
   const auto source = simulate(box_world(), flight, sensors, options, parallel);
   std::vector<Event> events;
   while (auto event = source->next()) events.push_back(std::move(*event));
-  EXPECT_FALSE(source->next().has_value());  // stays at its end
+  EXPECT_FALSE(source->next().has_value());  // no events after the end
   return events;
 }
 
@@ -53,9 +53,10 @@ bool same_event(const Event& a, const Event& b) {
   return same(*scan_of(a), *scan_of(b));
 }
 
-/// Checks that IMU samples come by time, scans of a sensor by time, and a scan only after every IMU
-/// has given all its samples up to the scan's last point, and one at or after it if the flight has
-/// one. `imu_rates`: of each sensor, Hz; `seconds`: of flight.
+/// Checks that IMU samples are ordered by time, the scans of each sensor are ordered by time, and a
+/// scan comes only after every IMU has delivered its samples up to the scan's last point and one at
+/// or after it, if the flight is long enough. `imu_rates`: of each sensor, Hz; `seconds`: duration
+/// of the flight.
 void expect_promised_order(const std::vector<Event>& events,
                            const std::map<std::string, double>& imu_rates, double seconds) {
   std::map<std::string, Time> newest_imu;
@@ -86,7 +87,7 @@ TEST(Simulate, DeliversInTheOrderThatEventSourcePromises) {
   for (const Event& event : events) ++counts[{event.sensor_id, scan_of(event) != nullptr}];
   EXPECT_EQ((counts[{"mid360", false}]), 111);  // 0, 5, ... 550 ms
   EXPECT_EQ((counts[{"ouster", false}]), 74);   // 0 ... 73 / 133 Hz = 0.549 s
-  EXPECT_EQ((counts[{"mid360", true}]), 5);     // only whole scans
+  EXPECT_EQ((counts[{"mid360", true}]), 5);     // only complete scans
   EXPECT_EQ((counts[{"ouster", true}]), 5);
 }
 
@@ -165,7 +166,7 @@ TEST(Simulate, TheTruthOfEveryScanComesJustBeforeIt) {
     EXPECT_EQ(recorder.scans.back().points.size(), scan->points.size());
   }
   EXPECT_EQ(scans, 6U);
-  // Watching changes nothing.
+  // Recording the truth does not change the events.
   const auto watched = fly(sensors, 0.3, 1, options);
   const auto unwatched = fly(sensors, 0.3);
   EXPECT_TRUE(

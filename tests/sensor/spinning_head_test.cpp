@@ -50,11 +50,12 @@ TEST(Vlp16, FiresItsLasersInTheMakersOrderAndTimes) {
     ASSERT_NEAR(elevation_deg(beams[i]), order[laser], 1e-5);
     ASSERT_EQ(beams[i].ring, static_cast<int>(order[laser] + 15) / 2);
     ASSERT_NEAR(beams[i].dt_ns, 1e3 * us, 0.5);
-    // The head turns on while it fires: 36 deg in 10 ms, clockwise from x.
+    // The head rotates while it fires: 36 deg in 10 ms, clockwise from x.
     ASSERT_NEAR(apart(azimuth_deg(beams[i]), -360.0 * us / 1e5), 0.0, 2e-5);
   }
   EXPECT_LT(beams.back().dt_ns, 100'000'000);
-  EXPECT_NEAR(beams.front().origin.z(), 0.0112, 1e-9);  // the lowest laser sits highest
+  EXPECT_NEAR(beams.front().origin.z(), 0.0112,
+              1e-9);  // the lowest beam starts at the highest point
 }
 
 TEST(Os164, HasSixtyFourRowsInFourPixelColumns) {
@@ -94,7 +95,7 @@ TEST(SpinningHead, TurnsEitherWayFromWhereItStarts) {
   }
 }
 
-/// The message with which a sensor with this table and these further lines fails to load.
+/// The error message when loading a sensor with this table and these further lines.
 std::string failure(const std::string& table, const std::string& sensor = "columns: 100\n") {
   const TemporaryFolder folder;
   folder.write("table_under_test.yaml", table);
@@ -124,7 +125,7 @@ TEST(SpinningHead, ErrorsNameTheFileAndTheLine) {
   EXPECT_THAT(failure(""), HasSubstr("no beams"));
   EXPECT_THAT(failure("beams: [\n"), HasSubstr("table_under_test.yaml"));
   EXPECT_THAT(failure("beams:\n  - {elevation_deg: 1, dt_us: 1000}\n"), HasSubstr("column ends"));
-  EXPECT_THAT(failure("column_period_us: 1001\n" + good), HasSubstr("longer than a turn"));
+  EXPECT_THAT(failure("column_period_us: 1001\n" + good), HasSubstr("longer than a revolution"));
   EXPECT_THAT(failure(good, ""), HasSubstr("set columns"));
   EXPECT_THAT(failure(good, "columns: 2000000000\n"), HasSubstr("too many columns"));
   EXPECT_THAT(failure(good, "columns: 100\nrow_rate_hz: 5\n"), HasSubstr("remove row_rate_hz"));

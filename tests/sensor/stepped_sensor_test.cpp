@@ -32,7 +32,7 @@ ImuConfig noisy_imu() {
   return imu;
 }
 
-/// What a physics engine that moves the body along `flight` would get.
+/// Steps the sensor like a physics engine that moves the body along `flight`.
 std::vector<Event> fly_by_steps(SteppedSensor& sensor, const Surfaces& world, const Flight& flight,
                                 Time from, Time to) {
   std::vector<Event> events;
@@ -46,7 +46,7 @@ std::vector<Event> all_of(EventSource& source) {
   return events;
 }
 
-/// `most`: meters by which points may differ.
+/// `most`: maximum difference of points, m.
 void expect_same_scan(const Scan& a, const Scan& b, double most) {
   EXPECT_EQ(a.stamp, b.stamp);
   EXPECT_EQ(a.timed, b.timed);
@@ -70,7 +70,7 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
     const auto source = simulate(world, flight, {config}, {.seed = 7}, Parallel(1));
     const std::vector<Event> expected = all_of(*source);
     SteppedSensor sensor(config, config.name, 7, true, Time{0});
-    // one step more: the IMU's samples come a step late
+    // one step more, since IMU samples come one step late
     const std::vector<Event> events =
         fly_by_steps(sensor, world, flight, Time{0}, flight.duration() + kStep);
     ASSERT_EQ(events.size(), expected.size());
@@ -78,14 +78,15 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
       ASSERT_EQ(events[i].sensor_id, expected[i].sensor_id);
       ASSERT_EQ(events[i].data.index(), expected[i].data.index()) << i;
       if (const auto* scan = std::get_if<Scan>(&events[i].data)) {
-        // Straight between steps: a h^2 / 8 = 1.2e-6 m here; turned likewise, times 12 m
+        // Linear interpolation between steps: error a h^2 / 8 = 1.2e-6 m here; same for rotation,
+        // times 12 m.
         expect_same_scan(*scan, std::get<Scan>(expected[i].data), 2e-5);
         continue;
       }
       const auto& sample = std::get<ImuSample>(events[i].data);
       const auto& other = std::get<ImuSample>(expected[i].data);
       EXPECT_EQ(sample.stamp, other.stamp);
-      // the first instant is the edge of its parabola: off by a third derivative times h
+      // the first instant is at the edge of its parabola: error of a third derivative times h
       const double most = sample.stamp == Time{0} ? 2e-2 : 1e-5;
       EXPECT_LT((sample.gyro - other.gyro).norm(), most) << to_seconds(sample.stamp);
       EXPECT_LT((sample.accel - other.accel).norm(), most) << to_seconds(sample.stamp);

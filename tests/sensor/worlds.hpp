@@ -12,7 +12,7 @@
 #include "lidarena/world/world.hpp"
 #include "tests/world/shapes.hpp"
 
-/// Worlds with closed-form answers, and small sensors to look at them.
+/// Worlds with closed-form answers, and small sensors for them.
 namespace lidarena::testing {
 
 /// The wall x = `distance`, 120 m wide and high.
@@ -24,7 +24,7 @@ inline TriangleMesh wall_mesh(double distance) {
   return mesh;
 }
 
-/// A sphere of facets: an octahedron, each face cut in four `levels` times.
+/// A sphere of facets: an octahedron whose faces are divided into four `levels` times.
 inline TriangleMesh sphere_mesh(double radius, int levels) {
   TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
@@ -63,7 +63,7 @@ inline double slow_cast(const TriangleMesh& mesh, const Eigen::Vector3d& origin,
   return nearest;
 }
 
-/// Way from inside the box [low, high] to its wall.
+/// Distance from a point in the box [low, high] to its wall, along `direction`.
 inline double range_in_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                            const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
   double range = std::numeric_limits<double>::infinity();
@@ -74,7 +74,7 @@ inline double range_in_box(const Eigen::Vector3d& low, const Eigen::Vector3d& hi
   return range;
 }
 
-/// Distance from a point near it to the surface of the box [low, high].
+/// Distance from a point to the surface of the box [low, high].
 inline double distance_to_box(const Eigen::Vector3d& low, const Eigen::Vector3d& high,
                               const Eigen::Vector3d& point) {
   const Eigen::Vector3d outside = (low - point).cwiseMax(point - high);
@@ -82,7 +82,7 @@ inline double distance_to_box(const Eigen::Vector3d& low, const Eigen::Vector3d&
   return -outside.maxCoeff();
 }
 
-/// Looks everywhere: the closed-form Mid-360 with an offset and tilted mount.
+/// The built-in Mid-360, mounted with an offset and a tilt.
 inline SensorConfig mid360() {
   SensorConfig config;
   config.name = "mid360";

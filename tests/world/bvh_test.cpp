@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What our own tree promises beyond what every ray caster does; see world_test.cpp for the rest.
+// Properties of Bvh in addition to those of every ray caster, which world_test.cpp tests.
 #include "lidarena/world/bvh.hpp"
 
 #include <gtest/gtest.h>
@@ -28,12 +28,12 @@ Hit cast_one(const Bvh& bvh, const Ray& ray, double max_range = kInfinity) {
 }
 
 struct BruteHit {
-  double range = kInfinity, next = kInfinity;  ///< of the first two triangles met
+  double range = kInfinity, next = kInfinity;  ///< ranges of the first two triangles hit
   std::uint32_t triangle = Hit::kNone;
 };
 
-/// Range of one triangle by Cramer's rule on origin + t d = a + u (b - a) + v (c - a), where u, v
-/// and 1 - u - v are not negative (Moeller and Trumbore, 1997), in double.
+/// Range of the hit of one triangle by Cramer's rule for origin + t d = a + u (b - a) + v (c - a),
+/// where u, v and 1 - u - v are not negative (Moeller and Trumbore, 1997), in double precision.
 std::optional<double> meet(const TriangleMesh& mesh, std::uint32_t triangle, const Ray& ray) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   const Vector3d ab = mesh.vertices[b] - mesh.vertices[a];
@@ -48,8 +48,8 @@ std::optional<double> meet(const TriangleMesh& mesh, std::uint32_t triangle, con
   return range;
 }
 
-/// Not inlined: where it is, GCC 12 at -O2 and above gives ranges off by 1e-7, but not with
-/// -fno-tree-slp-vectorize.
+/// Not inlined: when it is, the ranges have errors of 1e-7 with GCC 12 at -O2 and above, but not
+/// with -fno-tree-slp-vectorize.
 [[gnu::noinline]] BruteHit cast_brute(const TriangleMesh& mesh, const Ray& ray) {
   BruteHit hit;
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -70,8 +70,8 @@ class RayCasters : public testing::EveryRayCaster {};
 INSTANTIATE_TEST_SUITE_P(With, RayCasters, testing::every_ray_caster(), testing::ray_caster_name);
 
 TEST_P(RayCasters, FindTheTriangleThatABruteForceCasterFindsInASoup) {
-  // Embree rounds coordinates to single precision, and a face met at a slant makes more of it.
-  // Double precision is only rounded in the end.
+  // Embree rounds coordinates to single precision; the error of the range grows with the incidence
+  // angle. Bvh rounds only the final range.
   const TriangleMesh soup = testing::triangle_soup(2000, 5.0, 61);
   const World world = make_world(soup);
   SequentialRandom random(62);
@@ -101,8 +101,8 @@ TEST_P(RayCasters, FindTheTriangleThatABruteForceCasterFindsInASoup) {
 }
 
 TEST(Bvh, HasDoublePrecisionFarOut) {
-  // Half a millimeter between two floors, seen from a kilometer: a float there is 0.06 mm, and
-  // 5000 km from the origin half a meter.
+  // Two floors half a millimeter apart, seen from 1 km: the resolution of a float is 0.06 mm there,
+  // and half a meter at 5000 km from the origin.
   const Vector3d far(5.0e6, 5.4e6, 300.0);
   TriangleMesh floors;
   for (const double z : {0.0, 5e-4}) {
@@ -123,7 +123,7 @@ TEST(Bvh, HasDoublePrecisionFarOut) {
 TEST(Bvh, OfTrianglesMetAtOneRangeTheLowerIndexIsTheHit) {
   TriangleMesh mesh = testing::box_mesh({-1, -1, -1}, {1, 1, 1});
   const TriangleMesh once = mesh;
-  for (int copy = 0; copy < 40; ++copy) mesh.append(once);  // more than fit into a leaf
+  for (int copy = 0; copy < 40; ++copy) mesh.append(once);  // more than a leaf can hold
   const Bvh bvh(mesh);
   SequentialRandom random(63);
   for (int i = 0; i < 500; ++i) {
@@ -132,13 +132,13 @@ TEST(Bvh, OfTrianglesMetAtOneRangeTheLowerIndexIsTheHit) {
     ASSERT_TRUE(hit.valid());
     EXPECT_LT(hit.triangle, once.triangles.size());
   }
-  // along a diagonal of a wall, which both its triangles share
+  // through the diagonal of a wall, which both its triangles share
   EXPECT_EQ(cast_one(bvh, {Vector3d::Zero(), {0, 0, 1}}).triangle, 10U);
 }
 
 TEST(Bvh, NoRaySlipsThroughWhatItMeetsToTheLastBit) {
-  // The origin lies back along the ray from corners and edges, so that which side of them the ray
-  // passes is only decided by rounding.
+  // The origin is computed back from corners and edges along the ray, so that only rounding decides
+  // on which side of them the ray passes.
   const TriangleMesh sphere = sphere_shape(2.0);
   const Bvh bvh(sphere);
   SequentialRandom random(64);
@@ -161,7 +161,7 @@ TEST(Bvh, ARayAlongBoxesSidesAndEdgesIsNotLost) {
   for (int axis = 0; axis < 3; ++axis) {
     for (const double side : {-1.0, 1.0}) {
       for (const double other : {-1.0, 0.3, 1.0}) {
-        // in the plane of a wall, or along an edge: it meets the box where that begins
+        // in the plane of a wall, or along an edge: the hit is at the first point of the box
         Vector3d origin = Vector3d::Constant(side);
         origin[(axis + 1) % 3] = other;
         origin[axis] = -5.0;
@@ -183,7 +183,7 @@ TEST(Bvh, RaysThatAreNoneHitNothing) {
 }
 
 TEST(Bvh, StaysShallowWhereTheCheapestCutsPeelOffOneTriangleAtATime) {
-  // Sizes and places that shrink by half from one triangle to the next, and many at one place.
+  // Sizes and positions are halved from one triangle to the next, and many have the same position.
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const double size = std::ldexp(1.0, -static_cast<int>(std::min(i, 100U)));

@@ -19,7 +19,7 @@
 namespace lidarena {
 namespace {
 
-/// One loop of about 40 m with coarse triangles: made in a fraction of a second.
+/// One loop of about 40 m with coarse triangles: generated in a fraction of a second.
 CaveConfig small_cave() {
   CaveConfig config;
   config.loops = 1;
@@ -72,7 +72,7 @@ TEST(Cave, TunnelsMeetAtJunctionsAlone) {
         const Tunnel& b = graph.tunnels[j];
         if (a.from == b.from || a.from == b.to || a.to == b.from || a.to == b.to) continue;
         for (const Eigen::Vector3d& p : a.points) {
-          // Two widest radii, roughness, and rock between.
+          // Two maximum radii, roughness, and rock in between.
           for (const Eigen::Vector3d& q : b.points) ASSERT_GT((p - q).norm(), 5.0) << seed;
         }
       }
@@ -110,8 +110,8 @@ TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
   const double step = small_cave().resolution_m;
   for (const Triangle& t : cave.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      // Vertices of neighboring cells lie less than two steps apart along each axis; projection
-      // moves each by at most one step more.
+      // Vertices of neighboring cells are less than two steps apart along each axis; the projection
+      // moves each vertex by at most one step.
       EXPECT_LT((cave.mesh.vertices[t[k]] - cave.mesh.vertices[t[(k + 1) % 3]]).norm(), 4 * step);
     }
   }
@@ -180,8 +180,8 @@ TEST(Cave, TunnelsAreTwoToFourMetersWide) {
   }
 }
 
-/// Over all vertices, the least deviation of the vertices within `radius` from their best plane:
-/// what the flattest place of that size has of relief.
+/// Minimum over all vertices of the maximum deviation (m) of the vertices within `radius` from
+/// their best-fit plane: the relief of the flattest patch of that size.
 double flattest_place(const TriangleMesh& mesh, double radius) {
   std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> cells;
   const auto cell = [&](const Eigen::Vector3d& p) -> Eigen::Vector3i {
@@ -213,7 +213,7 @@ double flattest_place(const TriangleMesh& mesh, double radius) {
   return flattest;
 }
 
-/// A fraction of the range noise of the sensors (2 to 3 cm).
+/// A fraction of the sensors' range noise (2 to 3 cm).
 constexpr double kFlat = 0.003;  // m
 
 TEST(Cave, HasNoFlatFaceHalfAMeterAcross) {
@@ -231,8 +231,8 @@ TEST(Cave, WithoutRoughnessItsTunnelsWouldBeFlatAtThatScale) {
   EXPECT_LT(flattest_place(make_cave(config, 1).mesh, 0.25), kFlat);
 }
 
-/// Power of `profile` (one sample a `spacing` meters, Hann window, mean taken out) at wavelengths
-/// from `low` to `high` meters; sums to the variance over all wavelengths.
+/// Power of `profile` (one sample per `spacing` meters, Hann window, mean removed) at wavelengths
+/// from `low` to `high` meters; the sum over all wavelengths is the variance.
 double band_power(const std::vector<double>& profile, double spacing, double low, double high) {
   const auto n = profile.size();
   const double mean = std::accumulate(profile.begin(), profile.end(), 0.0) / double(n);
@@ -259,8 +259,8 @@ CaveGraph straight_tunnel(double length) {
   return graph;
 }
 
-/// Distance from the tunnel's axis to its wall at x, in direction `angle` about the axis: where the
-/// field turns positive, by bisection.
+/// Distance from the tunnel's axis to its wall at x, in direction `angle` about the axis: the zero
+/// crossing of the field, by bisection.
 double wall_distance(const CaveField& rock, double x, double angle) {
   double inside = 0.8;
   double outside = 2.2;
@@ -272,7 +272,7 @@ double wall_distance(const CaveField& rock, double x, double angle) {
   return inside;
 }
 
-/// Mean power of the wall's profiles along the tunnel at wavelengths about `scale` meters.
+/// Mean power of the wall's profiles along the tunnel at wavelengths near `scale` meters.
 double power_at_scale(const CaveConfig& config, double scale) {
   constexpr int kSamples = 200;
   constexpr int kLines = 12;
@@ -294,12 +294,13 @@ TEST(Cave, WallsAreRoughAtAllThreeScales) {
        {std::pair{2.0, &CaveConfig::roughness_2m_m}, std::pair{0.3, &CaveConfig::roughness_03m_m},
         std::pair{0.05, &CaveConfig::roughness_005m_m}}) {
     CaveConfig config;
-    const double variance = std::pow(0.27 * config.*height, 2);  // of the noise, see GradientNoise
+    // variance of the noise, see GradientNoise
+    const double variance = std::pow(0.27 * config.*height, 2);
     const double with = power_at_scale(config, scale);
     config.*height = 0;
     const double without = power_at_scale(config, scale);
-    // Gradient noise has most of its power at wavelengths from one half to four lattice steps; the
-    // other scales leak a little into the band, and slopes of the wall stretch it.
+    // Gradient noise has most of its power at wavelengths from one half to four lattice steps. The
+    // other scales contribute slightly to the band, and slopes of the wall change the wavelengths.
     EXPECT_GT(with, 0.5 * variance) << scale;
     EXPECT_LT(with, 1.5 * variance) << scale;
     EXPECT_LT(without, 0.2 * variance) << scale;
@@ -313,8 +314,8 @@ TEST(Cave, VerticesLieOnTheRoughSurfaceItself) {
   std::vector<double> off;
   for (const Eigen::Vector3d& v : cave.mesh.vertices) off.push_back(std::abs(rock(v)));
   std::ranges::sort(off);
-  // Two Newton steps with one gradient: what is left is far below the finest roughness nearly
-  // everywhere, and below its height at the places where they fall short.
+  // Two Newton steps with one gradient: the remaining distance is far below the finest roughness
+  // nearly everywhere, and below its amplitude where they have not converged.
   EXPECT_LT(off[off.size() / 2], 0.1 * config.roughness_005m_m);
   EXPECT_LT(off[off.size() * 99 / 100], config.roughness_005m_m);
 }

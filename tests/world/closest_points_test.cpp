@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Many points at once are answered in groups; each answer must be that of all triangles one by one.
+// closest_points() searches for groups of points; each result must be equal to that of a search
+// over all triangles one by one.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -56,7 +57,8 @@ void ClosestPoints::expect_same(const TriangleMesh& mesh, const std::vector<Vect
   }
 }
 
-/// Quarter-meter squares in z = 0, two triangles each: points above grid lines have ties.
+/// Squares of 0.25 m in z = 0, two triangles each: points above grid lines have several nearest
+/// triangles.
 TriangleMesh floor_of_squares(std::uint32_t cells) {
   TriangleMesh mesh;
   for (std::uint32_t i = 0; i <= cells; ++i) {
@@ -73,7 +75,7 @@ TriangleMesh floor_of_squares(std::uint32_t cells) {
   return mesh;
 }
 
-/// A walk with steps of a few centimeters: neighbors in the list are neighbors in space.
+/// A random walk with steps of length `step`: consecutive points are close together.
 std::vector<Vector3d> walk(std::size_t count, double step, double reach) {
   SequentialRandom random(51);
   std::vector<Vector3d> points(count, Vector3d::Zero());
@@ -105,11 +107,11 @@ TEST_P(ClosestPoints, OfEquallyNearTrianglesAreThoseWithTheLowestIndex) {
   for (Vector3d& p : points) p.z() = 0.0;  // on the surface: all distances are zero
   expect_same(floor, points, kFar);
   for (Vector3d& p : points) p.z() = 0.25;
-  expect_same(floor, points, 0.25);  // just within the limit
+  expect_same(floor, points, 0.25);  // exactly at the limit
 }
 
 TEST_P(ClosestPoints, OfAFineFloorThatOverflowsAGroupAreThoseOfAllTrianglesOneByOne) {
-  // From 3 m above, thousands of triangles are nearly as near as the nearest.
+  // From 3 m above, thousands of triangles are nearly as close as the nearest.
   std::vector<Vector3d> points = walk(200, 0.02, 10.0);
   for (Vector3d& p : points) p += Vector3d(4.0, 4.0, 3.0);
   expect_same(floor_of_squares(32), points, kFar);
@@ -145,14 +147,14 @@ TEST_P(ClosestPoints, APointThatIsNotFiniteHasNoneAndHarmsNoNeighbor) {
 TEST(TriangleFrame, HasTheDistancesOfTheTriangle) {
   SequentialRandom random(56);
   for (int i = 0; i < 2000; ++i) {
-    // from well shaped to needles a thousand times longer than wide
+    // from well-shaped triangles to slivers a thousand times longer than wide
     const double thin = std::pow(10.0, -3.0 * random.uniform());
     const Vector3d a = testing::random_point(random, 2.0);
     const Vector3d b = testing::random_point(random, 2.0);
     const Vector3d c = a + random.uniform() * (b - a) + thin * testing::random_point(random, 2.0);
     const Vector3d p = testing::random_point(random, 4.0);
     const double expected = (closest_point_on_triangle(p, a, b, c) - p).squaredNorm();
-    // rounding grows with the needle's length over its width
+    // rounding grows with the ratio of length to width
     EXPECT_NEAR(TriangleFrame(a, b, c).squared_distance(p, kFar), expected, 1e-12 / thin);
   }
 }

@@ -7,10 +7,10 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/log.hpp"
 
-/// What a reader of worlds complains of: warnings and errors.
+/// Helpers that capture the warnings and errors of loading a world.
 namespace lidarena::testing {
 
-/// Keeps the warnings.
+/// Collects the warnings.
 class RecordingLog : public LogSink {
  public:
   void message(LogLevel level, std::string_view text) override {
@@ -19,7 +19,7 @@ class RecordingLog : public LogSink {
   std::string warnings;
 };
 
-/// What `action` throws as InputError, as text; empty when it throws none.
+/// Text of the InputError that `action` throws; empty when it throws none.
 template <class Action>
 std::string input_error_of(Action&& action) {
   try {

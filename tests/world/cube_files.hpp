@@ -8,15 +8,15 @@
 
 #include "tests/world/shapes.hpp"
 
-/// A box of 1 x 2 x 3 m with a corner at the origin, as the text of a file of each format.
+/// A box of 1 x 2 x 3 m with a corner at the origin, as the file content in each format.
 namespace lidarena::testing {
 
 inline TriangleMesh tall_box() { return box_mesh({0, 0, 0}, {1, 2, 3}); }
 
-/// Z-up coordinates written in a frame whose y is up.
+/// Converts z-up to y-up coordinates.
 inline Eigen::Vector3d y_up(const Eigen::Vector3d& v) { return {v.x(), v.z(), -v.y()}; }
 
-/// The six faces as quadrilaterals, so that cutting polygons is tested, too.
+/// The six faces as quadrilaterals, so that triangulation is tested, too.
 inline std::string box_obj() {
   std::ostringstream out;
   for (const auto& v : tall_box().vertices) out << "v " << v.transpose() << "\n";
@@ -39,7 +39,7 @@ inline std::string box_stl() {
   return out.str();
 }
 
-/// ASCII, with properties and an element that have nothing to do with the surface.
+/// ASCII, with properties and an element that are irrelevant to the surface.
 inline std::string box_ply() {
   std::ostringstream out;
   out << "ply\r\nformat ascii 1.0\r\ncomment a box\r\nelement vertex 8\r\nproperty float x\r\n"
@@ -55,7 +55,7 @@ inline std::string box_ply() {
   return out.str();
 }
 
-/// `coordinates` are in units of `unit` meters.
+/// The box with coordinates in units of `unit` meters; `nodes` is the content of the scene.
 inline std::string dae_text(const std::string& up_axis, double unit, const std::string& nodes) {
   std::ostringstream out;
   out << R"(<?xml version="1.0" encoding="utf-8"?>
@@ -110,7 +110,7 @@ inline std::string base64(const std::string& bytes) {
   return text;
 }
 
-/// glTF 2.0 with its buffer inside; the format's y is up.
+/// glTF 2.0 with an embedded buffer; the format is y up.
 inline std::string box_gltf() {
   const TriangleMesh box = tall_box();
   std::string bytes;

@@ -9,7 +9,7 @@
 
 namespace lidarena::testing {
 
-/// Tests of a World that every ray caster of this build must pass.
+/// Base of the World tests, which run for every ray caster of this build.
 class EveryRayCaster : public ::testing::TestWithParam<RayCaster> {
  protected:
   static World make_world(TriangleMesh mesh) { return World(std::move(mesh), "mesh", GetParam()); }

@@ -21,8 +21,8 @@ TEST(GradientNoise, VanishesOnTheLatticeAndStaysBounded) {
 }
 
 TEST(GradientNoise, HasMeanZeroAndTheSameVarianceEverywhere) {
-  // Samples further apart than a lattice step are independent: the mean of n of them scatters by
-  // sigma / sqrt(n).
+  // Samples farther apart than a lattice step are independent: the mean of n samples has the
+  // standard deviation sigma / sqrt(n).
   constexpr int kCount = 200000;
   for (const double center : {0.0, 5000.0}) {
     const GradientNoise noise(11);
@@ -46,7 +46,7 @@ TEST(GradientNoise, IsSmoothAcrossCells) {
   constexpr double kH = 1e-5;
   for (int i = 0; i < 1000; ++i) {
     Eigen::Vector3d p = random_point(random, 10);
-    p.x() = std::round(p.x());  // on a cell's face: slopes from either side agree
+    p.x() = std::round(p.x());  // on a face of a cell: the slopes from both sides must agree
     const Eigen::Vector3d h = kH * Eigen::Vector3d::UnitX();
     const double left = (noise(p) - noise(p - h)) / kH;
     const double right = (noise(p + h) - noise(p)) / kH;

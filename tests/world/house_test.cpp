@@ -22,14 +22,14 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// Curved parts cut coarsely: the same plan and places, made quickly.
+/// The default house with coarse curved parts: same plan and positions, generated quickly.
 HouseConfig coarse_house() {
   HouseConfig config;
   config.detail = 0.3;
   return config;
 }
 
-/// The corners of what may be asked for.
+/// The smallest and the largest house that the parameter ranges allow.
 std::vector<HouseConfig> extreme_houses() {
   std::vector<HouseConfig> houses;
   for (const bool large : {false, true}) {
@@ -196,7 +196,7 @@ TEST(House, RouteIsAClosedTourOfAllRoomsAndDoors) {
     }
     EXPECT_EQ(rooms.size(), plan.rooms.size());
     for (const Opening& door : plan.doors) {
-      // Some leg runs through the door's middle along the wall's normal, 0.8 m on either side.
+      // One leg passes the door's center along the wall's normal, 0.8 m on either side.
       const Vector3d a = door.point(-0.8, 0.5 * door.head);
       const Vector3d b = door.point(0.8, 0.5 * door.head);
       bool passed = false;
@@ -230,7 +230,7 @@ TEST(House, RouteKeepsClearInTheSmallestAndTheLargestHouse) {
   }
 }
 
-/// Share of rays from the route, evenly over all directions, that hit nothing.
+/// Share of rays from the route, uniformly distributed over all directions, that hit nothing.
 double lost_rays(const HouseConfig& config, std::uint64_t seed) {
   const WorldModel house = make_house(config, seed);
   const World world(house.mesh, "house");
@@ -293,7 +293,7 @@ TEST(House, NothingFloats) {
 }
 
 TEST(House, ThingsDoNotStandInOneAnotherOrInDoors) {
-  // Rugs lie under things, seats are pushed under tables, and what the gallery is made of touches.
+  // Rugs lie under objects, chairs are partly under tables, and the parts of the gallery touch.
   const std::set<std::string> shared{"rug", "chair", "stool", "stairs", "gallery", "column"};
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {
     const HouseConfig config = coarse_house();

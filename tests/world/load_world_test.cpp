@@ -47,7 +47,7 @@ TEST_F(LoadWorld, AMeshNamedInYamlLiesBesideTheYaml) {
 
 TEST_F(LoadWorld, TheCallerOverridesTheFile) {
 #if !LIDARENA_TEST_SDF
-  GTEST_SKIP() << "this build reads no SDF worlds";
+  GTEST_SKIP() << "this build cannot read SDF worlds";
 #endif
   folder_.write("a.world",
                 "<sdf version='1.6'><world name='w'><model name='m'><link name='l'>"
@@ -63,7 +63,7 @@ TEST_F(LoadWorld, TheCallerOverridesTheFile) {
 
 TEST_F(LoadWorld, ModelFoldersInYamlAreRelativeToTheYaml) {
 #if !LIDARENA_TEST_SDF
-  GTEST_SKIP() << "this build reads no SDF worlds";
+  GTEST_SKIP() << "this build cannot read SDF worlds";
 #endif
   folder_.write("things/box/box.obj", testing::box_obj());
   folder_.write("sdf/worlds/a.world",
@@ -83,7 +83,7 @@ TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
   EXPECT_THAT(error_of("a.yaml", "kind: cave\nfile: room.obj\n"), HasSubstr("a.yaml:2"));
   EXPECT_THAT(error_of("a.yaml", "kind: hut\n"), HasSubstr("house, cave, mesh, sdf"));
   EXPECT_THAT(error_of("a.yaml", "file: room.obj\n"), HasSubstr("kind"));
-  EXPECT_THAT(error_of("a.yaml", "kind: mesh\n"), HasSubstr("names no file"));
+  EXPECT_THAT(error_of("a.yaml", "kind: mesh\n"), HasSubstr("the key 'file' is missing"));
   EXPECT_THAT(error_of("a.yaml", ""), HasSubstr("kind"));
   EXPECT_THAT(error_of("a.yaml", "kind: cave\ncave: {loops: -1}\n"), HasSubstr("out of range"));
 }

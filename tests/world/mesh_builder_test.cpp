@@ -21,7 +21,7 @@ TEST(MeshBuilder, ClosedShapesHaveTheirVolumeWithNormalsOutward) {
   EXPECT_NEAR(signed_volume(shape::cylinder(0.5, 2, 64, 3)), share * kPi * 0.25 * 2, 1e-12);
   EXPECT_NEAR(signed_volume(shape::bar({{0, 0, 0}, {0, 0, 1}, {0, 0, 3}}, 0.5, 64)),
               share * kPi * 0.25 * 3, 1e-12);
-  // Facets of d rad miss about d^2 / 4 of a ball's volume, d = 2 pi / 96.
+  // With facets of d = 2 pi / 96 rad the volume is about d^2 / 4 below that of the ball.
   EXPECT_NEAR(signed_volume(shape::ball(1, 96)), 4 * kPi / 3, 4 * kPi / 3 * 0.005);
 }
 

@@ -18,8 +18,8 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::input_error_of;
 
-// The same tall box, 1 x 2 x 3 m from the origin, in each format; z is up where the format has z up
-// and y where it has y up.
+// The same box of 1 x 2 x 3 m with a corner at the origin in each format, in the up axis of the
+// format.
 struct FormatCase {
   const char* file;
   std::string text;
@@ -54,7 +54,7 @@ INSTANTIATE_TEST_SUITE_P(All, MeshFormats,
 TEST(MeshIo, CoordinatesStandAsTheyAreWhenZIsSaidToBeUp) {
   const TemporaryFolder folder;
   const auto file = folder.write("box.dae", testing::box_dae("Y_UP", 0.01));
-  // The file holds y up: 1 m along x, 3 m along y, 2 m along -z; the unit still counts.
+  // The file is y up: 1 m along x, 3 m along y, 2 m along -z; its unit is still applied.
   const TriangleMesh mesh = load_mesh(file, UpAxis::kZ);
   EXPECT_TRUE(mesh.bounds().min().isApprox(Vector3d(0, 0, -2), 1e-6));
   EXPECT_TRUE(mesh.bounds().max().isApprox(Vector3d(1, 3, 0), 1e-6));
@@ -106,8 +106,8 @@ TEST(MeshIo, OneClearErrorForEachThingThatCanBeWrong) {
   };
   EXPECT_THAT(error_of(folder.path() / "none.obj"),
               AllOf(HasSubstr("none.obj"), HasSubstr("no such file")));
-  EXPECT_THAT(error_of(folder.path()), HasSubstr("ending"));
-  EXPECT_THAT(error_of(folder.write("a.txt", "hello")), HasSubstr("ending"));
+  EXPECT_THAT(error_of(folder.path()), HasSubstr("extension"));
+  EXPECT_THAT(error_of(folder.write("a.txt", "hello")), HasSubstr("extension"));
   for (const char* name : {"a.obj", "a.ply", "a.stl", "a.dae", "a.gltf", "a.glb"}) {
     for (const char* text : {"", "\x01\x02 no mesh at all", "v 1"}) {
       EXPECT_THAT(error_of(folder.write(name, text)), HasSubstr(name)) << text;

@@ -10,7 +10,7 @@
 
 namespace lidarena::testing {
 
-/// What can be said of a mesh from its triangles' corner numbers alone; every vertex must be used.
+/// Topological properties of a mesh, from its triangles' vertex indices; every vertex must be used.
 struct Topology {
   std::size_t open_edges = 0;  ///< directed edges whose opposite is missing or that occur twice
   std::size_t pinched_vertices = 0;  ///< vertices whose triangles form more than one fan
@@ -18,7 +18,7 @@ struct Topology {
   long euler = 0;  ///< vertices - edges + triangles; 2 - 2 * genus for one closed surface
 };
 
-/// Root of i in a disjoint-set forest, halving paths on the way.
+/// Root of i in a disjoint-set forest, with path halving.
 inline std::uint32_t root(std::vector<std::uint32_t>& parent, std::uint32_t i) {
   while (parent[i] != i) i = parent[i] = parent[parent[i]];
   return i;
@@ -30,7 +30,7 @@ inline Topology topology(const TriangleMesh& mesh) {
     return static_cast<std::uint64_t>(a) << 32U | b;
   };
   std::unordered_map<std::uint64_t, int> edges;
-  std::unordered_map<std::uint64_t, std::uint32_t> next;  // of the ring around a vertex
+  std::unordered_map<std::uint64_t, std::uint32_t> next;  // next vertex in the ring around a vertex
   std::vector<std::uint32_t> degree(mesh.vertices.size(), 0);
   std::vector<std::uint32_t> parent(mesh.vertices.size());
   std::iota(parent.begin(), parent.end(), 0U);
@@ -50,7 +50,7 @@ inline Topology topology(const TriangleMesh& mesh) {
   }
   for (const auto& [edge, neighbor] : next) {
     const auto a = static_cast<std::uint32_t>(edge >> 32U);
-    if (degree[a] == 0) continue;  // its ring was walked already
+    if (degree[a] == 0) continue;  // the ring was already traversed
     const auto first = static_cast<std::uint32_t>(edge);
     std::uint32_t steps = 0;
     std::uint32_t at = first;

@@ -27,7 +27,7 @@ Pose random_pose(SequentialRandom& random, double half_size) {
                    random_point(random, half_size));
 }
 
-/// Distance from a point to a body's surface, and which shape the body is.
+/// A shape and a function for the distance from a point to its surface.
 struct SlowShape {
   ShapePtr shape;
   std::function<double(const Vector3d&)> distance;  ///< to the surface, in the shape's frame
@@ -66,10 +66,11 @@ SlowShape slow_mesh(TriangleMesh mesh) {
 struct SlowHit {
   double range = kInfinity;
   std::uint32_t shape = Hit::kNone;
-  bool is_sure = true;  ///< false when the ray grazes something, so that rounding decides
+  bool is_sure = true;  ///< false when the ray grazes a surface, so that rounding decides
 };
 
-/// Walks along the ray, each step as long as everything is away: nothing can be jumped over.
+/// Sphere tracing: each step is as long as the distance to the nearest surface, so that no surface
+/// is passed.
 SlowHit march(const std::vector<SlowShape>& shapes, const std::vector<Pose>& poses, const Ray& ray,
               double max_range) {
   constexpr double kThere = 1e-9, kGrazing = 1e-4;
@@ -92,11 +93,11 @@ SlowHit march(const std::vector<SlowShape>& shapes, const std::vector<Pose>& pos
     before = nearest;
     range += nearest;
   }
-  hit.is_sure = hit.is_sure && range > max_range;  // else it crept along a surface
+  hit.is_sure = hit.is_sure && range > max_range;  // otherwise it stayed close to a surface
   return hit;
 }
 
-/// One of every shape in a space of some 12 m.
+/// At least one shape of every kind, to be placed in a space of about 12 m.
 std::vector<SlowShape> one_of_each() {
   return {slow_sphere(1.3),
           slow_cylinder(0.7, 2.5),
@@ -170,7 +171,7 @@ TEST(MovingWorld, StillMeshesAreSeenAsTheSameMeshesInAWorldAre) {
     ASSERT_EQ(hits[i].valid(), expected[i].valid());
     if (!hits[i].valid()) continue;
     ++found;
-    // not the same bits: a World's boxes lie around its middle, and directions were turned
+    // not bit-identical: a World is re-centered, and the directions were rotated
     EXPECT_FLOAT_EQ(hits[i].range, expected[i].range);
     EXPECT_EQ(hits[i].triangle, expected[i].triangle / 40);
   }

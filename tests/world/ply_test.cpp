@@ -62,7 +62,7 @@ TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
   };
   folder.write("bad.ply", face("comment material 0.5 0 paint\n"));
   EXPECT_THAT(input_error_of([&] { read_ply(folder.path() / "bad.ply"); }),
-              HasSubstr("material 7 of 1"));
+              HasSubstr("material index 7, number of materials: 1"));
   for (const char* comment :
        {"", "comment material 5 0 brighter than white\n", "comment materials: none\n"}) {
     folder.write("foreign.ply", face(comment));
@@ -70,7 +70,7 @@ TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
   }
 }
 
-// Read here by the letter of the format, apart from read_ply().
+// The bytes are read here according to the format, independently of read_ply().
 TEST(Ply, TheSavedBytesAreWhatTheHeaderAnnounces) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "box.ply";
@@ -125,7 +125,7 @@ TEST(Ply, EachThingThatCanBeWrongIsNamed) {
   const auto error_of = [&](const std::string& text) {
     return input_error_of([&] { read_ply(folder.write("a.ply", text)); });
   };
-  EXPECT_THAT(error_of(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("vertex 3 of 3"));
+  EXPECT_THAT(error_of(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n"), HasSubstr("vertex index 3"));
   EXPECT_THAT(error_of(header + "0 0 0\n1 0 0\n0 1 0\n3 0 1 -1\n"), HasSubstr("-1"));
   EXPECT_THAT(error_of(header + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n"), HasSubstr("'zero'"));
   EXPECT_THAT(error_of("ply\nformat ascii 1.0\nelement vertex many\nend_header\n"),

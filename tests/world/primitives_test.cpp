@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Area of the regular polygon with kSectors corners on the unit circle, instead of pi.
+// Area of the regular polygon with kSectors corners on the unit circle (that of the circle is pi).
 const double kPolygon = 0.5 * kSectors * std::sin(2 * std::numbers::pi / kSectors);
 
-// Volume of the solid of `kSectors` sides through the points (r, z): a stack of frusta.
+// Volume of the solid with `kSectors` sides through the points (r, z): a stack of frusta.
 double stacked_volume(const std::vector<std::pair<double, double>>& profile) {
   double volume = 0.0;
   for (std::size_t i = 1; i < profile.size(); ++i) {
@@ -42,7 +42,7 @@ void expect_half_sizes(const TriangleMesh& mesh, const Vector3d& half) {
   EXPECT_TRUE(mesh.bounds().max().isApprox(half, 1e-12)) << mesh.bounds().max().transpose();
 }
 
-// Every edge belongs to two triangles that run along it in opposite directions.
+// Every edge belongs to two triangles that traverse it in opposite directions.
 void expect_closed(const TriangleMesh& mesh) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
   for (const Triangle& t : mesh.triangles) {

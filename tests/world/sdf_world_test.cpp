@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// SDF worlds small enough to work out by hand, written by the tests themselves.
+// The tests write SDF worlds that are small enough for results to be computed by hand.
 #include "lidarena/world/sdf_world.hpp"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ class SdfWorld : public ::testing::Test {
  protected:
   void SetUp() override {
 #if !LIDARENA_TEST_SDF
-    GTEST_SKIP() << "this build reads no SDF worlds";
+    GTEST_SKIP() << "this build cannot read SDF worlds";
 #endif
   }
 
@@ -92,12 +92,13 @@ TEST_F(SdfWorld, EveryPrimitiveHasItsSize) {
 }
 
 TEST_F(SdfWorld, PosesOfModelLinkAndShapeFollowOneAnother) {
-  // Out along x, turned a quarter to the left, out along the new x, and so once more.
+  // Translated along x and rotated by 90 degrees to the left, translated along the new x and
+  // rotated again, translated along the new x.
   const TriangleMesh mesh =
       load(world_with("<model name='m'><pose>10 0 0 0 0 1.5707963267948966</pose>"
                       "<link name='l'><pose>5 0 0 0 0 1.5707963267948966</pose>" +
                       visual("<box><size>2 4 6</size></box>", "3 0 1 0 0 0") + "</link></model>"));
-  // (10, 0), then (0, 5), then (-3, 0): the box stands at (7, 5, 1), turned by 180 degrees.
+  // (10, 0), then (0, 5), then (-3, 0): the box is at (7, 5, 1), rotated by 180 degrees.
   expect_bounds(mesh, {6, 3, -2}, {8, 7, 4});
 }
 
@@ -138,7 +139,7 @@ TEST_F(SdfWorld, MeshesAreScaledAndTakenAsTheyStand) {
                                 "<scale>2 1 1</scale></mesh>") +
                          "</link>");
   const TriangleMesh mesh = load(world_with(include("model://box", "a", "0 0 0 0 0 0")));
-  expect_bounds(mesh, {0, 0, -2}, {2, 3, 0});  // the unit counts, <up_axis> does not
+  expect_bounds(mesh, {0, 0, -2}, {2, 3, 0});  // the unit is applied, <up_axis> is not
   EXPECT_NEAR(testing::signed_volume(mesh), 12.0, 1e-5);
 }
 

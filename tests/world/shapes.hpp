@@ -32,7 +32,7 @@ inline Eigen::Vector3d random_direction(SequentialRandom& random) {
   return Eigen::Vector3d(x, y, random.normal()).normalized();
 }
 
-/// `count` triangles with edges of about 1 m, strewn in the cube [-half_size, half_size]^3.
+/// `count` random triangles with edges of about 1 m in the cube [-half_size, half_size]^3.
 inline TriangleMesh triangle_soup(std::size_t count, double half_size, std::uint64_t seed) {
   SequentialRandom random(seed);
   TriangleMesh mesh;
@@ -46,7 +46,7 @@ inline TriangleMesh triangle_soup(std::size_t count, double half_size, std::uint
   return mesh;
 }
 
-/// Six times the signed volume is the sum of a . (b x c); positive when normals point outward.
+/// Signed volume: a sixth of the sum of a . (b x c); positive when normals point outward.
 inline double signed_volume(const TriangleMesh& mesh) {
   double six = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {

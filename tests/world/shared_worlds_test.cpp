@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The worlds of the shared test data: triangle counts and extents as its README states them, which
-// were found by another program, from the same rules (DAE unit and node transforms applied,
-// <up_axis> not, SDF poses and scales applied).
+// The worlds of the shared test data. Triangle counts and extents are those of its README; another
+// program computed them by the same rules (DAE unit and node transforms applied, <up_axis> not, SDF
+// poses and scales applied).
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -20,13 +20,13 @@ using ::testing::HasSubstr;
 struct SharedWorld {
   const char* file;
   ShapeKind shapes;
-  std::size_t mesh_triangles;       ///< of mesh files, as the README counts
-  std::size_t primitive_triangles;  ///< of the world's boxes, planes and spheres, tessellated by us
-  Eigen::AlignedBox3d extent;       ///< the README's; empty where it states none
-  const char* missing;              ///< a model known to be absent; empty when the world is whole
+  std::size_t mesh_triangles;       ///< of mesh files, as counted in the README
+  std::size_t primitive_triangles;  ///< of the world's boxes, planes and spheres, as tessellated
+  Eigen::AlignedBox3d extent;       ///< from the README; empty where it gives none
+  const char* missing;              ///< a model known to be missing; empty if the world is complete
 };
 
-// How gtest names the case.
+// Name of the test case in gtest.
 void PrintTo(const SharedWorld& world, std::ostream* out) { *out << world.file; }
 
 class SharedWorlds : public ::testing::TestWithParam<SharedWorld> {
@@ -34,7 +34,7 @@ class SharedWorlds : public ::testing::TestWithParam<SharedWorld> {
   void SetUp() override {
     file_ = std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes" / GetParam().file;
     if (!std::filesystem::exists(file_)) {
-      GTEST_SKIP() << "the shared test data is not here: " << GetParam().file << " is not tested";
+      GTEST_SKIP() << "the shared test data is missing: " << GetParam().file << " is not tested";
     }
   }
   std::filesystem::path file_;
@@ -59,7 +59,8 @@ TEST_P(SharedWorlds, HaveTheTrianglesAndTheExtentsTheirReadmeStates) {
   EXPECT_THAT(log.warnings, HasSubstr(expected.missing));
 }
 
-constexpr std::size_t kSphere = 2 * 64 * 31;  // 64 sectors, 32 stacks, those at the poles halved
+// 64 sectors and 32 stacks of two triangles per sector, one triangle at the poles
+constexpr std::size_t kSphere = 2 * 64 * 31;
 constexpr std::size_t kBox = 12, kPlane = 2;
 
 Eigen::AlignedBox3d extent(const Vector3d& low, const Vector3d& high) { return {low, high}; }
@@ -86,11 +87,11 @@ INSTANTIATE_TEST_SUITE_P(
                     0,
                     {},
                     "construction_cone"},
-        // The README's 29,251 holds two boxes, one of which is a collision shape. The polygons of
-        // the OBJ files, corners less two, come to 29,227 over the 150 instances.
+        // The README's 29,251 includes two boxes, one of which is a collision shape. The polygons
+        // of the OBJ files (number of corners minus two) sum to 29,227 over the 150 instances.
         SharedWorld{"subt_cave_tiles/worlds/cave.world", ShapeKind::kVisual, 29227, kBox,
                     extent({-13, -53, -3}, {413, 53, 8}), "jersey_barrier"},
-        // The ground plane, 100 m square, is wider than the cave.
+        // The ground plane of 100 m x 100 m is wider than the cave.
         SharedWorld{"ltu_cave/worlds/cave_world1.world", ShapeKind::kVisual, 5333, kPlane,
                     extent({-80, -50, -3}, {50, 71, 30}), "cave_tile_2_1"},
         SharedWorld{"edgar_mine/worlds/edgar_mine.world", ShapeKind::kVisual, 22557, 0,
@@ -100,7 +101,7 @@ TEST(LavaTube, IsTheClosedSurfaceOfTheSizeItsReadmeStates) {
   const auto file =
       std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes/lava_tube/worlds/lava_tube.world";
   if (!std::filesystem::exists(file)) {
-    GTEST_SKIP() << "the shared test data is not here: the lava tube is not tested";
+    GTEST_SKIP() << "the shared test data is missing: the lava tube is not tested";
   }
   WorldOptions options;
   options.allow_missing = true;
@@ -124,7 +125,7 @@ TEST(LavaTube, IsRefusedWithTheRemedyBecauseModelsAreMissing) {
   const auto file =
       std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes/lava_tube/worlds/lava_tube.world";
   if (!std::filesystem::exists(file)) {
-    GTEST_SKIP() << "the shared test data is not here: the lava tube is not tested";
+    GTEST_SKIP() << "the shared test data is missing: the lava tube is not tested";
   }
   LogSink log;
   const std::string error = testing::input_error_of([&] { load_world(file, {}, log); });

@@ -15,7 +15,7 @@ namespace {
 using testing::Topology;
 using testing::topology;
 
-/// Samples `value` on blocks -blocks ... blocks - 1 along each axis.
+/// Samples `value` in the blocks -blocks ... blocks - 1 along each axis.
 SparseField sample(int blocks, double step,
                    const std::function<double(const Eigen::Vector3i&)>& value) {
   SparseField field(step);
@@ -52,8 +52,8 @@ TEST(SurfaceNets, NetOfABallIsAClosedSphereOfItsRadius) {
   EXPECT_EQ(found.pinched_vertices, 0U);
   EXPECT_EQ(found.components, 1U);
   EXPECT_EQ(found.euler, 2);
-  // Crossings lie on chords no longer than a cell's diagonal: sagitta d^2 / (8 r), and their mean
-  // moves inward by at most as much again.
+  // Crossings lie on chords no longer than a cell's diagonal d: the sagitta is d^2 / (8 r), and
+  // their mean lies farther inside by at most the same amount.
   const double sagitta = 3 * kStep * kStep / (8 * kRadius);
   for (const Eigen::Vector3d& v : mesh.vertices) EXPECT_NEAR(v.norm(), kRadius, 2 * sagitta);
 }
@@ -61,16 +61,15 @@ TEST(SurfaceNets, NetOfABallIsAClosedSphereOfItsRadius) {
 TEST(SurfaceNets, NormalsPointIntoFreeSpace) {
   const SparseField field =
       sample(1, 0.2, [](const Eigen::Vector3i& p) { return (0.2 * p.cast<double>()).norm() - 1; });
-  // Free space is the ball's inside, so the signed volume is negative; a net of cells of 0.2 m
-  // misses the ball's volume by less than the shell of half a cell.
+  // Free space is the inside of the ball, so the signed volume is negative. With cells of 0.2 m the
+  // error of the volume is less than that of a shell of half a cell.
   EXPECT_NEAR(testing::signed_volume(surface_net(field)), -4.19, 4.19 * 0.3 * 0.2);
 }
 
 TEST(SurfaceNets, WellComposedNoiseGivesAManifold) {
   const CounterRandom random(7);
   SparseField field = sample(2, 1.0, [&](const Eigen::Vector3i& p) {
-    // White noise, half free and half rock: every critical pattern occurs; a shell of rock closes
-    // it.
+    // White noise, half free and half rock, enclosed by rock: every critical pattern occurs.
     if (p.minCoeff() < -13 || p.maxCoeff() > 12) return 1.0;
     return random.uniform(SparseField::key(p)) - 0.5;
   });

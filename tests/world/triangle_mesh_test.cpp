@@ -58,7 +58,7 @@ TEST(Materials, StayWithTheirTrianglesWhenMeshesAreJoined) {
   glass.paint(materials::kGlass);
   TriangleMesh room;
   room.append(plain);
-  EXPECT_TRUE(room.material_ids.empty());  // nothing is stored for what has no material
+  EXPECT_TRUE(room.material_ids.empty());  // not stored when all materials are the default
   EXPECT_EQ(room.material(3), Material{});
   room.append(wood);
   room.append(glass);
@@ -71,7 +71,7 @@ TEST(Materials, StayWithTheirTrianglesWhenMeshesAreJoined) {
   for (std::size_t i = 0; i < 60; ++i) {
     EXPECT_EQ(room.material(i), expected[i / 12] ? *expected[i / 12] : Material{}) << i;
   }
-  room.triangles[12] = {0, 0, 1};  // degenerate: it goes, and its material with it
+  room.triangles[12] = {0, 0, 1};  // degenerate: removed together with its material
   clean_mesh(room, "room");
   EXPECT_EQ(room.material_ids.size(), 59U);
   EXPECT_EQ(room.material(22), materials::kWood);
@@ -83,7 +83,7 @@ TEST(Materials, ThatDoNotFitTheTrianglesAreRefused) {
   mesh.paint(materials::kWood);
   mesh.material_ids.back() = 1;
   EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }),
-              HasSubstr("material 1 of 1"));
+              HasSubstr("material index 1, number of materials: 1"));
   mesh.material_ids.pop_back();
   EXPECT_THAT(testing::input_error_of([&] { clean_mesh(mesh, "box"); }),
               HasSubstr("11 materials for 12 triangles"));
@@ -95,9 +95,8 @@ TEST(Materials, ADiffuseSurfaceFollowsLambertAndAMirrorIsSeenHeadOnAlone) {
   }
   const double head_on = backscatter(materials::kMirror, 1.0);
   EXPECT_GT(head_on, 10.0);
-  EXPECT_LT(backscatter(materials::kMirror, std::cos(0.35)), 0.01);  // 20 deg aside
-  // No more light comes back into the half space than arrives: the lobe's integral over the
-  // directions in which a mirror may be turned, by the midpoint rule.
+  EXPECT_LT(backscatter(materials::kMirror, std::cos(0.35)), 0.01);  // at 20 deg incidence
+  // Energy is conserved: the integral of the lobe over the half space, by the midpoint rule, is 1.
   constexpr int kSteps = 20000;
   double sum = 0.0;
   const Material lobe{"lobe", 1.0, 1.0};
@@ -137,7 +136,7 @@ TEST(CleanMesh, DropsTrianglesWithoutAreaAndCountsThem) {
   TriangleMesh mesh = testing::box_mesh({0, 0, 0}, {1, 1, 1});
   mesh.triangles.push_back({0, 0, 1});  // a corner twice
   mesh.vertices.emplace_back(0.3, 0.3, 0.3);
-  mesh.triangles.push_back({0, 7, 8});  // three corners in line
+  mesh.triangles.push_back({0, 7, 8});  // three collinear corners
   EXPECT_EQ(clean_mesh(mesh, "box"), 2U);
   EXPECT_EQ(mesh.triangles.size(), 12U);
 }
@@ -161,7 +160,7 @@ TEST(MergeVertices, MakesASoupOfABoxIntoEightCorners) {
     for (const std::uint32_t corner : triangle) soup.vertices.push_back(box.vertices[corner]);
     soup.triangles.push_back({first, first + 1, first + 2});
   }
-  soup.vertices[0].y() = -0.0;  // the same place as +0
+  soup.vertices[0].y() = -0.0;  // equal to +0
   merge_vertices(soup);
   EXPECT_EQ(soup.vertices.size(), 8U);
   EXPECT_DOUBLE_EQ(soup.area(), 6.0);
@@ -192,7 +191,7 @@ TEST(ClosestPointOnTriangle, NoSampleOfTheTriangleIsNearer) {
       }
     }
     const double exact = (p - closest_point_on_triangle(p, a, b, c)).norm();
-    // A sample lies within one grid cell of any point of the triangle.
+    // Every point of the triangle has a sample within one grid cell.
     const double spacing = std::max((b - a).norm(), (c - a).norm()) * 2 / kSteps;
     EXPECT_LE(exact, sampled + 1e-12);
     EXPECT_GE(exact, sampled - spacing);

@@ -39,8 +39,9 @@ Hit cast_one(const World& world, const Vector3d& origin, const Vector3d& directi
   return hit;
 }
 
-/// Where the ray meets each triangle's plane inside its edges, in double, over all triangles.
-/// `clearance` is how far (as a share of the triangle) the hit is from the nearest edge.
+/// Intersection of the ray with the plane of a triangle, in double precision. `clearance` is the
+/// smallest barycentric coordinate, a measure of the distance from the nearest edge; it is negative
+/// outside the triangle.
 struct SlowHit {
   double range = std::numeric_limits<double>::infinity();
   double clearance = 0.0;
@@ -66,9 +67,9 @@ TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
   const World world = make_world(soup);
   SequentialRandom random(12);
   constexpr std::size_t kRays = 2000;
-  // Coordinates are below 6 m, where a float is off by at most 2.4e-7 m; origin, corners and
-  // the caster's arithmetic add up to a few of these. Along the ray that grows with 1 /
-  // cos(incidence), and sideways a ray may pass an edge on the other side.
+  // Coordinates are below 6 m, where the rounding error of a float is at most 2.4e-7 m; those of
+  // origin, corners and arithmetic add up to a few of these. Along the ray the error grows with
+  // 1 / cos(incidence); across it, a ray may pass an edge on the other side.
   constexpr double kRounding = 4e-6;
   std::size_t compared = 0, hit_count = 0;
   for (std::size_t i = 0; i < kRays; ++i) {
@@ -83,7 +84,7 @@ TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
       is_near_an_edge |= candidate.clearance < 1e-4 || candidate.cosine < 1e-3;
       if (candidate.range < expected.range) expected = candidate;
     }
-    if (is_near_an_edge) continue;  // which side a float ray passes is not decided by the geometry
+    if (is_near_an_edge) continue;  // rounding decides on which side of the edge the ray passes
     ++compared;
     const Hit hit = cast_one(world, origin, direction);
     ASSERT_EQ(hit.valid(), std::isfinite(expected.range)) << "ray " << i;
@@ -93,7 +94,7 @@ TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
     EXPECT_NEAR(meet(soup, hit.triangle, origin, direction).range, expected.range,
                 kRounding / expected.cosine);
     EXPECT_NEAR(hit.normal.norm(), 1.0F, 1e-6F);
-    EXPECT_LE(hit.normal.dot(direction.cast<float>()), 0.0F) << "normal turned away from the ray";
+    EXPECT_LE(hit.normal.dot(direction.cast<float>()), 0.0F) << "normal points away from the ray";
     EXPECT_NEAR(
         std::abs(world.mesh().cross(hit.triangle).normalized().dot(hit.normal.cast<double>())), 1.0,
         1e-6);
@@ -105,7 +106,7 @@ TEST_P(WorldCast, AgreesWithAllTrianglesOneByOneInARandomSoup) {
 TEST_P(WorldCast, FindsTheSameHitsForNeighborsTogetherAsForRaysAlone) {
   const World world = make_world(testing::triangle_soup(4000, 5.0, 11));
   SequentialRandom random(13);
-  for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last are no neighbors at all
+  for (const double spread : {1e-3, 0.05, 2.0}) {  // rad; the last rays are not neighbors
     std::vector<Ray> rays;
     while (rays.size() < 1003) {  // the last packet is not full
       const Vector3d origin = testing::random_point(random, 6.0);
@@ -121,7 +122,7 @@ TEST_P(WorldCast, FindsTheSameHitsForNeighborsTogetherAsForRaysAlone) {
     std::size_t others = 0;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (alone[i].triangle != together[i].triangle) {
-        ++others;  // along an edge, or into it; counted below
+        ++others;  // a ray along or into an edge; limited below
       } else if (alone[i].valid()) {
         const float cosine = std::abs(alone[i].normal.dot(rays[i].direction));
         EXPECT_NEAR(alone[i].range, together[i].range, 4e-6F / cosine);
@@ -146,8 +147,9 @@ TEST_P(WorldCast, MeetsTheWallsOfARoomWhereTheClosedFormSays) {
     }
     const Hit hit = cast_one(world, origin, direction);
     ASSERT_TRUE(hit.valid());
-    // 3 m is rounded to 2.4e-7 m and so is the direction times the range; the wall met is the
-    // steepest of three, so 1 / cos(incidence) is at most 1 / sqrt(1/3) but near corners.
+    // Coordinates of 3 m, and direction times range, are rounded to 2.4e-7 m. Except near corners,
+    // the wall hit is the one with the smallest incidence of three: 1 / cos is at most 1 /
+    // sqrt(1/3).
     EXPECT_NEAR(hit.range, range, 4e-6);
   }
 }
@@ -173,8 +175,8 @@ TEST_P(WorldCast, FindsNothingBeyondItsRangeOrInTheOpen) {
 }
 
 TEST_P(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
-  // A finely triangulated room; rays aimed at corners and edges of its triangles. Sixteenths of a
-  // meter are exact floats, so neighbors share their corners to the last bit.
+  // A finely triangulated room, with rays at corners and edges of its triangles. Sixteenths of a
+  // meter are exact floats, so neighbors share exactly the same corners.
   TriangleMesh wall;
   constexpr std::uint32_t kCells = 16;
   for (std::uint32_t i = 0; i <= kCells; ++i) {
@@ -215,8 +217,9 @@ TEST_P(WorldCast, NoRaySlipsThroughTheSeamsOfAClosedSurface) {
 }
 
 TEST_P(WorldCast, NoRaySlipsThroughTheEdgesAndCornersOfASphere) {
-  // Corners are at no round numbers, and at the poles 64 triangles meet. Embree's edges are tight,
-  // its corners are not: of 400,000 rays aimed at them 423 were seen to pass, far fewer than 1 %.
+  // The coordinates of the corners are not round numbers, and 64 triangles meet at the poles.
+  // Embree is watertight at edges but not at corners: of 400,000 rays at corners 423 were observed
+  // to pass, far below 1 %.
   const TriangleMesh sphere = sphere_shape(2.0);
   const World world = make_world(sphere);
   SequentialRandom random(6);
@@ -230,7 +233,7 @@ TEST_P(WorldCast, NoRaySlipsThroughTheEdgesAndCornersOfASphere) {
     for (const Vector3d& target : {Vector3d(a + share * (b - a)), Vector3d(b + share * (c - b))}) {
       const Hit hit = cast_one(world, origin, (target - origin).normalized());
       ASSERT_TRUE(hit.valid());
-      // Single precision of 4 m is 2.4e-7 m; the sphere is met at 30 degrees or more.
+      // Single precision at 4 m is 2.4e-7 m; rays make at least 30 degrees with the surface.
       EXPECT_NEAR(hit.range, (target - origin).norm(), 4e-6);
     }
   }
@@ -238,7 +241,7 @@ TEST_P(WorldCast, NoRaySlipsThroughTheEdgesAndCornersOfASphere) {
 }
 
 TEST_P(WorldRecentering, KeepsATenthOfAMillimeterFarFromTheOrigin) {
-  // UTM-like coordinates: a float there is off by 3 cm (easting) and 25 cm (northing).
+  // UTM-like coordinates: the error of a float is 3 cm (easting) and 25 cm (northing).
   const Vector3d far(5.0e5, 5.4e6, 300.0);
   const TriangleMesh soup = testing::triangle_soup(500, 5.0, 21);
   TriangleMesh shifted;
@@ -251,7 +254,7 @@ TEST_P(WorldRecentering, KeepsATenthOfAMillimeterFarFromTheOrigin) {
     const Vector3d direction = testing::random_direction(random);
     const Hit near_hit = cast_one(here, origin, direction);
     const Hit far_hit = cast_one(there, origin + far, direction);
-    if (near_hit.triangle != far_hit.triangle) continue;  // a ray along an edge; counted below
+    if (near_hit.triangle != far_hit.triangle) continue;  // a ray along an edge; limited below
     ++agreed;
     if (near_hit.valid()) {
       EXPECT_NEAR(near_hit.range, far_hit.range, 1e-4);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Are these the same measurements? For datasets of one scene, of which one may begin later.
-// usage: compare_datasets DATASET DATASET      exits 1 where more than one point in 1000 differs
+// Checks that two datasets of one scene have the same measurements; one may begin later.
+// usage: compare_datasets DATASET DATASET      exits with 1 if more than one point in 1000 differs
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -42,7 +42,7 @@ struct Differences {
 
 auto key(const Point& p) { return std::tuple(p.dt_ns, p.ring, p.echo); }
 
-/// Points of one shot are told by their instant and ring.
+/// Points of the same shot are matched by their instant and ring.
 void compare(Scan a, Scan b, Differences& d) {
   const auto before = [](const Point& p, const Point& q) { return key(p) < key(q); };
   std::sort(a.points.begin(), a.points.end(), before);
@@ -89,11 +89,12 @@ int main_of(const char* first, const char* second) {
   }
   fmt::print(
       "{} scans, {} points of the same shots: {} within {} m (mean {:.2e}, largest {:.2e}), {} "
-      "farther apart; {} shots came back in one alone\n",
+      "farther apart; {} shots with a return in only one dataset\n",
       d.scans, d.points, d.same, kSame, d.sum_of_same / static_cast<double>(d.same),
       d.worst_of_same, d.moved, d.alone);
-  fmt::print("{} IMU samples: rates within {:.2e} rad/s, accelerations within {:.2e} m/s^2\n",
-             samples, gyro, accel);
+  fmt::print(
+      "{} IMU samples: angular rates within {:.2e} rad/s, accelerations within {:.2e} m/s^2\n",
+      samples, gyro, accel);
   return d.points > 0 && 1000 * (d.moved + d.alone) <= d.points ? 0 : 1;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A plugin of a <world>, for tests: at given instants casts our rays and the physics engine's own
-// from the link <link>, compares them, prints a line, and ends the process with 0 if they agree.
+// A plugin of a <world>, for tests: at given instants casts Lidarena's rays and the physics
+// engine's from the link <link>, compares them, prints a line, and ends the process with exit code
+// 0 if they agree.
 #include <unistd.h>
 #include <gazebo/common/Events.hh>
 #include <gazebo/common/Plugin.hh>
@@ -24,10 +25,11 @@ struct CompareConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("link", self.link, "", "scoped name");
-    v("seconds", self.seconds, "s", "instants of simulated time, spaces between");
-    v("geometry", self.geometry, "", "ours; the engine knows collision shapes alone");
-    v("tolerance", self.tolerance, "m", "by which ranges may differ", above(0));
+    v("link", self.link, "", "scoped name of the link");
+    v("seconds", self.seconds, "s", "instants of simulated time, separated by spaces");
+    v("geometry", self.geometry, "",
+      "shapes for Lidarena's rays; the engine has only collision shapes");
+    v("tolerance", self.tolerance, "m", "maximum difference of ranges", above(0));
   }
 };
 
@@ -60,7 +62,7 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
     auto link =
         boost::dynamic_pointer_cast<::gazebo::physics::Link>(world_->EntityByName(config_.link));
     if (!link) {
-      std::printf("COMPARE there is no link %s\n", config_.link.c_str());
+      std::printf("COMPARE no link %s\n", config_.link.c_str());
       std::fflush(stdout);
       _exit(2);
     }
@@ -101,7 +103,7 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
     failed_ = failed_ || fails;
     std::printf(
         "COMPARE t %.3f s, sensor at %.2f %.2f %.2f: %zu rays, both hit %zu, neither %zu, "
-        "ours alone %zu, theirs alone %zu, mean difference %.2e m, largest %.2e m: %s\n",
+        "only ours %zu, only the engine's %zu, mean difference %.2e m, largest %.2e m: %s\n",
         world_->SimTime().Double(), pose.translation().x(), pose.translation().y(),
         pose.translation().z(), beams_.size(), both, neither, ours_alone, theirs_alone,
         both > 0 ? sum / static_cast<double>(both) : 0.0, worst, fails ? "FAILED" : "ok");

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the sensors cost in the House. usage: costs.py BUILD_FOLDER PREPARED_FOLDER
-PREPARED_FOLDER is that of adapters/gazebo/prepare. Each run: three simulated seconds, as fast as the
-server can; the plugin itself tells its CPU time and that of the process.
+"""Measures the CPU time of the sensors in the House. usage: costs.py BUILD_FOLDER PREPARED_FOLDER
+PREPARED_FOLDER is written by adapters/gazebo/prepare. Each run simulates three seconds as fast as
+possible; the plugin prints its own CPU time and that of the process.
 """
 import pathlib
 import re
@@ -32,7 +32,7 @@ def main():
     text = (ready / "house.world").read_text()
     worlds = {
         "Mid-360": variant(text, "livox_mid360"),
-        "Mid-360, and the stock ray sensor, 20,000 rays at 10 Hz": variant(text, "livox_mid360", stock=True),
+        "Mid-360 and Gazebo's ray sensor, 20,000 rays at 10 Hz": variant(text, "livox_mid360", stock=True),
         "OS0-128 1024x10": variant(text, "ouster_os0_128_1024"),
         "OS0-128 2048x10": variant(text, "ouster_os0_128"),
         "OS0-128 2048x10, a second thread": variant(text, "ouster_os0_128", "<threads>1</threads>"),

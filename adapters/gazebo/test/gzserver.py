@@ -14,7 +14,7 @@ def free_port():
 
 
 def run(world, plugins, models=(), limit_s=300, extra=None, arguments=()):
-    """Exit status and output of a server that the world itself ends."""
+    """Runs a server until the world ends it; returns its exit status and output."""
     env = dict(os.environ)
     env.update({
         "GAZEBO_MASTER_URI": f"http://127.0.0.1:{free_port()}", "GAZEBO_IP": "127.0.0.1",

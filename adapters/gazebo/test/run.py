@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What the plugins promise, shown in gzserver. usage: run.py BUILD_FOLDER
-Runs where Gazebo is (see .ci/gazebo); prints each finding and exits 1 if one is not as it should be.
+"""Tests the plugins in gzserver. usage: run.py BUILD_FOLDER
+Needs Gazebo (see .ci/gazebo); prints each result and exits with 1 if a check fails.
 """
 import math
 import os
@@ -26,7 +26,7 @@ def check(holds, text):
 
 
 def bumpy_shell(file, rows=100, columns=200):
-    """A closed shell of some 10 m with waves on it: 2 * rows * columns triangles."""
+    """Writes a closed shell of about 10 m radius with waves: 2 * rows * columns triangles."""
     with open(file, "w") as out:
         for i in range(rows + 1):
             for j in range(columns):
@@ -58,13 +58,13 @@ def compare_with_the_engine(plugins, models):
         status, output = gzserver.run(HERE / "worlds" / f"{world}.world", plugins, [models])
         lines = [line for line in output.splitlines() if line.startswith("COMPARE")]
         print("\n".join(lines))
-        check(status == 0 and lines, f"{world}: our rays are the engine's within 1e-4 m")
+        check(status == 0 and lines, f"{world}: our ranges equal the engine's within 1e-4 m")
         if status != 0:
             print(output[-2000:])
 
 
 def record_without_ros(plugins, models, folder):
-    """A bag that ROS 1's own tools read, written with no ROS running."""
+    """Records a bag without ROS running and reads it with ROS 1's own tools."""
     bag = folder / "recorded.bag"
     world = (HERE / "worlds/record.world").read_text().replace("@RECORD@", str(bag))
     (folder / "record.world").write_text(world)
@@ -77,7 +77,7 @@ def record_without_ros(plugins, models, folder):
     try:
         import rosbag
     except ImportError:
-        print("skipped: ROS 1's rosbag is not here")
+        print("skipped: ROS 1's rosbag is not installed")
         return
     counts, frames = {}, []
     with rosbag.Bag(str(bag)) as reader:
@@ -86,18 +86,18 @@ def record_without_ros(plugins, models, folder):
             if topic.endswith("/points"):
                 frames.append((message.header.stamp.to_sec(), message.width * message.height))
     print(f"        rosbag reads {counts}, scans {frames[:3]}")
-    check(counts.get("/livox_mid360/imu", 0) >= 150, "rosbag reads the IMU's samples, 200 a second")
-    check(len(frames) >= 7, "rosbag reads the scans, 10 a second")
+    check(counts.get("/livox_mid360/imu", 0) >= 150, "rosbag reads the IMU's samples, 200 per second")
+    check(len(frames) >= 7, "rosbag reads the scans, 10 per second")
     check(all(abs(stamp * 10 - round(stamp * 10)) < 1e-6 for stamp, _ in frames),
           "scans are stamped with simulated time, at multiples of 0.1 s")
-    check(all(points > 19000 for _, points in frames), "in a closed room nearly all rays come back")
+    check(all(points > 19000 for _, points in frames), "in a closed room nearly all rays return")
 
 
 def play_with_ros(bag, folder):
-    """rosbag play publishes a bag of ours, rosbag record takes it: all messages arrive."""
+    """rosbag play publishes our bag and rosbag record records it: all scans must arrive."""
     tools = pathlib.Path("/usr/lib/rosbag")
     if not (tools / "play").exists() or not shutil.which("rosmaster"):
-        print("skipped: ROS 1's rosbag play is not here")
+        print("skipped: ROS 1's rosbag play is not installed")
         return
     import rosbag
     port = gzserver.free_port()
@@ -110,7 +110,7 @@ def play_with_ros(bag, folder):
     recorder = subprocess.Popen([tools / "record", "-a", "-O", copy], **quiet)
     time.sleep(3)
     try:
-        # the recorder needs a while to subscribe to what the player advertises
+        # the recorder needs time to subscribe to the topics that the player advertises
         subprocess.run([tools / "play", "--quiet", "--delay=4", bag], timeout=60, check=True,
                        stdin=subprocess.DEVNULL, **quiet)
         time.sleep(2)
@@ -136,7 +136,7 @@ def main():
         play_with_ros(folder / "recorded.bag", folder)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
-    print(f"{len(failures)} failures" if failures else "all as promised")
+    print(f"{len(failures)} failures" if failures else "all checks passed")
     return 1 if failures else 0
 
 

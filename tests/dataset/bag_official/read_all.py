@@ -2,7 +2,7 @@
 """usage: read_all.py DATA.bag   (made by write_recording_sample: 20 scans of 5000 points)
 
 Reads the bag with ROS 1's own reader (Debian's python3-rosbag), whose messages are built from the
-definitions and check sums in the file, and compares with what the sample is made of.
+definitions and checksums in the file, and compares them with the values of the sample.
 """
 import math
 import struct
@@ -64,7 +64,7 @@ for topic, message, time in bag.read_messages():
     counts[topic] = index + 1
     if topic in CHECKS:
         check, kind = CHECKS[topic]
-        # the check sum that ROS's own package of the type has
+        # the checksum in ROS's own package of the type
         assert types[kind._type] == kind._md5sum, topic
         assert message._full_text.startswith("std_msgs/Header") or topic.startswith("/tf")
         check(message, index)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""usage: read_driver.py DATA.bag   (made by write_recording_sample in the drivers' dialect)
+"""usage: read_driver.py DATA.bag   (made by write_recording_sample in the dialect "driver")
 
-Reads Livox's own message, its PointCloud2 and the IMU in g with ROS 1's own reader.
+Reads Livox's CustomMsg and PointCloud2 and the IMU in g with ROS 1's own reader.
 """
 import math
 import sys

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: BSD-3-Clause
-"""usage: rewrite.py IN.bag OUT.bag none|lz4|bz2   writes all messages anew with ROS 1's own writer."""
+"""usage: rewrite.py IN.bag OUT.bag none|lz4|bz2   rewrites all messages with ROS 1's own writer."""
 import sys
 
 import rosbag

@@ -38,13 +38,13 @@ std::string text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Runs `read`, which may refuse its input.
+/// Runs `read`, which may throw InputError.
 template <class Read>
 void tolerant(Read&& read) {
   try {
     read();
   } catch (const InputError&) {
-    // refused, as it should be
+    // allowed: the input was rejected
   }
 }
 
@@ -53,7 +53,7 @@ void drain(EventSource& source) {
   }
 }
 
-/// Everything that reads a dataset.
+/// Calls every function that reads a dataset.
 void read_dataset(const fs::path& path) {
   tolerant([&] { drain(*open_dataset(path).events); });
   tolerant([&] { load_truth(path); });
@@ -65,7 +65,7 @@ void read_dataset(const fs::path& path) {
   });
 }
 
-/// A folder for the process, with a file written anew for each input.
+/// A temporary folder of this process; its files are rewritten for each input.
 const fs::path& scratch() {
   static const TemporaryFolder folder;
   return folder.path();
@@ -99,7 +99,7 @@ std::string dataset_file(const char* name, const WriteOptions& options) {
   return text_of(file);
 }
 
-/// Stored bags have no check sums: what is broken gets past the container.
+/// A bag with uncompressed chunks has no checksums: damage reaches the decoders of messages.
 std::string stored_bag() {
   const fs::path file = scratch() / "stored.bag";
   BagWriter out(file, {.compression = BagCompression::kNone});
@@ -178,7 +178,7 @@ Target trajectories() {
           }};
 }
 
-/// Dataset folders whose manifest.json is broken.
+/// Dataset folders with a damaged manifest.json.
 Target manifests() {
   const fs::path recorded = scratch() / "recorded";
   const fs::path sweeps = scratch() / "sweeps";
@@ -207,7 +207,7 @@ Target configurations() {
           }};
 }
 
-/// Messages as they lie in the recordings, in both encodings.
+/// Messages as stored in recordings, in both encodings.
 Target messages() {
   std::vector<std::string> corpus;
   LidarInfo lidar;

@@ -8,15 +8,15 @@
 
 namespace lidarena::fuzz {
 
-/// A reader that is fed broken input. Whatever the bytes, it may refuse them with an InputError and
-/// nothing else: any other exception, a crash or a sanitizer's complaint is a defect.
+/// A reader to be tested with damaged input. For any bytes, InputError is the only exception
+/// allowed: another exception, a crash or a sanitizer report is a defect.
 struct Target {
   std::string name;
-  std::vector<std::string> corpus;             ///< sound input, to be broken
+  std::vector<std::string> corpus;             ///< valid input, to be mutated
   std::function<void(std::string_view)> read;  ///< InputErrors are caught inside
 };
 
-/// All of them; corpora are made in memory.
+/// All targets; their corpora are generated.
 const std::vector<Target>& targets();
 /// Throws std::out_of_range for an unknown name.
 const Target& target(std::string_view name);

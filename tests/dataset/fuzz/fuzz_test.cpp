@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Seeded mutations of sound input for every reader: what the fuzzers do, for a moment, everywhere.
+// Seeded mutations of valid input for every reader: a short version of fuzzing, for every build.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 namespace lidarena::fuzz {
 namespace {
 
-/// How long each reader is tried, in seconds; LIDARENA_FUZZ_SECONDS makes it longer.
+/// Duration of the test of each reader, s; set by LIDARENA_FUZZ_SECONDS.
 double seconds_each() {
   const char* wanted = std::getenv("LIDARENA_FUZZ_SECONDS");
   return wanted == nullptr ? 0.2 : std::atof(wanted);
@@ -56,7 +56,7 @@ class Mutations {
       case 4:
         bytes.insert(at, std::string(bytes.substr(at, length)));
         break;
-      case 5: {  // a number at its limits
+      case 5: {  // overwrite with a number at the limits of its type
         constexpr std::array<std::uint64_t, 6> kLimits{0,          1,           0x7fffffff,
                                                        0xffffffff, 0x80000000U, ~std::uint64_t{0}};
         const std::uint64_t value = kLimits[below(kLimits.size())];
@@ -64,7 +64,7 @@ class Mutations {
         std::memcpy(bytes.data() + at, &value, size);
         break;
       }
-      default: {  // a piece of another one
+      default: {  // insert a piece of another input
         const std::string& other = corpus_[below(corpus_.size())];
         bytes.insert(at, other.substr(below(other.size()), below(64)));
       }

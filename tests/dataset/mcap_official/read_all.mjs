@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // usage: node read_all.mjs DATA.mcap   (made by write_mcap_sample: 20 scans of 5000 points)
 // Reads the file with the official reader, indexed and streamed, decodes every message from the
-// definitions in the file, and compares with what the sample is made of.
+// definitions in the file, and compares it with the values of the sample.
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { McapIndexedReader, McapStreamReader } from "@mcap/core";
@@ -15,7 +15,7 @@ const START_NS = 100_000_000_000n;
 
 const decompressHandlers = { zstd: (buffer, size) => decompress(buffer, new Uint8Array(Number(size))) };
 
-/** Decodes messages of a channel from the schema that the file brings along. */
+/** Decodes messages of a channel by the schema in the file. */
 class Decoder {
   readers = new Map();
   decode(channel, schema, data) {
@@ -31,7 +31,7 @@ class Decoder {
   }
 }
 
-/** What both ways of reading must agree on. */
+/** Counts and checks of messages, the same for both ways of reading. */
 class Tally {
   counts = {};
   points = 0;
@@ -120,7 +120,7 @@ const checks = {
   },
 };
 
-/** By the index, in log time order. */
+/** Reads by the index, in log time order. */
 async function readIndexed(path) {
   const file = await open(path);
   const readable = {
@@ -144,7 +144,7 @@ async function readIndexed(path) {
   return { tally, reader, metadata };
 }
 
-/** From front to back, verifying the check sums of the chunks. */
+/** From front to back, verifying the checksums of the chunks. */
 async function readStreamed(path) {
   const reader = new McapStreamReader({
     decompressHandlers,

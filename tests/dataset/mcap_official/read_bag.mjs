@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // usage: node read_bag.mjs DATA.bag   (made by write_recording_sample: 20 scans of 5000 points)
 // Reads the bag with an independent reader, decodes every message from the definitions in the file,
-// and compares with what the sample is made of.
+// and compares it with the values of the sample.
 import { Bag } from "@foxglove/rosbag";
 import { FileReader } from "@foxglove/rosbag/node.js";
 import decompressLZ4 from "@foxglove/wasm-lz4";

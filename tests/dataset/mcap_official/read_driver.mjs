@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// usage: node read_driver.mjs DATA.mcap   (made by write_recording_sample in the drivers' dialect)
-// Decodes Livox's own message from the definition in the file, with the official reader.
+// usage: node read_driver.mjs DATA.mcap   (made by write_recording_sample in the dialect "driver")
+// Decodes Livox's CustomMsg from the definition in the file, with the official reader.
 import { parse } from "@foxglove/rosmsg";
 import { MessageReader } from "@foxglove/rosmsg2-serialization";
 import { McapStreamReader } from "@mcap/core";

@@ -1,7 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: BSD-3-Clause
-# usage: run.sh WRITE_RECORDING_SAMPLE FOLDER mcap|bag   writes the sample and has the reader of that
-# format check it. Exits 77 (skipped) where the readers are not installed.
+# usage: run.sh WRITE_RECORDING_SAMPLE FOLDER mcap|bag   writes the sample and checks it with the reader of
+# that format. Exits 77 (skipped) where the readers are not installed.
 set -eu
 here=$(dirname "$0")
 if ! command -v node >/dev/null; then
