@@ -13,15 +13,15 @@ namespace {
 
 using State = InertialState;
 
-constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
-constexpr double kStillShiftSigma = 1e-4;  // m, of "it has not moved yet"
-constexpr double kStillTurnSigma = 1e-5;   // rad
-constexpr double kNoWay = 100.0;           // m/s: no vehicle of ours flies so fast
-constexpr int kLostScans = 15;             // in a row that contradict the map
-constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
-// While the IMU is silent, the vehicle may do as it likes.
+constexpr double kStillSpeedSigma = 0.01;  // m/s, of the zero velocity at a standstill
+constexpr double kStillShiftSigma = 1e-4;  // m, of the held first pose
+constexpr double kStillTurnSigma = 1e-5;   // rad, likewise
+constexpr double kNoWay = 100.0;           // m/s: maximum plausible speed of the vehicle
+constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
+constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
+// Noise used while no IMU samples arrive: large enough to cover any motion of the vehicle.
 constexpr ImuNoise kCoasting{0.5, 5.0, 1e-3, 1e-2};
-// For rigs that name no noise: a Mid-360's data sheet.
+// Used if the rig specifies no noise: a Mid-360's data sheet.
 constexpr ImuNoise kUsualImu{7.85e-5, 9.81e-4, 1e-5, 1e-4};
 
 ImuNoise densities_of(const ImuInfo& imu, double factor) {
@@ -42,7 +42,7 @@ std::vector<Eigen::Vector3f> transformed(const Pose& pose,
   return moved;
 }
 
-/// At most `most` of the points, evenly spread over their order.
+/// At most `most` of the points, at even intervals of their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
   const auto count = static_cast<std::size_t>(most);
   if (points.size() <= count) return points;
@@ -147,7 +147,7 @@ void FastLio2::predict(const std::vector<ImuInput>& inputs) {
       config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
   for (const ImuInput& input : inputs) {
     Eigen::Vector3d accel = accel_scale_ * input.accel;
-    if (input.gap) {  // on with the velocity it has
+    if (input.gap) {  // coast with constant velocity
       accel = state.accel_bias - state.rotation.transpose() * state.gravity;
     }
     const Eigen::Vector3d acceleration =
@@ -207,20 +207,20 @@ ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResidual
   }
   if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
-  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // and stays so
+  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
   const bool contradicts =
       static_cast<double>(update.points.count) < config_.least_agreement * residuals.near_planes();
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
-  // The position's block of the sum is that of n n^T, each weighted.
+  // The block of the position is the weighted sum of n n^T over all normals n.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
       update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
   const double weakest = directions.eigenvalues()[0] / directions.eigenvalues().sum();
   return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
-/// What comes out of time order changes nothing.
+/// A scan out of time order is counted and changes nothing else.
 ScanResult FastLio2::refused_scan() {
   ++scans_refused_;
   return finish_scan(poses_.back().stamp, ScanStatus::kTooFewPoints, {});

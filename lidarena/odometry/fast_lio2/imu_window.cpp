@@ -7,8 +7,8 @@
 namespace lidarena::fast_lio2 {
 namespace {
 
-constexpr Time kJump = std::chrono::seconds(1);  // no IMU pauses so long and then goes on as before
-// No IMU for vehicles has a smaller range than 125 deg/s and 2 g.
+constexpr Time kJump = std::chrono::seconds(1);  // longer than any pause of a working IMU
+// Smallest ranges of IMUs for vehicles, 125 deg/s and 2 g: smaller readings are not clipped.
 constexpr double kSmallestGyroRange = 2.1;    // rad/s
 constexpr double kSmallestAccelRange = 18.6;  // m/s^2
 
@@ -30,7 +30,7 @@ bool ImuWindow::add(const ImuSample& sample) {
   };
   if (!sample.gyro.allFinite() || !sample.accel.allFinite()) return refuse();
   if (sample.stamp <= newest_) {
-    // Is this one wrong, or the one before, which was far ahead of all others?
+    // Either this stamp is wrong, or the previous one was far ahead of all others.
     const bool jumped = !waiting_.empty() && waiting_.back().stamp == newest_ &&
                         newest_ - before_newest_ > kJump && sample.stamp > before_newest_;
     if (!jumped) return refuse();

@@ -10,7 +10,7 @@ namespace {
 
 using Columns = Eigen::Matrix<double, 3, kNeighbors>;
 
-/// a . x = -1 in the sense of least squares.
+/// Least-squares solution of a . x = -1.
 Plane through_origin(const Columns& points) {
   const Eigen::Matrix<float, kNeighbors, 3> rows = points.transpose().cast<float>();
   const Eigen::Vector3f a =
@@ -19,7 +19,7 @@ Plane through_origin(const Columns& points) {
   return {a.cast<double>() / length, 1.0 / length};
 }
 
-/// Across the direction in which the points spread least.
+/// Through the centroid, normal along the direction of the points' smallest spread.
 Plane principal(const Columns& points) {
   const Eigen::Vector3d center = points.rowwise().mean();
   const Columns centered = points.colwise() - center;
@@ -43,7 +43,7 @@ std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thi
   }
   const Plane plane = fit == PlaneFit::kPrincipal ? principal(columns) : through_origin(columns);
   const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
-  // Not "greater than": a fit that failed is not finite.
+  // Negated comparison, because a failed fit is not finite.
   if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
   return plane;
 }
@@ -86,8 +86,7 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Kd
     : points_(points), map_(map), config_(config), parallel_(parallel), matches_(points.size()) {}
 
 void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
-  match.found =
-      map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
+  match.found = map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
   match.plane.reset();
   if (match.found == kNeighbors) {
     match.plane = fit_plane(match.neighbors, config_.plane_fit, config_.plane_thickness_m);

@@ -12,13 +12,13 @@ namespace {
 using Eigen::Vector3d;
 using Columns3 = Eigen::Matrix<double, 3, kNeighbors>;
 
-constexpr double kPlaneRatio = 0.05;        // spread of a plane's narrow side by its wide one
-constexpr float kMaxNeighbor = 1.0F;       // m, the fifth
-constexpr double kLineRatio = 3.0;          // spread along by spread across
-constexpr double kLeastWeight = 0.1;        // of a match that counts
-constexpr std::size_t kLeastMatches = 50;   // fewer tell nothing
-constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's
-constexpr double kLeastShare = 0.003;       // of all; 1/6 if all alike
+constexpr double kPlaneRatio = 0.05;        // minimum spread of a plane's narrow side / wide side
+constexpr float kMaxNeighbor = 1.0F;        // m, maximum distance of the fifth neighbor
+constexpr double kLineRatio = 3.0;          // minimum spread along a line / across it
+constexpr double kLeastWeight = 0.1;        // minimum weight of a match
+constexpr std::size_t kLeastMatches = 50;   // fewer do not determine a pose
+constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's value
+constexpr double kLeastShare = 0.003;       // minimum share of a direction; isotropic: 1/6
 
 Columns3 columns_of(const Neighbors& points) {
   Columns3 columns;
@@ -27,7 +27,7 @@ Columns3 columns_of(const Neighbors& points) {
   return columns;
 }
 
-/// Eigenvectors of the spread about the center, the smallest first.
+/// Eigenvectors of the points' spread about the center, smallest eigenvalue first.
 Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread_of(const Columns3& points,
                                                          const Vector3d& center) {
   const Columns3 centered = points.colwise() - center;
@@ -52,7 +52,7 @@ PointResidual residual_along(const Vector3d& direction, double distance, const V
   return residual;
 }
 
-/// What the points of one kind were matched with.
+/// Lines or planes matched with the points of one kind.
 template <class Shape>
 using Matches = std::vector<std::optional<Shape>>;
 
@@ -79,7 +79,7 @@ PoseEquations sum_of(const std::vector<Eigen::Vector3f>& points, const Matches<S
       });
 }
 
-/// Lines and planes of all points, searched anew or kept.
+/// Lines and planes of all points, kept until the next search.
 class Matcher {
  public:
   Matcher(const Features& features, const FeatureMap& map, const Config& config,
@@ -115,7 +115,7 @@ class Matcher {
   Matches<Plane> planes_;
 };
 
-/// Root of the mean square of the points' ranges.
+/// Root mean square of the points' ranges.
 double lever_of(const std::vector<Eigen::Vector3f>& points) {
   double sum = 0.0;
   for (const Eigen::Vector3f& p : points) sum += static_cast<double>(p.squaredNorm());
@@ -140,13 +140,13 @@ std::optional<Plane> fit_plane(const Neighbors& points, PlaneFit fit, double thi
   } else {
     const Vector3d center = columns.rowwise().mean();
     const auto spread = spread_of(columns, center);
-    // on a line, as the sweeps of one scan leave them, they hold no plane
+    // points on a line, for example of one sweep of the beam, do not determine a plane
     if (spread.eigenvalues()[1] < kPlaneRatio * spread.eigenvalues()[2]) return std::nullopt;
     plane.normal = spread.eigenvectors().col(0);
     plane.offset = -plane.normal.dot(center);
   }
   const auto distances = (plane.normal.transpose() * columns).array() + plane.offset;
-  // Not "greater than": a fit that failed is not finite.
+  // Negated comparison, because a failed fit is not finite.
   if (!(distances.abs().maxCoeff() <= thickness)) return std::nullopt;
   return plane;
 }
@@ -174,7 +174,7 @@ std::optional<PointResidual> surface_residual(const Vector3d& point, const Plane
 Degenerate find_degenerate(const PoseEquations& equations, double lever, Degeneracy rule) {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  Vector6 unit = Vector6::Ones();  // of each error, so that all are alike
+  Vector6 unit = Vector6::Ones();  // scale of each error that makes them comparable
   double least = kLeastEigenvalue;
   if (rule == Degeneracy::kShare) {
     unit.head<3>().setConstant(1.0 / lever);
