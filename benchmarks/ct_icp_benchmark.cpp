@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of CT-ICP, each on its own, with the settings of preset improved, in a box of 16 x 12 x
-// 4 m: thinning, keypoints, search with description, one step of each solver, insertion.
+// Times of the single steps of CT-ICP with the settings of preset improved, in a box of 16 x 12 x
+// 4 m: downsampling, keypoints, neighbor search and description, one step of each solver,
+// insertion.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -14,7 +15,7 @@
 namespace lidarena::ct_icp {
 namespace {
 
-/// Points of a scan at rest in the middle of the box, noise 2 cm, evenly over the sphere.
+/// Points of a scan at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
 std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
   const CounterRandom random(seed);
   const Eigen::Array3d half(8.0, 6.0, 2.0);
@@ -86,7 +87,7 @@ void describe_neighbors(benchmark::State& state) {
 }
 BENCHMARK(describe_neighbors);
 
-/// Matches of a scan that moved a little, by the planes of the box.
+/// Matches of a scan with the planes of the box.
 std::vector<ElasticMatch> matches() {
   std::vector<ElasticMatch> made;
   for (const TimedPoint& keypoint : keypoints()) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How fast datasets are written, by format and dialect, and how much memory a long one takes. The
-// points are made up (a wall with 2 cm of noise), so that they compress about as real ones do.
+// Speed of writing datasets, by format and dialect, and memory while a long one is written. The
+// points are synthetic (a wall with 2 cm of noise) and compress about as well as real ones.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -36,11 +36,11 @@ class ScratchFolder {
 
 struct Sensor {
   Rig rig;
-  Scan scan;  ///< every shot gives a return
+  Scan scan;  ///< every shot has a return
 };
 
-/// `columns` firings of `rows` rays in one scan of 0.1 s; `together`: the rows of a column share
-/// their instant, as an Ouster's do.
+/// `columns` firings of `rows` rays in one scan of 0.1 s; `together`: the rows of a column have the
+/// same instant, as with an Ouster.
 Sensor make_sensor(const std::string& model, int rows, int columns, bool together) {
   Sensor sensor;
   LidarInfo& lidar = sensor.rig.lidars.emplace_back();
@@ -79,8 +79,8 @@ std::uintmax_t bytes_in(const fs::path& folder) {
   return bytes;
 }
 
-/// 20 scans a round: points, bytes in memory (24 a point) and bytes on the disk per second of the
-/// processor.
+/// Writes 20 scans per iteration; reports points, bytes in memory (24 per point) and bytes on disk
+/// per second of CPU time.
 void write_scans(benchmark::State& state, Sensor (*make)(), DatasetFormat format, Dialect dialect) {
   constexpr int kScans = 20;
   const Sensor sensor = make();
@@ -130,8 +130,8 @@ double resident_mb() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) * 1e-6;
 }
 
-/// Ten minutes of a Mid-360: 200,000 points/s, IMU at 200 Hz, truth at 1 kHz. "grown MB" is what
-/// the process grew between the tenth second and the last; "written MB" what lies on the disk.
+/// Ten minutes of a Mid-360: 200,000 points/s, IMU at 200 Hz, truth at 1 kHz. "grown MB" is the
+/// growth of the process from the tenth second to the last; "written MB" the size on disk.
 void ten_minutes(benchmark::State& state, DatasetFormat format) {
   const Sensor sensor = mid360();
   for (auto _ : state) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The incremental k-d tree with the load that an odometry puts on it: scans of a room, averaged in
-// cells of 0.2 m, from a place that moves. Beside it stand a static tree that is built anew for
-// each scan (nanoflann, when it was found) and our voxel map.
+// The incremental k-d tree under the load of an odometry: scans of a room from a moving sensor,
+// averaged in voxels of 0.2 m. For comparison: a static tree that is rebuilt for each scan
+// (nanoflann, if it was found) and our voxel map.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -45,7 +45,7 @@ Points scan_of(int index, const Eigen::Vector3f& half) {
   return voxel_means(points, kVoxel);
 }
 
-/// The scans of a walk, made once for each room; the argument is the room's length, m.
+/// The scans of a walk, computed once for each room; `length` is the room's length, m.
 const std::vector<Points>& scans(int length) {
   static std::map<int, std::vector<Points>> rooms;
   std::vector<Points>& room = rooms[length];
@@ -72,7 +72,8 @@ double percentile(std::vector<double>& values, double share) {
   return values[static_cast<std::size_t>(place)];
 }
 
-/// What one insertion takes, and all of a scan: re-balancing shows in the tail.
+/// Time of one insertion and of all insertions of a scan; re-balancing shows in the high
+/// percentiles.
 void kd_tree_insertion(benchmark::State& state) {
   using Clock = std::chrono::steady_clock;
   const auto since = [](Clock::time_point start) {
@@ -117,7 +118,7 @@ void kd_tree_nearest(benchmark::State& state) {
                           static_cast<std::int64_t>(scans(length).back().size()));
 }
 
-/// The alternative to a tree that grows: all points of the map in a new one for each scan.
+/// The alternative to an incremental tree: a new tree of all points of the map for each scan.
 void kd_tree_rebuild(benchmark::State& state) {
   const Points points = walked(static_cast<int>(state.range(0))).points();
   for (auto _ : state) {
@@ -143,7 +144,7 @@ void voxel_map_insertion(benchmark::State& state) {
   }
 }
 
-/// It gives the nearest point alone.
+/// The voxel map returns only the nearest point.
 void voxel_map_nearest(benchmark::State& state) {
   const auto length = static_cast<int>(state.range(0));
   const VoxelHashMap map = voxel_map(walked(length).points());
@@ -157,7 +158,7 @@ void voxel_map_nearest(benchmark::State& state) {
 }
 
 #ifdef LIDARENA_HAVE_NANOFLANN
-/// What nanoflann asks of a set of points.
+/// The interface that nanoflann requires of a point set.
 struct Cloud {
   const Points& points;
   std::size_t kdtree_get_point_count() const { return points.size(); }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// KISS-ICP alone, one scan after the other straight from a sequence of synthetic rooms (scans.txt,
-// scans/%06d.bin with x y z t in doubles), as little around it as around the public program when
-// its cost was counted. Under `valgrind --tool=callgrind` two runs that differ in their number of
-// scans give the instructions of one; prints the process's peak memory. Usage:
+// Runs KISS-ICP on a sequence of synthetic rooms (scans.txt, scans/%06d.bin with x y z t in
+// doubles) with as little other code as when the cost of the published program was measured. Under
+// `valgrind --tool=callgrind` the difference of two runs with different numbers of scans gives the
+// instructions per scan; prints the process's peak memory. Usage:
 //   kiss_icp_alone FOLDER SCANS [PRESET]
 #include <sys/resource.h>
 
@@ -19,7 +19,7 @@ namespace {
 Scan scan_of(const std::string& file, double begin_s) {
   constexpr std::size_t kColumns = 4;
   std::ifstream in(file, std::ios::binary | std::ios::ate);
-  if (!in) throw InputError(file, "cannot be opened", "give a sequence with scans.txt and scans/");
+  if (!in) throw InputError(file, "cannot be opened", "use a sequence with scans.txt and scans/");
   std::vector<double> values(static_cast<std::size_t>(in.tellg()) / sizeof(double));
   in.seekg(0);
   in.read(reinterpret_cast<char*>(values.data()),
@@ -46,7 +46,7 @@ int run(const std::string& folder, int scans, const std::string& preset) {
     std::snprintf(name, sizeof(name), "/scans/%06d.bin", number);
     odometry.register_scan(scan_of(folder + name, begin_s));
   }
-  if (done == 0) throw InputError(folder + "/scans.txt", "names no scan", "check the folder");
+  if (done == 0) throw InputError(folder + "/scans.txt", "lists no scans", "check the folder");
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const Eigen::Vector3d end = odometry.trajectory().poses().back().world_from_body.translation();

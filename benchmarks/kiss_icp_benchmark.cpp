@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of KISS-ICP, each on its own, on one thread: a scan in the middle of a flight through a
-// box of a room. And the map's nearest neighbors beside those of nanoflann on the same points.
+// Times of the single steps of KISS-ICP on one thread, for a scan during a flight through a
+// box-shaped room. Also compares the map's nearest-neighbor search with nanoflann on the same
+// points.
 #include <benchmark/benchmark.h>
 
 #ifdef LIDARENA_HAVE_NANOFLANN
@@ -23,9 +24,9 @@ using Eigen::Vector3f;
 
 constexpr double kNoise_m = 0.02;
 constexpr double kPeriod_s = 0.1;
-const Vector3d kHalfRoom(10.0, 7.5, 2.0);  // m; no pillars: enough to fill the cells
+const Vector3d kHalfRoom(10.0, 7.5, 2.0);  // m; without pillars
 
-/// 2 m/s and 60 deg/s about the middle of the room.
+/// Circular motion around the middle of the room with 2 m/s and 60 deg/s.
 Pose pose_at(double seconds) {
   const double angle = 1.05 * seconds;
   return make_pose(so3::exp({0.0, 0.0, angle}), {2.0 * std::sin(angle), -2.0 * std::cos(angle), 0});
@@ -40,7 +41,7 @@ double range_to_walls(const Vector3d& origin, const Vector3d& beam) {
   return range;
 }
 
-/// `count` beams all around, -7 to 52 deg, in no order that repeats.
+/// `count` beams in all azimuths, elevations -7 to 52 deg, in a pattern that does not repeat.
 Scan scan_at(int index, std::size_t count) {
   const CounterRandom random(1, static_cast<std::uint32_t>(index));
   Scan scan;
@@ -62,7 +63,7 @@ Scan scan_at(int index, std::size_t count) {
   return scan;
 }
 
-/// What the steps are given: a map of 20 scans, and the next scan in every state.
+/// Inputs of the steps: a map of 20 scans, and the next scan in each stage of processing.
 struct Stage {
   static constexpr int kScans = 20;
   Config config;
@@ -171,7 +172,7 @@ BENCHMARK(register_keypoints)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMilli
 BENCHMARK(solve)->Unit(benchmark::kMicrosecond);
 BENCHMARK(insert_into_map)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
 
-/// Nearest point of the map to each point of the scan, at most 0.4 m (a cell's edge) away.
+/// Nearest point of the map to each point of the scan, within 0.4 m (the voxel size).
 constexpr float kReach_m = 0.4F;
 
 void nearest_in_the_hash_map(benchmark::State& state) {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a scan costs beside the bare ray-casting calls on the same rays, in a closed world of a
-// million triangles. Each row runs the two in turn, so that what else the machine does meets both:
-//   bare, measured  shots a second of one core's time (bare: the packets lie ready, and nothing is
-//                   done with the hits)
-//   of_bare         their ratio
-//   real_time       scan period / time of a measured scan, by the wall clock: on an idle machine
-// The rows simulate/... do the same for everything down to the file: the flight, the IMU, the
-// scans, the recording as MCAP in our layout (24 bytes a point) or the sensor's driver's.
+// Cost of a simulated scan compared with the bare ray-casting calls for the same rays, in a closed
+// world of a million triangles. Each row alternates the two, so that other load affects both:
+//   bare, measured  shots per second of CPU time (bare: with prepared packets, hits are not used)
+//   of_bare         measured / bare
+//   real_time       scan period / wall time of a measured scan; meaningful on an idle machine
+// The rows simulate/... do the same for a complete simulation: flight, IMU, scans and recording as
+// MCAP in our layout (24 bytes per point) or in that of the sensor's driver.
 #include <benchmark/benchmark.h>
 #if LIDARENA_EMBREE_MAJOR >= 4
 #include <embree4/rtcore.h>
@@ -70,7 +69,7 @@ TriangleMesh bumpy_room() {
   return mesh;
 }
 
-/// The mesh in the bare library, with World's flags; counts the bytes it takes.
+/// The mesh in Embree directly, with the flags that World uses; counts Embree's memory in bytes.
 struct BareScene {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = nullptr;
@@ -119,7 +118,7 @@ struct BareScene {
   }
 };
 
-/// Everything is made once, for all rows.
+/// Inputs of all rows, created once.
 struct Stage {
   TriangleMesh mesh = bumpy_room();
   BareScene bare{mesh};
@@ -164,7 +163,7 @@ SensorConfig config_of(Sensor sensor, Effects effects) {
   return config;
 }
 
-/// The rays of a scan as the lidar casts them, in packets that lie ready.
+/// The rays of a scan in the lidar's order of casting, as prepared packets.
 std::vector<RTCRayHit8> packets_of(const Lidar& lidar, const SensorConfig& config,
                                    std::uint64_t index) {
   const Stage& stage = Stage::get();
@@ -204,7 +203,7 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-/// Least time of several runs, so that what disturbs single ones does not count.
+/// Minimum time of several runs, which reduces the effect of disturbances.
 struct Stopwatch {
   double processor_s = 1e9, wall_s = 1e9;
 
@@ -232,7 +231,7 @@ void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   const Parallel parallel(static_cast<int>(state.range(0)));
   const SensorConfig config = config_of(sensor, effects);
   const Lidar lidar(config, make_pattern(config), config.name, 1, true);
-  // Always the same scan in mid-flight; what is kept between scans is warm after the first.
+  // Always the same scan in mid-flight; caches between scans are filled after the first run.
   const std::uint64_t index = static_cast<std::uint64_t>(to_seconds(stage.flight.duration()) * 4.0);
   const auto packets = packets_of(lidar, config, index);
   Stopwatch bare, measured;
@@ -249,7 +248,7 @@ void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   state.counters["real_time"] = to_seconds(lidar.pattern().period()) / measured.wall_s;
 }
 
-constexpr int kTurns = 25;  // the least time of these many is reported
+constexpr int kTurns = 25;  // runs per row, of which the minimum time is reported
 
 void register_rows() {
   const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
@@ -273,7 +272,7 @@ void register_rows() {
 }
 [[maybe_unused]] const bool kRegistered = (register_rows(), true);
 
-/// Three seconds of flight, down to the file. Bare calls: every fifth scan, five times.
+/// Three seconds of flight, written to a file. Bare calls: every fifth scan, five times.
 void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects, Dialect dialect) {
   namespace fs = std::filesystem;
   constexpr std::uint64_t kEvery = 5;
@@ -342,7 +341,7 @@ void register_simulations() {
 }
 [[maybe_unused]] const bool kSimulationsRegistered = (register_simulations(), true);
 
-/// The parts of a scan that are not ray casting, one thread.
+/// Parts of a scan other than ray casting, on one thread.
 void pattern(benchmark::State& state, Sensor sensor) {
   const auto made = make_pattern(config_of(sensor, kGeometry));
   std::vector<Beam> beams;
@@ -362,8 +361,7 @@ void motion(benchmark::State& state) {
 }
 BENCHMARK(motion)->Unit(benchmark::kMillisecond);
 
-/// Which form of the bare call is fastest: rays one by one, and in packets of eight neighbors, in
-/// firing order and in casting order.
+/// Comparison of bare calls: single rays, and packets of eight rays in casting order.
 void bare_one_by_one(benchmark::State& state, Sensor sensor) {
   const SensorConfig config = config_of(sensor, kGeometry);
   const Lidar lidar(config, make_pattern(config), config.name, 1, true);
@@ -401,7 +399,7 @@ void bare_packets(benchmark::State& state, Sensor sensor) {
 BENCHMARK_CAPTURE(bare_packets, mid360, kMid360)->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(bare_packets, os0, kOs0)->Unit(benchmark::kMillisecond);
 
-/// Bytes a triangle: of the library's copy and tree, and of the mesh beside it.
+/// Bytes per triangle: of Embree's copy and tree, and of our mesh.
 void memory(benchmark::State& state) {
   const Stage& stage = Stage::get();
   for (auto _ : state) benchmark::DoNotOptimize(stage.bare.bytes);

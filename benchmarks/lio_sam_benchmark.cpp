@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// LIO-SAM step by step, on scans of a room with pillars: 20,000 points on 4 lines that do not
-// repeat (Mid-360), and 128 x 1024 points (OS0-128).
+// Times of the single steps of LIO-SAM on scans of a room with pillars: 20,000 points on 4 lines in
+// a pattern that does not repeat (Mid-360), and 128 x 1024 points (OS0-128).
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -42,7 +42,7 @@ double cast(const Vector3d& origin, const Vector3d& beam) {
   return range;
 }
 
-/// What a standing sensor sees from `place`.
+/// Scan of a sensor at rest at `place`.
 Scan scan_from(const Vector3d& place, bool spinning, std::uint64_t seed) {
   const CounterRandom random(seed);
   Scan scan;
@@ -66,7 +66,7 @@ Scan scan_from(const Vector3d& place, bool spinning, std::uint64_t seed) {
   return scan;
 }
 
-/// A scan, and the keyframes of a walk through the room before it.
+/// A scan, and the keyframes of an earlier walk through the room.
 struct Scene {
   Config config;
   Scan scan;
@@ -135,7 +135,7 @@ void build_submap(benchmark::State& state) {
   state.counters["points"] = static_cast<double>(points);
 }
 
-/// As a flight goes on: one keyframe in, one out.
+/// As during a flight: adds one keyframe and removes one.
 void follow_submap(benchmark::State& state) {
   const Scene& s = scene(state);
   const std::vector<std::uint32_t> without_last(s.chosen.begin(), s.chosen.end() - 1);

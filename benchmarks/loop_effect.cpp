@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What each loop does to the map: LIO-SAM without and with loop closure side by side over a
-// dataset; after each scan that brought a loop, and at the end, both maps' error against the mesh
-// (SE(3) gauge on the flight so far, at most 200,000 points). Usage:
+// Effect of each loop on the map: runs LIO-SAM without and with loop closure on a dataset and
+// prints the error of both maps against the mesh after each scan that added a loop, and at the end
+// (SE(3) gauge on the flight up to then, at most 200,000 points). Usage:
 //   loop_effect PRESET DATASET [KEY=VALUE ...]
 #include <fmt/format.h>
 
@@ -50,7 +50,7 @@ int show(const std::string& preset, const std::string& path, std::vector<std::st
   const Parallel parallel(0);
   Dataset dataset = open_any_dataset(path, {}, parallel);
   const std::optional<Trajectory> truth = load_truth(path);
-  if (!truth) throw InputError(path, "carries no truth", "give a simulated dataset");
+  if (!truth) throw InputError(path, "has no ground truth", "use a simulated dataset");
   const World world(load_mesh(path + "/world.ply"));
   const LidarInfo* lidar = dataset.rig.find_lidar("");
   const auto made = [&](const char* algorithm) {
@@ -91,7 +91,8 @@ int show(const std::string& preset, const std::string& path, std::vector<std::st
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 3) throw lidarena::InputError("arguments", "two are needed", "PRESET DATASET");
+    if (argc < 3)
+      throw lidarena::InputError("arguments", "two are needed", "give PRESET and DATASET");
     return lidarena::show(argv[1], argv[2], {argv + 3, argv + argc});
   } catch (const std::exception& error) {
     fmt::print(stderr, "loop_effect: {}\n", error.what());

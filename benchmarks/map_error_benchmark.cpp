@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Ten million points of a map against a mesh of a million triangles (the cave with a finer grid),
-// beside bare Embree point queries on the same points in the same run.
+// Error of a map of ten million points against a mesh of a million triangles (the cave with a finer
+// grid), compared with direct Embree point queries on the same points in the same run.
 #include <benchmark/benchmark.h>
 
 #if LIDARENA_EMBREE_MAJOR >= 4
@@ -28,8 +28,8 @@ constexpr std::size_t kPoints = 10'000'000;
 constexpr double kNoise_m = 0.02;
 constexpr double kVoxel_m = 0.02;
 
-/// Returns along the route with range noise, the first in each voxel, in the order they came: what
-/// an evaluation is handed.
+/// Map as given to an evaluation: returns along the route with range noise, the first of each
+/// voxel, in time order.
 std::vector<Vector3f> make_map(const World& world, const std::vector<Vector3d>& route) {
   SequentialRandom random(1);
   PointMap map(kVoxel_m, kPoints);
@@ -90,8 +90,7 @@ BENCHMARK(map_error_of_ten_million)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
 
-/// What one gets by calling Embree as its manual shows: single precision, one query a point, and
-/// the closest triangle kept.
+/// Direct use of Embree as in its manual: single precision, one query per point, closest triangle.
 struct Bare {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = rtcNewScene(device);
@@ -156,7 +155,7 @@ bool keep_nearest(RTCPointQueryFunctionArguments* args) {
 
 void bare_embree_point_queries(benchmark::State& state) {
   static const Bare bare(scene().model.mesh);
-  constexpr std::size_t kStride = 10;  // a tenth of the points, as neighbors in runs
+  constexpr std::size_t kStride = 10;  // the first tenth of the points, so that neighbors are kept
   const std::vector<Vector3f>& map = scene().map;
   const std::size_t count = map.size() / kStride;
   for (auto _ : state) {

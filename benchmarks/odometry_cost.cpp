@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What an odometry costs: CPU time of its calls alone (of all threads of the process: reading is
-// done between the calls), memory by part, statuses. Usage:
+// Cost of an odometry: CPU time of its calls (of all threads of the process; reading happens
+// between the calls and is not counted), memory by part, statuses. Usage:
 //   odometry_cost ALGORITHM PRESET DATASET [--out FILE.tum] [--sensor ID] [--threads N]
 //                 [KEY=VALUE ...]
 #include <fmt/format.h>
@@ -45,7 +45,7 @@ Arguments parsed(const std::vector<std::string>& words) {
     }
   }
   if (places.size() != 3) {
-    throw InputError("arguments", "three are needed", "ALGORITHM PRESET DATASET");
+    throw InputError("arguments", "three are needed", "give ALGORITHM, PRESET and DATASET");
   }
   a.odometry.algorithm = places[0];
   a.odometry.preset = places[1];
@@ -64,7 +64,7 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// A line now and then: memory over time.
+/// Prints the memory by part after `scans` scans.
 void print_state(std::size_t scans, const Odometry& odometry) {
   fmt::print("scan {}: rss {:.1f} MB", scans, 1e-6 * static_cast<double>(resident_bytes()));
   for (const auto& [part, bytes] : odometry.memory()) {
@@ -84,10 +84,10 @@ int measure(const Arguments& a) {
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
   const auto odometry = make_odometry(a.odometry, dataset.rig, lidar->id, parallel).odometry;
   std::vector<double> scan_ms;
-  double between = 0.0;  // the IMU's share until the next scan
+  double between = 0.0;  // CPU time of the IMU calls before the next scan, s
   std::map<std::string, std::size_t> statuses;
   std::map<std::string, double> sums;
-  double least_agreement = 1.0;  // of a scan with its map, where that is told
+  double least_agreement = 1.0;  // of a scan with the map, if the algorithm counts it
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);
     if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
@@ -119,7 +119,7 @@ int measure(const Arguments& a) {
              percentile(scan_ms, 0.99), percentile(scan_ms, 1.0));
   fmt::print("statuses: {}\nmeans:", statuses);
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
-  fmt::print("\nleast agreement of a scan with its map: {:.3f}\n", least_agreement);
+  fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", least_agreement);
   if (!a.out.empty()) write_tum(a.out, odometry->trajectory(), "");
   return 0;
 }

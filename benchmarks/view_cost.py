@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""What `lidarena view` costs with a map of many points, in a headless Chromium that draws by software.
+"""Measures the cost of `lidarena view` for a map of many points, in a headless Chromium with software rendering.
 usage: view_cost.py LIDARENA [--million 20] [--png FILE] [--keep FOLDER]
 
-Software rendering (SwiftShader) is the slowest case: any graphics card is faster. The browser is running
-before the program is started, as a user's is. Needs NumPy and chromium. Fails when the page does.
+Software rendering (SwiftShader) is the slowest case: any graphics card is faster. The browser is started
+before the program, as is usual for a user. Needs NumPy and chromium. Fails if the page reports an error.
 """
 import argparse
 import base64
@@ -33,7 +33,7 @@ CHROMIUM = [
     "--disable-sync", "--remote-debugging-pipe",
 ]  # fmt: skip
 
-# Draws all that is loaded, without regard to how long it takes.
+# Draws all loaded points in one picture, regardless of the time that takes.
 DRAW_ALL = """(() => {
   const { view, panel } = window.lidarena;
   const loaded = view.clouds.reduce((sum, cloud) => sum + cloud.loaded, 0);
@@ -57,7 +57,7 @@ class Failure(Exception):
 
 
 def write_map(file, points):
-    """Hills of 200 x 200 m and 36 houses on them, as a binary PCD; the same bytes each time."""
+    """Writes hills of 200 x 200 m with 36 houses as a binary PCD; the same bytes each time."""
     header = (
         "VERSION .7\nFIELDS x y z intensity\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1\n"
         f"WIDTH {points}\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS {points}\nDATA binary\n"
@@ -69,7 +69,7 @@ def write_map(file, points):
 
 
 def some_points(random, count):
-    """Rows of x, y, z, intensity: three in five on the ground, the others on walls."""
+    """Rows of x, y, z, intensity: three fifths on the ground, the others on walls."""
     x, y = random.uniform(-100, 100, (2, count))
     walls = random.random(count) < 0.4
     house = random.integers(0, 6, (2, count)) * 32 - 80
@@ -85,7 +85,7 @@ def some_points(random, count):
 
 
 class Memory(threading.Thread):
-    """The peak of a session's memory: each page of all its processes, shared ones in their share (PSS)."""
+    """Peak memory of all processes of a session; shared pages are divided by their users (PSS)."""
 
     def __init__(self, leader):
         super().__init__(daemon=True)
@@ -105,13 +105,13 @@ class Memory(threading.Thread):
                 return 0
             rows = pathlib.Path(f"/proc/{pid}/smaps_rollup").read_text().splitlines()
             return next(int(row.split()[1]) for row in rows if row.startswith("Pss:"))
-        except (OSError, StopIteration):  # it has ended
+        except (OSError, StopIteration):  # the process has ended
             return 0
 
 
 @contextlib.contextmanager
 def started(command, **options):
-    """A process in a session of its own, ended with the block."""
+    """A process in its own session, terminated at the end of the block."""
     process = subprocess.Popen(command, stdin=subprocess.DEVNULL, start_new_session=True, **options)
     try:
         yield process
@@ -124,7 +124,7 @@ def started(command, **options):
 
 
 class Page:
-    """One page of a browser, driven by the DevTools protocol over two pipes."""
+    """One page of a browser, controlled by the DevTools protocol over two pipes."""
 
     def __init__(self, commands, answers):
         self.commands, self.answers = commands, answers
@@ -155,13 +155,13 @@ class Page:
             ready, _, _ = select.select([self.answers], [], [], max(0, deadline - time.monotonic()))
             data = os.read(self.answers, 1 << 20) if ready else b""
             if not data:
-                raise Failure("the browser has ended" if ready else "the browser does not answer")
+                raise Failure("the browser has exited" if ready else "the browser does not respond")
             self.rest += data
         message, self.rest = self.rest.split(b"\0", 1)
         return json.loads(message)
 
     def note(self, event):
-        """Keeps what the console calls an error."""
+        """Stores error messages of the console."""
         told = event.get("params", {})
         if event.get("method") == "Runtime.exceptionThrown":
             details = told["exceptionDetails"]
@@ -182,7 +182,7 @@ class Page:
 
 @contextlib.contextmanager
 def browser(folder):
-    """A headless Chromium: its process and a blank page."""
+    """Starts a headless Chromium; yields its process and a blank page."""
     command_out, command_in = os.pipe()
     answer_out, answer_in = os.pipe()
     redirected = f'exec "$0" "$@" 3<&{command_out} 4>&{answer_in}'
@@ -195,17 +195,17 @@ def browser(folder):
 
 
 def address_of(server):
-    """What the program prints once it listens."""
+    """The address that the program prints when it accepts connections."""
     told = ""
     for line in server.stdout:
         told += line
         with contextlib.suppress(json.JSONDecodeError):
             return json.loads(told)["address"]
-    raise Failure(f"lidarena view has ended: {told}")
+    raise Failure(f"lidarena view ended before printing its address: {told}")
 
 
 def wait_until_ready(page):
-    """The page's marks once everything is loaded; its own clock took them."""
+    """Waits until everything is loaded; returns the page's time marks, taken by its own clock."""
     deadline = time.monotonic() + LIMIT_S
     while time.monotonic() < deadline:
         marks = page.value("({ ...document.documentElement?.dataset, origin: performance.timeOrigin })")
@@ -219,7 +219,7 @@ def wait_until_ready(page):
 
 def measure(lidarena, cloud, points, folder, png):
     with browser(folder) as (chromium, page):
-        time.sleep(3)  # for the browser to come to rest
+        time.sleep(3)  # until the browser is idle
         browser_memory = Memory(chromium.pid)
         empty_MB = browser_memory.now_MB()
         begin = time.time()
@@ -231,7 +231,7 @@ def measure(lidarena, cloud, points, folder, png):
             answers_s = time.time() - begin
             page.call("Page.navigate", url=address)
             marks = wait_until_ready(page)
-            time.sleep(1)  # for the memory to be seen at its peak
+            time.sleep(1)  # until the memory peak has been sampled
             loaded_MB = browser_memory.peak_MB
             drawn = page.value(DRAW_ALL)
             if png:
@@ -242,7 +242,7 @@ def measure(lidarena, cloud, points, folder, png):
     if page.errors:
         raise Failure("errors in the console:\n" + "\n".join(page.errors))
     if drawn["drawn"] != points or not drawn["covered"] > 0:
-        raise Failure(f"not all is drawn: {drawn}")
+        raise Failure(f"not all points are drawn: {drawn}")
     opened_s = marks["origin"] / 1000 - begin
     return {
         "answers_s": answers_s,
@@ -268,28 +268,28 @@ def report(points, file_MB, cost):
 
     opened = cost["opened_s"]
     print(f"{points:,} points in a file of {file_MB:.0f} MB; software rendering on {os.cpu_count()} cores")
-    line("the program answers, after its start", cost["answers_s"], "s")
+    line("program responds, after its start", cost["answers_s"], "s")
     line("first picture, after the page is opened", cost["picture_s"], "s", BUDGETS["picture_s"])
     line("first picture, after the program's start", opened + cost["picture_s"], "s")
     line(f"all loaded and {cost['shown']:,} drawn, after the page is opened", cost["loaded_s"], "s")
     line("the same, after the program's start", opened + cost["loaded_s"], "s", BUDGETS["loaded_s"])
-    line("a picture of all points at once", cost["frame_s"], "s")
-    line("memory of the browser at most, of all its processes", cost["browser_MB"], "MB", BUDGETS["browser_MB"])
-    line("  of these before the picture of all points", cost["loaded_MB"], "MB")
-    line("  and with an empty page", cost["empty_MB"], "MB")
-    line("memory of the program at most", cost["program_MB"], "MB")
+    line("one picture of all points", cost["frame_s"], "s")
+    line("peak memory of the browser, all its processes", cost["browser_MB"], "MB", BUDGETS["browser_MB"])
+    line("  before the picture of all points", cost["loaded_MB"], "MB")
+    line("  with an empty page", cost["empty_MB"], "MB")
+    line("peak memory of the program", cost["program_MB"], "MB")
     print(f"  {100 * cost['covered']:.0f} % of the picture is covered; no errors in the console")
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("lidarena", help="the program")
-    parser.add_argument("--million", type=float, default=20, help="points, in millions")
-    parser.add_argument("--png", type=pathlib.Path, help="where to save the picture of all points")
-    parser.add_argument("--keep", type=pathlib.Path, help="a folder for the map and the browser's log, kept")
+    parser.add_argument("lidarena", help="path of the program lidarena")
+    parser.add_argument("--million", type=float, default=20, help="number of points, in millions")
+    parser.add_argument("--png", type=pathlib.Path, help="file in which to save the picture of all points")
+    parser.add_argument("--keep", type=pathlib.Path, help="folder in which to keep the map and the browser's log")
     given = parser.parse_args()
     if not shutil.which(CHROMIUM[0]):
-        sys.exit("view_cost: there is no chromium")
+        sys.exit("view_cost: chromium was not found; install it")
     points = round(given.million * 1e6)
     with contextlib.ExitStack() as stack:
         folder = given.keep or pathlib.Path(stack.enter_context(tempfile.TemporaryDirectory()))

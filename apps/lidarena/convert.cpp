@@ -172,8 +172,7 @@ void add_convert(CLI::App& app, Common& common, int& exit_code) {
       ->required();
   verb->add_option("--format", o->format, "Of a dataset's folder: mcap, bag, pcd, ply, kitti")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}));
-  verb->add_flag("--compress", o->compress,
-                 "Chunks of MCAP by zstd: smaller, slower");
+  verb->add_flag("--compress", o->compress, "Chunks of MCAP by zstd: smaller, slower");
   verb->add_option("--dialect", o->dialect, "si, or driver: the drivers' own layouts and units")
       ->check(CLI::IsMember({"si", "driver"}))
       ->capture_default_str();

@@ -85,8 +85,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
                    "mcap or bag (one recording), pcd, ply or kitti (a file a sweep)")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}))
       ->capture_default_str();
-  verb->add_flag("--compress", o->compress,
-                 "Chunks of MCAP by zstd: smaller, slower");
+  verb->add_flag("--compress", o->compress, "Chunks of MCAP by zstd: smaller, slower");
   verb->add_option("--dialect", o->dialect,
                    "si, or driver: recordings in the layouts and units of the sensors' own drivers")
       ->check(CLI::IsMember({"si", "driver"}))

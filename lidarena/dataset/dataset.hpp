@@ -40,7 +40,8 @@ struct Dataset {
 /// m/s^2 or g. Throws InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
-/// Ground-truth trajectory of the body if the dataset has one (truth.tum). For evaluation only: estimators must not call it.
+/// Ground-truth trajectory of the body if the dataset has one (truth.tum). For evaluation only:
+/// estimators must not call it.
 std::optional<Trajectory> load_truth(const std::filesystem::path& dataset);
 
 /// Ground truth of the points of the LiDAR `sensor` (empty = the only one), scan by scan; null when

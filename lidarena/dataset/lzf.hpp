@@ -8,8 +8,8 @@
 
 namespace lidarena {
 
-/// Expands LZF data (as in binary_compressed PCD); none if `input` is not the whole of exactly `size`
-/// bytes.
+/// Expands LZF data (as in binary_compressed PCD); none if `input` is not the whole of exactly
+/// `size` bytes.
 std::optional<std::string> expand_lzf(std::string_view input, std::size_t size);
 
 }  // namespace lidarena

@@ -47,7 +47,7 @@ struct ElasticProblem {
   MotionPrior prior;
   RobustKernel kernel = RobustKernel::kCauchy;
   double kernel_scale = 0.1;  ///< m, scale of the kernel for the weighted error
-  bool exact_slerp = true;  ///< false: ElasticSegment::first_order_row (Gauss-Newton only)
+  bool exact_slerp = true;    ///< false: ElasticSegment::first_order_row (Gauss-Newton only)
 };
 
 /// The cost that both solvers minimize: 1/2 sum of losses; with N matches, each term of the prior

@@ -12,7 +12,7 @@ namespace lidarena {
 
 namespace {
 
-/// Preset, then file, then overrides.
+/// Applies the file to the preset `config`, then the overrides.
 template <class Config>
 Config configured(Config config, const OdometryRequest& request) {
   if (!request.config_file.empty()) read_config(ConfigNode::load(request.config_file), config);
@@ -20,7 +20,7 @@ Config configured(Config config, const OdometryRequest& request) {
   return config;
 }
 
-/// An odometry's own configuration, and that of the loop closure around it.
+/// Configuration of an odometry and of the loop closure around it.
 template <class Inner>
 struct LoopedConfig {
   Inner odometry;
@@ -28,18 +28,18 @@ struct LoopedConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("odometry", self.odometry, "", "of the odometry itself");
-    v("loops", self.loops, "", "of the loop closure around it");
+    v("odometry", self.odometry, "", "settings of the odometry itself");
+    v("loops", self.loops, "", "settings of the loop closure around it");
   }
 };
 
 const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const LidarInfo& lidar) {
   if (const ImuInfo* imu = rig.imu_beside(lidar)) return *imu;
-  throw InputError("rig", "it has no IMU, which " + algorithm + " needs",
-                   "use kiss_icp without one");
+  throw InputError("rig", "it has no IMU, but " + algorithm + " needs one",
+                   "use kiss_icp or ct_icp, which need none");
 }
 
-/// Each knows its configuration and how to build from it.
+/// One struct for each algorithm: its configuration, its presets and how to build it.
 struct Kiss {
   using Config = kiss_icp::Config;
   static constexpr auto preset = kiss_icp::preset;

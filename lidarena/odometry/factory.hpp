@@ -12,12 +12,12 @@
 
 namespace lidarena {
 
-/// What to build.
+/// Which odometry to build, and its settings.
 struct OdometryRequest {
-  std::string algorithm;                 ///< a name of list_algorithms()
-  std::string preset = "improved";       ///< "original", "improved", or one more the algorithm has
-  std::string config_file{};             ///< YAML over the preset; may be empty
-  std::vector<std::string> overrides{};  ///< "key=value", over everything
+  std::string algorithm;                 ///< one of the names of list_algorithms()
+  std::string preset = "improved";       ///< "original", "improved" or another of its presets
+  std::string config_file{};             ///< YAML, applied after the preset; empty: none
+  std::vector<std::string> overrides{};  ///< "key=value", applied last
 };
 
 struct AlgorithmInfo {
@@ -27,16 +27,16 @@ struct AlgorithmInfo {
   bool needs_imu = false;
 };
 
-/// The explicit table of algorithms.
+/// All algorithms, from an explicit table.
 std::vector<AlgorithmInfo> list_algorithms();
 
-/// JSON Schema of the configuration file of the algorithm `name`. Throws InputError when there is
-/// none.
+/// JSON Schema of the configuration file of the algorithm `name`. Throws InputError for an unknown
+/// name.
 Json algorithm_schema(const std::string& name);
 
 struct MadeOdometry {
   std::unique_ptr<Odometry> odometry;
-  Json config;  ///< the configuration in full, for the manifest
+  Json config;  ///< the complete configuration, for the manifest
 };
 
 /// Builds an odometry for the LiDAR `lidar_id` of `rig` (empty: its only one).

@@ -16,21 +16,21 @@
 namespace lidarena {
 
 enum class ScanStatus {
-  kTracked,       ///< the estimate rests on this scan
-  kInitializing,  ///< still settling (first scan, IMU alignment); the estimate is provisional
-  kDegenerate,    ///< some direction was not observable
+  kTracked,       ///< the estimate was updated with this scan
+  kInitializing,  ///< first scan or IMU alignment; the estimate is provisional
+  kDegenerate,    ///< at least one direction was not observable
   kTooFewPoints,  ///< nothing usable in the scan; the estimate is a prediction
   kDiverged,      ///< the estimate must not be used
 };
 const char* to_string(ScanStatus status);
 
-/// What became of one scan.
+/// Result of one scan.
 struct ScanResult {
-  StampedPose estimate;  ///< world_from_body, and the instant it holds for
+  StampedPose estimate;  ///< world_from_body and the instant at which it holds
   ScanStatus status = ScanStatus::kTracked;
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;  ///< of (translation, rotation), if known
   std::map<std::string, double> counters;  ///< iterations, inliers, edges, planes, loops, ...
-  /// Poses within the scan, where the method estimates or assumes them (for de-skewing others).
+  /// Poses within the scan, if the method estimates or assumes them; for de-skewing by others.
   std::vector<StampedPose> motion;
 };
 
@@ -38,28 +38,30 @@ struct OdometryTraits {
   bool needs_imu = false;
   bool revises_past = false;     ///< trajectory() after finish() differs from the live estimates
   bool gravity_aligned = false;  ///< its world frame has z up
-  /// True: its map is what it publishes scan by scan, see registered_scan(); false: map().
+  /// True: the map is made of the published scans, see registered_scan(); false: it is map().
   bool publishes_scans = true;
   std::string pose_frame = "body";
 };
 
-/// A LiDAR(-inertial) odometry. Built from configuration and rig by the factory; sees events alone,
-/// never the world, the flight or the truth. Its world frame is the body frame at its start
-/// (turned upright if gravity_aligned).
+/// A LiDAR(-inertial) odometry. Built from configuration and rig by the factory. It receives only
+/// events and has no access to the world, the flight or the ground truth. Its world frame is the
+/// body frame at the start (leveled, so that z points up, if gravity_aligned).
 class Odometry {
  public:
   virtual ~Odometry() = default;
   virtual OdometryTraits traits() const = 0;
-  /// In time order, and before the scan that it falls into; ignored by LiDAR-only methods.
+  /// Samples come in time order, and before the scan during which they were taken. LiDAR-only
+  /// methods ignore them.
   virtual void register_imu(const ImuSample&) {}
   virtual ScanResult register_scan(const Scan& scan) = 0;
-  /// No more events: flush smoothers, last loop closures.
+  /// Call after the last event: flushes smoothers and closes the last loops.
   virtual void finish() {}
-  /// Best estimate of everything so far.
+  /// Best estimate of all poses so far.
   virtual Trajectory trajectory() const = 0;
   /// The method's own map, world frame, m.
   virtual std::vector<Eigen::Vector3f> map() const = 0;
-  /// The last scan as the method publishes it: de-skewed, world frame. Valid until the next call.
+  /// The last scan as the method publishes it: de-skewed, world frame, m. Valid until the next
+  /// call.
   virtual std::span<const Eigen::Vector3f> registered_scan() const { return {}; }
   /// Bytes held by part: "map", "scan_buffer", "backlog", "other".
   virtual std::map<std::string, std::uint64_t> memory() const = 0;

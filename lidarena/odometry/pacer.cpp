@@ -16,7 +16,7 @@ void Pacer::offer(Event event) {
   }
   const Time arrival = end_of(*scan);
   if (free_ <= arrival) {
-    hand_over();  // what waited was taken up before this scan came
+    hand_over();  // the waiting events were processed before this scan arrived
   } else {
     drop_waiting_scan();
   }
@@ -41,7 +41,7 @@ void Pacer::drop_waiting_scan() {
   if (waiting_.empty() || !std::holds_alternative<Scan>(waiting_.front().data)) return;
   waiting_.pop_front();
   ++dropped_;
-  // Its IMU samples are part of the way to the next scan.
+  // The IMU samples that followed the dropped scan are needed for the motion up to the next scan.
   for (; !waiting_.empty(); waiting_.pop_front()) process_(waiting_.front());
 }
 

@@ -9,18 +9,18 @@
 
 namespace lidarena {
 
-/// Hands events over as a live robot would: an algorithm that is late finds only the newest scan
-/// waiting, the ones before it are dropped; IMU samples are never dropped. Nobody sleeps: the time
-/// that the algorithm took is laid on the sensors' clock, where a scan comes with its last point.
+/// Hands over events at the pace of a live robot: if the algorithm is late, only the newest waiting
+/// scan is kept and older ones are dropped; IMU samples are never dropped. Nothing sleeps: the
+/// computing time is added to the sensors' clock, on which a scan arrives with its last point.
 class Pacer {
  public:
-  /// Takes one event up and returns the seconds that this took.
+  /// Processes one event and returns the time that this took, s.
   using Process = std::function<double(const Event&)>;
   explicit Pacer(Process process) : process_(std::move(process)) {}
 
-  /// One event of the algorithm's own sensors, in the order of EventSource.
+  /// Takes the next event of the algorithm's own sensors, in the order of EventSource.
   void offer(Event event);
-  /// Nothing else comes: hands over what waits.
+  /// Call after the last event: hands over the events that still wait.
   void flush();
 
   std::size_t dropped() const { return dropped_; }
@@ -32,8 +32,8 @@ class Pacer {
   void drop_waiting_scan();
 
   Process process_;
-  std::deque<Event> waiting_;  ///< at most one scan among them, as the first
-  Time free_{Time::min()};     ///< when the algorithm is done with what it has
+  std::deque<Event> waiting_;  ///< at most one scan, which then is the first element
+  Time free_{Time::min()};     ///< when the algorithm has processed what it was handed
   std::size_t dropped_ = 0;
   double longest_delay_s_ = 0.0;
 };

@@ -6,11 +6,12 @@
 
 namespace lidarena {
 
-/// Resident memory of this process, bytes; 0 where /proc does not tell. Cheap.
+/// Resident memory of this process, bytes; 0 if /proc does not provide it. Cheap.
 std::uint64_t resident_bytes();
 
-/// The process's share of resident memory (shared pages divided by their users), bytes; empty where
-/// /proc does not tell. Walks the page tables, so it takes a good part of a millisecond.
+/// Proportional set size of this process (shared pages divided by the number of their users),
+/// bytes; empty if /proc does not provide it. The kernel walks the page tables for it, which takes
+/// nearly a millisecond.
 std::optional<std::uint64_t> proportional_bytes();
 
 }  // namespace lidarena

@@ -11,14 +11,14 @@ namespace lidarena {
 
 namespace {
 
-constexpr std::size_t kScansPerProportional = 10;  // smaps_rollup is slow
+constexpr std::size_t kScansPerProportional = 10;  // reading smaps_rollup is slow
 
 std::uint64_t part(const std::map<std::string, std::uint64_t>& memory, const char* name) {
   const auto found = memory.find(name);
   return found == memory.end() ? 0 : found->second;
 }
 
-/// Writes down what one odometry says and costs.
+/// Records results and resource usage of one odometry.
 class Recorder {
  public:
   Recorder(Odometry& odometry, const RunOptions& options, LogSink& log)
@@ -29,9 +29,9 @@ class Recorder {
         lidar_id_(options.lidar_id),
         map_(options.map_voxel_m) {}
 
-  /// Whether the event is of the run's LiDAR (and in order) or of its IMU.
+  /// True for samples of the run's IMU and for scans of its LiDAR that are in time order.
   bool wants(const Event& event);
-  /// Hands one of those to the odometry; returns the wall time it took, s.
+  /// Hands a wanted event to the odometry; returns the wall time that this took, s.
   double feed(const Event& event);
 
   bool diverged() const { return result_.summary.diverged; }
@@ -87,7 +87,7 @@ bool Recorder::in_order(const Scan& scan) {
   if (!first_stamp_)
     first_stamp_ = scan.stamp;
   else if (scan.stamp <= last_stamp_) {
-    log_.warn("a scan that is not later than the one before it was skipped");
+    log_.warn("skipped a scan that is not later than the one before it");
     return false;
   }
   last_stamp_ = scan.stamp;
@@ -97,11 +97,11 @@ bool Recorder::in_order(const Scan& scan) {
 void Recorder::keep_result(const ScanResult& result) {
   ++summary().scans;
   ++summary().statuses[result.status];
-  if (result.status == ScanStatus::kDiverged) return diverge("the algorithm says so");
+  if (result.status == ScanStatus::kDiverged) return diverge("the algorithm reported divergence");
   const StampedPose& estimate = result.estimate;
   if (!estimate.world_from_body.matrix().allFinite()) return diverge("a pose is not finite");
   if (!live_.empty() && estimate.stamp <= live_.back().stamp)
-    return log_.warn("an estimate that is not later than the one before it was left out");
+    return log_.warn("skipped an estimate that is not later than the one before it");
   live_.push_back(estimate);
   if (odometry_.traits().publishes_scans) map_.insert(odometry_.registered_scan());
 }
@@ -133,7 +133,7 @@ RunResult Recorder::finish() {
   RunFiles& files = result_.files;
   files.live = Trajectory(live_, "live estimates");
   if (diverged()) {
-    files.trajectory = files.live;  // what the algorithm held together is no longer to be asked for
+    files.trajectory = files.live;  // after divergence the algorithm's own may be invalid
   } else {
     odometry_.finish();
     files.trajectory = odometry_.trajectory();

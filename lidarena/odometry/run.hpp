@@ -14,30 +14,30 @@ namespace lidarena {
 
 struct RunOptions {
   std::string lidar_id{};                   ///< scans of other LiDARs are skipped
-  std::string imu_id{};                     ///< likewise; empty = the first IMU met
+  std::string imu_id{};                     ///< the IMU to use; empty: the first in the events
   std::optional<std::size_t> scan_count{};  ///< for the progress display
-  double map_voxel_m = 0.02;                ///< map.ply keeps the first point of each such cell
-  bool paced = false;  ///< drop scans when the algorithm is late, see Pacer
+  double map_voxel_m = 0.02;                ///< map.ply keeps the first point of each voxel
+  bool paced = false;                       ///< drop scans when the algorithm is late, see Pacer
 };
 
 struct RunSummary {
   std::map<ScanStatus, std::size_t> statuses;
-  std::size_t scans = 0;    ///< registered
-  std::size_t dropped = 0;  ///< not registered because the algorithm was late; paced runs only
+  std::size_t scans = 0;         ///< registered
+  std::size_t dropped = 0;       ///< not registered because the algorithm was late; paced runs only
   double longest_delay_s = 0.0;  ///< from a scan's last point to its estimate; paced runs only
   double sensor_seconds = 0.0;
   double compute_seconds = 0.0;  ///< wall time inside the algorithm
-  bool diverged = false;         ///< a status said so, or a pose was not finite
-  std::string reason;            ///< of the divergence
+  bool diverged = false;         ///< a status was kDiverged, or a pose was not finite
+  std::string reason;            ///< why it diverged
 };
 
 struct RunResult {
-  RunFiles files;  ///< all but reprojected and manifest
+  RunFiles files;  ///< all except `reprojected` and `manifest`
   RunSummary summary;
 };
 
-/// Feeds `events` to `odometry` and keeps what comes out. A paced run depends on how fast the
-/// machine is, so it is not repeatable.
+/// Feeds `events` to `odometry` and collects the results. A paced run depends on the speed of the
+/// machine, so it is not repeatable.
 RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log);
 
 }  // namespace lidarena

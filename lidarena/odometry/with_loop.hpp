@@ -20,18 +20,19 @@ struct WithLoopConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("keyframe_distance_m", self.keyframe_distance_m, "m", "moved so far, a scan is a keyframe",
+    v("keyframe_distance_m", self.keyframe_distance_m, "m",
+      "a scan becomes a keyframe after this translation since the last one", above(0));
+    v("keyframe_angle_rad", self.keyframe_angle_rad, "rad",
+      "a scan becomes a keyframe after this rotation since the last one", above(0));
+    v("cloud_leaf_m", self.cloud_leaf_m, "m", "voxel size for averaging a keyframe's points",
       above(0));
-    v("keyframe_angle_rad", self.keyframe_angle_rad, "rad", "turned so far, likewise", above(0));
-    v("cloud_leaf_m", self.cloud_leaf_m, "m", "its points are averaged in cells of this edge",
-      above(0));
-    v("loop", self.loop, "", "how loops are found, judged and used");
+    v("loop", self.loop, "", "how loop candidates are found, verified and used");
   }
 };
 
-/// Loop closure around any odometry that publishes its scans: every so many meters a scan is kept,
-/// and when the path comes back to one of them the path is bent. The odometry itself is left alone;
-/// its live estimates are carried along by what the last loop asked for.
+/// Loop closure around any odometry that publishes its scans: keyframes are kept at intervals, and
+/// when the path returns to one of them, a pose graph corrects the trajectory. The odometry itself
+/// is not changed; its live estimates are transformed by the correction of the last loop.
 class WithLoop : public Odometry {
  public:
   WithLoop(std::unique_ptr<Odometry> odometry, const WithLoopConfig& config, Parallel parallel)
@@ -43,9 +44,9 @@ class WithLoop : public Odometry {
   void register_imu(const ImuSample& sample) override { odometry_->register_imu(sample); }
   ScanResult register_scan(const Scan& scan) override;
   void finish() override { odometry_->finish(); }
-  /// With all loops, those found later too.
+  /// Poses corrected by all loops, including those found later than the pose.
   Trajectory trajectory() const override;
-  /// The kept scans, as the loops have placed them.
+  /// Points of the keyframes at their corrected poses, m, world frame.
   std::vector<Eigen::Vector3f> map() const override;
   std::map<std::string, std::uint64_t> memory() const override;
 
@@ -59,7 +60,7 @@ class WithLoop : public Odometry {
   WithLoopConfig config_;
   LoopCloser closer_;
   Pose world_from_odom_ = Pose::Identity();
-  Pose odom_from_keyframe_ = Pose::Identity();  ///< the last one
+  Pose odom_from_keyframe_ = Pose::Identity();  ///< of the last keyframe
   std::vector<std::vector<Eigen::Vector3f>> clouds_;
   AnchoredTrajectory poses_;
 };

@@ -138,8 +138,7 @@ TEST(PoseGraph, AWrongLoopBendsTheChainUnlessItsKernelIsRobust) {
   EXPECT_LT(end_with({RobustKernel::kHuber, 1.0}), 19.9)
       << "linear kernel: the loop still has influence";
   EXPECT_GT(end_with({RobustKernel::kCauchy, 1.0}), 19.98);
-  EXPECT_NEAR(end_with({RobustKernel::kTukey, 5.0}), 20.0, kExact)
-      << "the loop has no influence";
+  EXPECT_NEAR(end_with({RobustKernel::kTukey, 5.0}), 20.0, kExact) << "the loop has no influence";
 }
 
 TEST(PoseGraph, ATrueLoopCountsUnderARobustKernel) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What holds for every odometry of the factory, with every preset. Instantiated from its list, so a
-// new algorithm is tested as soon as it can be made.
+// Tests that every odometry of the factory must pass with each of its presets. Instantiated from
+// the factory's list, so a new algorithm is tested as soon as it is listed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -39,7 +39,7 @@ struct Outcome {
   Trajectory trajectory;
 };
 
-/// Feeds one event; keeps the result of a scan.
+/// Feeds one event; appends the result of a scan.
 void feed(Odometry& odometry, const Event& event, std::vector<ScanResult>& results) {
   if (const auto* scan = std::get_if<Scan>(&event.data)) {
     results.push_back(odometry.register_scan(*scan));
@@ -77,9 +77,9 @@ void expect_same(const Trajectory& a, const Trajectory& b) {
   }
 }
 
-/// Largest distance (m) to the true flight, the last pose before the start of motion put in place.
-/// A method that is gravity-aligned may have another world frame, so poses are compared as motions
-/// since that pose.
+/// Largest distance (m) from the true flight, both relative to the last pose before the start of
+/// motion: relative motions do not depend on the world frame, which a gravity-aligned method
+/// levels.
 double largest_error(const Recording& recording, const Trajectory& estimate) {
   const std::size_t first = estimate.upper_bound(recording.epoch + from_seconds(0.9)) - 1;
   const StampedPose& start = estimate.poses()[first];
@@ -92,8 +92,8 @@ double largest_error(const Recording& recording, const Trajectory& estimate) {
   return largest;
 }
 
-// A quarter of the 1 m cells of the coarsest preset's map. Losing track shows in meters: the flight
-// goes 2.3 m away and turns by 45 degrees.
+// A quarter of the 1 m voxels of the coarsest preset's map. After tracking is lost, errors are
+// meters: the flight moves 2.3 m away and turns by 45 degrees.
 constexpr double kTracked = 0.25;
 
 TEST_P(OdometryConformance, PosesAreFiniteInOrderOfTimeAndFollowTheFlight) {
@@ -205,8 +205,9 @@ TEST_P(OdometryConformance, StandingStillItStaysPut) {
   const Pose& first = outcome.trajectory.poses().front().world_from_body;
   for (const StampedPose& pose : outcome.trajectory.poses()) {
     const Pose moved = first.inverse() * pose.world_from_body;
-    // The coarsest preset matches some 300 points with a map whose points stand 0.5 m apart: up to
-    // 0.25 m each, 0.25 m / sqrt(300) = 1.5 cm together; twice that, and as an angle 5 m away.
+    // The coarsest preset matches about 300 points with a map whose points are 0.5 m apart: up to
+    // 0.25 m each, 0.25 m / sqrt(300) = 1.5 cm together. The limit is twice that, for the angle at
+    // a distance of 5 m.
     EXPECT_LT(moved.translation().norm(), 0.03);
     EXPECT_LT(so3::angle(moved.linear()), 0.03 / 5.0);
   }
@@ -245,7 +246,7 @@ TEST_P(OdometryConformance, WhatItPublishesLiesOnTheWalls) {
     near += std::abs(gap) < kTracked ? 1U : 0U;
   }
   EXPECT_GT(static_cast<double>(near), 0.9 * static_cast<double>(points.size()))
-      << "a few may be hidden from this viewpoint by a pillar";
+      << "pillars may hide a few points from this viewpoint";
 }
 
 TEST_P(OdometryConformance, FinishingTwiceIsFinishingOnceAndNothingGivesNothing) {

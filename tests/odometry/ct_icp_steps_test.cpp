@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of CT-ICP, each on its own.
+// Tests of the single steps of CT-ICP.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -73,7 +73,7 @@ TEST(CtIcpSampling, ThinningKeepsOnePointOfEachCellFromAllOverTheScan) {
   }
   EXPECT_EQ(kept.size(), 20U);
   EXPECT_EQ(cells.size(), 20U);
-  // drawn evenly from [0, 1): four deviations of the mean of 20
+  // drawn uniformly from [0, 1): four standard deviations of the mean of 20
   EXPECT_NEAR(mean, 0.5, 4.0 / std::sqrt(12.0 * 20.0));
 }
 
@@ -87,7 +87,7 @@ TEST(CtIcpSampling, TruncatedCellsAboutZeroAreTwiceAsWide) {
 TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
   std::vector<TimedPoint> points;
   for (const float range : {0.3F, 1.5F, 3.0F, 6.0F, 12.0F, 100.0F, 300.0F}) {
-    // 32 cm along z in steps of 1 cm, off the cells' faces
+    // 32 cm along z in steps of 1 cm, away from the cells' faces
     for (int i = 0; i < 32; ++i)
       points.push_back({{range, 0.05F, 1.605F + 0.01F * static_cast<float>(i)}, 0.0F});
   }
@@ -108,7 +108,7 @@ TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
       5U);
 }
 
-/// Neighbors in a plane z = 2 (spread 2:1), nearest first.
+/// Points in the plane z = 2, with twice the spread along x as along y.
 std::vector<Eigen::Vector3f> plane_points() {
   std::vector<Eigen::Vector3f> points;
   for (int i = -2; i <= 2; ++i) {
@@ -166,7 +166,7 @@ TEST(CtIcpNeighborhood, IsALineAPlaneOrADistribution) {
   EXPECT_EQ(shape_match(line).rows, 3);
   EXPECT_NEAR((shape_match(line).shape * gap).norm(), std::hypot(0.2, 0.1), 1e-12);
   EXPECT_NEAR(shape_match(line).weight, 0.81, 1e-12);
-  // deviations 0.1, 0.2, 0.4 along z, y, x: distance in units of the smallest
+  // deviations 0.1, 0.2, 0.4 along z, y, x: distances are scaled by the smallest
   const Neighborhood cloud{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.01, 0.04, 0.16}, 0.25, 0.5};
   const ElasticMatch match = shape_match(cloud);
   EXPECT_NEAR((match.shape * gap).squaredNorm(), 0.01 * (0.09 / 0.16 + 0.04 / 0.04 + 0.01 / 0.01),
@@ -199,7 +199,7 @@ TEST(CtIcpPrediction, EachWayGoesOnFromTheMotionSoFar) {
     EXPECT_LT((motion.begin().matrix() - end.matrix()).norm(), 1e-12);
     EXPECT_LT((motion.end().matrix() - (end * step).matrix()).norm(), 1e-12);
   }
-  next();  // a scan was dropped: by real time it is two steps to the end
+  next();  // a scan was dropped: by real time the end is two steps away
   config.segments = 2;
   const ElasticMotion motion = history.predict(times, config);
   EXPECT_LT((motion.begin().matrix() - (end * step).matrix()).norm(), 1e-12);
@@ -218,7 +218,7 @@ Registration registration_of(double yaw, double meters, std::size_t matches) {
 
 TEST(CtIcpRobust, VerdictsFollowMotionAndMatches) {
   const ElasticMotion guess = ElasticMotion::still(Pose::Identity(), 1);
-  RobustConfig config;  // 3 deg trusted, 30 deg and 5 m lost
+  RobustConfig config;  // trusted up to 3 deg, lost beyond 30 deg or 5 m
   config.min_matched_share = 0.5;
   const auto verdict = [&](const Registration& r) { return verdict_on(r, guess, config); };
   EXPECT_EQ(verdict(registration_of(0.05, 1.0, 60)), Verdict::kTrusted);
@@ -265,12 +265,12 @@ TEST(CtIcp, SuspectScansAreTriedAgainAtHigherLevels) {
   Config config = preset("improved", synthetic::rig_of(recording).lidars[0]);
   config.robust.enabled = true;
   config.robust.max_attempts = 3;
-  config.robust.max_rotation_rad = 0.01;  // suspect as soon as it turns by 6 deg/s
+  config.robust.max_rotation_rad = 0.01;  // suspect from 6 deg/s on
   CtIcp odometry(config, synthetic::rig_of(recording).lidars[0], Parallel(1));
   double highest = 0.0;
   for (const Scan& scan : synthetic::scans_of(recording))
     highest = std::max(highest, odometry.register_scan(scan).counters.at("level"));
-  EXPECT_EQ(highest, 3.0) << "from level 1 after trouble, two more attempts";
+  EXPECT_EQ(highest, 3.0) << "after an untrusted scan: level 1 and two more attempts";
 }
 
 TEST(CtIcp, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
@@ -285,7 +285,7 @@ TEST(CtIcp, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
       const ScanResult result = odometry.register_scan(scan);
       EXPECT_NE(result.status, ScanStatus::kDiverged);
       EXPECT_TRUE(result.motion.empty());
-      EXPECT_LT(result.estimate.world_from_body.translation().norm(), 0.02) << "it stands";
+      EXPECT_LT(result.estimate.world_from_body.translation().norm(), 0.02) << "at rest";
     }
   }
 }

@@ -86,7 +86,7 @@ TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsN
   for (const auto& entry : std::filesystem::directory_iterator(folder)) {
     if (entry.path().extension() != ".yaml") continue;
     const std::string stem = entry.path().stem().string();
-    std::string algorithm;  // the longest name that the file's begins with
+    std::string algorithm;  // the longest algorithm name with which the file name begins
     for (const AlgorithmInfo& info : list_algorithms()) {
       if (stem.starts_with(info.name) && info.name.size() > algorithm.size()) algorithm = info.name;
     }

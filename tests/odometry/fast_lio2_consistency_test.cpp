@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Whether FAST-LIO2's covariance tells its errors: normalized squared errors (NEES), averaged over
-// seeds of all noise. LIDARENA_NEES_SEEDS says over how many (3; 20 take minutes).
+// Tests that FAST-LIO2's covariance matches its errors: normalized estimation error squared (NEES),
+// averaged over seeds of all noise. LIDARENA_NEES_SEEDS sets their number (default 3; 20 take
+// minutes).
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -25,7 +26,7 @@ int number_of_seeds() {
   return given == nullptr ? 3 : std::max(1, std::atoi(given));
 }
 
-/// Normalized squared errors, and the errors' squares; sums over seeds.
+/// Normalized squared errors and squared errors; of one flight, or summed over seeds.
 struct Errors {
   double pose = 0.0, position = 0.0, attitude = 0.0;
   double meters2 = 0.0, radians2 = 0.0;
@@ -54,7 +55,7 @@ Errors errors_of(const ScanResult& result, const Pose& truth) {
           attitude.squaredNorm()};
 }
 
-/// 5 s of the room: 1 s of rest, then the flight. The noise is a Mid-360's: 2 cm, and the IMU's.
+/// 5 s in the room: 1 s at rest, then the flight, with a Mid-360's noise: 2 cm and that of its IMU.
 Recording noisy_flight(int seed) {
   Recording recording{.seconds = 5.0, .range_noise_m = 0.02, .repeating = false};
   recording.seed = static_cast<std::uint64_t>(seed);
@@ -65,7 +66,7 @@ Recording noisy_flight(int seed) {
 
 constexpr int kEvery = 5;  // scans
 
-/// One for every fifth scan from 1.5 s on.
+/// Errors at every fifth scan from 1.5 s on.
 std::vector<Errors> errors_over(const Recording& recording, bool plane_uncertainty) {
   Rig rig = synthetic::rig_of(recording);
   rig.imus.front().gyro_noise_density = recording.gyro_noise_density;
@@ -89,7 +90,7 @@ std::vector<Errors> errors_over(const Recording& recording, bool plane_uncertain
   return errors;
 }
 
-/// Means over the seeds, by scan.
+/// Means over the seeds for each of these scans.
 std::vector<Errors> mean_errors(int seeds, bool plane_uncertainty) {
   std::vector<Errors> sums;
   for (int seed = 1; seed <= seeds; ++seed) {
@@ -129,7 +130,8 @@ TEST(FastLio2Consistency, TheCovarianceTellsTheErrors) {
         0.1 * kEvery * static_cast<double>(i + 3), with[i].pose, with[i].position, with[i].attitude,
         1e3 * std::sqrt(with[i].meters2), 1e3 * std::sqrt(with[i].radians2));
   }
-  // 99 % of chi-square, of the seeds alone: instants of one flight are no independent trials.
+  // 99 % interval of chi-square. Only the seeds count as trials: instants of one flight are not
+  // independent.
   constexpr double kZ = 2.5758;
   const double mean = mean_pose(with);
   fmt::print("mean {:.2f}, 99 %: {:.2f} to {:.2f}\n", mean, chi_square(6.0 * seeds, -kZ) / seeds,
@@ -139,7 +141,7 @@ TEST(FastLio2Consistency, TheCovarianceTellsTheErrors) {
 
   const double without = mean_pose(mean_errors(seeds, false));
   fmt::print("without the planes' uncertainty: mean {:.2f}\n", without);
-  EXPECT_GT(without, 1.5 * mean) << "what the option is for";
+  EXPECT_GT(without, 1.5 * mean) << "plane_uncertainty should reduce the NEES";
 }
 
 TEST(FastLio2Consistency, TheQuantilesAreThoseOfTheTables) {

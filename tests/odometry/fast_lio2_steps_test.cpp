@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The steps of FAST-LIO2, each on its own.
+// Tests of the single steps of FAST-LIO2.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -63,7 +63,7 @@ TEST(FastLio2Start, AccelerationsInGAreRecognized) {
   EXPECT_TRUE(start.still);
 }
 
-/// Of a sensor that stands, with what data sheets allow an accelerometer to be off by.
+/// Samples of a sensor at rest with a bias of the accelerometer as large as data sheets allow.
 std::vector<ImuSample> standing_with(const Eigen::Vector3d& accel_bias) {
   std::vector<ImuSample> samples = standing(1.0, 1e-3);
   for (ImuSample& sample : samples) sample.accel += accel_bias;
@@ -100,11 +100,11 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   int stood = 0;
   for (int i = 0; i < 20; ++i) {
-    state.position().x() = 0.004 * i;  // 4 cm/s: no IMU feels it
+    state.position().x() = 0.004 * i;  // 4 cm/s: not observable by an IMU
     state.nav.velocity.x() = 0.04;
     stood += detector.observe(imu, state, state.position(), config, 1.0) ? 1 : 0;
   }
-  EXPECT_LT(stood, 19) << "every 3 cm it is found out";
+  EXPECT_LT(stood, 19) << "motion should be detected every 3 cm";
   EXPECT_GT(stood, 10);
 }
 
@@ -118,7 +118,7 @@ TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
   EXPECT_TRUE(detector.observe(statistics(samples), state, state.position(), config, 1.0));
   for (ImuSample& sample : samples) sample.accel.x() += 0.1;
   EXPECT_FALSE(detector.observe(statistics(samples), state, state.position(), config, 1.0))
-      << "0.1 m/s^2";
+      << "acceleration of 0.1 m/s^2";
 }
 
 // --- Planes ---
@@ -161,7 +161,7 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
     const auto other = fit_plane(columns_of(points), PlaneFit::kUnitOffset, 0.1);
     found += other && std::abs(other->normal.dot(normal)) > 0.9 ? 1 : 0;
   }
-  EXPECT_LT(found, 25) << "the fault that `principal` cures; noise of 1 cm hides it";
+  EXPECT_LT(found, 25) << "a fault that `principal` does not have; noise of 1 cm hides it";
 }
 
 TEST(FastLio2Planes, ThickOnesAreRefused) {
@@ -173,7 +173,7 @@ TEST(FastLio2Planes, ThickOnesAreRefused) {
   EXPECT_FALSE(fit_plane(columns_of(same), PlaneFit::kUnitOffset, 0.1).has_value()) << "not finite";
 }
 
-/// A cross of arms `length` and `width` in a tilted plane, each point off it by `sigma`.
+/// A cross with arms `length` and `width` (m) in a tilted plane, with noise `sigma` across it.
 Neighbors cross(double length, double width, double sigma, SequentialRandom& random) {
   const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
   Neighbors points;
@@ -192,7 +192,7 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
   constexpr int kFits = 4000;
   const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
   for (const double width : {0.08, 0.15, 0.25}) {
-    // In the direction that is told worst, as far as the farthest point.
+    // In the direction that is determined worst, at the distance of the farthest point.
     const Eigen::Vector3d end = turn * Eigen::Vector3d(0.0, kLength, 5.0);
     double squares = 0.0;
     for (int i = 0; i < kFits; ++i) {
@@ -206,7 +206,7 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
     const double told = plane_variance(exact, *plane, kSigma * kSigma);
     const double tilt = kSigma * kSigma / (2.0 * width * width);
     EXPECT_NEAR(told, kSigma * kSigma / 5.0 + tilt * kLength * kLength, 1e-3 * told);
-    // 4000 squares tell a variance to 2.2 %, the fit's second order does the rest.
+    // 4000 squares give a variance to 2.2 %; the rest is the second order of the fit.
     EXPECT_NEAR(squares / kFits, told, 0.1 * told) << "width " << width;
   }
 }
@@ -216,7 +216,7 @@ TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
   const Neighbors line = cross(0.3, 0.0, 0.0, random);
   const auto plane = fit_plane(columns_of(line), PlaneFit::kPrincipal, 0.1);
   ASSERT_TRUE(plane.has_value());
-  EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2, and finite:";
+  EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2; large but finite";
   EXPECT_LT(plane_variance(line, *plane, 1e-3), 1e3);
 }
 
@@ -287,8 +287,9 @@ TEST(FastLio2Map, ShortcutsOfInsertionDoNotChangeWhatACellKeeps) {
     add_scan(points, matches, 0.5F, with_shortcuts);
     add_scan(points, {}, 0.5F, without);
   }
-  // Without neighbors each cell keeps its best point. The neighbors are those before the scan and
-  // not only of the own cell, so now and then a better point is refused or one too many inserted.
+  // Without neighbors each cell keeps its best point. The neighbors are those of the map before the
+  // scan and also from other cells, so a few better points are rejected and a few extra ones
+  // inserted.
   EXPECT_NEAR(static_cast<double>(with_shortcuts.size()), static_cast<double>(without.size()),
               0.2 * static_cast<double>(without.size()));
 }

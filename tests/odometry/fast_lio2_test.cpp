@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// FAST-LIO2 as a whole: what data does to it that is not as it should be.
+// Tests of FAST-LIO2 as a whole: standstill, initialization and faulty data.
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ namespace {
 
 using synthetic::Recording;
 
-constexpr double kTracked = 0.1;  // m: lost track shows in meters, the map's cells have 0.2 m
+constexpr double kTracked = 0.1;  // m; the map's voxels have 0.2 m, lost tracking gives meters
 
 struct Outcome {
   std::vector<ScanResult> results;
@@ -33,7 +33,7 @@ struct Outcome {
     for (const ScanResult& r : results) value = std::max(value, r.counters.at(counter));
     return value;
   }
-  /// Of the last pose, in m, as a motion since the first one.
+  /// Error (m) of the last pose relative to the first one.
   double final_error(const Recording& recording) const {
     const StampedPose& first = results.front().estimate;
     const StampedPose& last = results.back().estimate;
@@ -73,7 +73,8 @@ const std::vector<Event>& usual_events() {
 
 double seconds_of(const ImuSample& sample) { return to_seconds(sample.stamp - Recording{}.epoch); }
 
-/// The usual events, those IMU samples changed for which `change` says true, the others left out.
+/// The usual events with `change` applied to each IMU sample; removes the samples for which it
+/// returns false.
 std::vector<Event> with_imu(const std::function<bool(ImuSample&)>& change) {
   std::vector<Event> events;
   for (Event event : usual_events()) {
@@ -83,7 +84,7 @@ std::vector<Event> with_imu(const std::function<bool(ImuSample&)>& change) {
   return events;
 }
 
-/// A silence while the body moves with some 0.5 m/s and turns.
+/// No IMU samples between `begin` and `end` (s), while the body moves at about 0.5 m/s and turns.
 Outcome with_silence(double begin, double end) {
   return play(with_imu([=](const ImuSample& sample) {
     return seconds_of(sample) < begin || seconds_of(sample) > end;
@@ -107,7 +108,7 @@ TEST(FastLio2Standing, BeforeItFirstMovesTheBodyIsWhereItBegan) {
   EXPECT_GT(farthest(false), farthest(true));
 }
 
-/// Rests for a second and then goes on at 10 cm/s, which no threshold of the IMU's tells.
+/// Rests for a second and then moves at 10 cm/s, too gently to be detected by the IMU.
 Pose slow_start(double t) {
   Pose pose = Pose::Identity();
   const double moving = std::max(0.0, t - 1.0);
@@ -122,23 +123,23 @@ TEST(FastLio2Standing, TheFirstMotionIsFollowed) {
 }
 
 TEST(FastLio2Standing, BeamsThatHitTheSamePlacesDoNotHoldTheStart) {
-  // 160 columns: the neighbors of a point lie on one line, and a plane through them may as well
-  // stand across the wall and move with the sensor.
+  // With 160 columns the neighbors of a point lie on one line. A plane through them may be
+  // perpendicular to the wall and then moves with the sensor.
   const Recording sparse{.motion = slow_start, .seconds = 6.0};
   const std::vector<Event> events = synthetic::record(sparse);
   Config config = improved(sparse);
   EXPECT_LT(play(events, sparse, config).final_error(sparse), 0.05) << "of 47.5 cm";
-  config.grid_axes = GridAxes::kParallel;  // which alone would be enough
+  config.grid_axes = GridAxes::kParallel;  // a rotated grid alone would prevent the error
   EXPECT_LT(play(events, sparse, config).final_error(sparse), 0.05);
   config.plane_uncertainty = false;
   EXPECT_GT(play(events, sparse, config).final_error(sparse), 0.3);
-  // 512 columns, as the coarsest of the usual sensors
+  // 512 columns, as the usual sensor with the fewest
   const Recording usual{.motion = slow_start, .seconds = 3.0, .points_per_scan = 32768};
   EXPECT_LT(play(synthetic::record(usual), usual).final_error(usual), 0.005) << "of 17.5 cm";
 }
 
 TEST(FastLio2Standing, ACreepingStartIsFollowedToo) {
-  // It rests for a second and then creeps at 4 cm/s, which a filter may take for standing.
+  // Rests for a second and then moves at 4 cm/s, which the filter could take for a standstill.
   const auto creep = [](double t) {
     Pose pose = Pose::Identity();
     const double moving = std::max(0.0, t - 1.0);
@@ -164,7 +165,7 @@ TEST(FastLio2Data, AnImuThatFallsSilentLeavesALidarOdometryThatSaysSo) {
 }
 
 TEST(FastLio2Data, ALostTrackIsNotSilentAndDoesNotSpoilTheMap) {
-  // For half a second there is neither LiDAR nor IMU, and the body is carried 2.5 m away.
+  // For half a second there are neither scans nor IMU samples, and the body is moved by 2.5 m.
   const Recording recording{.motion =
                                 [](double t) {
                                   Pose pose = synthetic::flight(t);
@@ -180,7 +181,7 @@ TEST(FastLio2Data, ALostTrackIsNotSilentAndDoesNotSpoilTheMap) {
   }
   const Outcome outcome = play(events, recording);
   ASSERT_EQ(outcome.results.size(), 44U);
-  EXPECT_GT(outcome.final_error(recording), 1.0) << "it is lost";
+  EXPECT_GT(outcome.final_error(recording), 1.0) << "tracking should be lost";
   for (std::size_t i = 20; i < 44; ++i) {
     EXPECT_NE(outcome.results[i].status, ScanStatus::kTracked) << i;
     EXPECT_EQ(outcome.results[i].counters.at("map_points"),
@@ -204,7 +205,7 @@ TEST(FastLio2Data, SamplesFromThePastAndFromFarAheadAreRefusedAndCounted) {
   const Outcome outcome = play(events);
   EXPECT_LT(outcome.final_error({}), kTracked);
   EXPECT_NEAR(outcome.results.back().counters.at("imu_refused"), bad / 50, 1.0)
-      << "the last one from far ahead may not have been given away yet";
+      << "the last stamp from far ahead may not be detected yet";
   EXPECT_EQ(outcome.count(ScanStatus::kTracked), 39U) << "all but the first";
 }
 
@@ -244,7 +245,8 @@ TEST(FastLio2Data, DroppedScansAreBridgedByTheImu) {
 TEST(FastLio2Data, AnImuThatStartsLateIsWaitedForAndThenStartsInMotion) {
   const Outcome outcome =
       play(with_imu([](const ImuSample& sample) { return seconds_of(sample) > 2.45; }));
-  EXPECT_EQ(outcome.count(ScanStatus::kInitializing), 26U) << "25 without, and the map's first";
+  EXPECT_EQ(outcome.count(ScanStatus::kInitializing), 26U)
+      << "25 without IMU samples, and the first one in the map";
   EXPECT_EQ(outcome.count(ScanStatus::kTracked), 14U);
   Outcome tracked;
   tracked.results.assign(outcome.results.begin() + 25, outcome.results.end());
@@ -266,7 +268,7 @@ TEST(FastLio2Data, AccelerationsInGAreRecognizedAndSaid) {
   EXPECT_EQ(play(usual_events()).results.back().counters.at("accel_scale"), 1.0);
 }
 
-/// Turns up to 3 rad/s to and fro; the gyro ends at 2.2 rad/s.
+/// Turns back and forth with up to 3 rad/s; the gyro's range ends at 2.2 rad/s.
 Pose fast_turning(double t) {
   const double u = std::max(0.0, t - 1.0);
   const double yaw = 0.5 * (1.0 - std::cos(6.0 * u)) * std::min(1.0, u);
@@ -293,7 +295,7 @@ TEST(FastLio2Data, ASaturatedGyroIsToldAndNotBelieved) {
   EXPECT_EQ(play(usual_events()).largest("imu_clipped"), 0.0);
 }
 
-/// Shaken along x by up to 24 m/s^2; the accelerometer ends at 2 g.
+/// Shakes along x with up to 24 m/s^2; the accelerometer's range ends at 2 g.
 Pose shaking(double t) {
   const double u = std::clamp(t - 1.0, 0.0, 1.0);
   const double ramp = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);
@@ -334,14 +336,14 @@ TEST(FastLio2Data, AClockThatIsSetBackForGoodChangesNothingAndIsToldAtEachScan) 
   }
   const Outcome outcome = play(events);
   ASSERT_EQ(outcome.results.size(), 40U);
-  // Scans 20 to 34 say 0.5 to 1.9 s again.
+  // Scans 20 to 34 have the stamps 0.5 to 1.9 s again.
   for (std::size_t i = 20; i < 35; ++i) {
     EXPECT_EQ(outcome.results[i].status, ScanStatus::kTooFewPoints) << i;
     EXPECT_EQ(outcome.results[i].counters.at("scans_refused"), static_cast<double>(i) - 19.0);
     EXPECT_EQ(outcome.results[i].estimate.world_from_body.matrix(),
               outcome.results[19].estimate.world_from_body.matrix());
   }
-  // From 2 s on, stamps are news again, and those of the IMU are still there.
+  // From 2 s on, stamps are later than all before, also those of the IMU.
   EXPECT_EQ(outcome.results.back().counters.at("scans_refused"), 15.0);
   EXPECT_GT(outcome.results.back().counters.at("imu_refused"), 0.0);
 }

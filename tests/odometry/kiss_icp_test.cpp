@@ -12,7 +12,7 @@ namespace {
 using synthetic::Motion;
 using synthetic::Recording;
 
-/// Rests for 1 s, then goes along x, from the third second on at 1.5 m/s.
+/// Rests for 1 s, then moves along x, from 2 s on at 1.5 m/s.
 Pose straight(double seconds) {
   const double moving = std::max(0.0, seconds - 1.0);
   const double x = moving < 1.0 ? 0.75 * moving * moving : 1.5 * (moving - 0.5);
@@ -25,7 +25,7 @@ KissIcp made(const Config& config, const Recording& recording) {
   return {config, synthetic::rig_of(recording).lidars.front(), Parallel(1)};
 }
 
-/// An empty scan, `periods` scans after the last of `scans`: its estimate is the bare prediction.
+/// An empty scan, `periods` scans after the last of `scans`: its estimate is the prediction.
 Scan empty_scan(const std::vector<Scan>& scans, int periods) {
   Scan empty;
   empty.stamp = scans.back().stamp + periods * from_seconds(0.1);
@@ -92,7 +92,7 @@ TEST(KissIcp, MotionWithinTheScanRunsThroughTheEstimate) {
 }
 
 TEST(KissIcp, StartingInMotionTheFirstScanIsMendedByTheSecond) {
-  // 1.5 m/s from the first point on: the first scan is smeared by 15 cm
+  // 1.5 m/s from the first point on: the first scan is distorted by 15 cm
   const Motion moving = [](double t) {
     return make_pose(Eigen::Matrix3d::Identity(), {-3.0 + 1.5 * t, 0.5, 0.0});
   };
@@ -137,8 +137,8 @@ TEST(KissIcp, ScansAreCutOnlyAfterTheCalmStartAndWhileSigmaIsLarge) {
 }
 
 TEST(KissIcp, APatternThatRepeatsHoldsTheSensorUnlessItsLinesAreLeftOut) {
-  // Straight on without turning, each beam on the same wall in the same direction in every scan: the
-  // rings match themselves best where the sensor was.
+  // Motion on a straight line without rotation, with the same beam directions in every scan: the
+  // rings match best at the sensor's previous pose.
   Recording recording = along_the_straight();
   recording.repeating = true;
   const auto error_with = [&](double weight) {
@@ -157,8 +157,8 @@ TEST(KissIcp, APatternThatRepeatsHoldsTheSensorUnlessItsLinesAreLeftOut) {
 }
 
 TEST(KissIcp, OfAScanOnePointACellIsRegisteredAndOneASmallerCellIsKept) {
-  // A lattice of 10 cm on a wall of 4 x 4 m: cells of 20 cm leave 20 x 20 for the map, of which
-  // cells of 40 cm leave 10 x 10.
+  // A lattice of 10 cm on a wall of 4 x 4 m: cells of 20 cm leave 20 x 20 points for the map, and
+  // cells of 40 cm leave 10 x 10 keypoints of these.
   Scan scan;
   scan.timed = false;
   for (int i = 0; i < 1600; ++i) {
@@ -190,7 +190,7 @@ TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {
   EXPECT_EQ(result.status, ScanStatus::kTracked);
   EXPECT_TRUE(result.motion.empty());
   EXPECT_EQ(result.estimate.stamp, recording.epoch + from_seconds(2.9));
-  // within the way made during one scan, which is how much an untimed scan is smeared
+  // the limit is the distance traveled during a scan, by which an untimed scan is distorted
   const Pose truth = synthetic::truth(recording, recording.epoch, result.estimate.stamp);
   EXPECT_LT((result.estimate.world_from_body.translation() - truth.translation()).norm(), 0.15);
 }

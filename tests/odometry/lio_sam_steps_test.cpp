@@ -65,7 +65,7 @@ TEST(LioSamRangeImage, PutsPointsInRowsByRingAndInColumnsByAzimuthTheFirstOneSta
   ASSERT_EQ(image.row_end, (std::vector<std::size_t>{1, 3}));
   EXPECT_EQ(image.row(0)[0].column, 0);
   EXPECT_EQ(image.row(1)[0].column, 4);
-  EXPECT_EQ(image.row(1)[0].range, scan.points[0].position.norm()) << "not the one behind";
+  EXPECT_EQ(image.row(1)[0].range, scan.points[0].position.norm()) << "the first point of the cell";
   EXPECT_EQ(image.row(1)[1].column, 5);
 }
 
@@ -94,7 +94,7 @@ TEST(LioSamRangeImage, LeavesOutWhatIsNotUsable) {
 
 // --- Features ---
 
-/// A row of points with these ranges, a degree apart.
+/// A row of points with these ranges (m), one degree apart.
 std::vector<Pixel> row_of(const std::vector<float>& ranges) {
   std::vector<Pixel> row;
   for (std::size_t i = 0; i < ranges.size(); ++i) {
@@ -129,7 +129,7 @@ TEST(LioSamFeatures, AGrazingPointIsBarred) {
   Config config;
   config.occluded_points = 0;
   const auto barred = barred_points(row_of({5.0F, 5.2F, 5.4F, 5.6F, 5.62F}), config);
-  EXPECT_TRUE(barred[1]) << "0.2 m to both sides is 4 %";
+  EXPECT_TRUE(barred[1]) << "a difference of 0.2 m to both sides is 4 %";
   EXPECT_TRUE(barred[2]);
   EXPECT_FALSE(barred[3]) << "smooth to one side";
 }
@@ -146,7 +146,7 @@ TEST(LioSamFeatures, TheCornersOfARoomAreItsEdges) {
   }
   image.row_end = {360};
   Config config;
-  config.edge_threshold_m2 = 1.0;  // 5 degrees aside of a corner the range is 8 % less
+  config.edge_threshold_m2 = 1.0;  // 5 degrees beside a corner the range is 8 % less
   const Features features = extract_features(image, config, Parallel(1));
   EXPECT_EQ(features.edges.size() + features.surfaces.size(), 360U);
   ASSERT_GE(features.edges.size(), 4U);
@@ -177,7 +177,7 @@ TEST(LioSamRegistration, JacobiansAreTheNumericOnes) {
     const auto check = [&](const auto& residual_at) {
       const std::optional<PointResidual> here = residual_at(pose);
       if (!here) return;
-      // the weight is held constant (iteratively re-weighted), so distances without it are compared
+      // the Jacobian takes the weight as constant, so distances without the weight are compared
       const auto unweighted = [](const PointResidual& r) {
         return r.distance / r.row.tail(3).norm();
       };
@@ -218,10 +218,11 @@ TEST(LioSamRegistration, LinesAndPlanesAreFoundWhereThereAreSome) {
   EXPECT_FALSE(
       fit_plane(columns_of(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}})),
                 PlaneFit::kPrincipal, 0.2, 0.05))
-      << "on a line, as a single sweep leaves them";
+      << "points on a line, as from a single sweep";
 }
 
-/// Surfaces of a room's walls as far as `open` leaves them: bit 0 leaves out those across x, ...
+/// Surface points of a room's walls; bit 0 of `open` leaves out those perpendicular to x, bit 1
+/// those to y, bit 2 those to z.
 FeatureMap walls(int open) {
   std::vector<Eigen::Vector3f> points;
   for (int axis = 0; axis < 3; ++axis) {
@@ -248,7 +249,7 @@ Features seen(const FeatureMap& map, const Pose& pose) {
   std::vector<Eigen::Vector3f> points = map.surfaces.points();
   std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
     return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });  // not in the tree's order, which is its own affair
+  });  // so that the result does not depend on the tree's order
   for (std::size_t i = 0; i < points.size(); i += 7)
     features.surfaces.push_back((pose.inverse() * points[i].cast<double>()).cast<float>());
   return features;
@@ -300,7 +301,7 @@ TEST(LioSamRegistration, DegeneracyByShareDoesNotDependOnHowManyPointsThereAre) 
   }
   EXPECT_EQ(find_degenerate(few, 3.0, Degeneracy::kShare).directions, 0);
   EXPECT_GT(find_degenerate(few, 3.0, Degeneracy::kEigenvalue).directions, 0)
-      << "12 points never reach 100: the fault that `share` cures";
+      << "12 points never reach 100, a fault that `share` does not have";
 }
 
 // --- Start, keyframes ---
@@ -409,7 +410,7 @@ TEST(LioSamKeyframes, TheSubmapFollowsAsIfMadeAnew) {
   };
   expect_as_anew({0, 1, 2, 3});
   expect_as_anew({1, 3, 4, 7});
-  keyframes[3].features = seen();  // renewed
+  keyframes[3].features = seen();  // new features
   ++keyframes[3].revision;
   expect_as_anew({1, 3, 4, 7});
   for (Keyframe& keyframe : keyframes) {  // moved by a loop

@@ -13,7 +13,7 @@ namespace {
 
 using testing::ElementsAre;
 
-/// A scan that ends at `end_s`; it began a tenth of a second before.
+/// A scan of a tenth of a second that ends at `end_s`.
 Event scan_ending_at(double end_s) {
   Scan scan;
   scan.stamp = from_seconds(end_s - 0.1);
@@ -39,7 +39,7 @@ std::vector<std::string> handed_over(Pacer& pacer, std::vector<std::string>& log
   return log;
 }
 
-/// Writes down what it is given, and says that each scan took `seconds`.
+/// Appends each event to `log` and reports that each scan took `seconds`.
 Pacer::Process taking(double seconds, std::vector<std::string>& log) {
   return [seconds, &log](const Event& event) {
     const auto* scan = std::get_if<Scan>(&event.data);
@@ -60,8 +60,8 @@ TEST(Pacer, KeepsEveryScanWhenTheAlgorithmIsFastEnough) {
 
 TEST(Pacer, DropsAllButTheNewestScanWhenLate) {
   std::vector<std::string> log;
-  // Scan 1 keeps it busy until 0.45 s: of scans 2, 3, 4 the last is taken up, until 0.80 s; of 5,
-  // 6, 7 the last.
+  // Scan 1 takes until 0.45 s. Of scans 2, 3, 4 the last is processed, until 0.80 s; of 5, 6, 7 the
+  // last.
   Pacer pacer(taking(0.35, log));
   EXPECT_THAT(handed_over(pacer, log, 7),
               ElementsAre("imu 1", "scan 1", "imu 2", "imu 3", "imu 4", "scan 4", "imu 5", "imu 6",
@@ -71,7 +71,8 @@ TEST(Pacer, DropsAllButTheNewestScanWhenLate) {
 
 TEST(Pacer, DelayCountsTheWaitAndTheWork) {
   std::vector<std::string> log;
-  // Scan 1 ends at 0.1 s and is done at 0.25 s, where scan 2, there since 0.2 s, is taken up.
+  // Scan 1 ends at 0.1 s and is processed until 0.25 s; then scan 2, which arrived at 0.2 s,
+  // starts.
   Pacer pacer(taking(0.15, log));
   handed_over(pacer, log, 2);
   EXPECT_EQ(pacer.dropped(), 0U);

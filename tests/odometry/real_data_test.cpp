@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The LiDAR-only methods on recorded sweeps, where the shared data is at hand.
+// Tests of the LiDAR-only methods on recorded sweeps; skipped if the shared data is not there.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -28,7 +28,7 @@ class OnRealData : public ::testing::TestWithParam<Case> {
     return make_odometry({GetParam().algorithm, GetParam().preset, "", {}}, rig, "", Parallel(2))
         .odometry;
   }
-  /// Motion from the first scan to the second, as a pose of the second in the first.
+  /// Pose of the second scan in the frame of the first.
   static Pose motion_between(const std::vector<Eigen::Vector3f>& first,
                              const std::vector<Eigen::Vector3f>& second);
 };
@@ -52,7 +52,8 @@ double degrees(const Pose& pose) { return so3::angle(pose.linear()) * 57.29578; 
 
 TEST_P(OnRealData, FollowsACarAlongAStreet) {
   const auto folder = kLidarData / "kitti_drive";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: 15 sweeps of kitti_drive";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "skipped: the 15 sweeps of kitti_drive are missing";
   Dataset dataset = open_dataset(folder);
   const auto odometry = make();
   while (const auto event = dataset.events->next())
@@ -63,8 +64,8 @@ TEST_P(OnRealData, FollowsACarAlongAStreet) {
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Pose step = poses[i - 1].world_from_body.inverse() * poses[i].world_from_body;
     const Eigen::Vector3d turn = so3::log(step.linear()) * 57.29578;
-    // 0.40 to 0.46 m forward and about 1 degree of yaw a sweep, by another ICP; a spread of 3 cm
-    // and 0.3 degrees for either
+    // 0.40 to 0.46 m forward and about 1 degree of yaw per sweep, according to another ICP; spread
+    // of 3 cm and 0.3 degrees for either method
     EXPECT_NEAR(step.translation().x(), 0.43, 0.06) << i;
     EXPECT_LT(step.translation().tail<2>().norm(), 0.06) << i;
     EXPECT_NEAR(turn.z(), 1.0, 0.6) << i;
@@ -74,7 +75,8 @@ TEST_P(OnRealData, FollowsACarAlongAStreet) {
 
 TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
   const auto folder = kLidarData / "small_gicp_pair";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of small_gicp_pair";
+  if (!std::filesystem::exists(folder))
+    GTEST_SKIP() << "skipped: the pair of small_gicp_pair is missing";
   Pose target_from_source = Pose::Identity();
   std::ifstream in(folder / "T_target_source.txt");
   for (int row = 0; row < 4; ++row) {
@@ -84,15 +86,15 @@ TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
   const Pose found = motion_between(read_cloud(folder / "target.ply").points,
                                     read_cloud(folder / "source.ply").points);
   const Pose error = target_from_source.inverse() * found;
-  // the published one itself agrees with another ICP to 0.02 m and 0.3 degrees only; and keypoints
-  // stand 1.5 m apart: 0.25 m of matching noise over the square root of some 1000 of them
+  // the published motion agrees with another ICP to 0.02 m and 0.3 degrees; keypoints are 1.5 m
+  // apart: 0.25 m of matching noise divided by the square root of about 1000 keypoints
   EXPECT_LT(error.translation().norm(), 0.05);
   EXPECT_LT(degrees(error), 0.3);
 }
 
 TEST_P(OnRealData, ThereAndBackAgainIsNoMotion) {
   const auto folder = kLidarData / "gtsam_points" / "kitti_00";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of kitti_00";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of kitti_00 is missing";
   ReadOptions options;
   options.layout = "xyz";
   Dataset dataset = open_dataset(folder, options);

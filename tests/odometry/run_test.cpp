@@ -42,7 +42,7 @@ class KeepingSink : public LogSink {
   double last_total = -1.0;
 };
 
-/// Goes 1 m along x with each scan and publishes two points there.
+/// Moves 1 m along x with each scan and publishes two points there.
 class Walker : public Odometry {
  public:
   OdometryTraits traits() const override {
@@ -140,7 +140,7 @@ TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
   ListSource source(ten_scans());
   LogSink sink;
   const RunResult result = run(walker, source, {.map_voxel_m = 4.0}, sink);
-  // x 1..10 falls into cells 0..3, 4..7, 8..11, at y 0 and at y 5
+  // x from 1 to 10 is in the cells 0 to 3, 4 to 7 and 8 to 11, at y = 0 and y = 5
   EXPECT_EQ(result.files.map.points,
             (std::vector<Eigen::Vector3f>{
                 {1, 0, 0}, {1, 5, 0}, {4, 0, 0}, {4, 5, 0}, {8, 0, 0}, {8, 5, 0}}));
@@ -153,7 +153,7 @@ TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
     ListSource source(ten_scans());
     KeepingSink sink;
     const RunResult result = run(walker, source, {}, sink);
-    EXPECT_EQ(walker.scans, 4) << "no more is fed";
+    EXPECT_EQ(walker.scans, 4) << "no scans are fed after divergence";
     EXPECT_TRUE(result.summary.diverged);
     EXPECT_THAT(result.summary.reason, testing::HasSubstr("scan 3"));
     EXPECT_EQ(result.summary.scans, 4U);
@@ -206,10 +206,10 @@ TEST(Run, APacedMethodThatIsLateLosesScansButNoImuSample) {
   }
   LogSink sink;
   Walker late;
-  late.seconds_per_scan = 5e-3;  // five scans come meanwhile
+  late.seconds_per_scan = 5e-3;  // five scans arrive in that time
   ListSource source(events);
   const RunResult result = run(late, source, {.paced = true}, sink);
-  EXPECT_GE(result.summary.dropped, 12U);  // of the four between, each time
+  EXPECT_GE(result.summary.dropped, 12U);  // four each time
   EXPECT_EQ(result.summary.scans + result.summary.dropped, 20U);
   EXPECT_EQ(late.scans, static_cast<int>(result.summary.scans));
   EXPECT_EQ(late.imu_samples, 20);

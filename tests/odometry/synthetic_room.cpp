@@ -32,7 +32,7 @@ Scan make_scan(const Recording& recording, std::size_t index) {
   scan.stamp = recording.epoch + from_seconds(start);
   const CounterRandom random(recording.seed, static_cast<std::uint32_t>(index));
   const std::size_t columns = recording.points_per_scan / kRings;
-  // golden ratio and its square: any number of scans divides the gaps evenly
+  // golden ratio and its square: the beams of any number of scans divide the gaps evenly
   const auto scan_number = static_cast<double>(index);
   const double ring_shift = recording.repeating ? 0.0 : std::fmod(0.618034 * scan_number, 1.0);
   const double column_shift =
@@ -58,7 +58,8 @@ Scan make_scan(const Recording& recording, std::size_t index) {
   return scan;
 }
 
-/// By central differences of the motion, 1 ms wide: exact to some 1e-6 of rate and acceleration.
+/// By central differences of the motion with steps of 1 ms, exact to about 1e-6 of rate and
+/// acceleration.
 ImuSample make_imu(const Recording& recording, std::size_t index) {
   constexpr double h = 1e-3;
   const double t = static_cast<double>(index) * kImuSeconds;
@@ -73,7 +74,7 @@ ImuSample make_imu(const Recording& recording, std::size_t index) {
     return Eigen::Vector3d(density / std::sqrt(kImuSeconds) *
                            Eigen::Vector3d(normals[0], normals[1], more[0]));
   };
-  constexpr std::uint32_t kGyroStream = 1'000'000;  // those of the scans are their numbers
+  constexpr std::uint32_t kGyroStream = 1'000'000;  // the streams of scans are their indices
   constexpr std::uint32_t kAccelStream = 2'000'000;
   return {recording.epoch + from_seconds(t),
           so3::log(before.linear().transpose() * after.linear()) / (2.0 * h) +
@@ -90,7 +91,7 @@ double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
     const Eigen::Array3d b = (box.high - origin.array()) / direction.array();
     return std::pair{a.min(b).maxCoeff(), a.max(b).minCoeff()};
   };
-  double range = slabs(kRoom).second;  // from inside: where the ray leaves
+  double range = slabs(kRoom).second;  // seen from inside: where the ray leaves the room
   for (const Box& pillar : kPillars) {
     const auto [enter, leave] = slabs(pillar);
     if (enter < leave && enter > 0.0) range = std::min(range, enter);
@@ -100,7 +101,7 @@ double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
 
 Pose flight(double seconds) {
   const double u = std::clamp(seconds - 1.0, 0.0, 1.0);
-  // time along the curve: rests for 1 s, reaches its full rate within 1 s, twice differentiable
+  // time along the curve: constant for 1 s, full rate after another second, twice differentiable
   const double tau = u * u * u - 0.5 * u * u * u * u + std::max(0.0, seconds - 2.0);
   const Eigen::Matrix3d rotation =
       so3::exp({0.0, 0.0, 0.3 + 0.9 * std::sin(0.6 * tau)}) *

@@ -10,18 +10,18 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/dataset/event.hpp"
 
-/// A room small enough to reason about, seen by a LiDAR and felt by an IMU in closed form. Made
-/// here and not with the library's simulator, so that an odometry is tested on its own.
+/// Simulated LiDAR and IMU in a small room, both computed in closed form. Independent of the
+/// library's simulator, so that an odometry is tested on its own.
 namespace lidarena::synthetic {
 
-/// Pose of the body in the room (z up, m) by seconds.
+/// Pose of the body in the room (z up, m) as a function of time (s).
 using Motion = std::function<Pose(double seconds)>;
 
 /// Distance (m) from `origin` along the unit vector `direction` to the walls of the room, 16 x 12 x
 /// 4 m about the origin, or to one of its four pillars.
 double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
-/// Stays at the start for 1 s, then flies a curve with up to 1 m/s and 35 deg/s for some 10 s.
+/// Rests at the start for 1 s, then flies a curve with up to 1 m/s and 35 deg/s for about 10 s.
 Pose flight(double seconds);
 
 struct Recording {
@@ -31,8 +31,8 @@ struct Recording {
   double range_noise_m = 0.01;
   Time epoch{1'000'000'000};
   std::size_t points_per_scan = 10240;
-  bool repeating = true;  ///< false: each scan's beams lie between those of the others
-  std::uint64_t seed = 17;           ///< of the noise
+  bool repeating = true;    ///< false: the beams of each scan are between those of the others
+  std::uint64_t seed = 17;  ///< of the noise
   double gyro_noise_density = 0.0;   ///< rad/s/sqrt(Hz)
   double accel_noise_density = 0.0;  ///< m/s^2/sqrt(Hz)
 };
@@ -44,7 +44,7 @@ Rig rig_of(const Recording& recording);
 /// All events in the order of EventSource.
 std::vector<Event> record(const Recording& recording);
 
-/// Just the scans.
+/// The scans only.
 std::vector<Scan> scans_of(const Recording& recording);
 
 /// The true pose at `stamp`, in the body's frame at `start`.

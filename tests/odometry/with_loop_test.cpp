@@ -11,8 +11,8 @@
 namespace lidarena {
 namespace {
 
-/// Goes around a circle in the room and drifts outwards; publishes the room as it is seen from the
-/// true place.
+/// Moves on an ellipse in the room with an estimate that drifts upwards; publishes the room as seen
+/// from the true pose.
 class Drifter : public Odometry {
  public:
   OdometryTraits traits() const override { return {}; }
@@ -94,7 +94,7 @@ TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
   const Trajectory after = looped.trajectory();
   ASSERT_EQ(after.size(), before.size());
   EXPECT_LT(rms_height(after.poses()), 0.6 * rms_height(before.poses()));
-  // until the first loop the live estimate is the odometry's
+  // up to the first loop the live estimate is that of the odometry
   EXPECT_LT(
       (live[50].world_from_body.translation() - before.poses()[50].world_from_body.translation())
           .norm(),

@@ -95,7 +95,7 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
   const json& spread = document["statistics"]["algorithms"][""]["rpe_1m_at_poses_translation"];
   EXPECT_EQ(spread["runs"], 2);
   EXPECT_EQ(spread["failures"].size(), 1U);
-  EXPECT_THAT(call(files).out, HasSubstr("without: "));
+  EXPECT_THAT(call(files).out, HasSubstr("no value: "));
 }
 
 TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
@@ -153,7 +153,7 @@ TEST_F(Evaluate, CompatEvoGivesItsFiguresAndItsRefusals) {
   EXPECT_EQ(rpe["unit"], "%");
   EXPECT_THAT(call("--metric rpe --unit m --delta 1" + files).out, HasSubstr("evo's rpe"));
   EXPECT_THAT(refusal("--align" + files), HasSubstr("lie on a line or a point"));
-  EXPECT_THAT(refusal("--metric rpe --unit d --delta 400" + files), HasSubstr("half a turn"));
+  EXPECT_THAT(refusal("--metric rpe --unit d --delta 400" + files), HasSubstr("180 degrees"));
   EXPECT_EQ(call("--metric rpe --trajectory est.tum --truth ref.tum").exit_code, 2);
   EXPECT_EQ(call("--relation nonsense" + files).exit_code, 2);
 }

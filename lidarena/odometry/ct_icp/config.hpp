@@ -13,34 +13,34 @@
 
 namespace lidarena::ct_icp {
 
-/// Which points of a thinned scan are registered.
+/// Which points of a downsampled scan are registered.
 enum class KeypointSampling {
   kAll,
-  kGrid,      ///< one a cell
-  kAdaptive,  ///< one a cell whose edge grows with the range, from 0.1 to 1.6 m
+  kGrid,      ///< one per cell
+  kAdaptive,  ///< one per cell, the edge of which grows with the range from 0.1 to 1.6 m
 };
 
-/// Where registration starts.
+/// Initial guess of the registration.
 enum class InitialMotion {
-  kLastPose,        ///< begin and end of the scan where the last one ended
-  kConstantMotion,  ///< begin and end each go on by as much as the last time, whatever it took
+  kLastPose,        ///< the scan begins and ends where the last one ended
+  kConstantMotion,  ///< begin and end each repeat their last motion, regardless of the time between
   kConstantTwist,   ///< from the last scan's end with its mean velocity, by real time
 };
 
 enum class Solver {
   kGaussNewton,  ///< point to plane, our own normal equations
   kCeres,        ///< point to plane, Levenberg-Marquardt
-  kCeresShapes,  ///< likewise with lines, planes and distributions, whatever a neighborhood is
+  kCeresShapes,  ///< point to line, plane or distribution, by shape; Levenberg-Marquardt
 };
 
-/// The point of a neighborhood that its plane is laid through.
+/// Point of a neighborhood that lies in its plane.
 enum class PlanePoint { kFarthest, kNearest, kMean };
 
-/// When a scan is not inserted into the map (until too many in a row were not).
+/// Which scans are inserted into the map (after too many skipped in a row, one is in any case).
 enum class Insertion {
   kAlways,
-  kSmallRotation,  ///< not when it turned by more than max_rotation_rad from begin to end
-  kTrusted,        ///< not when its registration is not trusted, see RobustConfig
+  kSmallRotation,  ///< scans that rotate by at most max_rotation_rad from begin to end
+  kTrusted,        ///< scans of which the registration is trusted, see RobustConfig
 };
 
 struct SamplingConfig {
@@ -60,17 +60,22 @@ struct SamplingConfig {
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farther points are dropped", above(0));
     v("frame_voxel_m", self.frame_voxel_m, "m",
-      "one point of each such cell is kept, and goes into the map", above(0));
-    v("keypoint_voxel_m", self.keypoint_voxel_m, "m", "grid: edge of a keypoint's cell", above(0));
-    v("keypoints", self.keypoints, "", "all, grid or adaptive");
-    v("max_keypoints", self.max_keypoints, "", "of these at most, at random; 0: no limit",
+      "voxel size of the downsampled scan, of which one point per cell goes into the map",
+      above(0));
+    v("keypoint_voxel_m", self.keypoint_voxel_m, "m",
+      "voxel size of the keypoints, with keypoints: grid", above(0));
+    v("keypoints", self.keypoints, "", "which points are registered: all, grid or adaptive");
+    v("max_keypoints", self.max_keypoints, "",
+      "upper limit on the keypoints, drawn at random; 0: no limit", at_least(0));
+    v("start_scans", self.start_scans, "",
+      "number of scans at the start that use the next two voxel sizes and no max_keypoints",
       at_least(0));
-    v("start_scans", self.start_scans, "", "so many scans are sampled as the next two say",
-      at_least(0));
-    v("start_frame_voxel_m", self.start_frame_voxel_m, "m", "", above(0));
-    v("start_keypoint_voxel_m", self.start_keypoint_voxel_m, "m", "", above(0));
-    v("rigid_scans", self.rigid_scans, "", "the first scans are taken for instantaneous",
-      at_least(1));
+    v("start_frame_voxel_m", self.start_frame_voxel_m, "m", "frame_voxel_m during start_scans",
+      above(0));
+    v("start_keypoint_voxel_m", self.start_keypoint_voxel_m, "m",
+      "keypoint_voxel_m during start_scans", above(0));
+    v("rigid_scans", self.rigid_scans, "",
+      "number of scans at the start registered without motion within the scan", at_least(1));
   }
 };
 
@@ -101,39 +106,51 @@ struct RegistrationConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("solver", self.solver, "", "gauss_newton, ceres or ceres_shapes");
-    v("initial_motion", self.initial_motion, "", "last_pose, constant_motion or constant_twist");
-    v("segments", self.segments, "", "pieces of constant velocity within a scan; the paper has one",
-      Limits{1, 16});
-    v("max_iterations", self.max_iterations, "", "searches and solutions in turn", at_least(1));
-    v("start_iterations", self.start_iterations, "", "at least, for the first start_scans",
-      at_least(0));
-    v("inner_iterations", self.inner_iterations, "", "of the solver between two searches",
-      at_least(1));
+    v("initial_motion", self.initial_motion, "",
+      "initial guess: last_pose, constant_motion or constant_twist");
+    v("segments", self.segments, "",
+      "number of pieces of constant velocity within a scan; 1 in the paper", Limits{1, 16});
+    v("max_iterations", self.max_iterations, "",
+      "maximum number of neighbor searches, each followed by a solution", at_least(1));
+    v("start_iterations", self.start_iterations, "",
+      "lower limit on max_iterations during start_scans", at_least(0));
+    v("inner_iterations", self.inner_iterations, "",
+      "iterations of the solver between two searches", at_least(1));
     v("translation_threshold_m", self.translation_threshold_m, "m",
-      "registration ends when both ends together moved less ...", at_least(0));
-    v("rotation_threshold_rad", self.rotation_threshold_rad, "rad", "... and turned less",
+      "registration ends when an iteration translates both ends together by less ...", at_least(0));
+    v("rotation_threshold_rad", self.rotation_threshold_rad, "rad", "... and rotates them by less",
       at_least(0));
-    v("search_radius_m", self.search_radius_m, "m", "for neighbors in the map", above(0));
-    v("search_again_m", self.search_again_m, "m",
-      "neighbors are searched anew once a keypoint moved so far; 0: in each iteration",
-      at_least(0));
-    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer is not matched", at_least(3));
-    v("max_neighbors", self.max_neighbors, "", "the nearest so many count", Limits{3, 64});
-    v("plane_point", self.plane_point, "",
-      "what a plane is laid through: farthest (the public program), nearest or mean of neighbors");
-    v("planarity_weight", self.planarity_weight, "", "of the square of a neighborhood's planarity",
-      at_least(0));
-    v("nearness_weight", self.nearness_weight, "",
-      "of the exponential of the plane point's distance", at_least(0));
-    v("gate_distances", self.gate_distances, "", "matches beyond max_plane_distance_m are dropped");
-    v("max_plane_distance_m", self.max_plane_distance_m, "m", "", above(0));
-    v("robust_kernel", self.robust_kernel, "", "none, huber, cauchy or tukey");
-    v("robust_kernel_scale_m", self.robust_kernel_scale_m, "m", "of the weighted distance",
+    v("search_radius_m", self.search_radius_m, "m", "radius of the neighbor search in the map",
       above(0));
-    v("max_residuals", self.max_residuals, "", "the first so many count; 0: all", at_least(0));
-    v("min_residuals", self.min_residuals, "", "with fewer the scan is lost", at_least(1));
+    v("search_again_m", self.search_again_m, "m",
+      "neighbors are searched again after a keypoint has moved this far; 0: in each iteration",
+      at_least(0));
+    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer neighbors is not matched",
+      at_least(3));
+    v("max_neighbors", self.max_neighbors, "", "number of nearest neighbors used", Limits{3, 64});
+    v("plane_point", self.plane_point, "",
+      "point that lies in the plane: farthest (the published program), nearest or mean of the "
+      "neighbors");
+    v("planarity_weight", self.planarity_weight, "",
+      "share of the squared planarity in a match's weight", at_least(0));
+    v("nearness_weight", self.nearness_weight, "",
+      "share of the exponential of the plane point's distance in a match's weight", at_least(0));
+    v("gate_distances", self.gate_distances, "", "drop matches beyond max_plane_distance_m");
+    v("max_plane_distance_m", self.max_plane_distance_m, "m",
+      "see gate_distances; times min_neighbors it is the decay length of nearness_weight's "
+      "exponential",
+      above(0));
+    v("robust_kernel", self.robust_kernel, "",
+      "robust kernel of the residuals: none, huber, cauchy or tukey");
+    v("robust_kernel_scale_m", self.robust_kernel_scale_m, "m",
+      "scale of the robust kernel, on the weighted distance", above(0));
+    v("max_residuals", self.max_residuals, "", "maximum number of matches used, in order; 0: all",
+      at_least(0));
+    v("min_residuals", self.min_residuals, "",
+      "with fewer matches the registration of the scan fails", at_least(1));
     v("exact_slerp", self.exact_slerp, "",
-      "Gauss-Newton: derivative of the slerp itself; false: the public program's first order");
+      "Gauss-Newton: exact derivative of the slerp; false: first order, as in the published "
+      "program");
   }
 };
 
@@ -148,14 +165,17 @@ struct PriorConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("location", self.location, "", "the scan begins where the last one ended", at_least(0));
-    v("velocity", self.velocity, "", "it goes on as fast", at_least(0));
-    v("orientation", self.orientation, "m^2/rad^2", "it begins turned as the last one ended",
+    v("location", self.location, "", "weight of: the scan begins where the last one ended",
       at_least(0));
-    v("angular_velocity", self.angular_velocity, "m^2/rad^2", "it turns on as fast", at_least(0));
-    v("small_velocity", self.small_velocity, "", "it ends where it began", at_least(0));
-    v("bend", self.bend, "", "its segments are alike in velocity ...", at_least(0));
-    v("angular_bend", self.angular_bend, "m^2/rad^2", "... and in angular velocity", at_least(0));
+    v("velocity", self.velocity, "", "weight of: it has the velocity of the last one", at_least(0));
+    v("orientation", self.orientation, "m^2/rad^2",
+      "weight of: it begins with the rotation at which the last one ended", at_least(0));
+    v("angular_velocity", self.angular_velocity, "m^2/rad^2",
+      "weight of: it has the angular velocity of the last one", at_least(0));
+    v("small_velocity", self.small_velocity, "", "weight of: it ends where it began", at_least(0));
+    v("bend", self.bend, "", "weight of: neighboring segments have the same velocity", at_least(0));
+    v("angular_bend", self.angular_bend, "m^2/rad^2",
+      "weight of: neighboring segments have the same angular velocity", at_least(0));
   }
 };
 
@@ -168,11 +188,11 @@ struct MapConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("voxel_m", self.voxel_m, "m",
-      "edge of a cell; a search radius beyond it makes a search visit 125 cells instead of 27",
-      above(0));
-    v("max_points", self.max_points, "", "of a cell", Limits{1, 4096});
-    v("spacing_m", self.spacing_m, "m", "between the points of a cell", at_least(0));
-    v("radius_m", self.radius_m, "m", "the map is forgotten beyond this", above(0));
+      "voxel size; with a larger search radius a search visits 125 cells instead of 27", above(0));
+    v("max_points", self.max_points, "", "maximum number of points in a cell", Limits{1, 4096});
+    v("spacing_m", self.spacing_m, "m", "minimum distance between the points of a cell",
+      at_least(0));
+    v("radius_m", self.radius_m, "m", "points farther from the sensor are removed", above(0));
   }
 };
 
@@ -183,15 +203,16 @@ struct InsertionConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("rule", self.rule, "", "always, small_rotation or trusted");
-    v("max_rotation_rad", self.max_rotation_rad, "rad", "small_rotation: from begin to end",
-      above(0));
-    v("max_skipped", self.max_skipped, "", "after more scans in a row than this one is inserted",
+    v("rule", self.rule, "", "which scans enter the map: always, small_rotation or trusted");
+    v("max_rotation_rad", self.max_rotation_rad, "rad",
+      "with small_rotation: maximum rotation from begin to end of a scan", above(0));
+    v("max_skipped", self.max_skipped, "",
+      "after more skipped scans in a row than this, the next one is inserted in any case",
       at_least(0));
   }
 };
 
-/// When a registration is trusted, and what is done when it is not.
+/// When a registration is trusted, and what happens otherwise.
 struct RobustConfig {
   bool enabled = false;
   int max_attempts = 6;
@@ -205,23 +226,28 @@ struct RobustConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("enabled", self.enabled, "",
-      "a registration that is not trusted is tried again, finer and longer, from the same guess");
-    v("max_attempts", self.max_attempts, "", "", at_least(1));
-    v("max_rotation_rad", self.max_rotation_rad, "rad", "a scan that turns more is not trusted",
-      above(0));
+      "repeat a registration that is not trusted, with more keypoints and iterations, from the "
+      "same guess");
+    v("max_attempts", self.max_attempts, "", "maximum number of registrations of a scan",
+      at_least(1));
+    v("max_rotation_rad", self.max_rotation_rad, "rad",
+      "a registration with a larger rotation is not trusted", above(0));
     v("min_matched_share", self.min_matched_share, "",
-      "a scan fewer of whose keypoints are matched is not trusted", between(0, 1));
-    v("max_translation_m", self.max_translation_m, "m", "a scan that moves farther is lost",
+      "a registration with a smaller share of matched keypoints is not trusted", between(0, 1));
+    v("max_translation_m", self.max_translation_m, "m",
+      "a registration with a larger translation has failed", above(0));
+    v("max_turn_rad", self.max_turn_rad, "rad", "a registration with a larger rotation has failed",
       above(0));
-    v("max_turn_rad", self.max_turn_rad, "rad", "a scan that turns more is lost", above(0));
     v("stop_when_lost", self.stop_when_lost, "",
-      "the run ends there, as the public program; false: the prediction stands in");
+      "report divergence after a failed registration, where the published program ends; false: use "
+      "the prediction");
     v("motion_kept_when_lost", self.motion_kept_when_lost, "",
-      "factor on the predicted motion after each lost scan; constant_twist", between(0, 1));
+      "factor on the predicted motion after each failed registration; with constant_twist",
+      between(0, 1));
   }
 };
 
-/// The defaults are the public program's handheld profile (2022); preset() changes them.
+/// The defaults are the published program's handheld profile (2022); preset() changes them.
 struct Config {
   VoxelRounding cell_rounding = VoxelRounding::kTruncate;
   SamplingConfig sampling;
@@ -234,20 +260,22 @@ struct Config {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("cell_rounding", self.cell_rounding, "",
-      "floor, or truncate: in the scan's grids and the map, cells about zero are twice as wide");
+      "how a point's cell is computed in the scan's grids and the map: floor, or truncate: the "
+      "cells around x, y, z = 0 are twice as wide");
     v("sampling", self.sampling, "", "which points are used");
     v("registration", self.registration, "", "how they are aligned with the map");
-    v("prior", self.prior, "", "what is expected of the motion, against a point's squared error");
+    v("prior", self.prior, "",
+      "motion prior: weights relative to the mean squared error of a point");
     v("map", self.map, "", "the local map");
     v("insertion", self.insertion, "", "which scans enter it");
-    v("robust", self.robust, "", "bad registrations");
+    v("robust", self.robust, "", "how untrusted and failed registrations are handled");
   }
 };
 
 /// Names of preset(), the default first.
 std::vector<std::string> preset_names();
 
-/// Settings for a LiDAR: "improved"; "original", the public program of 2022 with its handheld
+/// Settings for a LiDAR: "improved"; "original", the published program of 2022 with its handheld
 /// profile. Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 

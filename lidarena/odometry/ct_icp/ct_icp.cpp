@@ -8,8 +8,8 @@ namespace lidarena::ct_icp {
 
 namespace {
 
-constexpr double kDegenerate = 0.01;  // share of the matches' directions, 1/3 if all alike
-constexpr std::size_t kGrain = 2048;  // points a task: some 0.1 ms of work
+constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
+constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
 
 std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const TimedPoint> points,
                                     const Parallel& parallel) {

@@ -14,9 +14,9 @@
 
 namespace lidarena::ct_icp {
 
-/// LiDAR odometry by elastic scan-to-map registration: a scan has a pose at its begin and one at
-/// its end, after Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP: Real-time Elastic LiDAR
-/// Odometry with Loop Closure" (ICRA 2022). See README.md beside.
+/// LiDAR odometry by elastic scan-to-map registration: a scan has a pose at its beginning and one
+/// at its end, after Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP: Real-time Elastic LiDAR
+/// Odometry with Loop Closure" (ICRA 2022). See README.md in this folder.
 class CtIcp : public Odometry {
  public:
   CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
@@ -29,16 +29,16 @@ class CtIcp : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Aligns the thinned scan with the map, if there is one; the guess stands where that fails.
+  /// Aligns the downsampled scan with the map, if there is one; returns the guess if that fails.
   RobustRegistration align(std::span<const TimedPoint> frame, const ElasticMotion& guess);
   ScanStatus status_of(const RobustRegistration& found, std::size_t points) const;
-  /// Whether this is where the public program gives up.
+  /// Whether the published program would end at this failed registration.
   bool stops_when_lost(const RobustRegistration& found) const;
-  /// Takes over the scan's motion.
+  /// Stores the scan's motion.
   void advance(const RobustRegistration& found, const ScanTimes& times, ScanStatus status);
-  /// Poses of the body through the scan; empty if it is rigid.
+  /// Poses of the body within the scan; empty if the scan is rigid.
   std::vector<StampedPose> motion_within(const ElasticMotion& motion, const ScanTimes& times) const;
-  /// Pose of the body in its own frame at the start.
+  /// Pose of the body in the world, which is the body's frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
   bool starting() const { return scans_ < config_.sampling.start_scans; }
 

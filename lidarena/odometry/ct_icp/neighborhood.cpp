@@ -9,9 +9,9 @@ namespace lidarena::ct_icp {
 
 namespace {
 
-constexpr double kDistinct = 0.8;            // linearity or planarity from which it is one
-constexpr double kDistributionWeight = 0.1;  // of neither
-constexpr double kThinnest = 0.02;           // m, least deviation of a distribution: range noise
+constexpr double kDistinct = 0.8;            // minimum planarity of a plane, linearity of a line
+constexpr double kDistributionWeight = 0.1;  // of a neighborhood that is neither
+constexpr double kThinnest = 0.02;           // m, minimum deviation of a distribution: range noise
 
 Eigen::Vector3d anchor_of(std::span<const Neighbor> neighbors, const Eigen::Vector3d& mean,
                           PlanePoint plane_point) {
@@ -29,7 +29,7 @@ Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_poin
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   for (const auto& neighbor : neighbors) {
-    const Eigen::Vector3f d = neighbor.point - origin;  // small, so floats do
+    const Eigen::Vector3f d = neighbor.point - origin;  // small, so float precision suffices
     sum += d;
     squares += d * d.transpose();
   }
@@ -76,7 +76,7 @@ ElasticMatch shape_match(const Neighborhood& neighborhood) {
     match.shape = Eigen::Matrix3d::Identity() - neighborhood.line * neighborhood.line.transpose();
     match.weight = neighborhood.linearity * neighborhood.linearity;
   } else {
-    // Deviations along the axes, scaled so that the smallest counts in meters as a plane's does.
+    // Deviations along the axes, scaled so that the smallest one is in meters, as for a plane.
     const Eigen::Vector3d deviations = neighborhood.eigenvalues.cwiseSqrt().cwiseMax(kThinnest);
     Eigen::Matrix3d axes;
     axes << neighborhood.normal, neighborhood.line.cross(neighborhood.normal), neighborhood.line;

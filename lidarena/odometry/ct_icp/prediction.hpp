@@ -8,18 +8,17 @@
 
 namespace lidarena::ct_icp {
 
-/// The lidar's motion so far, as far as the next scan's start depends on it.
+/// Last motions of the lidar, for the initial guess and the motion prior of the next scan.
 class MotionHistory {
  public:
-  /// Takes in a scan's motion. A `lost` one is a prediction: the speed is then `kept` of what it
-  /// was.
+  /// Adds a scan's motion. A `lost` one is a prediction: the velocity is then multiplied by `kept`.
   void add(const ElasticMotion& motion, const ScanTimes& times, bool lost, double kept);
 
-  /// Where registration of the next scan starts (CT-ICP, III-A).
+  /// Initial guess for the registration of the next scan (CT-ICP, III-A).
   ElasticMotion predict(const ScanTimes& times, const RegistrationConfig& config) const;
 
-  /// What the next scan's motion is tied to (III-C): where the last one ended and how it moved;
-  /// with constant_twist the prediction, which is the same by real time.
+  /// Motion prior of the next scan (III-C): the end and the motion of the last one; with
+  /// constant_twist the prediction, which is the same by real time.
   MotionPrior prior(const ElasticMotion& prediction, const RegistrationConfig& config,
                     const PriorConfig& weights) const;
 

@@ -14,15 +14,15 @@ namespace lidarena::ct_icp {
 namespace {
 
 constexpr std::size_t kMostNeighbors = 64;
-constexpr std::size_t kGrain = 64;  // keypoints a task: some 0.2 ms of work
+constexpr std::size_t kGrain = 64;  // keypoints per task: about 0.2 ms of work
 
-/// What was found about a keypoint, and where it was then.
+/// A keypoint's neighborhood and its position (m, world) when it was searched.
 struct Found {
   std::optional<Neighborhood> neighborhood;
   Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(INFINITY);
 };
 
-/// Keypoints and what they match, from one iteration to the next.
+/// Matches keypoints with the map; keeps neighborhoods from one iteration to the next.
 class Matcher {
  public:
   Matcher(std::span<const TimedPoint> keypoints, const VoxelHashMap& map,

@@ -16,14 +16,15 @@ struct Registration {
   ElasticMotion motion;  ///< of the lidar in the map
   int iterations = 0;
   std::size_t keypoints = 0;
-  std::size_t matches = 0;     ///< keypoints that counted in the last iteration
-  double observability = 1.0;  ///< smallest share of the matches' directions, 1/3 if all alike
-  bool enough = true;          ///< there were min_residuals in each iteration
+  std::size_t matches = 0;     ///< matched keypoints in the last iteration
+  double observability = 1.0;  ///< smallest share of a direction; isotropic: 1/3
+  bool enough = true;          ///< each iteration had at least min_residuals matches
 
   double matched_share() const;
 };
 
-/// Elastic ICP of `keypoints` against `map` from `guess` (CT-ICP, III-B): search and solve in turn.
+/// Elastic ICP of `keypoints` against `map` from `guess` (CT-ICP, III-B): alternates neighbor
+/// searches and solutions.
 Registration register_keypoints(std::span<const TimedPoint> keypoints, const VoxelHashMap& map,
                                 const ElasticMotion& guess, const MotionPrior& prior,
                                 const RegistrationConfig& config, int iterations,

@@ -7,16 +7,16 @@
 
 namespace lidarena::ct_icp {
 
-/// The settings of a level above 0: keypoints 1.5 times as fine and twice as many, 20 more
-/// iterations and 30 more of the solver, a tenth of the thresholds that end them, a loss 1.2 and a
-/// gate 1.5 times as wide, each once a level (iterations, too).
+/// Settings of a retry level above 0. Each level changes once more: keypoint voxels divided by 1.5,
+/// keypoint limits doubled, 20 more iterations and 30 more of the solver, convergence thresholds
+/// divided by 10, robust kernel 1.2 and distance gate 1.5 times as wide.
 Config at_level(Config config, int level);
 
-/// What a registration is worth.
+/// Quality of a registration.
 enum class Verdict {
   kTrusted,
-  kSuspect,  ///< turns more, or matches less, than RobustConfig trusts
-  kLost,     ///< too few residuals, or farther or further round than can be
+  kSuspect,  ///< more rotation or fewer matches than RobustConfig trusts
+  kLost,     ///< failed: too few matches, not finite, or motion beyond the limits of RobustConfig
 };
 Verdict verdict_on(const Registration& registration, const ElasticMotion& guess,
                    const RobustConfig& config);
@@ -27,15 +27,15 @@ struct RobustRegistration {
   int level = 0;
 };
 
-/// Registers the keypoints of `frame`; while the outcome is not trusted, again from the same guess
-/// at the next level, from `first_level` on and with max_attempts in all (one if not
-/// `config.robust.enabled`). `starting`: one of the first scans.
+/// Registers the keypoints of `frame` at `first_level`; while the result is not trusted, repeats
+/// that from the same guess at the next level, up to max_attempts in total (one unless
+/// `config.robust.enabled`). `starting`: the scan is one of the first start_scans.
 RobustRegistration register_robustly(std::span<const TimedPoint> frame, const VoxelHashMap& map,
                                      const ElasticMotion& guess, const MotionPrior& prior,
                                      const Config& config, bool starting, int first_level,
                                      const Parallel& parallel);
 
-/// Decides which scans enter the map: not suspect ones, until too many were kept out in a row.
+/// Decides which scans enter the map: suspect ones are skipped, unless too many were in a row.
 class InsertionGate {
  public:
   explicit InsertionGate(const InsertionConfig& config) : config_(config) {}

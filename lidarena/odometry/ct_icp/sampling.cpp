@@ -13,7 +13,8 @@ namespace lidarena::ct_icp {
 
 namespace {
 
-/// Cells of the adaptive grid: `edge` m for points nearer than `range` m (the public program's).
+/// Cells of the adaptive grid: `edge` m for points nearer than `range` m; values of the published
+/// program.
 struct Ring {
   float range;
   double edge;
@@ -22,7 +23,7 @@ constexpr float kNearest = 0.5F;
 constexpr std::array kRings{Ring{2.0F, 0.1}, Ring{4.0F, 0.2}, Ring{8.0F, 0.4}, Ring{16.0F, 0.8},
                             Ring{200.0F, 1.6}};
 
-/// A random-looking rank that no two indices share: two rounds of a bijective mix.
+/// Pseudo-random rank, unique for each index: two rounds of a bijective mix.
 std::uint32_t rank_of(std::uint32_t index) {
   index = (index ^ (index >> 16U)) * 0x7FEB352DU;  // constants of Wellons' hash prospector
   index = (index ^ (index >> 15U)) * 0x846CA68BU;
@@ -47,7 +48,7 @@ std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, VoxelRoundin
   return keypoints;
 }
 
-/// `limit` of them, drawn evenly.
+/// Reduces `points` to `limit` of them, drawn uniformly.
 void draw(std::vector<TimedPoint>& points, std::size_t limit) {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> order;
   for (std::uint32_t i = 0; i < points.size(); ++i) order.emplace_back(rank_of(i), i);
@@ -71,7 +72,7 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, b
   points.reserve(scan.points.size());
   for (const Point& point : scan.points) {
     const double squared_range = point.position.cast<double>().squaredNorm();
-    if (!(squared_min <= squared_range && squared_range < squared_max)) continue;  // NaN, too
+    if (!(squared_min <= squared_range && squared_range < squared_max)) continue;  // also drops NaN
     const double alpha = rigid ? 1.0 : (point.dt_ns - begin) * per_ns;
     points.push_back({point.position, static_cast<float>(alpha)});
   }

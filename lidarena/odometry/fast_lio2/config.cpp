@@ -10,7 +10,7 @@ Config original(const LidarInfo& lidar) {
   Config config;
   const bool livox = lidar.kind == "rosette";
   config.point_stride = livox ? 3 : 4;
-  config.deskew_first_instant = livox;  // whose first point, alone at its instant, is not taken
+  config.deskew_first_instant = livox;  // one point with Livox, unused in the program
   return config;
 }
 
@@ -25,7 +25,7 @@ Config improved(const LidarInfo& lidar) {
   config.map_voxel_m = 0.2;
   config.plane_fit = PlaneFit::kPrincipal;
   config.plane_uncertainty = true;
-  config.point_variance_m2 = 4e-4;  // (2 cm)^2, of the data sheets; the plane's comes on top
+  config.point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
   config.noise_model = NoiseModel::kDensity;
   config.imu_noise_factor = 10.0;
   config.second_order = true;

@@ -13,13 +13,13 @@
 
 namespace lidarena::fast_lio2 {
 
-/// Where the strength of the IMU's noise comes from.
+/// Source of the IMU's noise.
 enum class NoiseModel {
   kPerSample,  ///< fixed covariances of a sample, so the filter depends on the IMU's rate
-  kDensity,    ///< continuous densities: the data sheet's, times `imu_noise_factor`
+  kDensity,    ///< continuous densities of the data sheet times `imu_noise_factor`
 };
 
-/// The defaults are the public program's; preset() changes them.
+/// The defaults are the published program's; preset() changes them.
 struct Config {
   int point_stride = 3;
   double min_range_m = 0.5;
@@ -63,82 +63,98 @@ struct Config {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("point_stride", self.point_stride, "", "of this many points, one is used", at_least(1));
+    v("point_stride", self.point_stride, "", "every n-th point of a scan is used", at_least(1));
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("deskew_first_instant", self.deskew_first_instant, "",
-      "cure: points of the scan's first instant are brought to its end like all others; a spinning "
-      "sensor fires a whole column then");
-    v("scan_voxel_m", self.scan_voxel_m, "m", "a scan's points are averaged in cells of this edge",
+      "also de-skew the points of the scan's first instant, when a spinning sensor fires a whole "
+      "column; the published program leaves them unchanged");
+    v("scan_voxel_m", self.scan_voxel_m, "m", "voxel size in which a scan's points are averaged",
       above(0));
     v("grid_axes", self.grid_axes, "",
-      "of the scan's cells in the LiDAR's frame and the map's in the world: parallel or askew "
-      "(cure: walls are not parallel to them)");
+      "axes of the scan's grid in the LiDAR's frame and of the map's in the world: parallel, or "
+      "askew, which keeps walls from being parallel to the cells (not in the published program)");
     v("max_points", self.max_points, "",
-      "of a scan's averages; from more, so many are taken evenly (bounds the time of a scan)",
+      "upper limit on the averaged points of a scan, taken evenly from all; bounds the time of a "
+      "scan",
       at_least(100));
-    v("map_voxel_m", self.map_voxel_m, "m", "the map holds one point in a cell of this edge",
+    v("map_voxel_m", self.map_voxel_m, "m", "voxel size of the map, which keeps one point per cell",
       above(0));
-    v("max_iterations", self.max_iterations, "", "of the filter's update", at_least(0));
+    v("max_iterations", self.max_iterations, "",
+      "maximum number of iterations of the filter's update", at_least(0));
     v("convergence", self.convergence, "m, rad, m/s, ...", "largest step of a converged update",
       above(0));
-    v("point_variance_m2", self.point_variance_m2, "m^2", "of a point across its plane", above(0));
-    v("max_neighbor_m", self.max_neighbor_m, "m", "distance of the fifth neighbor, at most",
+    v("point_variance_m2", self.point_variance_m2, "m^2",
+      "variance of a point's distance from its plane", above(0));
+    v("max_neighbor_m", self.max_neighbor_m, "m", "maximum distance of the fifth neighbor",
       above(0));
     v("plane_thickness_m", self.plane_thickness_m, "m",
-      "distance of each neighbor from their plane, at most", above(0));
-    v("plane_fit", self.plane_fit, "", "unit_offset or, not in the published program, principal");
+      "maximum distance of a neighbor from the plane fitted to all", above(0));
+    v("plane_fit", self.plane_fit, "", "unit_offset, or principal (not in the published program)");
     v("plane_uncertainty", self.plane_uncertainty, "",
-      "cure: a point counts less the less its five neighbors say about their plane's place there, "
-      "which is next to nothing when they lie on a line");
+      "add the plane's variance to the point's (not in the published program); it is large when "
+      "the five neighbors lie on a line");
     v("estimate_extrinsics", self.estimate_extrinsics, "",
-      "whether the LiDAR's place on the IMU is estimated, too");
-    v("noise_model", self.noise_model, "", "per_sample or density (cure)");
-    v("gyro_variance", self.gyro_variance, "(rad/s)^2", "of a sample; per_sample", above(0));
-    v("accel_variance", self.accel_variance, "(m/s^2)^2", "of a sample; per_sample", above(0));
-    v("gyro_bias_variance", self.gyro_bias_variance, "", "of a sample's walk; per_sample",
-      at_least(0));
-    v("accel_bias_variance", self.accel_bias_variance, "", "of a sample's walk; per_sample",
-      at_least(0));
-    v("imu_noise_factor", self.imu_noise_factor, "",
-      "on the data sheet's densities: for vibration and for what the planes do not tell; density",
+      "also estimate the LiDAR's pose relative to the IMU");
+    v("noise_model", self.noise_model, "", "per_sample, or density (not in the published program)");
+    v("gyro_variance", self.gyro_variance, "(rad/s)^2", "variance of a sample, with per_sample",
       above(0));
-    v("second_order", self.second_order, "", "cure: the position takes half of a dt^2");
-    v("max_imu_gap_s", self.max_imu_gap_s, "s",
-      "over a longer gap the motion is coasted, with a large noise", above(0));
-    v("tell_clipping", self.tell_clipping, "",
-      "cure: over samples at the end of the IMU's range the noise is large");
-    v("least_agreement", self.least_agreement, "",
-      "cure: a scan of whose points near planes fewer than this share lie on them is not "
-      "added to it; fifteen in a row: diverged; 0: never",
-      between(0, 1));
-    v("init_samples", self.init_samples, "", "IMU samples that the start is estimated from",
-      at_least(2));
-    v("skip_first_scan", self.skip_first_scan, "", "the first scan and its IMU samples are unused");
-    v("always_scale_accel", self.always_scale_accel, "",
-      "accelerations are scaled so that the start's mean is gravity; cure: only when they are in "
-      "g");
-    v("gravity", self.gravity, "m/s^2", "", above(0));
-    v("initial_sigma", self.initial_sigma, "m, rad, m/s",
-      "of position, attitude and velocity at the start; 0: none but the velocity's that the IMU "
-      "shows (cure)",
+    v("accel_variance", self.accel_variance, "(m/s^2)^2", "variance of a sample, with per_sample",
+      above(0));
+    v("gyro_bias_variance", self.gyro_bias_variance, "", "random walk per sample, with per_sample",
       at_least(0));
-    v("map_radius_m", self.map_radius_m, "m", "the map is forgotten beyond this", above(0));
+    v("accel_bias_variance", self.accel_bias_variance, "",
+      "random walk per sample, with per_sample", at_least(0));
+    v("imu_noise_factor", self.imu_noise_factor, "",
+      "factor on the data sheet's densities, with density: covers vibration and errors that the "
+      "planes do not show",
+      above(0));
+    v("second_order", self.second_order, "",
+      "include a dt^2 / 2 in the position (not in the published program)");
+    v("max_imu_gap_s", self.max_imu_gap_s, "s",
+      "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
+    v("tell_clipping", self.tell_clipping, "",
+      "use large noise for IMU samples at the end of the measuring range (not in the published "
+      "program)");
+    v("least_agreement", self.least_agreement, "",
+      "a scan is not added to the map when a smaller share of its points near planes lies on them; "
+      "after fifteen such scans in a row the status is diverged; 0: never, as in the published "
+      "program",
+      between(0, 1));
+    v("init_samples", self.init_samples, "", "number of IMU samples for the initialization",
+      at_least(2));
+    v("skip_first_scan", self.skip_first_scan, "", "do not use the first scan and its IMU samples");
+    v("always_scale_accel", self.always_scale_accel, "",
+      "scale accelerations so that their mean at the start equals gravity; false: only if they are "
+      "in g (not in the published program)");
+    v("gravity", self.gravity, "m/s^2", "magnitude of gravity", above(0));
+    v("initial_sigma", self.initial_sigma, "m, rad, m/s",
+      "sigma of position, attitude and velocity at the start; 0: position and attitude define the "
+      "frame, and the velocity's sigma depends on whether the IMU shows rest (not in the published "
+      "program)",
+      at_least(0));
+    v("map_radius_m", self.map_radius_m, "m",
+      "half the edge of the box around the sensor outside of which map points are removed",
+      above(0));
     v("keep_all_scans", self.keep_all_scans, "",
-      "all points of all scans stay in memory, as for the file that the program writes at its end");
+      "keep all points of all scans in memory, as the published program does for the file it "
+      "writes at its end");
     v("zero_velocity", self.zero_velocity, "",
-      "cure: while the IMU shows that the sensor stands, its velocity is zero");
+      "hold the velocity at zero while the IMU shows that the sensor stands still (not in the "
+      "published program)");
     v("still_scans_mapped", self.still_scans_mapped, "",
-      "while it stands, only so many scans go into the map; with zero_velocity", at_least(1));
+      "maximum number of scans added to the map during a standstill; with zero_velocity",
+      at_least(1));
     v("hold_first_pose", self.hold_first_pose, "",
-      "cure: until it first moves it is where it began, so that the map begins without drift; with "
-      "zero_velocity");
+      "hold the first pose until the first motion, so that the map begins without drift; with "
+      "zero_velocity (not in the published program)");
   }
 };
 
 /// Names of preset(), the default first.
 std::vector<std::string> preset_names();
 
-/// Settings for a LiDAR: "improved"; "original", the public program of 2022 with its launch files.
+/// Settings for a LiDAR: "improved"; "original", the published program of 2022 with its launch
+/// files.
 /// Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 

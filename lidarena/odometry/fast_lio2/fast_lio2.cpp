@@ -13,13 +13,13 @@ namespace {
 
 using State = InertialState;
 
-constexpr double kStillSpeedSigma = 0.01;  // m/s, of "it stands"
-constexpr double kStillShiftSigma = 1e-4;  // m, of "it has not moved yet"
-constexpr double kStillTurnSigma = 1e-5;   // rad
-constexpr int kLostScans = 15;             // in a row that contradict the map
-constexpr double kDegenerate = 0.01;       // share of the normals' directions, 1/3 if all alike
+constexpr double kStillSpeedSigma = 0.01;  // m/s, of the zero velocity at a standstill
+constexpr double kStillShiftSigma = 1e-4;  // m, of the held first pose
+constexpr double kStillTurnSigma = 1e-5;   // rad, likewise
+constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
+constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
 
-/// At most `most` of the points, evenly spread over their order.
+/// At most `most` of the points, at even intervals of their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
   const auto count = static_cast<std::size_t>(most);
   if (points.size() <= count) return points;
@@ -136,7 +136,7 @@ void FastLio2::predict(const std::vector<ImuInterval>& intervals) {
       config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
   for (const ImuInterval& interval : intervals) {
     Eigen::Vector3d accel = accel_scale_ * interval.accel;
-    if (interval.gap) {  // on with the velocity it has
+    if (interval.gap) {  // coast with constant velocity
       accel = state.nav.bias.accel - state.rotation().transpose() * state.gravity;
     }
     const Eigen::Vector3d acceleration =
@@ -196,20 +196,20 @@ ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResidual
   }
   if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
-  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // and stays so
+  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
   const bool contradicts =
       static_cast<double>(update.points.count) < config_.least_agreement * residuals.near_planes();
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
-  // The position's block of the sum is that of n n^T, each weighted.
+  // The block of the position is the weighted sum of n n^T over all normals n.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
       update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
   const double weakest = directions.eigenvalues()[0] / directions.eigenvalues().sum();
   return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
-/// What comes out of time order changes nothing.
+/// A scan out of time order is counted and changes nothing else.
 ScanResult FastLio2::refused_scan() {
   ++scans_refused_;
   return finish_scan(poses_.back().stamp, ScanStatus::kTooFewPoints, {});

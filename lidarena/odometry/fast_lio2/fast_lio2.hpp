@@ -22,7 +22,7 @@ namespace lidarena::fast_lio2 {
 
 /// Tightly coupled LiDAR-inertial odometry: an iterated error-state Kalman filter that registers
 /// raw points with planes of the map, after Xu, Cai, He, Lin, Zhang, "FAST-LIO2: Fast Direct
-/// LiDAR-Inertial Odometry" (IEEE T-RO 2022). See README.md beside.
+/// LiDAR-Inertial Odometry" (IEEE T-RO 2022). See README.md in this folder.
 class FastLio2 : public Odometry {
  public:
   FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -36,22 +36,22 @@ class FastLio2 : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Instant of the scan's last firing; for a scan without points, where it should have been.
+  /// Instant of the scan's last firing; for a scan without points, its expected instant.
   Time end_of_sweep(const Scan& scan);
-  /// What the IMU measured since the last scan's end, or since its first sample.
+  /// IMU intervals since the end of the last scan, or since the first sample.
   std::vector<ImuInterval> intervals_until(Time end);
-  /// Takes samples in until they are enough to start from; whether they are now.
+  /// Collects samples and initializes once there are enough; returns whether it has.
   bool start(const std::vector<ImuSample>& samples);
-  /// The IMU says that the sensor stands.
+  /// Updates the filter with the knowledge that the sensor stands still.
   void stand();
-  /// Carries the belief over the inputs and lays down the track to de-skew along.
+  /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<ImuInterval>& intervals);
   ImuNoise noise_over(const ImuInterval& interval) const;
-  /// The points that are used, seen from the LiDAR at the scan's end.
+  /// The points in use, in the LiDAR's frame at the scan's end.
   std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
-  /// Adds the points to the map and lets go of what lies far behind.
+  /// Adds the points to the map and removes map points far from the sensor.
   void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
-  /// What is to be said of a scan; counts those in a row that contradict the map.
+  /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const IteratedUpdate& update, const PlaneResiduals& residuals);
   ScanResult refused_scan();
   ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
@@ -61,7 +61,7 @@ class FastLio2 : public Odometry {
 
   Config config_;
   Pose body_from_imu_;
-  Eigen::Matrix3d map_from_start_;  ///< the map's frame: the IMU's at the start, turned
+  Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
   Pose world_from_map_;
   Pose imu_from_lidar_;
   ImuNoise noise_;
@@ -76,7 +76,7 @@ class FastLio2 : public Odometry {
   bool started_ = false;
   double accel_scale_ = 1.0;
 
-  Belief belief_;  ///< at the end of the last scan, in the map's frame
+  Belief belief_;  ///< state and covariance at the end of the last scan, in the map's frame
   ImuTrack track_;
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
@@ -89,9 +89,9 @@ class FastLio2 : public Odometry {
   Time sweep_;  ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
-  /// What the program's buffer holds of a point.
+  /// A point as stored in the published program's buffer (48 bytes).
   using ArchivedPoint = std::array<float, 12>;
-  std::deque<ArchivedPoint> archive_;  ///< a vector's growth would copy gigabytes within a scan
+  std::deque<ArchivedPoint> archive_;  ///< no vector, whose growth would copy gigabytes in a scan
 };
 
 }  // namespace lidarena::fast_lio2

@@ -8,9 +8,10 @@ namespace {
 
 using State = InertialState;
 
+// Maximum values at a standstill.
 constexpr double kStillDrift = 0.03;  // m
 constexpr double kStillSpeed = 0.05;  // m/s
-// Of a scan's means, off what the state expects to feel at rest: a start is told by its first push.
+// Of a scan's mean IMU readings minus those expected at rest: detects the first acceleration.
 constexpr double kRestRate = 0.005;  // rad/s
 constexpr double kRestForce = 0.05;  // m/s^2
 
@@ -23,7 +24,7 @@ State::Matrix covariance_of(const Config& config, bool still) {
   const double extrinsic = std::sqrt(1e-5);
   set_sigma(p, State::kLidarRotation, 3, extrinsic);
   set_sigma(p, State::kLidarPosition, 3, extrinsic);
-  if (config.initial_sigma > 0.0) {  // the public program's
+  if (config.initial_sigma > 0.0) {  // as in the published program
     set_sigma(p, State::kPosition, 3, config.initial_sigma);
     set_sigma(p, State::kRotation, 3, config.initial_sigma);
     set_sigma(p, State::kVelocity, 3, config.initial_sigma);
@@ -53,7 +54,7 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
   State& state = start.belief.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
   if (start.still || config.initial_sigma > 0.0) state.nav.bias.gyro = imu.mean_gyro;
-  if (start.still && !config.always_scale_accel)  // else the scale takes it
+  if (start.still && !config.always_scale_accel)  // else the scale contains it
     state.nav.bias.accel = accel_bias_along(imu, config.gravity, start.accel_scale);
   state.imu_from_lidar.linear() = imu_from_lidar.linear();
   state.imu_from_lidar.translation() = imu_from_lidar.translation();

@@ -10,29 +10,29 @@
 
 namespace lidarena::fast_lio2 {
 
-/// What the start says.
+/// Result of the initialization.
 struct Start {
   Belief belief;
-  double accel_scale = 1.0;  ///< brings the IMU's accelerations to m/s^2
+  double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
 };
 
-/// Gravity from the mean specific force, gyro bias from the mean rate, at rest also the part of the
-/// accelerometer's bias that lies along gravity, from the mean force's length; the world is the
-/// IMU's frame (FAST-LIO2 supposes a sensor at rest; with `initial_sigma` 0, one that moves is
-/// given a velocity and a gyro bias that are unknown).
+/// Gravity from the direction of the mean specific force, gyro bias from the mean rate, and at rest
+/// the part of the accelerometer's bias along gravity from the magnitude of the mean force. The
+/// world is the IMU's frame. FAST-LIO2 assumes a sensor at rest; with `initial_sigma` 0, velocity
+/// and gyro bias of a moving one are unknown.
 Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
                  const Config& config);
 
-/// Whether the sensor stands still, from one scan to the next. Slow motion is told by the distance
-/// that it adds up to.
+/// Decides at each scan whether the sensor stands still. Slow motion is detected by the distance
+/// from the place where the standstill began.
 class StillDetector {
  public:
-  /// `predicted`: the state before the scan's update, which takes its own error for motion while
-  /// the map is young; `position`: after it, m.
+  /// `predicted`: the state before the scan's update (with a map of few scans the update turns
+  /// its own errors into velocity); `position`: after the update, m.
   bool observe(const ImuStatistics& imu, const InertialState& predicted,
                const Eigen::Vector3d& position, const Config& config, double accel_scale);
-  int scans() const { return scans_; }  ///< that it has stood for
+  int scans() const { return scans_; }  ///< number of scans in the current standstill
 
  private:
   Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();

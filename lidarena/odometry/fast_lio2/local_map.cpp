@@ -8,9 +8,9 @@ namespace {
 
 enum class Insertion { kPlain, kThinned, kNone };
 
-/// What the neighbors say (FAST-LIO2, section V-E; the shortcuts are the public program's): when
-/// the nearest lies outside the cell on every axis, the cell is empty; when one of them is nearer
-/// to the cell's center, the point would lose.
+/// How to insert a point, by its neighbors (FAST-LIO2, section V-E; the shortcuts are the published
+/// program's): if the nearest one is outside the cell on every axis, the cell is empty; if any one
+/// is nearer to the cell's center, the point is not needed.
 Insertion insertion_of(const Eigen::Vector3f& point, const Match& match, float voxel) {
   if (match.found == 0) return Insertion::kThinned;
   const Eigen::Vector3f center = ((point / voxel).array().floor() + 0.5F) * voxel;

@@ -9,13 +9,13 @@
 
 namespace lidarena::fast_lio2 {
 
-/// Adds a scan's points (m, world) to the map: one point a cell stays, the one nearest to its
-/// center. `matches` are those of the points' last search, empty if there was none.
+/// Adds a scan's points (m, world) to the map, which keeps the point nearest to the center of each
+/// cell. `matches` are those of the points' last search; empty if there was none.
 void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
               float voxel, KdTree& map);
 
-/// Forgets what lies outside the box of half side `radius` about the sensor, whenever that has
-/// moved by a quarter of it since the last time.
+/// Removes points outside the box of half edge `radius` (m) around the sensor, each time the sensor
+/// has moved by a quarter of that.
 class MapWindow {
  public:
   explicit MapWindow(double radius) : radius_(static_cast<float>(radius)) {}

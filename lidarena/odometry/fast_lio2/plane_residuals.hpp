@@ -19,23 +19,24 @@ namespace lidarena::fast_lio2 {
 inline constexpr std::size_t kNeighbors = 5;
 using Neighbors = std::array<Neighbor, kNeighbors>;
 
-/// How far (m^2) the plane may be off within the reach of its five points, which are off it by
-/// `point_variance` (m^2): s^2 / 5 of the centroid, and over the distance of the farthest of them
-/// the tilt s^2 / w about the direction in which they spread most, w the sum of their squared
-/// distances from that line. Points on one line leave the tilt open.
+/// Variance (m^2) of the plane's position within the extent of its five points, whose distances
+/// from it have the variance s^2 = `point_variance` (m^2): s^2 / 5 of the centroid, plus the
+/// squared distance of the farthest point times the variance s^2 / w of the tilt about the
+/// direction of largest spread, where w is the sum of the points' squared distances from that axis.
+/// For points on one line the tilt is not observable, and the variance is large.
 double plane_variance(const Neighbors& points, const Plane& plane, double point_variance);
 
-/// A point of the scan and what it was matched with.
+/// Match of one point of the scan.
 struct Match {
   Neighbors neighbors;  ///< of the last search; the first `found` are valid
   std::size_t found = 0;
-  std::optional<Plane> plane;  ///< none: does not count until the next search
-  double weight = 1.0;         ///< variance of the point alone by that with its plane's
-  bool near_plane = false;     ///< the last search found one, whether the point lies on it or not
+  std::optional<Plane> plane;  ///< none: the point is not used until the next search
+  double weight = 1.0;         ///< point variance / (point variance + plane variance)
+  bool near_plane = false;     ///< the last search found a plane, even if the point is off it
 };
 
-/// The residual of one point: its distance from the plane and the row of the Jacobian
-/// (FAST-LIO2, eq. 12-14).
+/// Residual of one point: its distance from the plane and the row of the Jacobian (FAST-LIO2,
+/// eq. 12-14).
 struct PointResidual {
   double distance = 0.0;  ///< m, signed
   Eigen::Matrix<double, 1, kPointDof> row;
@@ -43,8 +44,8 @@ struct PointResidual {
 PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
                              const InertialState& state, bool extrinsics);
 
-/// Residuals of a scan's points (m, LiDAR frame at the scan's end) against the map. Keeps the
-/// matches from one search to the next.
+/// Residuals of a scan's points (m, LiDAR frame at the scan's end) against the map. Matches are
+/// kept until the next search.
 class PlaneResiduals {
  public:
   PlaneResiduals(std::span<const Eigen::Vector3f> points, const KdTree& map, const Config& config,
@@ -52,7 +53,7 @@ class PlaneResiduals {
 
   NormalEquations<kPointDof> operator()(const InertialState& state, bool search);
   const std::vector<Match>& matches() const { return matches_; }
-  /// Points that the last search found a plane for: they can agree with the map or not.
+  /// Number of points for which the last search found a plane, whether they lie on it or not.
   double near_planes() const;
 
  private:

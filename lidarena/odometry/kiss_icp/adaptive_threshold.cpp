@@ -34,7 +34,7 @@ void AdaptiveThreshold::observe(const Pose& prediction, const Pose& estimate, do
   moved_ = moved_ || estimate.translation().norm() > kMotionsToMove * min_motion_;
   const double lever = lever_ == ThresholdLever::kMeanRange ? mean_range : range_;
   double deviation = displacement(prediction.inverse() * estimate, lever);
-  // What forgets must also see small errors, or a quiet flight would never make it smaller.
+  // With a memory, small errors must count too; otherwise slow motion would never reduce sigma.
   if (kept_ < 1.0)
     deviation = std::max(deviation, min_motion_);
   else if (!(deviation > min_motion_))

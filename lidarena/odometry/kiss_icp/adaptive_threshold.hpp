@@ -8,18 +8,18 @@
 
 namespace lidarena::kiss_icp {
 
-/// How far a prediction `error` (true pose seen from the predicted one) moves a point at `range` m,
-/// at most: |t| + 2 range sin(angle / 2) (paper, eq. 5 and 6).
+/// Upper limit (m) on how far a prediction `error` (true pose relative to the predicted one) moves
+/// a point at `range` m: |t| + 2 range sin(angle / 2) (paper, eq. 5 and 6).
 double displacement(const Pose& error, double range);
 
-/// Sigma of the constant-velocity prediction's errors so far, m (paper, eq. 8): how far apart a
-/// point and its counterpart may be before ICP.
+/// Sigma (m) of the errors of the constant-velocity prediction so far (paper, eq. 8): scale of the
+/// distance between a point and its counterpart before ICP.
 class AdaptiveThreshold {
  public:
   explicit AdaptiveThreshold(const Config& config);
 
   double sigma() const;
-  /// `prediction` and `estimate` of the same pose; `mean_range` (m) of the points that show it.
+  /// `prediction` and `estimate` of the same pose; `mean_range` (m) of the keypoints.
   void observe(const Pose& prediction, const Pose& estimate, double mean_range);
 
  private:
@@ -28,8 +28,8 @@ class AdaptiveThreshold {
   double range_;
   ThresholdStart start_;
   ThresholdLever lever_;
-  double kept_;         ///< share of the past that is kept at each error seen
-  bool moved_ = false;  ///< beyond 5 minimum motions from the start
+  double kept_;         ///< factor on the sums at each new error
+  bool moved_ = false;  ///< has been more than 5 minimum motions from the start
   double squared_sum_ = 0.0;
   double count_ = 0.0;
 };

@@ -7,7 +7,7 @@ namespace {
 
 Config head() { return {}; }
 
-/// The program of the paper's year, tag v0.2.
+/// The published program of the paper's year, tag v0.2.
 Config original() {
   Config config;
   config.min_range_m = 5.0;

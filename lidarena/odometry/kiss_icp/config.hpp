@@ -13,22 +13,22 @@
 
 namespace lidarena::kiss_icp {
 
-/// Which instant of the scan the pose belongs to, and all points are moved to.
+/// Instant of the scan at which its pose holds and to which its points are de-skewed.
 enum class PoseInstant { kScanMiddle, kScanEnd };
 
-/// What the adaptive threshold is before much motion was seen.
+/// How the initial sigma enters the adaptive threshold.
 enum class ThresholdStart {
-  kBlended,     ///< sigma0 counts as the first sample, always
-  kUntilMoved,  ///< sigma0 alone until 5 minimum motions from the start, then samples alone
+  kBlended,     ///< initial_threshold_m always counts as the first sample
+  kUntilMoved,  ///< used alone up to 5 min_motion_m from the start, afterwards not at all
 };
 
-/// Lever arm of the adaptive threshold: how far a wrong angle moves points.
+/// Lever arm of the adaptive threshold, by which rotation errors become displacements of points.
 enum class ThresholdLever {
   kMaxRange,   ///< max_range_m
   kMeanRange,  ///< mean range of the scan's keypoints
 };
 
-/// The defaults are the public program's (2025); preset() changes them.
+/// The defaults are the published program's of 2025; preset() changes them.
 struct Config {
   double max_range_m = 100.0;
   double min_range_m = 0.0;
@@ -71,85 +71,107 @@ struct Config {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("max_range_m", self.max_range_m, "m",
-      "farther points are dropped; also the local map's radius and the threshold's lever arm",
+      "farther points are dropped; also the local map's radius and, by default, the lever arm of "
+      "the adaptive threshold",
       above(0));
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("voxel_size_m", self.voxel_size_m, "m",
-      "edge of a map cell, null: max_range_m / 100; finer is more accurate and slower", above(0));
-    v("max_points_per_voxel", self.max_points_per_voxel, "", "points a map cell holds",
-      Limits{1, 4096});
+      "voxel size of the map, null: max_range_m / 100; smaller is more accurate and slower",
+      above(0));
+    v("max_points_per_voxel", self.max_points_per_voxel, "",
+      "maximum number of points in a map cell", Limits{1, 4096});
     v("min_spacing", self.min_spacing, "",
-      "keep the points of a cell voxel_size / sqrt(max_points_per_voxel) apart; false: the first "
-      "ones met");
+      "keep the points of a cell at least voxel_size / sqrt(max_points_per_voxel) apart; false: "
+      "keep the first points of a cell");
     v("cell_rounding", self.cell_rounding, "",
-      "how points fall into cells: floor; truncate: cells around x, y, z = 0 are twice as wide");
+      "how a point's cell is computed: floor, or truncate: the cells around x, y, z = 0 are twice "
+      "as wide");
     v("thinning_order", self.thinning_order, "",
-      "which points the second thinning meets first: mixed, teschner or teschner_prime");
+      "order of the points after the first downsampling, which decides the points that the second "
+      "one keeps: mixed, teschner or teschner_prime");
     v("slices", self.slices, "",
-      "cure above 1: parts that a scan is cut into by time, each registered on its own",
+      "number of parts of equal duration into which a scan is cut, each registered on its own; "
+      "above 1: not in the published program",
       Limits{1, 100});
     v("slice_above_m", self.slice_above_m, "m",
-      "scans are cut while sigma is above this: a part of a scan is a weaker hold, and better only "
-      "where motion changes fast",
+      "scans are cut only while sigma is above this: a part of a scan constrains the pose less "
+      "than the whole scan, and helps only where the motion changes fast",
       at_least(0));
-    v("deskew", self.deskew, "", "undo the motion within the scan, where points carry times");
+    v("deskew", self.deskew, "", "remove the motion within the scan, if its points carry times");
     v("own_motion", self.own_motion, "",
-      "cure above 0: share of the scan's own motion, which moves keypoints anew in each iteration "
-      "of ICP, in what it is de-skewed with; the rest is the motion before. Near 1 it swings",
+      "share of the scan's own motion, estimated anew in each ICP iteration, in the motion used "
+      "for de-skewing; the rest is the previous motion. Near 1 the estimate oscillates; above 0: "
+      "not in the published program",
       between(0, 1));
     v("rebuild_start", self.rebuild_start, "",
-      "cure: the first scan is de-skewed with the motion that the second shows");
+      "de-skew the first scan in the map with the motion estimated from the second (not in the "
+      "published program)");
     v("pose_instant", self.pose_instant, "", "instant of the pose: scan_middle or scan_end");
     v("initial_threshold_m", self.initial_threshold_m, "m",
-      "first guess of the prediction's error sigma; the search radius is 3 sigma", above(0));
+      "initial sigma of the prediction's error; the search radius is 3 sigma", above(0));
     v("min_motion_m", self.min_motion_m, "m",
-      "smaller errors of the prediction do not count into sigma", at_least(0));
-    v("threshold_start", self.threshold_start, "", "blended or until_moved");
+      "smaller errors of the prediction do not enter sigma; with threshold_memory they enter as "
+      "this value",
+      at_least(0));
+    v("threshold_start", self.threshold_start, "",
+      "use of initial_threshold_m: blended: it always counts as one sample; until_moved: it is "
+      "used alone up to 5 min_motion_m from the start, afterwards not at all");
     v("threshold_memory", self.threshold_memory, "registrations",
-      "cure: after so many, an error's share in sigma is down to 1/e; null: never forgotten",
+      "number after which an error's weight in sigma has fallen to 1/e (not in the published "
+      "program); null: errors keep their weight",
       at_least(1));
     v("threshold_lever", self.threshold_lever, "",
-      "what turns an angle into meters in sigma: max_range or, cure, mean_range of the keypoints");
+      "range by which sigma converts rotation errors to meters: max_range, or mean_range of the "
+      "keypoints (not in the published program)");
     v("plane_thinness", self.plane_thinness, "",
-      "cure: cells whose points vary across a plane by at most this part of their variance along "
-      "it count as that plane, and points are drawn to it along its normal alone; null: no planes",
+      "a cell counts as a plane if the variance of its points across the plane is at most this "
+      "fraction of that along it; points are then matched along its normal only; null: no planes, "
+      "as in the published program",
       between(0, 1));
     v("shapeless_weight", self.shapeless_weight, "",
-      "cure below 1, where cells know planes: weight of matches in cells of fewer than 5 points or "
-      "of a line of them; such points are the pattern's, and where that repeats they hold the "
-      "sensor where it was",
+      "with plane_thinness: weight of matches in cells with fewer than 5 points or with points on "
+      "a line only. They show the scan pattern, not the surface; if the pattern repeats, they hold "
+      "the estimate at the previous pose. Below 1: not in the published program",
       between(0, 1));
     v("map_thinning", self.map_thinning, "voxel sizes",
-      "edge of the cells of which one point each is offered to the map", above(0));
+      "edge of the cells from each of which one point is offered to the map", above(0));
     v("calm_start", self.calm_start, "scans",
-      "cure above 0: so many scans are neither cut nor move with their own motion, as the map is "
-      "too thin at first to tell motion from noise",
+      "number of scans at the start that are neither cut nor de-skewed with their own motion, "
+      "because the map is still too sparse to separate motion from noise; above 0: not in the "
+      "published program",
       at_least(0));
     v("keypoint_thinning", self.keypoint_thinning, "voxel sizes",
-      "edge of the cells of which one point each is registered", above(0));
+      "edge of the cells from each of which one point is registered", above(0));
     v("kernel_fraction", self.kernel_fraction, "",
-      "scale of the robust kernel as a fraction of sigma", above(0));
+      "scale of the robust kernel as a fraction of sigma, see kernel_in_meters", above(0));
     v("kernel_in_meters", self.kernel_in_meters, "",
-      "cure: the kernel's scale is that length; false: the root of it, as its formula has it");
-    v("max_iterations", self.max_iterations, "", "of ICP; bounds the time of a lost scan",
+      "the robust kernel's scale is a length, kernel_fraction times sigma (not in the published "
+      "program); false: the square root of that, as in the program's formula");
+    v("max_iterations", self.max_iterations, "",
+      "maximum number of ICP iterations; bounds the time of a scan that does not converge",
       at_least(1));
-    v("convergence", self.convergence, "m and rad", "ICP ends below this step", at_least(0));
+    v("convergence", self.convergence, "m and rad", "ICP ends when the norm of its step is smaller",
+      at_least(0));
     v("equal_times_are_no_times", self.equal_times_are_no_times, "",
-      "cure: a scan whose times are all equal is not de-skewed, instead of being lost");
+      "register a scan whose points all have the same time without de-skewing; the published "
+      "program drops all its points");
     v("motion_per_second", self.motion_per_second, "",
-      "cure: predict and de-skew by real time, so that a dropped scan does no harm");
+      "predict and de-skew by real time, so that a dropped scan causes no error; the published "
+      "program counts scans");
     v("motion_kept_when_lost", self.motion_kept_when_lost, "",
-      "cure below 1: factor on the predicted motion after each scan that matches nothing",
+      "factor on the predicted motion after each scan without matches; below 1: not in the "
+      "published program",
       between(0, 1));
     v("sensor_centered", self.sensor_centered, "",
-      "cure: increments turn about the sensor, not about the origin of the map");
+      "rotation increments are about the sensor; false: about the origin of the map, as in the "
+      "published program");
   }
 };
 
 /// Names of preset(), the default first.
 std::vector<std::string> preset_names();
 
-/// Settings for a LiDAR: "improved"; "head" and "original", the public programs of 2025 and 2023.
+/// Settings for a LiDAR: "improved"; "head" and "original", the published program of 2025 and 2023.
 /// Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 

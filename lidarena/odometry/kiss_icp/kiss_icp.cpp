@@ -8,7 +8,7 @@ namespace lidarena::kiss_icp {
 
 namespace {
 
-constexpr int kMotionSteps = 4;  // poses within a scan handed out, besides the first
+constexpr int kMotionSteps = 4;  // ScanResult::motion has one pose more
 
 VoxelHashMap::Options map_options(const Config& config) {
   const double spacing = config.voxel_size() / std::sqrt(config.max_points_per_voxel);
@@ -22,11 +22,12 @@ double mean_range(std::span<const Eigen::Vector3f> points) {
   return points.empty() ? 0.0 : sum / static_cast<double>(points.size());
 }
 
-/// Adds the outcome of the next slice to that of the scan: counts add up, the rest is the latest.
+/// Adds the result of the next slice to that of the scan: counters are summed, all else is taken
+/// from the slice.
 void append(ScanResult slice, ScanResult& scan) {
   for (const char* count : {"points", "keypoints", "matches", "iterations"})
     slice.counters[count] += scan.counters[count];
-  // a slice starts where, or just after, the one before ended
+  // a slice starts where the previous one ended, or just after
   for (const StampedPose& pose : slice.motion) {
     if (scan.motion.empty() || pose.stamp > scan.motion.back().stamp) scan.motion.push_back(pose);
   }

@@ -16,7 +16,8 @@
 namespace lidarena::kiss_icp {
 
 /// LiDAR odometry by scan-to-map ICP with an adaptive search radius, after Vizzo, Guadagnino,
-/// Mersch, Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md beside.
+/// Mersch, Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md in this
+/// folder.
 class KissIcp : public Odometry {
  public:
   KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
@@ -29,35 +30,36 @@ class KissIcp : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// register_scan of a part of a scan; `registered_scan_` grows by it.
+  /// Registers a part of a scan and appends its points to `registered_scan_`.
   ScanResult register_slice(const Scan& slice);
-  /// register_points from the predicted pose, the start of the map mended before if it is time.
+  /// Calls register_points from the predicted pose. With rebuild_start, the second scan first
+  /// replaces the first one in the map by its de-skewed points.
   Registration registered(const TimedPoints& keypoints, const Departure& departure,
                           const Pose& guess);
   Time reference_of(const ScanTimes& times) const { return pose_time(times, config_.pose_instant); }
-  /// Where the lidar comes from, with the twist `before`.
+  /// The previous pose of the lidar, with the twist `before` up to it.
   Departure departure(const ScanTimes& times, const se3::Vector6& before) const;
-  /// The lidar's motion until now, if it goes on as before.
+  /// Predicted motion of the lidar since the previous pose, with constant velocity.
   Pose predicted_motion(const ScanTimes& times) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
-  /// Takes over the scan's pose and the motion towards it.
+  /// Stores the scan's pose and the motion up to it.
   void advance(const Pose& pose, const ScanTimes& times, ScanStatus status);
-  /// Poses of the body through the scan, as assumed in de-skewing; empty if it was not.
+  /// Poses of the body within the scan, as used for de-skewing; empty if it was not de-skewed.
   std::vector<StampedPose> motion_within(const ScanTimes& times, const se3::Vector6& twist) const;
-  /// Pose of the body in its own frame at the start.
+  /// Pose of the body in the world, which is the body's frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
 
   Config config_;
   Pose body_from_lidar_;
   Parallel parallel_;
   VoxelHashMap map_;          ///< in the lidar's frame at its first pose
-  TimedPoints first_points_;  ///< all that is in the map, until the second scan de-skews it
+  TimedPoints first_points_;  ///< of the first scan, kept until the second one de-skews it
   AdaptiveThreshold threshold_;
-  double own_motion_ = 0.0;  ///< the configured one, or none while the start is calm
+  double own_motion_ = 0.0;  ///< the configured value, 0 during the first calm_start scans
 
   Pose map_from_lidar_ = Pose::Identity();
-  Pose motion_ = Pose::Identity();  ///< lidar's, between the last two scans
-  double motion_seconds_;           ///< that it took
+  Pose motion_ = Pose::Identity();  ///< of the lidar, between the last two scans
+  double motion_seconds_;           ///< duration of motion_
   std::optional<Time> instant_;     ///< of the last pose
   Time scan_duration_;              ///< of the last scan that had times
   std::vector<StampedPose> poses_;  ///< of the body

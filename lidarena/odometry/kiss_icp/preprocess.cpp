@@ -36,7 +36,7 @@ se3::Vector6 twist_within(const ScanTimes& times, const Pose& motion, double mot
 TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
                        const se3::Vector6& twist_per_second, const Config& config,
                        const Parallel& parallel) {
-  // The public program divides by the scan's duration and so loses every point of such a scan.
+  // The published program divides by the scan's duration and so loses all points of such a scan.
   const bool lost = scan.timed && !times.timed && config.deskew && !config.equal_times_are_no_times;
   if (lost) return {};
   const bool estimated = times.timed && config.deskew && config.own_motion > 0.0;
@@ -48,7 +48,7 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
   if (estimated) kept.seconds.reserve(positions.size());
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const double range = positions[i].cast<double>().norm();
-    if (!(config.min_range_m < range && range < config.max_range_m)) continue;  // NaN, too
+    if (!(config.min_range_m < range && range < config.max_range_m)) continue;  // also drops NaN
     kept.positions.push_back(positions[i]);
     if (!estimated) continue;
     kept.seconds.push_back(
@@ -72,7 +72,7 @@ std::vector<Eigen::Vector3f> deskewed(const TimedPoints& points,
                                       const se3::Vector6& twist_per_second,
                                       const Parallel& parallel) {
   if (points.deskewed()) return points.positions;
-  constexpr std::size_t kGrain = 2048;  // points a task: some 0.1 ms of work
+  constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
   const ConstantTwist reference_from_instant(twist_per_second);
   std::vector<Eigen::Vector3f> moved(points.size());
   parallel.for_each(points.size(), kGrain, [&](std::size_t i) {

@@ -10,25 +10,26 @@ namespace lidarena::kiss_icp {
 
 namespace {
 
-/// The public program's Geman-McClure weight. Its sigma (m) is added to a squared length (m^2), so
-/// the kernel's real scale is sqrt(sigma / 1 m) m.
+/// Geman-McClure weight as in the published program. It adds sigma (m) to a squared length (m^2),
+/// so the kernel's actual scale is sqrt(sigma / 1 m) m.
 double kernel_weight(double squared_error, double sigma) {
   const double ratio = sigma / (sigma + squared_error);
   return ratio * ratio;
 }
 
-/// Sigma that gives that weight the scale `scale` m.
+/// The `sigma` for kernel_weight() when the configured scale is `scale` m.
 double kernel_of(double scale, const Config& config) {
   return config.kernel_in_meters ? scale * scale : scale;
 }
 
-/// Pose of the lidar at a point's instant, and the share that it has in the scan's increment.
+/// Pose of the lidar at a point's instant, and the share of the scan's increment that applies to
+/// it.
 struct PoseShare {
   Pose map_from_instant;
   double share;
 };
 
-/// The lidar's way through the scan as the present estimate has it.
+/// Motion of the lidar through the scan according to the current estimate.
 class MovingFrame {
  public:
   MovingFrame(const Pose& pose, const se3::Vector6& twist, const TimedPoints& points,

@@ -12,8 +12,8 @@
 
 namespace lidarena::kiss_icp {
 
-/// Error of a point against its counterpart, and its derivative by a left increment
-/// (translation, rotation about `center`) of the point's pose (paper, eq. 10). All m, map frame.
+/// Difference of a point and its counterpart, and its derivative with respect to a left increment
+/// (translation, rotation about `center`) of the point's pose (paper, eq. 10). All in m, map frame.
 struct PointResidual {
   Eigen::Vector3d error;
   Eigen::Matrix<double, 3, 6> jacobian;
@@ -21,29 +21,30 @@ struct PointResidual {
 PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d& counterpart,
                              const Eigen::Vector3d& center);
 
-/// The pose before the scan's.
+/// The pose previous to the scan's.
 struct Departure {
   Pose map_from_lidar = Pose::Identity();
   double seconds = 0.0;                       ///< from that pose's instant to this one's
-  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, of the lidar until then
+  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, of the lidar up to that pose
 };
 
 struct Registration {
   Pose map_from_lidar = Pose::Identity();
   int iterations = 0;
-  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, that keypoints were moved with
+  se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, with which keypoints were de-skewed
   std::size_t matches = 0;  ///< keypoints with a counterpart, in the last iteration
 };
 
 /// Point-to-point ICP of `keypoints` against `map`, from the pose `guess`, with search radius
-/// 3 sigma (paper, section III-D). Keypoints that are not de-skewed yet move with `own_motion`
-/// parts of the motion from `departure` to the estimate, anew in each iteration, and the rest of
-/// that before; an increment moves each by its share.
+/// 3 sigma (paper, section III-D). Keypoints that are not yet de-skewed are de-skewed in each
+/// iteration with twist_towards() the current estimate; their Jacobians are scaled by the share of
+/// the pose increment that this gives to their instants.
 Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
                              double own_motion, const Config& config, const Parallel& parallel);
 
-/// Twist within a scan that ends at `map_from_lidar`, see above.
+/// Twist within a scan that ends at `map_from_lidar`: `own_motion` times the mean twist since
+/// `departure`, plus (1 - `own_motion`) times the twist before it.
 se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
                            double own_motion);
 

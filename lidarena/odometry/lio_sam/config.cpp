@@ -6,7 +6,7 @@
 namespace lidarena::lio_sam {
 namespace {
 
-/// The program's settings for spinning sensors, leaf sizes and ranges as for rooms.
+/// The published program's settings for spinning sensors, with voxel sizes and ranges for rooms.
 Config original_spinning(const LidarInfo& lidar) {
   Config config;
   config.min_range_m = 0.5;
@@ -15,7 +15,7 @@ Config original_spinning(const LidarInfo& lidar) {
   return config;
 }
 
-/// Those of its port to the Mid-360 with a 6-axis IMU.
+/// The settings of its port to the Mid-360 with a 6-axis IMU.
 Config original_livox() {
   Config config;
   config.columns_by = Columns::kArrival;

@@ -14,19 +14,20 @@
 
 namespace lidarena::lio_sam {
 
-/// What a column of the range image is.
+/// Meaning of a column of the range image.
 enum class Columns {
-  kAzimuth,  ///< a direction: the first point of each cell stays
-  kArrival,  ///< a place in the order of firing within the ring: for patterns that do not repeat
+  kAzimuth,  ///< an interval of azimuth; a cell keeps its first point
+  kArrival,  ///< index in the firing order of the ring: for patterns that do not repeat
 };
 
-/// What a direction must have to be updated by the scan.
+/// Condition on a direction to be updated by the scan; otherwise it is degenerate.
 enum class Degeneracy {
-  kEigenvalue,  ///< an eigenvalue of at least 100, whatever the number of points
-  kShare,       ///< a share of all that the points tell, turning and shifting on one scale
+  kEigenvalue,  ///< an eigenvalue of at least 100, regardless of the number of points
+  kShare,       ///< a minimum share of all points' information, rotation scaled to translation
 };
 
-/// The defaults are those of the public program with its advice for rooms; preset() changes them.
+/// The defaults are those of the published program with its advice for rooms; preset() changes
+/// them.
 struct Config {
   double process_interval_s = 0.15;
 
@@ -86,89 +87,117 @@ struct Config {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("process_interval_s", self.process_interval_s, "s",
-      "scans that begin sooner after the last one are predicted only; 0: every scan is used (cure)",
+      "scans that begin sooner after the last processed one are only predicted; 0: every scan is "
+      "used (not in the published program)",
       at_least(0));
-    v("columns_by", self.columns_by, "", "azimuth, or arrival for patterns that do not repeat");
-    v("columns", self.columns, "", "of the range image; with azimuth", at_least(16));
-    v("row_stride", self.row_stride, "", "of this many rows, one is used", at_least(1));
+    v("columns_by", self.columns_by, "",
+      "azimuth, or arrival (firing order) for patterns that do not repeat");
+    v("columns", self.columns, "", "number of columns of the range image, with azimuth",
+      at_least(16));
+    v("row_stride", self.row_stride, "", "every n-th row is used", at_least(1));
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farther points are dropped", above(0));
     v("deskew_translation", self.deskew_translation, "",
-      "cure: points are moved by the body's shift within the scan too, not by its turn alone");
-    v("deskew_bias", self.deskew_bias, "", "cure: by the turn without the gyro's bias");
+      "also remove the body's translation within the scan, not only its rotation (the published "
+      "program removes the rotation only)");
+    v("deskew_bias", self.deskew_bias, "",
+      "subtract the gyro's bias for de-skewing (not in the published program)");
     v("smoothness_neighbors", self.smoothness_neighbors, "",
-      "on each side, that a point's range is compared with", at_least(1));
-    v("edge_threshold_m2", self.edge_threshold_m2, "m^2", "rougher points may be edges", above(0));
-    v("edges_per_sector", self.edges_per_sector, "", "a sector is a sixth of a row", at_least(0));
-    v("occluded_points", self.occluded_points, "", "barred on the far side of a jump", at_least(0));
+      "number of neighbors on each side with which a point's range is compared", at_least(1));
+    v("edge_threshold_m2", self.edge_threshold_m2, "m^2", "minimum roughness of an edge point",
+      above(0));
+    v("edges_per_sector", self.edges_per_sector, "",
+      "upper limit on the edges of a sector, which is a sixth of a row", at_least(0));
+    v("occluded_points", self.occluded_points, "",
+      "number of points excluded as edges on the far side of a range jump", at_least(0));
     v("grazing_share", self.grazing_share, "",
-      "points whose range differs from both neighbors' by more than this share are barred",
+      "points whose range differs from that of both neighbors by more than this share are excluded "
+      "as edges",
       above(0));
-    v("edge_leaf_m", self.edge_leaf_m, "m", "edges are averaged in cells of this edge", above(0));
-    v("surface_leaf_m", self.surface_leaf_m, "m", "surface points likewise", above(0));
+    v("edge_leaf_m", self.edge_leaf_m, "m", "voxel size in which edge points are averaged",
+      above(0));
+    v("surface_leaf_m", self.surface_leaf_m, "m", "voxel size in which surface points are averaged",
+      above(0));
     v("grid_axes", self.grid_axes, "",
-      "of those cells: parallel to the LiDAR's frame and the world, or askew (cure: walls are not "
-      "parallel to them)");
-    v("min_edges", self.min_edges, "", "a scan with fewer is not registered", at_least(0));
-    v("min_surfaces", self.min_surfaces, "", "likewise", at_least(0));
-    v("max_iterations", self.max_iterations, "", "of Gauss-Newton", at_least(1));
-    v("turn_tolerance_rad", self.turn_tolerance_rad, "rad", "a smaller step has converged",
-      above(0));
-    v("shift_tolerance_m", self.shift_tolerance_m, "m", "likewise", above(0));
+      "axes of those grids: parallel to the LiDAR's frame and the world, or askew, which keeps "
+      "walls from being parallel to the cells (not in the published program)");
+    v("min_edges", self.min_edges, "", "a scan with fewer edge points is not registered",
+      at_least(0));
+    v("min_surfaces", self.min_surfaces, "", "a scan with fewer surface points is not registered",
+      at_least(0));
+    v("max_iterations", self.max_iterations, "", "maximum number of Gauss-Newton iterations",
+      at_least(1));
+    v("turn_tolerance_rad", self.turn_tolerance_rad, "rad",
+      "the registration has converged when its step is smaller in rotation ...", above(0));
+    v("shift_tolerance_m", self.shift_tolerance_m, "m", "... and in translation", above(0));
     v("search_step_m", self.search_step_m, "m",
-      "after a smaller step the correspondences stay; 0: searched in each iteration", at_least(0));
-    v("plane_fit", self.plane_fit, "", "unit_offset or, not in the published program, principal");
+      "after a smaller step the correspondences are kept; 0: they are searched in each iteration",
+      at_least(0));
+    v("plane_fit", self.plane_fit, "", "unit_offset, or principal (not in the published program)");
     v("plane_thickness_m", self.plane_thickness_m, "m",
-      "distance of each neighbor from their plane, at most", above(0));
-    v("degeneracy", self.degeneracy, "", "eigenvalue or share (cure)");
-    v("keyframe_distance_m", self.keyframe_distance_m, "m", "moved so far, a scan is a keyframe",
-      above(0));
-    v("keyframe_angle_rad", self.keyframe_angle_rad, "rad", "turned so far, likewise", above(0));
+      "maximum distance of a neighbor from the plane fitted to all", above(0));
+    v("degeneracy", self.degeneracy, "",
+      "rule for degenerate directions: eigenvalue, or share (not in the published program)");
+    v("keyframe_distance_m", self.keyframe_distance_m, "m",
+      "a scan becomes a keyframe after this translation since the last one", above(0));
+    v("keyframe_angle_rad", self.keyframe_angle_rad, "rad",
+      "a scan becomes a keyframe after this rotation about an axis since the last one", above(0));
     v("keyframe_age_s", self.keyframe_age_s, "s",
-      "a scan is a keyframe when the last one is older, moved or not; 0: never (cure)",
+      "a scan becomes a keyframe when the last one is older, even without motion; 0: never",
       at_least(0));
     v("scans_per_keyframe", self.scans_per_keyframe, "",
-      "cure: so many of the scans up to the next keyframe are averaged into it, at most",
+      "upper limit on the scans that are averaged into a keyframe; above 1: not in the published "
+      "program",
       at_least(1));
-    v("submap_radius_m", self.submap_radius_m, "m", "keyframes this near are matched with",
-      above(0));
-    v("submap_density_m", self.submap_density_m, "m", "one of them in cells of this edge",
-      above(0));
-    v("submap_recent_s", self.submap_recent_s, "s", "and all that are not older", at_least(0));
+    v("submap_radius_m", self.submap_radius_m, "m",
+      "radius around the last keyframe within which keyframes enter the submap", above(0));
+    v("submap_density_m", self.submap_density_m, "m",
+      "edge of the cells from each of which the oldest keyframe enters the submap", above(0));
+    v("submap_recent_s", self.submap_recent_s, "s",
+      "all keyframes within the radius that are not older enter the submap too", at_least(0));
     v("level_start", self.level_start, "",
-      "cure: the start's roll and pitch are felt by the accelerometer; else they are zero");
-    v("gravity", self.gravity, "m/s^2", "", above(0));
+      "estimate roll and pitch at the start from the accelerometer; false: they are zero, as in "
+      "the published program");
+    v("gravity", self.gravity, "m/s^2", "magnitude of gravity", above(0));
     v("gravity_sigma_rad", self.gravity_sigma_rad, "rad",
-      "of gravity's direction in the world at a start at rest, estimated on; 0: known, straight "
-      "down",
+      "sigma of gravity's direction in the world at a start at rest; the direction is then "
+      "estimated. 0: known, straight down",
       at_least(0));
     v("imu_noise_factor", self.imu_noise_factor, "",
-      "on the data sheet's densities (cure); 0: the four below", at_least(0));
-    v("gyro_noise", self.gyro_noise, "rad/s/sqrt(Hz)", "", above(0));
-    v("accel_noise", self.accel_noise, "m/s^2/sqrt(Hz)", "", above(0));
-    v("gyro_walk", self.gyro_walk, "rad/s^2/sqrt(Hz)", "of the bias", at_least(0));
-    v("accel_walk", self.accel_walk, "m/s^3/sqrt(Hz)", "of the bias", at_least(0));
-    v("max_imu_gap_s", self.max_imu_gap_s, "s",
-      "over a longer gap the motion is coasted, with a large noise", above(0));
-    v("turn_sigma_rad", self.turn_sigma_rad, "rad", "of a scan's attitude beside the IMU, at least",
+      "factor on the data sheet's noise densities (not in the published program); 0: the next four "
+      "values are used",
+      at_least(0));
+    v("gyro_noise", self.gyro_noise, "rad/s/sqrt(Hz)", "noise density of the gyro", above(0));
+    v("accel_noise", self.accel_noise, "m/s^2/sqrt(Hz)", "noise density of the accelerometer",
       above(0));
-    v("shift_sigma_m", self.shift_sigma_m, "m", "of a scan's position, at least", above(0));
+    v("gyro_walk", self.gyro_walk, "rad/s^2/sqrt(Hz)", "random walk of the gyro's bias",
+      at_least(0));
+    v("accel_walk", self.accel_walk, "m/s^3/sqrt(Hz)", "random walk of the accelerometer's bias",
+      at_least(0));
+    v("max_imu_gap_s", self.max_imu_gap_s, "s",
+      "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
+    v("turn_sigma_rad", self.turn_sigma_rad, "rad",
+      "minimum sigma of a registered rotation in the smoother", above(0));
+    v("shift_sigma_m", self.shift_sigma_m, "m",
+      "minimum sigma of a registered position in the smoother", above(0));
     v("point_sigma_m", self.point_sigma_m, "m",
-      "of a point's distance: what the points leave open is left to the IMU (cure); 0: the two "
-      "sigmas above are all, 1 rad and 1 m when a direction is degenerate",
+      "sigma of a point's distance, by which the smoother weights each direction of a registered "
+      "pose by what the points determine (not in the published program); 0: the two minimum sigmas "
+      "are used alone, 1 rad and 1 m when a direction is degenerate",
       at_least(0));
     v("fused_pose", self.fused_pose, "",
-      "cure: a scan's pose is the smoother's, of points and IMU together; else the points' alone");
-    v("loop_closure", self.loop_closure, "", "whether loops are looked for");
-    v("loop", self.loop, "", "how they are found, judged and used");
+      "a scan's pose is the smoother's, from points and IMU together (not in the published "
+      "program); false: it is that of the points alone");
+    v("loop_closure", self.loop_closure, "", "whether loops are searched for");
+    v("loop", self.loop, "", "how loop candidates are found, verified and used");
   }
 };
 
 /// Names of preset(), the default first.
 std::vector<std::string> preset_names();
 
-/// Settings for a LiDAR: "improved"; "original", the public program, for Livox sensors its port to
-/// the Mid-360 with a 6-axis IMU. Throws InputError for another name.
+/// Settings for a LiDAR: "improved"; "original", the published program, for Livox sensors its port
+/// to the Mid-360 with a 6-axis IMU. Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 
 }  // namespace lidarena::lio_sam

@@ -9,11 +9,11 @@
 namespace lidarena::lio_sam {
 namespace {
 
-constexpr int kAdjacent = 10;     // columns: points further apart are not neighbors
-constexpr float kJump = 0.3F;     // m, between neighbors: one hides what is behind it
-constexpr int kSectors = 6;       // of a row
-constexpr int kSuppressed = 5;    // points on each side of an edge that are none
-constexpr std::size_t kRows = 8;  // a task
+constexpr int kAdjacent = 10;     // columns: points farther apart are not neighbors
+constexpr float kJump = 0.3F;     // m, range difference of neighbors that indicates occlusion
+constexpr int kSectors = 6;       // per row
+constexpr int kSuppressed = 5;    // points on each side of an edge that cannot be edges
+constexpr std::size_t kRows = 8;  // per task
 
 using Flags = std::vector<bool>;
 
@@ -23,7 +23,7 @@ void bar(Flags& flags, int first, int count) {
     flags[static_cast<std::size_t>(i)] = true;
 }
 
-/// Bars an edge's neighbors on one side, up to a gap.
+/// Flags an edge's neighbors on one side, up to a gap between columns.
 void suppress(std::span<const Pixel> row, Flags& flags, int at, int step) {
   const int size = static_cast<int>(row.size());
   for (int k = 1; k <= kSuppressed; ++k) {
@@ -36,7 +36,7 @@ void suppress(std::span<const Pixel> row, Flags& flags, int at, int step) {
   }
 }
 
-/// Indices in [begin, end) that may be edges, the roughest first.
+/// Indices in [begin, end) rough enough for edges, the roughest first.
 std::vector<int> candidates(const std::vector<float>& rough, int begin, int end,
                             const Config& config) {
   std::vector<int> found;

@@ -8,11 +8,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMovingTilt = 0.2;  // rad: what a vehicle's push may tilt gravity by
+constexpr double kMovingTilt = 0.2;  // rad: error of gravity's direction under acceleration
 
 NavState::Matrix covariance_of(bool still) {
   NavState::Vector sigma;
-  sigma << Vector3d::Constant(1e-4),            // the start is the frame
+  sigma << Vector3d::Constant(1e-4),            // rad; the start defines the frame
       Vector3d::Constant(still ? 0.01 : 3.0),   // m/s
       Vector3d::Constant(1e-4),                 // m
       Vector3d::Constant(still ? 2e-3 : 0.05),  // rad/s
@@ -20,7 +20,7 @@ NavState::Matrix covariance_of(bool still) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
-/// The program's: sure of the biases, not of the velocity.
+/// The published program's: small for the biases, large for the velocity.
 NavState::Matrix program_covariance() {
   NavState::Vector sigma;
   sigma << Vector3d::Constant(1e-2), Vector3d::Constant(1e4), Vector3d::Constant(1e-2),

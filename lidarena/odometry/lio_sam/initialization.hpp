@@ -10,16 +10,16 @@
 
 namespace lidarena::lio_sam {
 
-/// What the first samples say.
+/// Result of the initialization.
 struct Start {
-  InertialStart inertial;    ///< of the IMU; the body is at the origin and looks along x
-  double accel_scale = 1.0;  ///< brings the IMU's accelerations to m/s^2
+  InertialStart inertial;    ///< of the IMU; the body is at the origin with yaw 0
+  double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
 };
 
-/// Roll and pitch from the mean specific force and the gyro's bias from the mean rate if the sensor
-/// stands; the program (without `level_start`) takes the body to be level, the biases to be zero.
-/// `samples` are not empty.
+/// Roll and pitch from the mean specific force; at rest also the gyro's bias from the mean rate and
+/// the accelerometer's bias along gravity. Without `level_start`, as in the published program, the
+/// body is level and the biases are zero. `samples` must not be empty.
 Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
                  const Config& config);
 

@@ -15,7 +15,7 @@ void append(std::vector<Eigen::Vector3f>& all, const std::vector<Eigen::Vector3f
   for (const Eigen::Vector3f& p : points) all.push_back(moved * p);
 }
 
-/// Its features, in the world.
+/// The keyframe's features in the world frame.
 Features placed(const Keyframe& keyframe) {
   Features in_world;
   append(in_world.edges, keyframe.features.edges, keyframe.world_from_lidar);
@@ -77,7 +77,7 @@ void Submap::select(const std::vector<Keyframe>& keyframes,
            std::binary_search(chosen.begin(), chosen.end(), part.first);
   };
   bool changed = false;
-  if (std::none_of(parts_.begin(), parts_.end(), stays)) {  // a loop has moved them all
+  if (std::none_of(parts_.begin(), parts_.end(), stays)) {  // for example after a loop moved all
     changed = !parts_.empty();
     parts_.clear();
     edges_.clear();

@@ -11,10 +11,10 @@
 namespace lidarena::lio_sam {
 namespace {
 
-constexpr std::size_t kStartSamples = 10;    // of the IMU
-constexpr Time kStartMemory{1'000'000'000};  // samples that a start may look back on
-constexpr double kMaxSpeed = 30.0;           // m/s; beyond these the smoother has failed
-constexpr double kMaxBias = 1.0;             // m/s^2, rad/s
+constexpr std::size_t kStartSamples = 10;    // minimum number of IMU samples for initialization
+constexpr Time kStartMemory{1'000'000'000};  // maximum age of these samples
+constexpr double kMaxSpeed = 30.0;           // m/s; beyond this the smoother has failed
+constexpr double kMaxBias = 1.0;             // m/s^2, rad/s; likewise
 
 ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
   if (config.imu_noise_factor > 0.0) return noise_of(imu, config.imu_noise_factor);
@@ -125,7 +125,7 @@ void LioSam::integrate(const std::vector<ImuInterval>& intervals, const NavState
     const NavState now = sum.predict(state, gravity);
     const Eigen::Matrix3d rotation = now.world_from_imu.linear();
     Eigen::Vector3d accel = accel_scale_ * interval.accel;
-    if (interval.gap) {  // on with the velocity it has
+    if (interval.gap) {  // coast with constant velocity
       accel = state.bias.accel - rotation.transpose() * gravity;
       longest_gap_s_ = std::max(longest_gap_s_, interval.seconds());
     }
@@ -142,7 +142,7 @@ std::vector<Eigen::Vector3f> LioSam::deskewed(const Scan& scan,
                                               const Prediction& prediction) const {
   if (config_.deskew_translation)
     return deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu, parallel_);
-  ImuTrack turning = prediction.track;  // about the LiDAR, which stays where it is
+  ImuTrack turning = prediction.track;  // rotation about the LiDAR, without translation
   for (ImuStep& step : turning) {
     step.world_from_imu = rotation_of(step.world_from_imu);
     step.velocity.setZero();
@@ -197,7 +197,7 @@ PoseMeasurement::Information LioSam::information_of(const Registration& found,
   least.diagonal().tail<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.shift_sigma_m));
   if (config_.point_sigma_m <= 0.0) return least.inverse();
 
-  // From errors of the IMU's attitude and place to the registration's, which are of the LiDAR.
+  // Jacobian of the errors of the registered LiDAR pose by those of the IMU's pose.
   const Eigen::Matrix3d world_from_odom =
       found.map_from_lidar.linear() * odom_from_lidar_.linear().transpose();
   const Eigen::Matrix3d world_from_imu = world_from_odom * odom_from_imu.linear();
@@ -242,7 +242,7 @@ void LioSam::keep(Time stamp, Pose& world_from_lidar, Features features) {
     ++keyframes_[i].revision;
   }
   world_from_lidar = keyframes_.back().world_from_lidar;
-  world_from_lidar_ = world_from_lidar;  // what was just registered
+  world_from_lidar_ = world_from_lidar;  // corrected pose of the scan just registered
 }
 
 bool LioSam::merge(Time stamp, const Pose& world_from_lidar, const Features& features) {

@@ -21,7 +21,7 @@ namespace lidarena::lio_sam {
 
 /// LiDAR-inertial odometry on edges and planes, smoothed with the IMU, after Shan, Englot, Meyers,
 /// Wang, Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping"
-/// (IROS 2020). Poses hold for the scan's stamp, its first firing. See README.md beside.
+/// (IROS 2020). Poses hold for the scan's stamp, its first firing. See README.md in this folder.
 class LioSam : public Odometry {
  public:
   LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -41,33 +41,33 @@ class LioSam : public Odometry {
   const LoopCloser& loops() const { return closer_; }
 
  private:
-  /// What the IMU says of the scan to come.
+  /// Prediction of a scan's motion by the IMU.
   struct Prediction {
     Pose world_from_lidar;  ///< at the scan's stamp
-    ImuTrack track;         ///< through the scan, to de-skew along
+    ImuTrack track;         ///< within the scan, for de-skewing
     Pose track_from_imu;    ///< at the scan's stamp
   };
 
-  /// Instant of the scan's last firing; for a scan without points, where it should have been.
+  /// Instant of the scan's last firing; for a scan without points, its expected instant.
   Time end_of_sweep(const Scan& scan);
-  /// Begins with the samples so far, if they are enough; whether it has.
+  /// Initializes if there are enough IMU samples; returns whether it has.
   bool start(Time stamp, Time end);
   bool is_due(Time stamp) const;
   Prediction predict(Time stamp, Time end);
-  /// Adds the IMU's intervals to `sum`, which began in `state`; lays down `track` if there is one.
+  /// Adds the IMU's intervals to `sum`, which began in `state`; fills `track` unless it is null.
   void integrate(const std::vector<ImuInterval>& intervals, const NavState& state,
                  Preintegration& sum, ImuTrack* track);
   std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
   Registration match(const Features& features, const Pose& guess, Time stamp);
   ScanStatus status_of(const Registration& found, const Features& features) const;
-  /// Tells the smoother of the registered pose and takes it over, or what the smoother makes of it.
+  /// Adds the registered pose to the smoother; with fused_pose, replaces it by the smoother's.
   void fuse(Registration& found);
   PoseMeasurement::Information information_of(const Registration& found,
                                               const Pose& odom_from_imu) const;
   void restart_if_failed();
-  /// Makes a keyframe of the scan if one is due; `world_from_lidar` follows when a loop moves it.
+  /// Makes the scan a keyframe if one is due; a loop then may correct `world_from_lidar`.
   void keep(Time stamp, Pose& world_from_lidar, Features features);
-  /// Averages the scan into the last keyframe, unless it is due to be the next one: then false.
+  /// Averages the scan into the last keyframe; returns false if it should be the next keyframe.
   bool merge(Time stamp, const Pose& world_from_lidar, const Features& features);
   /// The result of a scan that is part of the trajectory.
   ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
@@ -88,17 +88,17 @@ class LioSam : public Odometry {
   double accel_scale_ = 1.0;
   Time sweep_;  ///< duration of the last scan that had points
 
-  InertialSmoother smoother_;  ///< in the world as it would be without loops: it never jumps
+  InertialSmoother smoother_;  ///< in the odometry frame, which has no jumps from loops
   Preintegration pending_;     ///< since the smoother's last state
   Time integrated_until_{0};
   double longest_gap_s_ = 0.0;  ///< of the IMU, since the last scan
   int restarts_ = 0;
-  Pose odom_from_lidar_ = Pose::Identity();   ///< last registered one, in the smoother's world
-  Pose world_from_lidar_ = Pose::Identity();  ///< the same one in the map's
+  Pose odom_from_lidar_ = Pose::Identity();   ///< last registered pose, in the smoother's frame
+  Pose world_from_lidar_ = Pose::Identity();  ///< the same pose in the map's frame
   std::optional<Time> last_mapped_;
 
   std::vector<Keyframe> keyframes_;
-  KeyframeMerger merger_;  ///< of the last one
+  KeyframeMerger merger_;  ///< of the last keyframe
   Submap submap_;
   AnchoredTrajectory poses_;  ///< of the LiDAR
   LoopCloser closer_;

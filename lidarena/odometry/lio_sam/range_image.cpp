@@ -11,14 +11,14 @@ namespace {
 
 using Indices = std::vector<std::uint32_t>;
 
-/// Indices of the points to use, in order, by ring.
+/// Indices of the usable points of each ring, in their order.
 std::vector<Indices> by_ring(const Scan& scan, const Config& config) {
   std::vector<Indices> rings;
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Point& point = scan.points[i];
     const auto range = static_cast<double>(point.position.norm());
     const bool usable = range >= config.min_range_m && range <= config.max_range_m;
-    if (!usable || point.ring % config.row_stride != 0) continue;  // not finite: not usable
+    if (!usable || point.ring % config.row_stride != 0) continue;  // NaN is not usable
     if (point.ring >= rings.size()) rings.resize(point.ring + std::size_t{1});
     rings[point.ring].push_back(static_cast<std::uint32_t>(i));
   }

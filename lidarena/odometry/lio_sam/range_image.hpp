@@ -11,16 +11,16 @@
 
 namespace lidarena::lio_sam {
 
-/// A point with its place in the image.
+/// A point and its column in the image.
 struct Pixel {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m, de-skewed
   float range = 0.0F;                                  ///< m, as measured
   int column = 0;
 };
 
-/// A scan as rows of points that neighbor each other; empty cells are left out.
+/// A scan as rows of neighboring points, without the empty cells.
 struct RangeImage {
-  std::vector<Pixel> pixels;         ///< row by row, by column
+  std::vector<Pixel> pixels;         ///< sorted by row, then by column
   std::vector<std::size_t> row_end;  ///< index of the pixel after each row
   std::span<const Pixel> row(std::size_t index) const {
     const std::size_t begin = index == 0 ? 0 : row_end[index - 1];
@@ -28,8 +28,8 @@ struct RangeImage {
   }
 };
 
-/// Sorts a scan's points into rows by ring and columns by azimuth or order of firing, those alone
-/// that are finite and within the ranges. `positions` are the de-skewed ones of all points.
+/// Sorts a scan's finite points within the range limits into rows by ring and columns by azimuth or
+/// firing order. `positions` are the de-skewed positions of all points of the scan.
 RangeImage project(const Scan& scan, std::span<const Eigen::Vector3f> positions,
                    const Config& config);
 

@@ -11,13 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPlaneRatio = 0.05;        // spread of a plane's narrow side by its wide one
-constexpr float kMaxNeighbor = 1.0F;        // m, the fifth
-constexpr double kLineRatio = 3.0;          // spread along by spread across
-constexpr double kLeastWeight = 0.1;        // of a match that counts
-constexpr std::size_t kLeastMatches = 50;   // fewer tell nothing
-constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's
-constexpr double kLeastShare = 0.003;       // of all; 1/6 if all alike
+constexpr double kPlaneRatio = 0.05;        // minimum spread of a plane's narrow side / wide side
+constexpr float kMaxNeighbor = 1.0F;        // m, maximum distance of the fifth neighbor
+constexpr double kLineRatio = 3.0;          // minimum spread along a line / across it
+constexpr double kLeastWeight = 0.1;        // minimum weight of a match
+constexpr std::size_t kLeastMatches = 50;   // fewer do not determine a pose
+constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's value
+constexpr double kLeastShare = 0.003;       // minimum share of a direction; isotropic: 1/6
 
 PointResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
                              double weight) {
@@ -27,7 +27,7 @@ PointResidual residual_along(const Vector3d& direction, double distance, const V
   return residual;
 }
 
-/// What the points of one kind were matched with.
+/// Lines or planes matched with the points of one kind.
 template <class Shape>
 using Matches = std::vector<std::optional<Shape>>;
 
@@ -54,7 +54,7 @@ PoseEquations sum_of(const std::vector<Eigen::Vector3f>& points, const Matches<S
       });
 }
 
-/// Lines and planes of all points, searched anew or kept.
+/// Lines and planes of all points, kept until the next search.
 class Matcher {
  public:
   Matcher(const Features& features, const FeatureMap& map, const Config& config,
@@ -91,7 +91,7 @@ class Matcher {
   Matches<Plane> planes_;
 };
 
-/// Root of the mean square of the points' ranges.
+/// Root mean square of the points' ranges.
 double lever_of(const std::vector<Eigen::Vector3f>& points) {
   double sum = 0.0;
   for (const Eigen::Vector3f& p : points) sum += static_cast<double>(p.squaredNorm());
@@ -129,7 +129,7 @@ std::optional<PointResidual> surface_residual(const Vector3d& point, const Plane
 Degenerate find_degenerate(const PoseEquations& equations, double lever, Degeneracy rule) {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
-  Vector6 unit = Vector6::Ones();  // of each error, so that all are alike
+  Vector6 unit = Vector6::Ones();  // scale of each error that makes them comparable
   double least = kLeastEigenvalue;
   if (rule == Degeneracy::kShare) {
     unit.head<3>().setConstant(1.0 / lever);

@@ -18,18 +18,19 @@ namespace lidarena::lio_sam {
 
 inline constexpr std::size_t kNeighbors = 5;
 using Neighbors = std::array<Neighbor, kNeighbors>;
-/// Errors of a pose: turn (rad, about the sensor, axes of the world), then shift (m, world).
+/// Errors of a pose: rotation (rad, about the sensor, world axes), then translation (m, world).
 using PoseEquations = NormalEquations<6>;
 
 struct Line {
   Eigen::Vector3d center;
   Eigen::Vector3d direction;  ///< unit
 };
-/// The line through points that spread three times as much along it as across.
+/// Line fitted to the points, if the eigenvalue of their spread along it is more than three times
+/// that across it.
 std::optional<Line> fit_line(const Neighbors& points);
 
-/// A point's distance (m, not negative) from its line or plane and how it grows with the pose's
-/// errors, both times the weight of the match; nothing when that is too small.
+/// Distance (m) of a point from its line or plane and its derivative by the pose's errors, both
+/// times the weight of the match; nothing if the weight is too small.
 struct PointResidual {
   double distance = 0.0;
   Eigen::Matrix<double, 1, 6> row;
@@ -39,17 +40,17 @@ std::optional<PointResidual> edge_residual(const Eigen::Vector3d& point, const L
 std::optional<PointResidual> surface_residual(const Eigen::Vector3d& point, const Plane& plane,
                                               const Pose& map_from_lidar);
 
-/// Directions in which the points do not hold the pose.
+/// Directions in which the points do not determine the pose.
 struct Degenerate {
   Eigen::Matrix<double, 6, 6> observed = Eigen::Matrix<double, 6, 6>::Identity();  ///< projection
   int directions = 0;
 };
 /// By the eigenvalues of J^T J (Zhang, Kaess, Singh, "On Degeneracy of Optimization-based State
-/// Estimation Problems", ICRA 2016). `lever` (m) is the points' mean distance, by which turning is
-/// brought to the scale of shifting; used by Degeneracy::kShare.
+/// Estimation Problems", ICRA 2016). `lever` (m) is the points' RMS range, which scales
+/// rotations to translations; used by Degeneracy::kShare.
 Degenerate find_degenerate(const PoseEquations& equations, double lever, Degeneracy rule);
 
-/// The map a scan is matched with.
+/// Map with which a scan is matched.
 struct FeatureMap {
   KdTree edges;
   KdTree surfaces;
@@ -59,7 +60,7 @@ struct Registration {
   Pose map_from_lidar = Pose::Identity();
   int iterations = 0;
   bool converged = false;
-  PoseEquations points;  ///< of the last iteration; count 0: the guess stands
+  PoseEquations points;  ///< of the last iteration; count 0: the pose is the guess
   int degenerate_directions = 0;
 };
 

@@ -92,7 +92,8 @@ TEST_P(Readers, RefuseBrokenInputOrReadItButNeverFail) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Readers,
-                         testing::Values("mcap", "bag", "pcd", "ply", "bin", "trajectory", "manifest", "yaml", "messages"),
+                         testing::Values("mcap", "bag", "pcd", "ply", "bin", "trajectory",
+                                         "manifest", "yaml", "messages"),
                          [](const auto& param) { return std::string(param.param); });
 
 TEST(Targets, AreAllTried) { EXPECT_EQ(targets().size(), 9U); }

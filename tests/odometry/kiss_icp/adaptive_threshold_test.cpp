@@ -11,7 +11,7 @@ namespace lidarena::kiss_icp {
 namespace {
 
 TEST(AdaptiveThreshold, DisplacementIsHowFarAPointAtTheRangeMoves) {
-  // turned about z, the farthest-moved point at 50 m is any one on the x-y circle
+  // for a rotation about z, all points of the circle of 50 m in the x-y plane move farthest
   const Pose turned = pose_of(0, 0, 0, 0, 0, 0.3);
   const Eigen::Vector3d point(30.0, 40.0, 0.0);
   EXPECT_NEAR(displacement(turned, 50.0), (turned * point - point).norm(), 1e-12);
@@ -53,9 +53,9 @@ TEST(AdaptiveThreshold, WithAMemoryItForgetsLargeErrorsAndSeesSmallOnes) {
     weights = weights * std::exp(-0.1) + 1.0;
     ASSERT_NEAR(threshold.sigma(), std::sqrt(squares / weights), 1e-12) << i;
   }
-  EXPECT_LT(threshold.sigma(), 0.11) << "2 m are forgotten";
+  EXPECT_LT(threshold.sigma(), 0.11) << "the initial 2 m have lost their weight";
   threshold.observe(Pose::Identity(), pose_of(1.0, 0, 0, 0, 0, 0), 7.0);
-  EXPECT_GT(threshold.sigma(), 0.3) << "and 1 m counts a tenth at once";
+  EXPECT_GT(threshold.sigma(), 0.3) << "an error of 1 m has a weight of a tenth at once";
 }
 
 TEST(AdaptiveThreshold, TheLeverIsTheMaximumRangeOrTheMeanRangeOfTheScan) {

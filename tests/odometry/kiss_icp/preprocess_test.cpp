@@ -91,7 +91,7 @@ TEST(Preprocess, PointsWhoseMotionIsToBeEstimatedStayAtTheirInstantsUntilItIsKno
   const TimedPoints points = preprocess(scan, times, wrong, config, Parallel(1));
   ASSERT_EQ(points.seconds, (std::vector<float>{-0.1F, -0.05F, 0.0F}));
   EXPECT_EQ(points.positions[1], scan.points[1].position);
-  // 1 m/s along x: what was seen 0.1 s ago is 0.1 m nearer now
+  // at 1 m/s along x, a point measured 0.1 s before the end is 0.1 m nearer at the end
   const auto still = deskewed(points, vector6(1, 0, 0, 0, 0, 0), Parallel(1));
   EXPECT_NEAR(still[0].x(), 1.9F, 1e-6F);
   EXPECT_NEAR(still[1].x(), 2.95F, 1e-6F);
@@ -121,7 +121,7 @@ TEST(Preprocess, SlicesAreThePartsOfTheScanInOrderOfTime) {
   }
   EXPECT_EQ(times,
             (std::vector<std::vector<std::int32_t>>{{0, 100}, {399, 400}, {450}, {900, 1000}}))
-      << "1000 ns in five: 201 ns each, so that the last point is in";
+      << "1000 ns in five: 201 ns each, so that the last point is included";
 }
 
 TEST(Preprocess, AScanWithoutTimesOrPointsIsOneSlice) {

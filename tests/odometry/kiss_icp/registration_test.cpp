@@ -16,8 +16,8 @@ namespace {
 
 using se3::Vector6;
 
-/// `count` directions evenly over the sphere (a Fibonacci lattice, turned by `phase`) as points on
-/// the walls of the synthetic room seen from `room_from_lidar`, with normal noise of range.
+/// Points on the walls of the synthetic room seen from `room_from_lidar` in `count` directions
+/// evenly over the sphere (a Fibonacci lattice, rotated by `phase`), with normal range noise (m).
 std::vector<Eigen::Vector3f> look_around(const Pose& room_from_lidar, std::size_t count,
                                          double phase, double noise) {
   const CounterRandom random(31, static_cast<std::uint32_t>(1000.0 * phase));
@@ -41,7 +41,7 @@ VoxelHashMap map_of(std::span<const Eigen::Vector3f> points) {
   return map;
 }
 
-/// ICP of points that are de-skewed already.
+/// ICP of de-skewed points.
 Registration register_still(const std::vector<Eigen::Vector3f>& points, const VoxelHashMap& map,
                             const Pose& guess, double sigma, const Config& config) {
   return register_points({points, {}}, map, {}, guess, sigma, 0.0, config, Parallel(1));
@@ -61,7 +61,7 @@ TEST(Registration, JacobianOfTheResidualIsItsNumericDerivative) {
     for (int k = 0; k < 6; ++k) {
       const Eigen::Vector3d slope =
           (error(h * Vector6::Unit(k)) - error(-h * Vector6::Unit(k))) / (2.0 * h);
-      // h^2 / 6 times a third derivative of up to 41 m, and rounding of 41 m by 1e-16 over h
+      // h^2 / 6 times a third derivative of up to 41 m, plus rounding: 41 m times 1e-16 / h
       EXPECT_LT((slope - residual.jacobian.col(k)).norm(), 3e-9);
     }
   }
@@ -70,7 +70,7 @@ TEST(Registration, JacobianOfTheResidualIsItsNumericDerivative) {
 TEST(Registration, TheSamePointsMovedAreFoundWhereTheyWere) {
   const auto points = look_around(synthetic::flight(0.0), 4000, 0.0, 0.0);
   const VoxelHashMap map = map_of(points);
-  // points lie 0.2 m apart and more; a shift of 5 cm pairs nearly all rightly from the start
+  // points are at least 0.2 m apart; with a translation of 5 cm nearly all pairs are right at once
   const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   for (const bool sensor_centered : {false, true}) {
     Config config;
@@ -94,11 +94,11 @@ TEST(Registration, MotionBetweenTwoNoisyScansOfARoomIsFoundToTheNoiseOfItsMean) 
   config.convergence = 1e-6;
   const Registration found = register_still(keypoints, map, Pose::Identity(), 0.5, config);
   const Pose error = motion.inverse() * found.map_from_lidar;
-  // A residual is the noise of two ranges and, along the wall, half the map's spacing of at most
-  // 5 cm; of the keypoints a third pulls along each axis. Five standard deviations.
+  // A residual has the noise of two ranges and, along the wall, half the map's spacing of at most
+  // 5 cm; a third of the keypoints determines each axis. The limit is five standard deviations.
   const double deviation = std::sqrt((2.0 * kNoise * kNoise + 0.025 * 0.025) / (kKeypoints / 3.0));
   EXPECT_LT(error.translation().norm(), 5.0 * deviation);
-  EXPECT_LT(so3::angle(error.linear()), 5.0 * deviation / 2.0);  // levers are 2 m and more
+  EXPECT_LT(so3::angle(error.linear()), 5.0 * deviation / 2.0);  // lever arms are at least 2 m
   EXPECT_GT(found.matches, kKeypoints * 9 / 10);
 }
 
@@ -133,15 +133,15 @@ TEST(Registration, WithoutMapOrMatchesTheGuessStands) {
   EXPECT_EQ(lost.iterations, 1);
 }
 
-/// What the lidar sees while it moves with constant `twist` (per second) through the scan of 0.1 s
-/// that ends at `room_from_lidar`: points at their own instants.
+/// Points at their own instants, measured while the lidar moves with constant `twist` (per second)
+/// during a scan of 0.1 s that ends at `room_from_lidar`.
 TimedPoints look_around_moving(const Pose& room_from_lidar, const Vector6& twist,
                                std::size_t count) {
   TimedPoints points;
   for (std::size_t i = 0; i < count; ++i) {
     const double seconds = -0.1 * static_cast<double>(count - 1 - i) / static_cast<double>(count);
     const Pose pose = room_from_lidar * se3::exp(twist * seconds);
-    const std::size_t place = i * 7 % count;  // beams jump about, as those of a rosette
+    const std::size_t place = i * 7 % count;  // the beam's direction jumps, as with a rosette
     const double z = 1.0 - (2.0 * static_cast<double>(place) + 1.0) / static_cast<double>(count);
     const double azimuth = 2.399963 * static_cast<double>(place);
     const Eigen::Vector3d beam(std::sqrt(1.0 - z * z) * std::cos(azimuth),
@@ -154,7 +154,7 @@ TimedPoints look_around_moving(const Pose& room_from_lidar, const Vector6& twist
 }
 
 TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
-  // 1.5 m/s and 172 deg/s, none of it foreseen: prediction and de-skewing start from rest
+  // 1.5 m/s and 172 deg/s; prediction and de-skewing start from rest
   const Vector6 twist = vector6(1.2, -0.8, 0.4, 0.5, -0.8, 3.0);
   const Pose start = synthetic::flight(0.0);
   const Pose end = start * se3::exp(0.1 * twist);
@@ -171,13 +171,14 @@ TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
                                        own_motion, config, Parallel(1));
     return Pose(end.inverse() * found.map_from_lidar);
   };
-  // The map's points stand 5 cm apart: 2.5 cm a residual along the wall, of 2000 keypoints a third
-  // pulls along each axis, and late ones only with their share; five standard deviations.
+  // The map's points are 5 cm apart: residuals of 2.5 cm along the wall; a third of 2000 keypoints
+  // determines each axis, each weighted by its share. The limit is five standard deviations.
   const double deviation = 0.025 / std::sqrt(2003.0 / 9.0);
   const Pose own = error_with(1.0);
   EXPECT_LT(own.translation().norm(), 5.0 * deviation);
-  EXPECT_LT(so3::angle(own.linear()), 5.0 * deviation / 2.0);  // levers are 2 m and more
-  EXPECT_GT(so3::angle(error_with(0.0).linear()), 0.1) << "half of the turn is missed at rest";
+  EXPECT_LT(so3::angle(own.linear()), 5.0 * deviation / 2.0);  // lever arms are at least 2 m
+  EXPECT_GT(so3::angle(error_with(0.0).linear()), 0.1)
+      << "without own motion half of the rotation is missed";
   EXPECT_LT(so3::angle(error_with(0.75).linear()), so3::angle(error_with(0.5).linear()));
 }
 
@@ -194,8 +195,8 @@ TEST(Registration, TheTwistIsTheShareOfTheOwnMotionAndTheRestOfThatBefore) {
 }
 
 TEST(Registration, PlanesAverageTheNoiseOfTheirCells) {
-  // One wall with all its noise, its points 10 cm apart, and a scan of some of these that starts
-  // 3 cm off along it and 10 cm across.
+  // A noisy wall with points 10 cm apart, and a scan of some of these places with an initial error
+  // of 3 cm along the wall and 10 cm across.
   std::vector<Eigen::Vector3f> wall, seen;
   const CounterRandom random(5, 1);
   for (int i = 0; i < 4000; ++i) {
@@ -211,14 +212,14 @@ TEST(Registration, PlanesAverageTheNoiseOfTheirCells) {
   VoxelHashMap planes({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   planes.insert(wall);
   const Registration found = register_still(seen, planes, guess, 1.0, config);
-  // 500 points of 1 cm make the plane of 80 cells
+  // the plane of 80 cells is the mean of 500 points with 1 cm of noise
   EXPECT_NEAR(found.map_from_lidar.translation().x(), 0.0, 5.0 * 0.01 / std::sqrt(500.0));
   EXPECT_LT(found.iterations, 10);
 }
 
 TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
-  // Corner of three walls, each known well; and one point a cell of a pattern that went along with
-  // the sensor, 5 cm along each axis, so that it pulls everything back.
+  // A corner of three walls with many points per cell; and one point per cell of a pattern that
+  // moved with the sensor by 5 cm along each axis, so that its matches pull the pose back.
   std::vector<Eigen::Vector3f> walls, pattern, seen;
   for (int i = 0; i < 60; ++i) {
     for (int k = 0; k < 60; ++k) {
@@ -254,14 +255,15 @@ TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
   };
   EXPECT_GT(shift_in(corner, 1.0), 0.01);
   EXPECT_LT(shift_in(corner, 1e-4), 1e-4);
-  // where there is nothing else they decide as ever, to what the stopping rule leaves
+  // without other points they determine the pose, up to the convergence threshold
   EXPECT_NEAR(shift_in(alone, 1.0), 0.05 * std::sqrt(3.0), 1e-5);
   EXPECT_NEAR(shift_in(alone, 1e-4), 0.05 * std::sqrt(3.0), 1e-5);
 }
 
 TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
-  // Each point of the map is seen three times where it is and once 5 cm off: by symmetry nothing
-  // turns, and the shift x solves 3 w(x) x + w(x - d) (x - d) = 0, w(r) = (k / (k + r^2))^2.
+  // Each point of the map is seen three times in place and once 5 cm off: by symmetry there is no
+  // rotation, and the translation x solves 3 w(x) x + w(x - d) (x - d) = 0, w(r) = (k / (k +
+  // r^2))^2.
   constexpr double kOff = 0.05, kSigma = 0.1, kFraction = 0.5;
   std::vector<Eigen::Vector3f> points, seen;
   for (int i = 0; i < 216; ++i) {
