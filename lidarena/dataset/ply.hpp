@@ -9,7 +9,7 @@
 
 namespace lidarena {
 
-/// The vertices of a PLY file (ascii, or binary little endian) with all their properties; other
+/// The vertices of a PLY file (ASCII or binary) with all their properties; other
 /// elements are skipped. Bytes after the vertices are ignored. Throws InputError naming the file
 /// and the line or byte.
 PointTable read_ply_table(const std::filesystem::path& file);

@@ -8,23 +8,9 @@
 #include <string_view>
 #include <vector>
 
-namespace lidarena {
+#include "lidarena/base/scalar_type.hpp"
 
-enum class ScalarType {
-  kInt8,
-  kUint8,
-  kInt16,
-  kUint16,
-  kInt32,
-  kUint32,
-  kInt64,
-  kUint64,
-  kFloat32,
-  kFloat64
-};
-/// Bytes of one value.
-std::size_t size_of(ScalarType type);
-inline bool is_integer(ScalarType type) { return type < ScalarType::kFloat32; }
+namespace lidarena {
 
 /// One named value of each point: value i starts at byte `offset + i * stride`.
 struct Column {
@@ -49,10 +35,6 @@ struct PointTable {
   /// Exact value in a column of integers.
   std::int64_t integer(const Column& column, std::size_t row) const;
 };
-
-/// Appends `word` in the binary form of `type`; false if it is not a number of that type (NaN and
-/// infinity are valid floats).
-bool append_scalar(std::string& bytes, ScalarType type, std::string_view word);
 
 /// Reads .ply or .pcd, chosen by the extension. Throws InputError naming file, place and remedy.
 PointTable read_point_table(const std::filesystem::path& file);
