@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/evaluation/alignment.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/trajectory/alignment.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"

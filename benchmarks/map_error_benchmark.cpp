@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/map/point_map.hpp"
-#include "lidarena/world/cave.hpp"
+#include "lidarena/scenes/cave.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {

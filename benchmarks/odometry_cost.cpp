@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/odometry/process_memory.hpp"
 #include "lidarena/study/simulate_dataset.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/world/cave.hpp"
+#include "lidarena/scenes/cave.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {

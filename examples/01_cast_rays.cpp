@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lidarena/study/config_folder.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/world.hpp"
 
 int main() {

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "lidarena/world/export_world.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace {

@@ -4,14 +4,14 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/odometry/run.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/study/config_folder.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 
 namespace {
 

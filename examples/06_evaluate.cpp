@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace {

@@ -7,8 +7,8 @@
 
 #include <cstring>
 
-#include "lidarena/dataset/driver_layouts.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/driver_layouts.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #endif
 
 namespace lidarena::gazebo_plugin {

@@ -6,14 +6,14 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/kitti.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/export_world.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/ply.hpp"
 
 namespace lidarena {

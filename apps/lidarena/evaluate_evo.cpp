@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "lidarena/evaluation/compat_evo.hpp"
+#include "lidarena/evaluation/trajectory/compat_evo.hpp"
 
 namespace lidarena {
 namespace {

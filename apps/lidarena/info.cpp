@@ -7,11 +7,11 @@
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/pattern_info.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 
 namespace lidarena {
 namespace {

@@ -11,7 +11,7 @@
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/study_spec.hpp"
-#include "lidarena/world/world_config.hpp"
+#include "lidarena/scenes/world_config.hpp"
 
 namespace lidarena {
 namespace {

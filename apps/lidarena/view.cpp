@@ -12,7 +12,7 @@
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/dataset_store.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/recording.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 
 namespace lidarena {
 namespace {

@@ -7,11 +7,11 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/recording_source.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
-#include "lidarena/dataset/sweep_dataset.hpp"
-#include "lidarena/dataset/sweeps.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/points/sweep_dataset.hpp"
+#include "lidarena/dataset/points/sweeps.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 
 namespace lidarena {
 namespace {

@@ -7,14 +7,14 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/bag_reader.hpp"
-#include "lidarena/dataset/bag_writer.hpp"
-#include "lidarena/dataset/mcap_info.hpp"
-#include "lidarena/dataset/mcap_reader.hpp"
-#include "lidarena/dataset/mcap_writer.hpp"
+#include "lidarena/dataset/ros1/bag_reader.hpp"
+#include "lidarena/dataset/ros1/bag_writer.hpp"
+#include "lidarena/dataset/mcap/mcap_info.hpp"
+#include "lidarena/dataset/mcap/mcap_reader.hpp"
+#include "lidarena/dataset/mcap/mcap_writer.hpp"
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
-#include "lidarena/dataset/rosbag2_metadata.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/mcap/rosbag2_metadata.hpp"
 
 namespace lidarena {
 namespace {

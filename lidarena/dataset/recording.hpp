@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lidarena/base/time.hpp"
-#include "lidarena/dataset/message_stream.hpp"
+#include "lidarena/dataset/messages/message_stream.hpp"
 
 /// Recordings of ROS messages: one interface to MCAP files and ROS 1 bags.
 namespace lidarena {

@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/livox_message.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/livox_message.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/stream_merge.hpp"
 
 namespace lidarena {

@@ -7,9 +7,9 @@
 
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/dataset_store.hpp"
-#include "lidarena/dataset/driver_layouts.hpp"
+#include "lidarena/dataset/messages/driver_layouts.hpp"
 #include "lidarena/dataset/recording.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 
 namespace lidarena {
 namespace {

@@ -11,7 +11,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 
 namespace lidarena {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 
 namespace lidarena {
 

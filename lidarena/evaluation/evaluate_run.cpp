@@ -7,7 +7,7 @@
 
 #include "lidarena/evaluation/metrics_json.hpp"
 #include "lidarena/evaluation/resources.hpp"
-#include "lidarena/evaluation/suspicion.hpp"
+#include "lidarena/evaluation/diagnosis/suspicion.hpp"
 
 namespace lidarena {
 namespace {

@@ -9,8 +9,8 @@
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/run_files.hpp"
-#include "lidarena/evaluation/evaluate_map.hpp"
-#include "lidarena/evaluation/trajectory_error.hpp"
+#include "lidarena/evaluation/map/evaluate_map.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {

@@ -4,12 +4,12 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
-#include "lidarena/evaluation/hover_jitter.hpp"
-#include "lidarena/evaluation/kitti_error.hpp"
-#include "lidarena/evaluation/lever_arm.hpp"
-#include "lidarena/evaluation/map_error.hpp"
-#include "lidarena/evaluation/time_offset.hpp"
-#include "lidarena/evaluation/trajectory_error.hpp"
+#include "lidarena/evaluation/trajectory/hover_jitter.hpp"
+#include "lidarena/evaluation/trajectory/kitti_error.hpp"
+#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
+#include "lidarena/evaluation/diagnosis/time_offset.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 
 /// Metrics as JSON. Names contain the units; a number that does not exist is null, never zero or
 /// NaN; each metric has the id of its definition in docs/metrics.md.

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <set>
 
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/report/gauge.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/simplified_mesh.hpp"

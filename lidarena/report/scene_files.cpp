@@ -10,9 +10,9 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/dataset/point_table.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/points/point_table.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/report/gauge.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/world.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 
 namespace lidarena {
 

@@ -4,9 +4,9 @@
 #include <variant>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/dataset/cloud.hpp"
-#include "lidarena/evaluation/lidar_poses.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/evaluation/map/lidar_poses.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 

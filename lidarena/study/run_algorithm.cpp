@@ -6,8 +6,8 @@
 #include "lidarena/base/machine.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
-#include "lidarena/evaluation/map_error.hpp"
-#include "lidarena/evaluation/reproject.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
+#include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 

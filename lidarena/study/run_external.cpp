@@ -13,8 +13,8 @@
 #include <csignal>
 #include <cstring>
 
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/evaluation/reproject.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
 namespace lidarena {

@@ -7,12 +7,12 @@
 #include <deque>
 
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/dataset/tum.hpp"
-#include "lidarena/evaluation/scored_returns.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
+#include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/sensor/simulate.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
 #include "lidarena/world/world.hpp"

@@ -4,8 +4,8 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/scan.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "python/src/bindings.hpp"
 
 namespace lidarena::python {

@@ -2,7 +2,7 @@
 #include "lidarena/dataset/dataset.hpp"
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "python/src/events.hpp"
 

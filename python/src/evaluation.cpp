@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/base/error.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/metrics_json.hpp"
 #include "lidarena/study/config_folder.hpp"
 #include "lidarena/study/run_algorithm.hpp"

@@ -3,7 +3,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/export_world.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/simulated_world.hpp"
 

@@ -5,9 +5,9 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/kitti.hpp"
-#include "lidarena/dataset/sweeps.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
+#include "lidarena/dataset/points/sweeps.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"

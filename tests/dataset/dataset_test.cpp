@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/mcap_reader.hpp"
-#include "lidarena/dataset/mcap_writer.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/mcap/mcap_reader.hpp"
+#include "lidarena/dataset/mcap/mcap_writer.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/driver_layouts.hpp"
+#include "lidarena/dataset/messages/driver_layouts.hpp"
 
 #include <gmock/gmock.h>
 
@@ -9,11 +9,11 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/livox_message.hpp"
-#include "lidarena/dataset/point_cloud2.hpp"
+#include "lidarena/dataset/messages/livox_message.hpp"
+#include "lidarena/dataset/messages/point_cloud2.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/recording_source.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"

@@ -6,9 +6,9 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/dataset/compression.hpp"
-#include "lidarena/dataset/mcap_info.hpp"
-#include "lidarena/dataset/mcap_reader.hpp"
-#include "lidarena/dataset/mcap_writer.hpp"
+#include "lidarena/dataset/mcap/mcap_info.hpp"
+#include "lidarena/dataset/mcap/mcap_reader.hpp"
+#include "lidarena/dataset/mcap/mcap_writer.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 

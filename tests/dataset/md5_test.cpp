@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 
 namespace lidarena {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/message_stream.hpp"
+#include "lidarena/dataset/messages/message_stream.hpp"
 
 #include <gmock/gmock.h>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 
 namespace lidarena {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/point_cloud2.hpp"
+#include "lidarena/dataset/messages/point_cloud2.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/livox_message.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/livox_message.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 
 namespace lidarena::ros {
 namespace {

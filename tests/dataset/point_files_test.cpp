@@ -7,11 +7,11 @@
 #include <cmath>
 #include <limits>
 
-#include "lidarena/dataset/cloud.hpp"
-#include "lidarena/dataset/lzf.hpp"
-#include "lidarena/dataset/pcd.hpp"
-#include "lidarena/dataset/ply.hpp"
-#include "lidarena/dataset/point_table.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/dataset/points/lzf.hpp"
+#include "lidarena/dataset/points/pcd.hpp"
+#include "lidarena/dataset/points/ply.hpp"
+#include "lidarena/dataset/points/point_table.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 

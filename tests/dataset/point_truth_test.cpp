@@ -8,8 +8,8 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/mcap_writer.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/mcap/mcap_writer.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"

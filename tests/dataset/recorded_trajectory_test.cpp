@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/recorded_trajectory.hpp"
+#include "lidarena/dataset/trajectories/recorded_trajectory.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/recording.hpp"
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/ros_messages.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/sweeps.hpp"
+#include "lidarena/dataset/points/sweeps.hpp"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "lidarena/dataset/sweep_file.hpp"
+#include "lidarena/dataset/points/sweep_file.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 

@@ -7,10 +7,10 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/dataset/kitti.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/text_file.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/dataset/tum.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/tum.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 

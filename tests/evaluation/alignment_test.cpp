@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/alignment.hpp"
+#include "lidarena/evaluation/trajectory/alignment.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

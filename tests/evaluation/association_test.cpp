@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/association.hpp"
+#include "lidarena/evaluation/trajectory/association.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/compat_evo.hpp"
+#include "lidarena/evaluation/trajectory/compat_evo.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The surface of a mesh that rays hit, and how much of it a map has.
-#include "lidarena/evaluation/completeness.hpp"
+#include "lidarena/evaluation/map/completeness.hpp"
 #include "tests/evaluation/listed_sources.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/evaluate_map.hpp"
+#include "lidarena/evaluation/map/evaluate_map.hpp"
 #include "tests/evaluation/listed_sources.hpp"
 
 #include <gmock/gmock.h>

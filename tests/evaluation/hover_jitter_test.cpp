@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/hover_jitter.hpp"
+#include "lidarena/evaluation/trajectory/hover_jitter.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/identity_error.hpp"
+#include "lidarena/evaluation/map/identity_error.hpp"
 
 #include <gtest/gtest.h>
 
 #include <deque>
 
 #include "flights.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/kitti_error.hpp"
+#include "lidarena/evaluation/trajectory/kitti_error.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "flights.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "tum_text.hpp"
 
 namespace lidarena {

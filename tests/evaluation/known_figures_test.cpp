@@ -9,11 +9,11 @@
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/trajectory_io.hpp"
-#include "lidarena/evaluation/lever_arm.hpp"
-#include "lidarena/evaluation/suspicion.hpp"
-#include "lidarena/evaluation/time_offset.hpp"
-#include "lidarena/evaluation/trajectory_error.hpp"
+#include "lidarena/dataset/trajectories/trajectory_io.hpp"
+#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
+#include "lidarena/evaluation/diagnosis/suspicion.hpp"
+#include "lidarena/evaluation/diagnosis/time_offset.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "tum_text.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/lever_arm.hpp"
+#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
-#include "lidarena/evaluation/trajectory_error.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "tum_text.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "flights.hpp"
-#include "lidarena/evaluation/ghosting.hpp"
-#include "lidarena/evaluation/map_error.hpp"
-#include "lidarena/evaluation/signed_distance.hpp"
-#include "lidarena/evaluation/voxel_error.hpp"
+#include "lidarena/evaluation/map/ghosting.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
+#include "lidarena/evaluation/map/signed_distance.hpp"
+#include "lidarena/evaluation/map/voxel_error.hpp"
 #include "meshes.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/mesh_gauge.hpp"
+#include "lidarena/evaluation/map/mesh_gauge.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "flights.hpp"
-#include "lidarena/evaluation/map_error.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
 
 namespace lidarena {

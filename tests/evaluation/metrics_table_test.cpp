@@ -6,7 +6,7 @@
 
 #include <sstream>
 
-#include "lidarena/evaluation/map_json.hpp"
+#include "lidarena/evaluation/map/map_json.hpp"
 #include "lidarena/evaluation/run_statistics.hpp"
 
 namespace lidarena {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/reproject.hpp"
+#include "lidarena/evaluation/map/reproject.hpp"
 #include "tests/evaluation/listed_sources.hpp"
 
 #include <gtest/gtest.h>

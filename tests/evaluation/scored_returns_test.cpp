@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/scored_returns.hpp"
+#include "lidarena/evaluation/map/scored_returns.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/suspicion.hpp"
+#include "lidarena/evaluation/diagnosis/suspicion.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/time_offset.hpp"
+#include "lidarena/evaluation/diagnosis/time_offset.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/trajectory_error.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 
 #include <gtest/gtest.h>
 

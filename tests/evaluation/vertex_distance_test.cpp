@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/vertex_distance.hpp"
+#include "lidarena/evaluation/map/vertex_distance.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/evaluation/map_json.hpp"
+#include "lidarena/evaluation/map/map_json.hpp"
 #include "meshes.hpp"
 
 namespace lidarena {

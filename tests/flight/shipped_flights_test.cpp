@@ -13,8 +13,8 @@
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/flight/tour.hpp"
-#include "lidarena/world/cave.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/cave.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
 namespace lidarena {

@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/odometry/factory.hpp"
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/report/scene_blocks.hpp"
 #include "lidarena/report/scene_files.hpp"

@@ -11,9 +11,9 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/spline_flight.hpp"
-#include "lidarena/world/cave.hpp"
-#include "lidarena/world/house.hpp"
-#include "lidarena/world/load_world.hpp"
+#include "lidarena/scenes/cave.hpp"
+#include "lidarena/scenes/house.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "tests/sensor/flights.hpp"
 #include "tests/sensor/worlds.hpp"
 

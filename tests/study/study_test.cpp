@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/cloud.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cube's wall is 1 m away, and every algorithm of the table can be built.
 #include <lidarena/base/parallel.hpp>
-#include <lidarena/evaluation/map_error.hpp>
+#include <lidarena/evaluation/map/map_error.hpp>
 #include <lidarena/odometry/factory.hpp>
 #include <lidarena/sensor/sensor_config.hpp>
 #include <lidarena/world/primitives.hpp>

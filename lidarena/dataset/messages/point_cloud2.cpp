@@ -1,0 +1,344 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/dataset/messages/point_cloud2.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+
+#include "lidarena/base/error.hpp"
+
+namespace lidarena::ros {
+namespace {
+
+/// Memory layout of Point. Its last byte is padding, written as 0.
+const std::vector<PointField>& own_fields(bool timed) {
+  static_assert(offsetof(Point, intensity) == 12 && offsetof(Point, dt_ns) == 16 &&
+                offsetof(Point, ring) == 20 && offsetof(Point, echo) == 22);
+  static const std::vector<PointField> kTimed{
+      {"x", 0, FieldType::kFloat32},  {"y", 4, FieldType::kFloat32},
+      {"z", 8, FieldType::kFloat32},  {"intensity", 12, FieldType::kFloat32},
+      {"t", 16, FieldType::kUint32},  {"ring", 20, FieldType::kUint16},
+      {"echo", 22, FieldType::kUint8}};
+  static const std::vector<PointField> kUntimed{
+      {"x", 0, FieldType::kFloat32},    {"y", 4, FieldType::kFloat32},
+      {"z", 8, FieldType::kFloat32},    {"intensity", 12, FieldType::kFloat32},
+      {"ring", 20, FieldType::kUint16}, {"echo", 22, FieldType::kUint8}};
+  return timed ? kTimed : kUntimed;
+}
+constexpr std::size_t kPaddingAt = 23;
+
+std::size_t size_of(FieldType type) {
+  constexpr std::array<std::size_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};
+  return kSizes[static_cast<std::size_t>(type)];
+}
+
+bool is_float(FieldType type) { return type == FieldType::kFloat32 || type == FieldType::kFloat64; }
+
+template <class T>
+double load(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof value);
+  return static_cast<double>(value);
+}
+
+/// Value of a field of the point at `point`; a double holds every field type exactly.
+double value_of(const PointField& field, const std::byte* point) {
+  const std::byte* at = point + field.offset;
+  switch (field.type) {
+    case FieldType::kInt8:
+      return load<std::int8_t>(at);
+    case FieldType::kUint8:
+      return load<std::uint8_t>(at);
+    case FieldType::kInt16:
+      return load<std::int16_t>(at);
+    case FieldType::kUint16:
+      return load<std::uint16_t>(at);
+    case FieldType::kInt32:
+      return load<std::int32_t>(at);
+    case FieldType::kUint32:
+      return load<std::uint32_t>(at);
+    case FieldType::kFloat32:
+      return load<float>(at);
+    case FieldType::kFloat64:
+      return load<double>(at);
+  }
+  return 0.0;
+}
+
+/// The field with the first of `names` that exists; nullptr if none does.
+const PointField* find(const PointCloud2& cloud, std::initializer_list<std::string_view> names) {
+  for (const std::string_view name : names) {
+    for (const PointField& field : cloud.fields) {
+      if (field.name == name) return &field;
+    }
+  }
+  return nullptr;
+}
+
+std::string list_of_fields(const PointCloud2& cloud) {
+  std::string names;
+  for (const PointField& field : cloud.fields) names += (names.empty() ? "" : " ") + field.name;
+  return names.empty() ? "none" : names;
+}
+
+/// Reads the layout that put_cloud() writes.
+Scan own_scan(Time stamp, const PointCloud2& cloud, bool timed) {
+  Scan scan{stamp, std::vector<Point>(std::size_t{cloud.width} * cloud.height), timed};
+  if (!scan.points.empty()) {
+    std::memcpy(static_cast<void*>(scan.points.data()), cloud.data.data(), cloud.data.size());
+  }
+  return scan;
+}
+
+/// Unit and origin of a float time field.
+struct TimeUnit {
+  std::int64_t ns = 1;    ///< nanoseconds per unit
+  bool absolute = false;  ///< true: since the epoch; false: since header.stamp
+};
+
+/// ns since header.stamp. Whole units are converted as integers: an absolute time in ns exceeds the
+/// 53 bits of a double.
+std::int64_t since_stamp(double value, const TimeUnit& unit, Time stamp) {
+  const double whole = std::floor(value);
+  const std::int64_t ns = static_cast<std::int64_t>(whole) * unit.ns +
+                          std::llround((value - whole) * static_cast<double>(unit.ns));
+  return unit.absolute ? ns - stamp.count() : ns;
+}
+
+/// Units (ns) in which `duration` can be that of a sweep; all units if all returns have the same
+/// time.
+std::vector<std::int64_t> units_of(double duration) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  if (duration == 0.0) return {kSecond, 1'000, 1};
+  if (duration < 10.0) return {kSecond};
+  if (duration >= 1e3 && duration < 1e6) return {1'000};
+  if (duration >= 1e6 && duration < 10e9) return {1};
+  return {};
+}
+
+/// Unit and origin of a float time field with values `low` to `high` in one scan. A sweep takes
+/// between 1 ms and 10 s, so its duration determines the unit; times since the stamp are then
+/// small, and absolute times are close to the stamp.
+std::optional<TimeUnit> guess_unit(const PointField& field, double low, double high, Time stamp) {
+  constexpr double kNearNs = 10e9;
+  for (const std::int64_t unit_ns : units_of(high - low)) {
+    const auto ns = static_cast<double>(unit_ns);
+    const bool may_be_relative = std::max(std::abs(low), std::abs(high)) * ns < kNearNs;
+    const bool may_be_absolute = std::abs(low * ns - static_cast<double>(stamp.count())) < kNearNs;
+    if (!may_be_relative && !may_be_absolute) continue;
+    // Both are possible only near time 0; there the name of the field decides.
+    const bool absolute = may_be_absolute && (!may_be_relative || field.name == "timestamp");
+    return TimeUnit{unit_ns, absolute};
+  }
+  return std::nullopt;
+}
+
+/// ns since header.stamp of each point; empty if the scan is untimed.
+std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<std::size_t>& kept,
+                                   Time stamp, std::string_view place) {
+  const PointField* field = find(cloud, {"t", "offset_time", "time", "timestamp"});
+  if (field == nullptr || kept.empty()) return {};
+  std::vector<double> values(kept.size());
+  std::ranges::transform(kept, values.begin(), [&](std::size_t i) {
+    return value_of(*field, cloud.data.data() + i * cloud.point_step);
+  });
+  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+    throw InputError(place, fmt::format("field '{}' of a return is not finite", field->name));
+  }
+  const auto [low, high] = std::ranges::minmax(values);
+  if (low == 0.0 && high == 0.0) return {};
+  std::optional<TimeUnit> unit = TimeUnit{};
+  if (is_float(field->type)) unit = guess_unit(*field, low, high, stamp);
+  if (!unit) {
+    throw InputError(place,
+                     fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
+                                 "near the stamp {} ns in s, us or ns",
+                                 field->name, low, high, stamp.count()),
+                     "record with a driver that writes times in s, us or ns");
+  }
+  std::vector<std::int64_t> times(values.size());
+  std::ranges::transform(values, times.begin(),
+                         [&](double value) { return since_stamp(value, *unit, stamp); });
+  return times;
+}
+
+/// Indices of the points that are returns.
+std::vector<std::size_t> returns_of(const PointCloud2& cloud,
+                                    const std::array<const PointField*, 3>& position) {
+  const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  std::vector<std::size_t> kept;
+  kept.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    Eigen::Vector3d p;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      p[static_cast<int>(axis)] =
+          value_of(*position[axis], cloud.data.data() + i * cloud.point_step);
+    }
+    if (p.allFinite() && !p.isZero(0.0)) kept.push_back(i);
+  }
+  return kept;
+}
+
+std::uint16_t as_ring(double value) {
+  constexpr double kLast = std::numeric_limits<std::uint16_t>::max();
+  return value >= 0.0 && value <= kLast ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
+}
+
+/// Sets stamp and dt_ns so that no point is earlier than the stamp, and sorts by time.
+void set_times(Scan& scan, const std::vector<std::int64_t>& times, std::string_view place) {
+  const auto [low, high] = std::ranges::minmax(times);
+  const std::int64_t shift = std::min<std::int64_t>(low, 0);
+  if (high - shift > std::numeric_limits<std::int32_t>::max()) {
+    throw InputError(place, "a scan is longer than 2.1 s", "split it into shorter scans");
+  }
+  scan.stamp += Time{shift};
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    scan.points[i].dt_ns = static_cast<std::int32_t>(times[i] - shift);
+  }
+  if (!std::ranges::is_sorted(scan.points, {}, &Point::dt_ns)) {
+    std::ranges::stable_sort(scan.points, {}, &Point::dt_ns);
+  }
+}
+
+const std::vector<PointField>& truth_fields() {
+  static_assert(offsetof(PointTruth, range) == 12 && offsetof(PointTruth, normal) == 16 &&
+                offsetof(PointTruth, triangle) == 28);
+  static const std::vector<PointField> kFields{
+      {"x", 0, FieldType::kFloat32},   {"y", 4, FieldType::kFloat32},
+      {"z", 8, FieldType::kFloat32},   {"range", 12, FieldType::kFloat32},
+      {"nx", 16, FieldType::kFloat32}, {"ny", 20, FieldType::kFloat32},
+      {"nz", 24, FieldType::kFloat32}, {"triangle", 28, FieldType::kUint32}};
+  return kFields;
+}
+
+}  // namespace
+
+std::span<std::byte> put_layout(std::size_t height, std::size_t width, std::size_t step,
+                                const std::vector<PointField>& fields, MessageWriter& out) {
+  out.put(static_cast<std::uint32_t>(height));
+  out.put(static_cast<std::uint32_t>(width));
+  out.put(static_cast<std::uint32_t>(fields.size()));
+  for (const PointField& field : fields) {
+    out.put(std::string_view(field.name));
+    out.put(field.offset);
+    out.put(static_cast<std::uint8_t>(field.type));
+    out.put(std::uint32_t{1});  // count
+  }
+  out.put(std::uint8_t{0});  // is_bigendian
+  out.put(static_cast<std::uint32_t>(step));
+  out.put(static_cast<std::uint32_t>(step * width));
+  return out.put_octets(step * width * height);
+}
+
+void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out) {
+  if (std::ranges::any_of(scan.points, [](const Point& point) { return point.dt_ns < 0; })) {
+    throw InputError(place, "a point is earlier than its scan's stamp",
+                     "set the stamp to the time of the first firing");
+  }
+  const std::span<std::byte> data =
+      put_layout(1, scan.points.size(), sizeof(Point), own_fields(scan.timed), out);
+  if (!data.empty()) std::memcpy(data.data(), scan.points.data(), data.size());
+  for (std::size_t at = kPaddingAt; at < data.size(); at += sizeof(Point)) data[at] = std::byte{0};
+  out.put(std::uint8_t{1});  // is_dense: no point is invalid
+}
+
+void put_truth_cloud(const std::vector<PointTruth>& points, MessageWriter& out) {
+  const std::span<std::byte> data =
+      put_layout(1, points.size(), sizeof(PointTruth), truth_fields(), out);
+  if (!data.empty()) std::memcpy(data.data(), points.data(), data.size());
+  out.put(std::uint8_t{1});  // is_dense
+}
+
+std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_view place) {
+  if (cloud.point_step != sizeof(PointTruth) || cloud.fields != truth_fields()) {
+    throw InputError(place,
+                     "is not a cloud of ground-truth points; it has: " + list_of_fields(cloud),
+                     "the fields must be x y z range nx ny nz triangle");
+  }
+  std::vector<PointTruth> points(std::size_t{cloud.width} * cloud.height);
+  if (!points.empty()) {
+    std::memcpy(static_cast<void*>(points.data()), cloud.data.data(), cloud.data.size());
+  }
+  return points;
+}
+
+PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
+  PointCloud2 cloud;
+  cloud.height = in.get<std::uint32_t>();
+  cloud.width = in.get<std::uint32_t>();
+  constexpr std::size_t kLeastFieldBytes = 13;
+  cloud.fields.resize(in.get_length(kLeastFieldBytes));
+  for (PointField& field : cloud.fields) {
+    field.name = in.get_string();
+    field.offset = in.get<std::uint32_t>();
+    field.type = static_cast<FieldType>(in.get<std::uint8_t>());
+    in.get<std::uint32_t>();  // count: only the first element is used
+  }
+  const bool is_big_endian = in.get<std::uint8_t>() != 0;
+  cloud.point_step = in.get<std::uint32_t>();
+  cloud.row_step = in.get<std::uint32_t>();
+  cloud.data = in.get_octets();
+  if (is_big_endian)
+    throw InputError(place, "its points are big endian", "record them as little endian");
+  for (const PointField& field : cloud.fields) {
+    const bool known = field.type >= FieldType::kInt8 && field.type <= FieldType::kFloat64;
+    if (!known || std::uint64_t{field.offset} + size_of(field.type) > cloud.point_step) {
+      throw InputError(place,
+                       fmt::format("field '{}' of a cloud does not fit into its points of {} "
+                                   "bytes",
+                                   field.name, cloud.point_step));
+    }
+  }
+  const std::uint64_t rows = std::uint64_t{cloud.height} * cloud.width;
+  // Divided, not multiplied: the product of three damaged numbers may overflow.
+  const bool fits = rows == 0 ? cloud.data.empty()
+                              : cloud.point_step > 0 && cloud.data.size() % rows == 0 &&
+                                    cloud.data.size() / rows == cloud.point_step;
+  if (!fits) {
+    throw InputError(place,
+                     fmt::format("a cloud of {} x {} points of {} bytes has {} bytes of data",
+                                 cloud.height, cloud.width, cloud.point_step, cloud.data.size()));
+  }
+  return cloud;
+}
+
+Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place) {
+  if (cloud.point_step == sizeof(Point)) {
+    if (cloud.fields == own_fields(true)) return own_scan(header_stamp, cloud, true);
+    if (cloud.fields == own_fields(false)) return own_scan(header_stamp, cloud, false);
+  }
+  const std::array position{find(cloud, {"x"}), find(cloud, {"y"}), find(cloud, {"z"})};
+  for (const PointField* axis : position) {
+    if (axis == nullptr || !is_float(axis->type)) {
+      throw InputError(
+          place,
+          "a cloud needs fields x, y, z of float32 or float64; it has: " + list_of_fields(cloud),
+          "name another topic");
+    }
+  }
+  const PointField* intensity = find(cloud, {"intensity", "reflectivity", "signal"});
+  const PointField* ring = find(cloud, {"ring", "line", "channel"});
+  const std::vector<std::size_t> kept = returns_of(cloud, position);
+  Scan scan{header_stamp, std::vector<Point>(kept.size()), true};
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const std::byte* data = cloud.data.data() + kept[i] * cloud.point_step;
+    Point& point = scan.points[i];
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      point.position[static_cast<int>(axis)] = static_cast<float>(value_of(*position[axis], data));
+    }
+    if (intensity != nullptr) point.intensity = static_cast<float>(value_of(*intensity, data));
+    if (ring != nullptr) point.ring = as_ring(value_of(*ring, data));
+  }
+  const std::vector<std::int64_t> times = times_of(cloud, kept, header_stamp, place);
+  scan.timed = !times.empty();
+  if (scan.timed) set_times(scan, times, place);
+  return scan;
+}
+
+}  // namespace lidarena::ros

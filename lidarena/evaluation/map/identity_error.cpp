@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/map/identity_error.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+
+IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const ReturnOrigin> origins,
+                       ScanTruthSource& truth) {
+  IdentifiedMap identified;
+  std::size_t next = 0;
+  for (std::uint32_t scan = 0; next < origins.size(); ++scan) {
+    const std::optional<ScanTruth> hits = truth.next();
+    if (!hits) break;
+    for (; next < origins.size() && origins[next].scan == scan; ++next) {
+      if (origins[next].point >= hits->points.size()) continue;
+      identified.points.push_back(map[next]);
+      identified.hits.push_back(hits->points[origins[next].point]);
+    }
+  }
+  return identified;
+}
+
+IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map) {
+  std::vector<double> distance, normal, tangential;
+  for (std::size_t i = 0; i < map.points.size(); ++i) {
+    const PointTruth& hit = map.hits[i];
+    const Vector3d error =
+        mesh_from_map * map.points[i].cast<double>() - hit.position.cast<double>();
+    const double across = std::abs(hit.normal.cast<double>().dot(error));
+    distance.push_back(error.norm());
+    normal.push_back(across);
+    tangential.push_back(std::sqrt(std::max(0.0, error.squaredNorm() - across * across)));
+  }
+  return {summarize(distance), summarize(normal), summarize(tangential)};
+}
+
+}  // namespace lidarena

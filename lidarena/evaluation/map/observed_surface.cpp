@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/map/observed_surface.hpp"
+
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "lidarena/evaluation/map/lidar_poses.hpp"
+#include "lidarena/evaluation/map/point_scores.hpp"
+#include "lidarena/map/point_map.hpp"
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+
+constexpr double kOnMesh_m = 1e-3;    // a true hit is stored in single precision
+constexpr double kExplained_m = 0.5;  // more than range noise
+constexpr double kOtherSide = 0.05;   // share of hits; with more, the free side is unknown
+constexpr std::size_t kBatch = 1 << 16U;
+
+/// Collects hits and counts from which side each triangle was hit.
+class Observation {
+ public:
+  explicit Observation(const World& world)
+      : world_(world),
+        center_(center_of(world)),
+        voxels_(ObservedSurface::kVoxel_m),
+        front_(world.mesh().triangles.size(), 0),
+        back_(front_) {}
+
+  /// Whether this is the first return in its voxel; `position` in m, world frame.
+  bool is_new(const Vector3d& position) {
+    ++surface_.returns;
+    return voxels_.insert((position - center_).cast<float>());
+  }
+  void add(const Vector3d& position, const Vector3f& towards_sensor, std::uint32_t triangle) {
+    surface_.hits.emplace_back((position - center_).cast<float>());
+    const Vector3d normal = world_.mesh().cross(triangle);
+    ++(normal.dot(towards_sensor.cast<double>()) > 0.0 ? front_ : back_)[triangle];
+  }
+  void add_off_mesh() { ++surface_.off_mesh; }
+
+  ObservedSurface finish() {
+    surface_.free_side.resize(front_.size(), FreeSide::kUnknown);
+    for (std::size_t t = 0; t < front_.size(); ++t) {
+      const double front = front_[t], back = back_[t];
+      if (front > 0.0 && back <= kOtherSide * (front + back)) {
+        surface_.free_side[t] = FreeSide::kFront;
+      } else if (back > 0.0 && front <= kOtherSide * (front + back)) {
+        surface_.free_side[t] = FreeSide::kBack;
+      }
+    }
+    return std::move(surface_);
+  }
+
+ private:
+  const World& world_;
+  Vector3d center_;
+  PointMap voxels_;
+  std::vector<std::uint32_t> front_, back_;
+  ObservedSurface surface_;
+};
+
+/// Finds the triangles from the positions, because the truth's indices are those of the simulator's
+/// mesh.
+void add_hits(const std::vector<PointTruth>& hits, const World& world, const Parallel& parallel,
+              Observation& observation) {
+  std::vector<Vector3d> positions;
+  for (const PointTruth& hit : hits) positions.push_back(hit.position.cast<double>());
+  std::vector<ClosestPoint> nearest(hits.size());
+  world.closest_points(positions, kOnMesh_m, nearest, parallel);
+  for (std::size_t i = 0; i < hits.size(); ++i) {
+    if (nearest[i].valid()) {
+      observation.add(nearest[i].point, hits[i].normal, nearest[i].triangle);
+    } else {
+      observation.add_off_mesh();
+    }
+  }
+}
+
+struct Measured {
+  Ray ray;
+  double range = 0.0;
+};
+
+void add_rays(const std::vector<Measured>& measured, const World& world, const Parallel& parallel,
+              Observation& observation) {
+  std::vector<Ray> rays;
+  for (const Measured& m : measured) rays.push_back(m.ray);
+  std::vector<Hit> hits(rays.size());
+  constexpr std::size_t kGrain = 1024;
+  parallel.for_blocks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
+    world.cast(std::span(rays).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
+               std::span(hits).subspan(begin, end - begin));
+  });
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    const Hit& hit = hits[i];
+    if (!hit.valid() || std::abs(double{hit.range} - measured[i].range) > kExplained_m) {
+      observation.add_off_mesh();
+      continue;
+    }
+    const Vector3d at = rays[i].origin + double{hit.range} * rays[i].direction.cast<double>();
+    observation.add(at, hit.normal, hit.triangle);
+  }
+}
+
+}  // namespace
+
+ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parallel& parallel) {
+  Observation observation(world);
+  std::vector<PointTruth> batch;
+  while (const std::optional<ScanTruth> scan = truth.next()) {
+    for (const PointTruth& point : scan->points) {
+      if (observation.is_new(point.position.cast<double>())) batch.push_back(point);
+    }
+    if (batch.size() < kBatch) continue;
+    add_hits(batch, world, parallel, observation);
+    batch.clear();
+  }
+  add_hits(batch, world, parallel, observation);
+  return observation.finish();
+}
+
+ObservedSurface observe(EventSource& events, const std::string& lidar_id,
+                        const Pose& body_from_lidar, const Trajectory& truth, const World& world,
+                        const Parallel& parallel) {
+  Observation observation(world);
+  LidarPoses poses(truth, body_from_lidar);
+  std::vector<Measured> batch;
+  while (const std::optional<Event> event = events.next()) {
+    const Scan* scan = std::get_if<Scan>(&event->data);
+    if (scan == nullptr || event->sensor_id != lidar_id) continue;
+    for (const Point& point : scan->points) {
+      const Pose* world_from_lidar = poses.at(time_of(*scan, point));
+      if (world_from_lidar == nullptr || !point.position.allFinite()) continue;
+      const Vector3d position = *world_from_lidar * point.position.cast<double>();
+      if (!observation.is_new(position)) continue;
+      const Vector3d origin = world_from_lidar->translation();
+      const Vector3d way = position - origin;
+      batch.push_back({{origin, way.normalized().cast<float>()}, way.norm()});
+    }
+    if (batch.size() < kBatch) continue;
+    add_rays(batch, world, parallel, observation);
+    batch.clear();
+  }
+  add_rays(batch, world, parallel, observation);
+  return observation.finish();
+}
+
+}  // namespace lidarena

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/trajectory.hpp"
+#include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/point_truth.hpp"
+#include "lidarena/evaluation/map/signed_distance.hpp"
+#include "lidarena/world/world.hpp"
+
+namespace lidarena {
+
+/// The part of the mesh that the flight's rays really hit, and from which side.
+struct ObservedSurface {
+  static constexpr double kVoxel_m = 0.02;
+  /// True hits, the first of each 2 cm voxel: m, offsets from the mesh's center (center_of()).
+  std::vector<Eigen::Vector3f> hits;
+  /// One per triangle. Free space is on the side that the rays came from; unknown for a triangle
+  /// with more than 5 % of its hits from the other side.
+  std::vector<FreeSide> free_side;
+  std::size_t returns = 0;   ///< number of processed returns
+  std::size_t off_mesh = 0;  ///< first hits of voxels that do not lie on this mesh; left out
+};
+
+/// From the true hits that the simulator recorded for each return.
+ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parallel& parallel);
+
+/// From the measurements only: each return's ray, placed by the true motion, is cast again. Returns
+/// whose ray hits the mesh more than 0.5 m from the measured range count as off the mesh.
+ObservedSurface observe(EventSource& events, const std::string& lidar_id,
+                        const Pose& body_from_lidar, const Trajectory& truth, const World& world,
+                        const Parallel& parallel);
+
+}  // namespace lidarena

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/map/signed_distance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "lidarena/evaluation/summary.hpp"
+
+namespace lidarena {
+namespace {
+
+void count(double value, SignedDistance& result) {
+  if (value < -SignedDistance::kRange_m) {
+    ++result.below;
+  } else if (value > SignedDistance::kRange_m) {
+    ++result.above;
+  } else {
+    const double bin = (value + SignedDistance::kRange_m) / SignedDistance::kBin_m;
+    ++result.histogram[std::min(static_cast<std::size_t>(bin), SignedDistance::kBins - 1)];
+  }
+}
+
+}  // namespace
+
+SignedDistance signed_distance(std::span<const PointScore> scores,
+                               std::span<const FreeSide> free_side) {
+  SignedDistance result;
+  std::vector<double> values;
+  for (const PointScore& score : scores) {
+    const double height = score.height;
+    const auto side = static_cast<double>(free_side[score.triangle]);
+    if (side == 0.0 || std::abs(height) < SignedDistance::kLeastCosine * score.distance) {
+      ++result.without;
+      continue;
+    }
+    values.push_back(std::copysign(score.distance, side * height));
+    count(values.back(), result);
+  }
+  result.points = values.size();
+  if (values.empty()) return result;
+  const auto n = static_cast<double>(values.size());
+  result.mean_m = std::accumulate(values.begin(), values.end(), 0.0) / n;
+  const auto behind = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
+  result.behind_percent = 100.0 * static_cast<double>(behind) / n;
+  result.median_m = quantile(values, 0.5);
+  result.p5_m = quantile(values, 0.05);
+  result.p95_m = quantile(values, 0.95);
+  return result;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/evaluation/map/vertex_distance.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "lidarena/evaluation/map/point_scores.hpp"
+#include "lidarena/map/kd_tree.hpp"
+
+namespace lidarena {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+namespace {
+
+/// Number of pieces of each edge of a triangle; a double, because it may exceed every integer type.
+double pieces_of(const TriangleMesh& mesh, const Triangle& triangle, double edge) {
+  double longest = 0.0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector3d side = mesh.vertices[triangle[(k + 1) % 3]] - mesh.vertices[triangle[k]];
+    longest = std::max(longest, side.norm());
+  }
+  return std::max(1.0, std::ceil(longest / edge));
+}
+
+std::vector<bool> used_vertices(const TriangleMesh& mesh) {
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) used[corner] = true;
+  }
+  return used;
+}
+
+}  // namespace
+
+std::uint64_t count_subdivided(const TriangleMesh& mesh, double edge) {
+  const std::vector<bool> used = used_vertices(mesh);
+  auto count = static_cast<double>(std::count(used.begin(), used.end(), true));
+  for (const Triangle& triangle : mesh.triangles) {
+    const double n = pieces_of(mesh, triangle, edge);
+    count += 0.5 * (n + 1.0) * (n + 2.0) - 3.0;  // without its corners
+  }
+  constexpr double kMost = 1e18;
+  return static_cast<std::uint64_t>(std::min(count, kMost));
+}
+
+std::vector<Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
+                                          const Vector3d& origin) {
+  std::vector<Vector3f> vertices;
+  vertices.reserve(count_subdivided(mesh, edge));
+  const std::vector<bool> used = used_vertices(mesh);
+  for (std::size_t v = 0; v < used.size(); ++v) {
+    if (used[v]) vertices.emplace_back((mesh.vertices[v] - origin).cast<float>());
+  }
+  for (const Triangle& triangle : mesh.triangles) {
+    const auto n = static_cast<int>(pieces_of(mesh, triangle, edge));
+    const Vector3d a = mesh.vertices[triangle[0]] - origin;
+    const Vector3d ab = (mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]]) / n;
+    const Vector3d ac = (mesh.vertices[triangle[2]] - mesh.vertices[triangle[0]]) / n;
+    for (int i = 0; i <= n; ++i) {
+      for (int j = 0; i + j <= n; ++j) {
+        const bool corner = std::max({i, j, n - i - j}) == n;
+        if (!corner) vertices.emplace_back((a + i * ab + j * ac).cast<float>());
+      }
+    }
+  }
+  return vertices;
+}
+
+VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder& order,
+                               std::span<const PointScore> scores, const Pose& mesh_from_map,
+                               const World& world, const Parallel& parallel, double edge,
+                               std::uint64_t most) {
+  VertexDistance result;
+  result.edge_m = edge;
+  result.vertices = count_subdivided(world.mesh(), edge);
+  if (result.vertices > most) {
+    result.refusal = fmt::format(
+        "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the limit of {:g} "
+        "million",
+        100.0 * edge, 1e-6 * static_cast<double>(result.vertices),
+        1e-6 * static_cast<double>(most));
+    return result;
+  }
+  const Vector3d origin = center_of(world);
+  KdTree tree;
+  tree.build(subdivided_vertices(world.mesh(), edge, origin));
+  std::vector<double> distances(map.size(), std::numeric_limits<double>::quiet_NaN());
+  constexpr std::size_t kGrain = 4096;
+  parallel.for_each(order.entries.size(), kGrain, [&](std::size_t k) {
+    const std::uint32_t index = order.entries[k].index;
+    const double to_surface = scores[k].distance;
+    if (to_surface > VertexDistance::kFarEdges * edge) {
+      distances[index] = to_surface;
+      return;
+    }
+    const Vector3d moved = mesh_from_map * map[index].cast<double>();
+    const auto bound = static_cast<float>(to_surface + edge);  // a vertex lies within 0.58 edges
+    Neighbor nearest;
+    tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
+    distances[index] = std::sqrt(double{nearest.squared_distance});
+  });
+  result.error = summarize_distances(distances);
+  return result;
+}
+
+}  // namespace lidarena

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/scenes/load_world.hpp"
+
+#include <algorithm>
+#include <cctype>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/scenes/world_config.hpp"
+
+namespace lidarena {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+std::string ending_of(const fs::path& file) {
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending;
+}
+
+std::vector<std::string> keys_of(WorldKind kind) {
+  switch (kind) {
+    case WorldKind::kHouse:
+      return {"kind", "seed", "house"};
+    case WorldKind::kCave:
+      return {"kind", "seed", "cave"};
+    case WorldKind::kMesh:
+      return {"kind", "file", "up_axis"};
+    case WorldKind::kSdf:
+      break;
+  }
+  return {"kind", "file", "shapes", "model_paths", "allow_missing"};
+}
+
+WorldConfig read_world_config(const fs::path& file) {
+  const ConfigNode node = ConfigNode::load(file);
+  WorldConfig config;
+  read_config(node, config);
+  if (!node.is_map() || !node.find("kind")) {
+    throw InputError(file.string(), "the key 'kind' is missing",
+                     "set kind to house, cave, mesh or sdf");
+  }
+  node.reject_unknown(keys_of(config.kind));
+  const bool needs_file = config.kind == WorldKind::kMesh || config.kind == WorldKind::kSdf;
+  if (needs_file && config.file.empty()) {
+    throw InputError(file.string(), "the key 'file' is missing",
+                     "set file to the path of the mesh or SDF file, relative to this file");
+  }
+  return config;
+}
+
+SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
+                       const WorldOptions& options) {
+  SdfOptions sdf{
+      options.shapes.value_or(config.shapes), {}, options.allow_missing || config.allow_missing};
+  for (const std::string& path : config.model_paths) sdf.model_paths.push_back(base / path);
+  sdf.model_paths.insert(sdf.model_paths.end(), options.model_paths.begin(),
+                         options.model_paths.end());
+  return sdf;
+}
+
+WorldModel load_configured(const fs::path& file, const WorldOptions& options, LogSink& log) {
+  const WorldConfig config = read_world_config(file);
+  const fs::path base = file.parent_path();
+  const std::uint64_t seed = options.seed.value_or(config.seed);
+  WorldModel model;
+  switch (config.kind) {
+    case WorldKind::kHouse:
+      model = make_house(config.house, seed);
+      break;
+    case WorldKind::kCave:
+      model = make_cave(config.cave, seed);
+      break;
+    case WorldKind::kMesh:
+      model.mesh = load_mesh(base / config.file, config.up_axis);
+      break;
+    case WorldKind::kSdf:
+      model.mesh = load_sdf(base / config.file, sdf_options(config, base, options), log);
+      break;
+  }
+  return model;
+}
+
+}  // namespace
+
+WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink& log) {
+  const std::string ending = ending_of(file);
+  std::error_code ignored;
+  if (!fs::is_regular_file(file, ignored)) {
+    throw InputError(file.string(), "there is no such file", "check the path");
+  }
+  WorldModel model;
+  if (ending == ".yaml" || ending == ".yml") {
+    model = load_configured(file, options, log);
+  } else if (ending == ".sdf" || ending == ".world") {
+    model.mesh = load_sdf(file, sdf_options({}, {}, options), log);
+  } else if (is_mesh_file(file)) {
+    model.mesh = load_mesh(file);
+  } else {
+    throw InputError(file.string(), "this file extension is not that of a world",
+                     "use .yaml, .sdf, .world, .obj, .ply, .stl, .dae, .gltf or .glb");
+  }
+  model.name = file.stem().string();
+  return model;
+}
+
+}  // namespace lidarena

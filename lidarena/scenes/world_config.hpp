@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/scenes/cave.hpp"
+#include "lidarena/scenes/house.hpp"
+#include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/sdf_world.hpp"
+
+namespace lidarena {
+
+enum class WorldKind { kHouse, kCave, kMesh, kSdf };
+template <>
+struct EnumNames<WorldKind> {
+  static constexpr std::array names{
+      std::pair{"house", WorldKind::kHouse}, std::pair{"cave", WorldKind::kCave},
+      std::pair{"mesh", WorldKind::kMesh}, std::pair{"sdf", WorldKind::kSdf}};
+};
+
+/// A world file (see configs/worlds). Each kind has its own keys; keys of another kind are errors.
+struct WorldConfig {
+  WorldKind kind = WorldKind::kMesh;
+  std::uint64_t seed = 1;
+  HouseConfig house;
+  CaveConfig cave;
+  std::string file;
+  UpAxis up_axis = UpAxis::kFile;
+  ShapeKind shapes = ShapeKind::kVisual;
+  std::vector<std::string> model_paths;
+  bool allow_missing = false;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("kind", self.kind, "", "house, cave: procedural; mesh, sdf: from a file");
+    v("seed", self.seed, "", "seed of a procedural world");
+    v("house", self.house, "", "parameters of kind house");
+    v("cave", self.cave, "", "parameters of kind cave");
+    v("file", self.file, "", "the mesh or SDF file, relative to this file");
+    v("up_axis", self.up_axis, "", "up axis of a mesh: file (as specified by its format), y or z");
+    v("shapes", self.shapes, "", "shapes to load from an SDF world: visual or collision");
+    v("model_paths", self.model_paths, "",
+      "additional folders to search for model://NAME, relative to this file");
+    v("allow_missing", self.allow_missing, "",
+      "warn about missing models and meshes and load the world without them, instead of failing");
+  }
+};
+
+}  // namespace lidarena
