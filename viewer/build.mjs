@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Bundles the pages' scripts: node build.mjs OUT [--cpp FILE]. With --cpp they are also written as
-// string literals, for the binary (lidarena/report/web_bundle.hpp).
+// Bundles the scripts of the HTML pages: node build.mjs OUT [--cpp FILE]. With --cpp they are also
+// written as string literals to a C++ file (lidarena/report/web_bundle.hpp).
 import { build } from "esbuild";
 import { existsSync, mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
@@ -49,14 +49,16 @@ function licenses() {
   }).join("\n----\n");
 }
 
-/** Every output as a literal; cut into pieces, for compilers limit the length of one. */
+/**
+ * Every output as a string literal, split into pieces because compilers limit the length of one.
+ */
 function asCpp() {
   const files = ENTRIES.flatMap(({ name, platform }) =>
     platform === "node" ? [`${name}.cjs`] : [`${name}.js`, `${name}.css`]).concat("licenses.txt")
     .filter((file) => existsSync(path.join(out, file)));
   const literal = (text) => text.match(/[^]{1,8000}/g).map((piece) => `    "${escaped(piece)}"`).join("\n");
   const entries = files.map((file) => {
-    // pages carry scripts inside <script>; its end must not stand in them
+    // the text is embedded in a <script> element and must not contain its end tag
     const text = readFileSync(path.join(out, file), "utf8").replace(/<\/script/gi, "<\\/script");
     return `  if (name == "${file}") {\n    static const char text[] =\n${literal(text)};\n    return {text, sizeof(text) - 1};\n  }`;
   });

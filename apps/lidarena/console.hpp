@@ -8,8 +8,8 @@
 
 namespace lidarena {
 
-/// Messages and progress on standard error: one line rewritten in place on a terminal, a plain line
-/// now and then in a log.
+/// Writes messages and progress to standard error. Progress on a terminal is one line that is
+/// rewritten in place, elsewhere a plain line every 15 s.
 class Console : public LogSink {
  public:
   explicit Console(bool quiet);
@@ -22,7 +22,7 @@ class Console : public LogSink {
 
   bool quiet_;
   bool terminal_;
-  bool line_open_ = false;  ///< an unfinished progress line stands on the terminal
+  bool line_open_ = false;  ///< the terminal shows an unfinished progress line
   std::string stage_;
   Clock::time_point stage_begin_;
   Clock::time_point last_shown_;

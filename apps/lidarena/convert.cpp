@@ -23,13 +23,13 @@ namespace fs = std::filesystem;
 
 struct ConvertOptions {
   std::string in, out;
-  std::string format;  ///< of datasets; empty: by the ending of `out`
+  std::string format;  ///< of datasets; empty: chosen by the extension of `out`
   std::string dialect = "si";
   bool compress = false;
   ReadOptions read;
 };
 
-/// What a file is turned into, told by what it is turned from.
+/// What is converted, as detected from the input and output paths.
 enum class Kind { kWorld, kCloud, kTrajectory, kDataset };
 
 template <std::size_t N>
@@ -37,13 +37,13 @@ bool ends_in(const fs::path& file, const std::array<const char*, N>& endings) {
   return std::find(endings.begin(), endings.end(), file.extension().string()) != endings.end();
 }
 
-/// A .ply without faces is a cloud of points.
+/// False for a .ply without faces, which is a point cloud.
 bool has_faces(const fs::path& file) {
   if (file.extension() != ".ply") return true;
   try {
     return !read_ply(file).empty();
   } catch (const InputError&) {
-    return false;  // a cloud in a layout that is no mesh's; the cloud's reader names what is wrong
+    return false;  // not a readable mesh: handled as a cloud, whose reader reports errors
   }
 }
 
@@ -62,14 +62,14 @@ Kind kind_of(const fs::path& in, const fs::path& out) {
 
 [[noreturn]] void refuse_ending(const fs::path& out, const std::string& what,
                                 const std::string& endings) {
-  throw InputError(out.string(), "has an ending that " + what + " are not written in",
+  throw InputError(out.string(), "has an extension that " + what + " cannot be written to",
                    "use " + endings);
 }
 
 Json convert_world(const fs::path& in, const fs::path& out, LogSink& log) {
   WorldModel model = load_world(in, {}, log);
   const std::size_t dropped = clean_mesh(model.mesh, in.string());
-  if (dropped > 0) log.info(fmt::format("{} degenerate triangles were left out", dropped));
+  if (dropped > 0) log.info(fmt::format("left out {} degenerate triangles", dropped));
   save_world(out, model.mesh);
   return {{"kind", "world"}, {"triangles", model.mesh.triangles.size()}};
 }
@@ -86,7 +86,7 @@ Json convert_cloud(const fs::path& in, const fs::path& out) {
   return {{"kind", "cloud"}, {"points", cloud.points.size()}};
 }
 
-/// .tum is TUM; .txt is KITTI's rows of twelve numbers, with the times beside as FILE.times.txt.
+/// Writes TUM (.tum), or KITTI (.txt: rows of twelve numbers; the times go to FILE.times.txt).
 Json convert_trajectory(const fs::path& in, const fs::path& out, double rate_hz) {
   const FramedTrajectory read = read_framed_trajectory(in, {}, rate_hz);
   const Trajectory& trajectory = read.trajectory;
@@ -161,25 +161,28 @@ int convert_verb(const Common& common, const ConvertOptions& o) {
 
 void add_convert(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "convert", "From any dataset, world, cloud or trajectory that we read to any that we write");
+      "convert", "Convert a dataset, world, point cloud or trajectory to another file format");
   auto o = std::make_shared<ConvertOptions>();
-  verb->add_option("in", o->in, "Dataset, bag, .mcap, folder of sweeps, world, cloud, trajectory")
+  verb->add_option("in", o->in,
+                   "Dataset folder, .mcap, .bag, folder of sweeps, world, cloud or trajectory")
       ->required();
-  verb->add_option(
-          "out", o->out,
-          "Folder, .mcap or .bag; of worlds .ply .obj .sdf .world; of clouds .ply .pcd; of "
-          "trajectories .tum, .txt (KITTI)")
+  verb->add_option("out", o->out,
+                   "Output: for a dataset a folder, .mcap or .bag; for a world .ply, .obj, .sdf or "
+                   ".world; for a cloud .ply or .pcd; for a trajectory .tum or .txt (KITTI)")
       ->required();
-  verb->add_option("--format", o->format, "Of a dataset's folder: mcap, bag, pcd, ply, kitti")
+  verb->add_option("--format", o->format,
+                   "Format of an output dataset: mcap, bag, pcd, ply or kitti")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}));
-  verb->add_flag("--compress", o->compress, "Chunks of MCAP by zstd: smaller, slower");
-  verb->add_option("--dialect", o->dialect, "si, or driver: the drivers' own layouts and units")
+  verb->add_flag("--compress", o->compress,
+                 "Compress MCAP chunks with zstd: smaller files, slower");
+  verb->add_option("--dialect", o->dialect,
+                   "Layouts and units of messages: si, or driver as in the sensors' own drivers")
       ->check(CLI::IsMember({"si", "driver"}))
       ->capture_default_str();
-  verb->add_option("--sensor", o->read.sensor, "Which LiDAR, where one is wanted alone");
-  verb->add_option("--layout", o->read.layout, "Of raw binary sweeps")
+  verb->add_option("--sensor", o->read.sensor, "Id of the only LiDAR to convert; default: all");
+  verb->add_option("--layout", o->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
-  verb->add_option("--rate", o->read.rate_hz, "Per second, where a file gives no times")
+  verb->add_option("--rate", o->read.rate_hz, "Sweeps or poses per second, for input without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   set_verb(

@@ -30,11 +30,11 @@ struct EvaluateOptions {
   EvoArguments evo;
 };
 
-/// A file of poses, or a dataset's folder: its truth.
+/// Reads a file of poses, or the truth of a dataset folder.
 FramedTrajectory read_poses(const std::string& path, const std::string& topic, double rate_hz) {
   if (!fs::is_directory(path)) return read_framed_trajectory(path, topic, rate_hz);
   const auto truth = load_truth(path);
-  if (!truth) throw InputError(path, "carries no truth", "give a file of poses");
+  if (!truth) throw InputError(path, "contains no truth", "give a file of poses");
   return {*truth, "world", "body"};
 }
 
@@ -47,32 +47,33 @@ Pose parse_lever(const std::string& text) {
   return pose;
 }
 
-/// The estimate as one of the truth's body. Throws InputError when both files name their body frame
-/// and the names differ.
+/// The estimate as poses of the truth's body frame. Throws InputError if no `lever` is given and
+/// both files name their body frame, with different names.
 Trajectory in_truths_body(const FramedTrajectory& estimate, const FramedTrajectory& truth,
                           const std::string& name, const std::string& lever) {
   if (!lever.empty()) return moved_to_body(estimate.trajectory, parse_lever(lever));
   if (!estimate.body.empty() && !truth.body.empty() && estimate.body != truth.body) {
     throw InputError(
         name,
-        fmt::format("holds poses of '{}', the truth those of '{}'", estimate.body, truth.body),
+        fmt::format("contains poses of '{}', the truth those of '{}'", estimate.body, truth.body),
         fmt::format("give --lever {}_from_{}=x,y,z,qx,qy,qz,qw", truth.body, estimate.body));
   }
   return estimate.trajectory;
 }
 
-/// Anyone's trajectories and map, with no RUN folder around them.
+/// Trajectories and a map given as files, without a RUN folder.
 class Files {
  public:
   explicit Files(const EvaluateOptions& o) : o_(o) {
-    if (o.truth.empty()) throw InputError("--trajectory", "needs --truth FILE beside it");
-    if (o.map.empty() != o.mesh.empty()) throw InputError("--map, --mesh", "need each other");
+    if (o.truth.empty()) throw InputError("--trajectory", "needs --truth FILE");
+    if (o.map.empty() != o.mesh.empty())
+      throw InputError("--map, --mesh", "must be given together");
     if (!o.map.empty() && o.trajectories.size() > 1) {
-      throw InputError("--map", "goes with one --trajectory, in whose frame it lies");
+      throw InputError("--map", "needs exactly one --trajectory, in whose frame the map is");
     }
     truth_ = read_poses(o.truth, o.truth_topic, o.rate_hz);
     if (truth_.trajectory.size() < 2) {
-      throw InputError(o.truth, "holds a single pose, a truth needs two or more");
+      throw InputError(o.truth, "contains a single pose; a truth needs at least two");
     }
     if (o.map.empty()) return;
     map_ = read_cloud(o.map);
@@ -101,7 +102,7 @@ class Files {
   std::unique_ptr<World> world_;
 };
 
-/// What tells a run apart, from its manifest and its dataset's.
+/// Fills in algorithm, flight and seed from the manifests of the run and of its dataset.
 void describe(const fs::path& folder, ScoredRun& run) {
   if (!fs::exists(folder / "manifest.json")) return;
   const Json manifest = read_json(folder / "manifest.json");
@@ -117,7 +118,7 @@ void describe(const fs::path& folder, ScoredRun& run) {
                            fs::path(simulation.value("flight_source", "")).stem().string());
 }
 
-/// Why a study's run left no results; empty when it did.
+/// Why a run of a study failed; empty if it did not.
 std::string failure_of(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json")) return {};
   const Json manifest = read_json(folder / "manifest.json");
@@ -126,7 +127,8 @@ std::string failure_of(const fs::path& folder) {
 
 Json failed(const std::string& reason) { return {{"status", "failed"}, {"reason", reason}}; }
 
-/// Of several, one that cannot be scored is a row with its reason.
+/// Scores a RUN folder. If that is impossible, throws if it is the only folder (`alone`), else
+/// returns the status "failed" with the reason.
 ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel, LogSink& log) {
   ScoredRun run;
   const bool bare = folder.filename().empty();  // "run/"
@@ -178,7 +180,7 @@ void print_runs(const Common& common, const EvaluateOptions& o,
 
 int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
   if (o.trajectories.size() != 1 || !o.map.empty()) {
-    throw InputError("--compat evo", "needs one --trajectory and its --truth, and no map");
+    throw InputError("--compat evo", "needs exactly one --trajectory with --truth, and no map");
   }
   const Files files(o);
   const Json result = evo_json(files.truth(), files.estimate(o.trajectories[0]), o.evo);
@@ -195,10 +197,10 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
     throw InputError("evaluate", "needs either RUN folders or --trajectory and --truth");
   }
   if (o.trajectories.empty() && !(o.truth + o.map + o.mesh + o.lever).empty()) {
-    throw InputError("evaluate", "--truth, --map, --mesh and --lever go with --trajectory");
+    throw InputError("evaluate", "--truth, --map, --mesh and --lever need --trajectory");
   }
   if (int{common.json} + int{o.csv} + int{o.markdown} + int{o.latex} > 1) {
-    throw InputError("evaluate", "gives one of --json, --csv, --markdown, --latex");
+    throw InputError("evaluate", "takes at most one of --json, --csv, --markdown, --latex");
   }
   if (!o.evo.tool.empty()) return evaluate_as_evo(common, o);
   Console console(common.quiet);
@@ -214,24 +216,25 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
 
 void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "evaluate", "Score runs, or anyone's trajectories and map, against truth and mesh");
+      "evaluate", "Score runs, or trajectories and a map of any program, against truth and mesh");
   auto o = std::make_shared<EvaluateOptions>();
   verb->add_option("runs", o->runs, "RUN folders; metrics.json is written into each");
   verb->add_option("--trajectory", o->trajectories,
                    "Estimate: TUM, KITTI or EuRoC csv, .mcap or .bag; several may be given");
-  verb->add_option("--truth", o->truth, "Truth, in any of these formats, or a dataset's folder");
-  verb->add_option("--topic", o->topic, "Of the estimate's poses in a bag");
-  verb->add_option("--truth-topic", o->truth_topic, "Of the truth's poses in a bag");
+  verb->add_option("--truth", o->truth,
+                   "Truth: a file in any of these formats, or a dataset folder");
+  verb->add_option("--topic", o->topic, "Topic of the estimate's poses in a bag");
+  verb->add_option("--truth-topic", o->truth_topic, "Topic of the truth's poses in a bag");
   verb->add_option("--rate", o->rate_hz, "Poses per second of KITTI files without times.txt")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_option("--lever", o->lever,
-                   "Pose of the estimate's frame in the truth's body: x,y,z,qx,qy,qz,qw");
+                   "Pose of the estimate's body frame in the truth's: x,y,z,qx,qy,qz,qw");
   verb->add_option("--map", o->map, "Point cloud in the estimate's frame: PLY or PCD");
   verb->add_option("--mesh", o->mesh, "Mesh to score the map against");
-  verb->add_flag("--csv", o->csv, "A row a figure");
-  verb->add_flag("--markdown", o->markdown, "A table, a row a run");
-  verb->add_flag("--latex", o->latex, "The same for LaTeX's booktabs");
+  verb->add_flag("--csv", o->csv, "Print CSV, one row per metric");
+  verb->add_flag("--markdown", o->markdown, "Print a Markdown table, one row per run");
+  verb->add_flag("--latex", o->latex, "Print that table for LaTeX (booktabs)");
   add_evo_options(*verb, o->evo);
   set_verb(
       *verb, common, [&common, o] { return evaluate_verb(common, *o); }, exit_code);

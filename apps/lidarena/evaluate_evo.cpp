@@ -19,7 +19,7 @@ std::vector<std::string> names_of() {
   return names;
 }
 
-/// `name` is one of names_of(): the parser has seen to it.
+/// `name` must be one of names_of<E>(), which the command-line parser checks.
 template <class E>
 E value_of(const std::string& name) {
   for (const auto& [known, value] : EnumNames<E>::names) {
@@ -63,9 +63,10 @@ Json options_json(const EvoArguments& a) {
 }  // namespace
 
 void add_evo_options(CLI::App& verb, EvoArguments& a) {
-  auto* compat = verb.add_option("--compat", a.tool, "The figures of another tool: evo")
-                     ->check(CLI::IsMember({"evo"}))
-                     ->group(kGroup);
+  auto* compat =
+      verb.add_option("--compat", a.tool, "Compute the metrics as another tool does: evo")
+          ->check(CLI::IsMember({"evo"}))
+          ->group(kGroup);
   const auto flag = [&](const char* name, bool& value, const char* help) {
     verb.add_flag(name, value, help)->needs(compat)->group(kGroup);
   };
@@ -78,18 +79,21 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
     verb.add_option(name, value, help)->needs(compat)->group(kGroup)->capture_default_str();
   };
   choice("--metric", a.metric, "Absolute or relative pose error", names_of<EvoMetric>());
-  choice("--relation", a.relation, "What of the error is measured", names_of<EvoRelation>());
-  option("--t-max-diff", a.t_max_diff, "Largest difference of stamps taken for one, s");
+  choice("--relation", a.relation, "Part of the pose error that is measured",
+         names_of<EvoRelation>());
+  option("--t-max-diff", a.t_max_diff, "Maximum difference of stamps that are matched, s");
   option("--t-offset", a.t_offset, "Added to the estimate's stamps, s");
-  flag("--align", a.align, "Fit rotation and translation");
-  flag("--scale", a.scale, "Fit the scale; with --align a similarity");
-  flag("--origin", a.origin, "Lay the first poses on each other");
-  option("--n-to-align", a.n_to_align, "Fit the first N pairs alone, 0 = all");
-  option("--delta", a.delta, "Length of a piece (rpe)");
-  choice("--unit", a.unit, "Of delta: frames, meters, degrees, radians", names_of<EvoUnit>());
-  option("--delta-tolerance", a.delta_tolerance, "Share of delta, for all pairs");
-  flag("--all-pairs", a.all_pairs, "A piece from every pose");
-  flag("--pairs-from-reference", a.pairs_from_reference, "Path and angle of the truth");
+  flag("--align", a.align, "Align by rotation and translation");
+  flag("--scale", a.scale, "Fit the scale; with --align: a similarity transform");
+  flag("--origin", a.origin, "Make the first poses coincide");
+  option("--n-to-align", a.n_to_align, "Fit only the first N pairs, 0 = all");
+  option("--delta", a.delta, "Distance between the two poses of a pair (rpe), in --unit");
+  choice("--unit", a.unit, "Unit of --delta: frames, meters, degrees, radians",
+         names_of<EvoUnit>());
+  option("--delta-tolerance", a.delta_tolerance, "Tolerance relative to --delta, with --all-pairs");
+  flag("--all-pairs", a.all_pairs, "A pair starts at every pose, else consecutive pairs");
+  flag("--pairs-from-reference", a.pairs_from_reference,
+       "Measure path and angle of pairs on the truth");
 }
 
 Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments) {

@@ -24,7 +24,7 @@ struct EvoArguments {
 
 void add_evo_options(CLI::App& verb, EvoArguments& arguments);
 
-/// evo's figures of one pair of trajectories: options, pairs, statistics, alignment.
+/// Metrics of one pair of trajectories as evo computes them: options, pairs, statistics, alignment.
 Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments);
 std::string evo_text(const Json& result);
 

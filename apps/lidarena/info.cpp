@@ -70,7 +70,7 @@ Json cloud_info(const fs::path& file) {
   return json;
 }
 
-/// Reads a dataset through, so that a broken one is found.
+/// Reads the whole dataset, so that damage anywhere in it is reported.
 Json dataset_info(const fs::path& path) {
   Dataset dataset = open_any_dataset(path, {}, Parallel());
   struct Counts {
@@ -111,7 +111,7 @@ bool is_mesh_or_world(const fs::path& file) {
   return endings.contains(file.extension().string());
 }
 
-/// A .ply is a mesh when it has faces, else a cloud.
+/// Describes a .ply as a mesh if it has faces, else as a cloud.
 Json ply_info(const fs::path& file, LogSink& log) {
   try {
     return world_info(file, log);
@@ -149,7 +149,7 @@ Json info_of(const ConfigFolder& configs, const std::string& thing, LogSink& log
   std::vector<std::string> names = configs.names("sensors");
   for (const std::string& world : configs.names("worlds")) names.push_back(world);
   const std::string nearest = nearest_word(thing, names);
-  throw InputError(thing, "is no file, and no world or sensor is so called",
+  throw InputError(thing, "is neither a file nor the name of a world or sensor",
                    nearest.empty() ? "see: lidarena list worlds, lidarena list sensors"
                                    : "did you mean '" + nearest + "'?");
 }
@@ -175,7 +175,7 @@ int info_verb(const Common& common, const InfoOptions& o) {
     return kDone;
   }
   if (!o.out.empty() && !o.pattern) {
-    throw InputError("--out", "draws a pattern alone", "add --pattern");
+    throw InputError("--out", "is only for the drawing of a scan pattern", "add --pattern");
   }
   const Json json = o.pattern
                         ? pattern_info(load_sensor(configs.resolve("sensors", o.thing)), o.out)
@@ -192,13 +192,13 @@ int info_verb(const Common& common, const InfoOptions& o) {
 
 void add_info(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "info", "What is in a world, sensor, dataset, cloud, mesh or run: sizes, times, rates");
+      "info", "Describe a world, sensor, dataset, cloud, mesh or run: sizes, times, rates");
   auto o = std::make_shared<InfoOptions>();
-  verb->add_option("thing", o->thing, "A name or a path")->required();
-  verb->add_option("--rays", o->rays, "Of a sensor: its first N rays as CSV");
+  verb->add_option("thing", o->thing, "Name of a world or sensor, or a path")->required();
+  verb->add_option("--rays", o->rays, "Print the first N rays of a sensor as CSV");
   verb->add_flag("--pattern", o->pattern,
-                 "Of a sensor: how much of its field of view it lights in 0.1, 0.5, 1 and 4 s");
-  verb->add_option("--out", o->out, "With --pattern: an SVG to draw it in");
+                 "Share of a sensor's field of view that its shots cover in 0.1, 0.5, 1 and 4 s");
+  verb->add_option("--out", o->out, "With --pattern: SVG file to write the drawing to");
   set_verb(
       *verb, common, [&common, o] { return info_verb(common, *o); }, exit_code);
 }

@@ -10,7 +10,7 @@
 namespace lidarena {
 namespace {
 
-/// The first comment line of a configuration file says what it is.
+/// The first comment line of a configuration file, which describes it; empty if there is none.
 std::string first_comment(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
@@ -35,7 +35,7 @@ int list_algorithms_verb(const Common& common) {
   return kDone;
 }
 
-/// "a" or "a to b" with a unit; "-" where nothing is known.
+/// "a" or "a to b" with a unit; "-" if unknown.
 std::string figure(double low, double high, const char* unit) {
   if (high <= 0.0) return "-";
   return low > 0.0 && low < high ? fmt::format("{:g} to {:g} {}", low, high, unit)
@@ -50,7 +50,7 @@ std::string fov_of(const SensorFacts& facts) {
                      fov.elevation_max_deg - fov.elevation_min_deg);
 }
 
-/// What a buyer compares, a line a sensor; a file that cannot be read says why.
+/// Prints one line per sensor with its main specifications, or the error if its file is invalid.
 int list_sensors(const Common& common) {
   const ConfigFolder configs = common.config_folder();
   constexpr const char* kRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
@@ -102,7 +102,8 @@ int list_configs(const Common& common, const std::string& kind) {
 }  // namespace
 
 void add_list(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand("list", "What there is: a line each");
+  auto* verb = app.add_subcommand(
+      "list", "List the available worlds, flights, sensors, algorithms or studies");
   auto kind = std::make_shared<std::string>();
   verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms or studies")
       ->required()

@@ -20,11 +20,12 @@ ConfigFolder Common::config_folder() const {
 }
 
 void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& exit_code) {
-  verb.add_flag("--json", common.json, "One JSON document on standard output, all else on error");
-  verb.add_flag("--quiet,-q", common.quiet, "Only warnings and errors");
-  verb.add_option("--threads", common.threads, "Threads, 0 = one per core")
+  verb.add_flag("--json", common.json,
+                "One JSON document on standard output, all else on standard error");
+  verb.add_flag("--quiet,-q", common.quiet, "Print only warnings and errors");
+  verb.add_option("--threads", common.threads, "Number of threads, 0 = one per core")
       ->check(CLI::NonNegativeNumber);
-  verb.add_option("--configs", common.configs, "Folder of named worlds, flights, sensors, ...")
+  verb.add_option("--configs", common.configs, "Folder of the named worlds, flights, sensors, ...")
       ->check(CLI::ExistingDirectory);
   verb.callback([action = std::move(action), &exit_code] { exit_code = action(); });
 }
@@ -33,7 +34,7 @@ void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {
 
-/// What tells two builds of one version apart.
+/// Version and build options, which distinguish builds of the same version.
 std::string version_text() { return "lidarena " LIDARENA_VERSION "\n" LIDARENA_BUILD_FACTS; }
 
 void add_text(CLI::App& app, const std::string& name, const std::string& what,
@@ -44,13 +45,13 @@ void add_text(CLI::App& app, const std::string& name, const std::string& what,
 int parse_and_do(int argc, char** argv) {
   CLI::App app{
       "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
-      "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on what they see, and\n"
-      "scores odometry and map against the very mesh that was scanned.\n\n"
-      "The whole way by hand:\n"
+      "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on their scans, and\n"
+      "scores odometry and map against the mesh that was scanned.\n\n"
+      "Step by step:\n"
       "  lidarena simulate --world house --flight house --sensor livox_mid360 --out my_data\n"
       "  lidarena run kiss_icp my_data --out my_run\n"
       "  lidarena evaluate my_run\n"
-      "or in one command, with a page of results at the end:\n"
+      "or with one command, which also writes a report page:\n"
       "  lidarena study quick --out my_study\n",
       "lidarena"};
   app.set_version_flag("--version", version_text());
@@ -68,9 +69,9 @@ int parse_and_do(int argc, char** argv) {
   add_convert(app, common, exit_code);
   add_view(app, common, exit_code);
   add_schema(app, common, exit_code);
-  add_text(app, "completion", "Completion for bash: source <(lidarena completion)",
+  add_text(app, "completion", "Print a completion script for bash: source <(lidarena completion)",
            bash_completion);
-  add_text(app, "man", "The manual page: lidarena man | man -l -", man_page);
+  add_text(app, "man", "Print the manual page: lidarena man | man -l -", man_page);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& e) {

@@ -17,7 +17,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInstants[] = {0.1, 0.5, 1.0, 4.0};  // s
 
-/// Finer cells for narrow fields of view.
+/// Cell size in degrees: finer for narrow fields of view.
 double cell_of(const FieldOfView& fov) {
   return fov.azimuth_max_deg - fov.azimuth_min_deg > 180.0 ? 0.5 : 0.25;
 }
@@ -26,7 +26,7 @@ FieldOfView field_of_view(const SensorConfig& sensor, const ScanPattern& pattern
   return sensor.facts.fov ? *sensor.facts.fov : observed_field_of_view(pattern, from_seconds(1.0));
 }
 
-/// What is drawn: the field of view's box and some cells around it.
+/// The drawn area: the bounding box of the field of view and ten cells around it.
 FieldOfView margin_around(const FieldOfView& fov, double cell_deg) {
   const double margin = 10 * cell_deg;
   return {std::max(-180.0, fov.azimuth_min_deg - margin),
@@ -54,7 +54,7 @@ std::vector<std::pair<double, double>> outline_of(const FieldOfView& fov) {
 
 CellPanel panel_of(const Coverage& grid, double seconds, double share) {
   CellPanel panel;
-  panel.title = fmt::format("{:g} s: {:.1f} % lit", seconds, 100.0 * share);
+  panel.title = fmt::format("{:g} s: {:.1f} % covered", seconds, 100.0 * share);
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
       panel.lit.push_back(grid.lit(column, row));
@@ -85,7 +85,7 @@ Json pattern_info(const SensorConfig& sensor, const std::filesystem::path& svg) 
   Coverage drawn(view, cell_deg);
   CellChart chart{
       .title = sensor.name,
-      .caption = fmt::format("cells of {:g} deg that a shot has hit; share of the field "
+      .caption = fmt::format("cells of {:g} deg with at least one shot; share of the field "
                              "of view's solid angle",
                              cell_deg),
       .azimuth_min_deg = view.azimuth_min_deg,
@@ -96,7 +96,7 @@ Json pattern_info(const SensorConfig& sensor, const std::filesystem::path& svg) 
       .panels = {},
       .outline = outline_of(fov),
       .outline_label =
-          sensor.facts.fov ? "field of view of the data sheet" : "field of view as fired"};
+          sensor.facts.fov ? "field of view of the data sheet" : "field of view of the shots"};
   if (!sensor.facts.approximate.empty())
     chart.caption += ". Approximate: " + sensor.facts.approximate;
 

@@ -43,7 +43,7 @@ int run_verb(const Common& common, const RunRequest& request, const std::string&
     fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
                s.compute_seconds, factor);
     if (request.paced) {
-      fmt::print("paced: {} scans dropped, the latest estimate came {:.3f} s after its scan\n",
+      fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
                  s.dropped, s.longest_delay_s);
     }
     fmt::print("run: {}\n", out);
@@ -58,28 +58,31 @@ int run_verb(const Common& common, const RunRequest& request, const std::string&
 }  // namespace
 
 void add_run(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb =
-      app.add_subcommand("run", "Run an algorithm over a dataset, bag or folder of sweeps");
+  auto* verb = app.add_subcommand("run", "Run an algorithm on a dataset, bag or folder of sweeps");
   auto r = std::make_shared<RunRequest>();
   auto out = std::make_shared<std::string>();
   auto dataset = std::make_shared<std::string>();
   auto extrinsics = std::make_shared<std::string>();
   verb->add_option("algorithm", r->odometry.algorithm, "Name (see: list algorithms)")->required();
-  verb->add_option("dataset", *dataset, "Dataset folder, .mcap, or folder of sweeps")->required();
+  verb->add_option("dataset", *dataset, "Dataset folder, .mcap, .bag or folder of sweeps")
+      ->required();
   verb->add_option("--out", *out, "Folder to write")->required();
   verb->add_option("--preset", r->odometry.preset, "One of the algorithm's presets")
       ->capture_default_str();
-  verb->add_option("--sensor", r->read.sensor, "Which LiDAR, where there are several");
-  verb->add_option("--config", r->odometry.config_file, "YAML over the preset")
+  verb->add_option("--sensor", r->read.sensor, "Id of the LiDAR to use, if there are several");
+  verb->add_option("--config", r->odometry.config_file,
+                   "YAML file that overrides values of the preset")
       ->check(CLI::ExistingFile);
-  verb->add_option("--set", r->odometry.overrides, "key=value, over everything; may be repeated")
+  verb->add_option("--set", r->odometry.overrides,
+                   "key=value, overrides preset and --config; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_flag("--paced", r->paced, "Drop scans when the algorithm is late, as on a live robot");
-  verb->add_option("--layout", r->read.layout, "Of raw binary sweeps")
+  verb->add_option("--layout", r->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
-  verb->add_option("--extrinsics", *extrinsics, "body_from_lidar=x,y,z,qx,qy,qz,qw");
-  verb->add_option("--rate", r->read.rate_hz, "Sweeps per second, where the folder gives no times")
+  verb->add_option("--extrinsics", *extrinsics,
+                   "Mounting of the LiDAR: body_from_lidar=x,y,z,qx,qy,qz,qw");
+  verb->add_option("--rate", r->read.rate_hz, "Sweeps per second, for a folder without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   set_verb(

@@ -16,7 +16,7 @@
 namespace lidarena {
 namespace {
 
-/// Every kind of YAML that we read, and each algorithm's.
+/// Functions that make the schema of each kind of YAML file, and of each algorithm's configuration.
 std::map<std::string, std::function<Json()>> schemas() {
   std::map<std::string, std::function<Json()>> all{
       {"world", [] { return schema_document<WorldConfig>("A world of Lidarena"); }},
@@ -36,7 +36,7 @@ Json schema_of(const std::string& kind) {
   if (found != all.end()) return found->second();
   std::string known;
   for (const auto& [name, make] : all) known += (known.empty() ? "" : ", ") + name;
-  throw InputError(kind, "is no kind of file", "known: " + known);
+  throw InputError(kind, "is not a kind of configuration file", "known: " + known);
 }
 
 int write_all(const std::filesystem::path& folder) {
@@ -49,16 +49,16 @@ int write_all(const std::filesystem::path& folder) {
 
 void add_schema(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "schema", "JSON Schema of a kind of YAML, for editors: keys, units, defaults, limits");
+      "schema", "JSON Schema of a kind of YAML file, for editors: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
   verb->add_option("kind", *kind, "world, flight, sensor, beams, study, or an algorithm");
-  verb->add_option("--out", *out, "A folder for all of them, as KIND.schema.json");
+  verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,
       [kind, out] {
         if (kind->empty() == out->empty()) {
-          throw InputError("schema", "needs either a kind or --out FOLDER for all of them");
+          throw InputError("schema", "needs either a kind, or --out FOLDER to write all schemas");
         }
         if (!out->empty()) return write_all(*out);
         print_json(schema_of(*kind));

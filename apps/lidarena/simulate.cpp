@@ -60,7 +60,8 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
 }  // namespace
 
 void add_simulate(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand("simulate", "Fly sensors through a world; writes a dataset");
+  auto* verb = app.add_subcommand("simulate",
+                                  "Simulate sensors on a flight through a world; writes a dataset");
   auto o = std::make_shared<SimulateOptions>();
   verb->add_option("--world", o->world, "Name (see: list worlds), mesh, or SDF file")->required();
   verb->add_option("--flight", o->flight, "Name (see: list flights), YAML, or TUM file to replay")
@@ -71,29 +72,32 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--out", o->out, "Folder to write")->required();
   verb->add_option("--seed", o->request.seed,
-                   "Of all noise; a procedural world's own seed stands in its file")
+                   "Seed of all noise (a procedural world has its own seed in its file)")
       ->capture_default_str();
   verb->add_option("--seconds", o->request.seconds, "Length of the flight; 0 = all of it")
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--noise", o->noise, "on or off")
+  verb->add_option("--noise", o->noise, "Sensor noise: on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
-  verb->add_option("--mode", o->mode,
-                   "rolling (every ray at its own instant), or a fault of earlier simulators for "
-                   "comparison: frozen, frozen_unstamped, official; default: as the sensor's file");
+  verb->add_option(
+      "--mode", o->mode,
+      "rolling (every shot at its own time), or for comparison a fault of earlier simulators: "
+      "frozen, frozen_unstamped, official; default: as in the sensor's file");
   verb->add_option("--format", o->format,
-                   "mcap or bag (one recording), pcd, ply or kitti (a file a sweep)")
+                   "mcap or bag (one recording), pcd, ply or kitti (one file per sweep)")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}))
       ->capture_default_str();
-  verb->add_flag("--compress", o->compress, "Chunks of MCAP by zstd: smaller, slower");
+  verb->add_flag("--compress", o->compress,
+                 "Compress MCAP chunks with zstd: smaller files, slower");
   verb->add_option("--dialect", o->dialect,
-                   "si, or driver: recordings in the layouts and units of the sensors' own drivers")
+                   "Layouts and units of messages: si, or driver as in the sensors' own drivers")
       ->check(CLI::IsMember({"si", "driver"}))
       ->capture_default_str();
   verb->add_flag("--truth", o->request.truth,
-                 "Also what each point hit: surface point, range, normal, triangle");
-  verb->add_flag("--no-data", o->no_data,
-                 "A manifest alone: flown anew, with the same points, whenever it is used");
+                 "Also write what each point hit: surface point, range, normal, triangle");
+  verb->add_flag(
+      "--no-data", o->no_data,
+      "Write a manifest only: the same points are simulated whenever the dataset is read");
   set_verb(
       *verb, common, [&common, o] { return simulate_verb(common, *o); }, exit_code);
 }

@@ -12,11 +12,11 @@ namespace lidarena {
 namespace {
 
 struct StudyRequest {
-  std::string name;  ///< of a study; empty = one made of the following
+  std::string name;  ///< name or file of a study; empty: made from the fields below
   std::string world;
   std::vector<std::string> sensors;
   std::vector<std::string> algorithms{"all"};
-  bool tour = false;  ///< finds its own way through the world
+  bool tour = false;  ///< plan a tour of the world automatically
   double seconds = 0.0;
   std::string out;
   bool dry = false;
@@ -24,15 +24,14 @@ struct StudyRequest {
   std::string shard = "1/1";
 };
 
-/// The engineer's study of one place: every algorithm that can use the sensors, on a tour that the
-/// flight finds itself.
+/// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
 StudySpec spec_of_one_place(const StudyRequest& request) {
   if (request.world.empty()) {
-    throw InputError("study", "what is to be studied?",
+    throw InputError("study", "neither a study nor a world is given",
                      "name a study, or give --world and --sensors");
   }
   if (!request.tour) {
-    throw InputError("study --world", "which way to fly?", "give --auto, and a tour will be found");
+    throw InputError("study --world", "has no flight", "give --auto to plan a tour of the world");
   }
   StudySpec spec;
   spec.title = "Which LiDAR, which SLAM: " + std::filesystem::path(request.world).stem().string();
@@ -59,8 +58,8 @@ void print_plan(const StudySpec& spec, const std::vector<PlannedRun>& cells,
     seconds += one.seconds;
     disk_mb += mb;
   }
-  fmt::print("{}: {} runs, about {} and {:.1f} GB on the disk (two cores, one job)\n", spec.title,
-             cells.size(), clock_text(seconds), 1e-3 * disk_mb);
+  fmt::print("{}: {} runs, about {} and {:.1f} GB of disk space (on two cores, one job)\n",
+             spec.title, cells.size(), clock_text(seconds), 1e-3 * disk_mb);
 }
 
 int study_verb(const Common& common, const StudyRequest& request) {
@@ -88,8 +87,8 @@ int study_verb(const Common& common, const StudyRequest& request) {
                 {"diverged", outcome.diverged},
                 {"report", report.page.string()}});
   } else {
-    fmt::print("{}\n{} runs: {} kept from before, {} failed, {} diverged\nreport: {}\n",
-               report.text_table, outcome.runs, outcome.reused, outcome.failed, outcome.diverged,
+    fmt::print("{}\n{} runs: {} reused, {} failed, {} diverged\nreport: {}\n", report.text_table,
+               outcome.runs, outcome.reused, outcome.failed, outcome.diverged,
                report.page.string());
   }
   return outcome.failed + outcome.diverged > 0 ? kWorkFailed : kDone;
@@ -102,7 +101,8 @@ struct ReportRequest {
 
 int report_verb(const Common& common, const ReportRequest& request) {
   if (request.out.empty() && request.folders.size() > 1) {
-    throw InputError("report", "where is the report of several folders to go?", "give --out DIR");
+    throw InputError("report", "the report of several folders needs an output folder",
+                     "give --out DIR");
   }
   Console console(common.quiet);
   const std::filesystem::path out =
@@ -120,32 +120,36 @@ int report_verb(const Common& common, const ReportRequest& request) {
 
 void add_study(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "study", "Fly, run and score a matrix of worlds, sensors and algorithms; writes a report");
+      "study",
+      "Simulate, run and score a matrix of worlds, sensors and algorithms; writes a report");
   auto request = std::make_shared<StudyRequest>();
   verb->add_option("study", request->name, "Name (see: list studies) or YAML");
-  verb->add_option("--out", request->out, "Folder to write; what is complete there is kept")
+  verb->add_option("--out", request->out, "Folder to write; complete runs in it are reused")
       ->required();
-  verb->add_option("--world", request->world, "Instead of a study: one world, a name or a mesh");
-  verb->add_option("--sensors", request->sensors, "its sensors: A,B")->delimiter(',');
-  verb->add_option("--algorithms", request->algorithms, "its algorithms: A,B or all")
+  verb->add_option("--world", request->world,
+                   "Instead of a study: one world, a name or a mesh file");
+  verb->add_option("--sensors", request->sensors, "With --world: sensors A,B,...")->delimiter(',');
+  verb->add_option("--algorithms", request->algorithms, "With --world: algorithms A,B,... or all")
       ->delimiter(',')
       ->default_str("all");
-  verb->add_flag("--auto", request->tour, "Let the flight find its own tour of the world");
-  verb->add_option("--seconds", request->seconds, "Length of that flight, 0 = the whole tour");
-  verb->add_flag("--dry", request->dry, "Only list the runs, with the time and disk they may take");
-  verb->add_option("--jobs", request->jobs, "Runs at work at the same time, on cores of their own")
+  verb->add_flag("--auto", request->tour, "With --world: plan a tour of the world automatically");
+  verb->add_option("--seconds", request->seconds,
+                   "With --world: length of the flight, s; 0 = the whole tour");
+  verb->add_flag("--dry", request->dry, "Only list the runs, with estimated time and disk space");
+  verb->add_option("--jobs", request->jobs,
+                   "Number of runs at the same time, each on its own cores")
       ->check(CLI::Range(1, 256));
-  verb->add_option("--shard", request->shard, "K/N: only the K-th of N parts of the study");
+  verb->add_option("--shard", request->shard, "K/N: run only the K-th of N parts of the study");
   set_verb(
       *verb, common, [&common, request] { return study_verb(common, *request); }, exit_code);
 }
 
 void add_report(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand("report", "Make the page anew from the result files of studies");
+  auto* verb =
+      app.add_subcommand("report", "Write the report page again from the result files of studies");
   auto request = std::make_shared<ReportRequest>();
-  verb->add_option(
-          "folders", request->folders,
-          "A study's folder or one RUN folder; several, as from --shard, become one report")
+  verb->add_option("folders", request->folders,
+                   "Study folder or RUN folder; several, as from --shard, become one report")
       ->required();
   verb->add_option("--out", request->out, "Folder of the report; default: the only folder given");
   set_verb(

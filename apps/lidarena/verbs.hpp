@@ -10,9 +10,9 @@
 
 namespace lidarena {
 
-/// Exit codes, as the contract states them.
+/// Exit codes of the program.
 inline constexpr int kDone = 0;
-inline constexpr int kWorkFailed = 1;  ///< a run diverged, a check fell short
+inline constexpr int kWorkFailed = 1;  ///< a run failed or diverged, or an internal error
 inline constexpr int kBadInput = 2;    ///< wrong usage or bad input
 
 /// Options that every verb takes.
@@ -25,7 +25,8 @@ struct Common {
   ConfigFolder config_folder() const;
 };
 
-/// Adds --json, --quiet, --threads, --configs to `verb` and sets what it does.
+/// Adds --json, --quiet, --threads, --configs to `verb`. When the verb is parsed, runs `action` and
+/// stores its result in `exit_code`.
 void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& exit_code);
 
 void add_list(CLI::App& app, Common& common, int& exit_code);
@@ -39,7 +40,7 @@ void add_view(CLI::App& app, Common& common, int& exit_code);
 void add_schema(CLI::App& app, Common& common, int& exit_code);
 void add_report(CLI::App& app, Common& common, int& exit_code);
 
-/// One JSON document on standard output.
+/// Prints one JSON document on standard output.
 void print_json(const Json& json);
 
 }  // namespace lidarena

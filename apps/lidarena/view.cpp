@@ -34,7 +34,7 @@ bool is_run(const fs::path& folder) {
   return fs::exists(manifest) && read_json(manifest).value("kind", "") == "run";
 }
 
-/// Whether the header of a .ply announces faces; without them it is a cloud of points.
+/// Whether the header of a .ply declares faces; a .ply without faces is a point cloud.
 bool has_faces(const fs::path& file) {
   std::ifstream in(file, std::ios::binary);
   constexpr int kHeaderLines = 1000;
@@ -51,7 +51,7 @@ void add_world(Scene& scene, const fs::path& file, LogSink& log) {
   scene.meshes.push_back({file.stem().string(), load_world(file, {}, log).mesh});
 }
 
-/// Adds whatever `name` is: a folder, a file, or the name of a world of ours.
+/// Adds a folder, a file, or the world called `name` in configs/worlds to the scene.
 void add_thing(Scene& scene, const Common& common, const ViewOptions& o, const std::string& name,
                const SceneOptions& options, const Parallel& parallel, LogSink& log) {
   fs::path path = name;
@@ -98,8 +98,8 @@ Scene load_scene(const Common& common, const ViewOptions& o, const Parallel& par
   measure_distances(scene, parallel);
   for (const SceneCloud& cloud : scene.clouds) {
     if (cloud.left_out == 0) continue;
-    log.info(fmt::format("{}: {} points at random of {} (--points raises the limit)", cloud.name,
-                         cloud.points.size(), cloud.points.size() + cloud.left_out));
+    log.info(fmt::format("{}: shows {} of {} points, chosen at random (--points raises the limit)",
+                         cloud.name, cloud.points.size(), cloud.points.size() + cloud.left_out));
   }
   return scene;
 }
@@ -145,7 +145,8 @@ int view_verb(const Common& common, const ViewOptions& o) {
     if (common.json) {
       print_json(told);
     } else {
-      fmt::print("{}\nopen this address in a browser of this machine; Ctrl-C ends it\n", address);
+      fmt::print("{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",
+                 address);
     }
     std::fflush(stdout);
   });
@@ -156,27 +157,28 @@ int view_verb(const Common& common, const ViewOptions& o) {
 
 void add_view(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "view", "Look at clouds, maps, meshes, paths, datasets and runs in 3D, in a browser");
+      "view", "Show clouds, maps, meshes, paths, datasets and runs in 3D in a browser");
   auto o = std::make_shared<ViewOptions>();
   verb->add_option(
           "file", o->files,
           "Clouds (.pcd, .ply), meshes, .tum, .mcap, .bag, DATASET and RUN folders, worlds")
       ->required();
   verb->add_option("--out", o->out,
-                   "One self-contained page; without it a server on 127.0.0.1 shows the same");
-  verb->add_option("--points", o->million_points, "Millions of points of a cloud at most")
+                   "Self-contained page to write; if not given, a server on 127.0.0.1 shows it");
+  verb->add_option("--points", o->million_points, "Maximum number of points per cloud, in millions")
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
-  verb->add_option(
-          "--map", o->map,
-          "Of a run: reprojected (all returns), own (as published), both, or scored (a sample)")
+  verb->add_option("--map", o->map,
+                   "Map of a run: reprojected (all returns), own (of the algorithm), both, or "
+                   "scored (a sample)")
       ->check(CLI::IsMember({"reprojected", "own", "both", "scored"}))
       ->capture_default_str();
-  verb->add_option("--port", o->port, "Of the server, 0 = any free one")
+  verb->add_option("--port", o->port, "Port of the server, 0 = any free port")
       ->check(CLI::Range(0, 65535))
       ->capture_default_str();
-  verb->add_option("--sensor", o->read.sensor, "Of a dataset: which LiDAR, where one is wanted");
-  verb->add_option("--layout", o->read.layout, "Of raw binary sweeps")
+  verb->add_option("--sensor", o->read.sensor,
+                   "Id of the only LiDAR of a dataset to show; default: all");
+  verb->add_option("--layout", o->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
   set_verb(
       *verb, common, [&common, o] { return view_verb(common, *o); }, exit_code);

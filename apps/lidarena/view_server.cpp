@@ -23,7 +23,7 @@ void refuse_foreign_hosts(httplib::Server& server, int port) {
       return httplib::Server::HandlerResponse::Unhandled;
     }
     response.status = 403;
-    response.set_content("this server answers to 127.0.0.1 alone\n", "text/plain");
+    response.set_content("this server answers only requests to 127.0.0.1\n", "text/plain");
     return httplib::Server::HandlerResponse::Handled;
   });
 }
@@ -61,8 +61,8 @@ void serve_view(const std::string& page, const PackedScene& scene, int port,
     port = -1;
   }
   if (port < 0) {
-    throw InputError("--port", "cannot be listened on: it is taken or not allowed",
-                     "leave it out for any free one");
+    throw InputError("--port", "this port is in use or not allowed",
+                     "leave --port out for any free port");
   }
   refuse_foreign_hosts(server, port);
   listening(fmt::format("http://{}:{}/", kHost, port));

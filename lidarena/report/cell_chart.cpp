@@ -8,13 +8,13 @@
 namespace lidarena {
 namespace {
 
-constexpr double kLeft = 46.0;  // px, room for the tick labels
+constexpr double kLeft = 46.0;  // px, space for the tick labels
 constexpr double kTop = 44.0;
 constexpr double kTitleHeight = 20.0;
 constexpr double kAxisHeight = 44.0;
-constexpr double kWide = 2.0;  // panels wider than this stand one below the other
+constexpr double kWide = 2.0;  // width / height above which panels are stacked
 
-/// Where things go, in px.
+/// Positions and sizes, px.
 struct Layout {
   int across;  ///< panels side by side
   double px_per_deg;
@@ -38,11 +38,11 @@ struct Layout {
   }
 };
 
-/// Runs of lit cells as one path, in cells from the top left corner.
+/// Adjacent lit cells of each row as one path, in cells from the top left corner.
 std::string lit_path(const CellChart& chart, const std::vector<bool>& lit) {
   std::string path;
   for (int row = 0; row < chart.rows; ++row) {
-    const auto at = [&](int from_left) {  // azimuth falls from left to right
+    const auto at = [&](int from_left) {  // azimuth decreases from left to right
       return lit[static_cast<std::size_t>(row * chart.columns + chart.columns - 1 - from_left)];
     };
     for (int begin = 0; begin < chart.columns; ++begin) {

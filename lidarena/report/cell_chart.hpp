@@ -7,13 +7,13 @@
 
 namespace lidarena {
 
-/// A grid of square cells over directions, some of them lit.
+/// A grid of square cells over directions; lit cells (those that a shot has hit) are filled.
 struct CellPanel {
   std::string title;
   std::vector<bool> lit;  ///< rows from the lowest elevation, each from the lowest azimuth
 };
 
-/// Small multiples of one grid, as a sensor sees it: positive azimuths on the left.
+/// Panels with the same grid, as seen from the sensor: positive azimuths on the left.
 struct CellChart {
   std::string title;
   std::string caption;
@@ -23,7 +23,7 @@ struct CellChart {
   int columns = 360;
   int rows = 180;
   std::vector<CellPanel> panels;
-  std::vector<std::pair<double, double>> outline;  ///< closed; azimuth and elevation, deg
+  std::vector<std::pair<double, double>> outline;  ///< closed polygon of azimuth and elevation, deg
   std::string outline_label;
 };
 

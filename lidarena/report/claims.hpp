@@ -9,16 +9,16 @@
 
 namespace lidarena {
 
-/// A finding of the paper, judged by our own runs.
+/// A finding of the paper, checked with our own runs.
 struct Claim {
   std::string text;                   ///< what the paper found
-  std::string rule;                   ///< what is asked of our figures, and the paper's own
+  std::string rule;                   ///< check applied to our figures, with the paper's figures
   std::vector<std::string> evidence;  ///< our figures
-  std::optional<bool> holds;          ///< empty: our runs do not say, for the reasons in `evidence`
-  std::string guess;                  ///< why ours may differ; shown where it does
+  std::optional<bool> holds;          ///< empty: our runs cannot tell; `evidence` has the reasons
+  std::string guess;  ///< possible reason for a difference; shown if it does not hold
 };
 
-/// The paper's findings on the runs of one preset.
+/// The paper's findings, checked with the runs of one preset.
 std::vector<Claim> paper_claims(const Results& results, const std::string& preset);
 
 }  // namespace lidarena

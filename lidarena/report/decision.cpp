@@ -11,7 +11,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kAlike = 1.1;  // errors this near each other do not decide
+constexpr double kAlike = 1.1;  // ratio below which two map errors count as equal
 
 std::optional<double> map_rmse(const ResultRow& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->rmse_cm) : std::nullopt;
@@ -48,7 +48,7 @@ Candidate candidate(const StudyCells& cells, const std::string& world, const std
   return c;
 }
 
-/// "fast_lio2", with its preset where that is not the default one.
+/// "fast_lio2", with its preset if that is not the default.
 std::string name_of(const Candidate& c) {
   return c.reading == "improved" || c.reading == "improved-rolling"
              ? c.algorithm
@@ -57,15 +57,14 @@ std::string name_of(const Candidate& c) {
 
 std::string figures_of(const Candidate& c) {
   return fmt::format(
-      "its map lies {} cm (RMS) from the mesh with {} % of its points beyond 20 cm, its path "
-      "drifts "
-      "by {} cm per meter; 95 of 100 scans take less than {:.0f} % of the time between two scans, "
-      "and it holds {} MB",
+      "its map has an RMSE of {} cm to the mesh, with {} % of the points beyond 20 cm; its "
+      "path drifts by {} cm per meter; 95 % of the scans are processed in less than {:.0f} % of "
+      "the scan period, and the algorithm uses {} MB of memory",
       figure(c.map_rmse_cm, 2).text, figure(c.outliers_percent, 2).text,
       figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy.value_or(0.0), figure(c.memory_mb, 2).text);
 }
 
-/// Weight, power and price as the sensor's file has them: " (0.265 kg, 6.5 to 14 W, ...)".
+/// Weight, power and price from the sensor's file: " (0.265 kg, up to 14 W, ...)".
 std::string facts_of(const Results& results, const std::string& sensor) {
   for (const ResultRow& row : results.rows) {
     if (row.sensor != sensor || !row.simulation.is_object()) continue;
@@ -91,45 +90,47 @@ std::string facts_of(const Results& results, const std::string& sensor) {
 std::string choice(const Results& results, const std::string& world,
                    const std::vector<Candidate>& all) {
   if (all.empty() || !all.front().is_usable()) {
-    return fmt::format("{}: nothing of what was tried keeps track in time. ", world);
+    return fmt::format("{}: no combination that was tried keeps tracking in real time. ", world);
   }
   const Candidate& best = all.front();
-  std::string text = fmt::format("{}: take the {}{} with {}; {}. ", world, best.sensor,
+  std::string text = fmt::format("{}: use the {}{} with {}: {}. ", world, best.sensor,
                                  facts_of(results, best.sensor), name_of(best), figures_of(best));
   std::vector<std::string> said{best.sensor};
   for (const Candidate& c : all) {
     if (std::ranges::find(said, c.sensor) != said.end()) continue;
     said.push_back(c.sensor);
     if (!c.is_usable()) {
-      text += fmt::format("With the {}{} nothing keeps track in time. ", c.sensor,
+      text += fmt::format("With the {}{}, no algorithm keeps tracking in real time. ", c.sensor,
                           facts_of(results, c.sensor));
       continue;
     }
     const double ratio = best.map_rmse_cm > 0.0 ? c.map_rmse_cm / best.map_rmse_cm : 1.0;
     text += fmt::format(
-        "With the {}{} {} does best, {}: {}. ", c.sensor, facts_of(results, c.sensor), name_of(c),
-        ratio < kAlike ? std::string("no worse worth mentioning, so weight and price decide")
-                       : fmt::format("with {:.1f} times the error of the map", ratio),
+        "With the {}{}, {} is best, {}: {}. ", c.sensor, facts_of(results, c.sensor), name_of(c),
+        ratio < kAlike
+            ? std::string("with about the same map error, so that weight and price decide")
+            : fmt::format("with {:.1f} times the map RMSE", ratio),
         figures_of(c));
   }
   return text;
 }
 
 std::string verdict(const Candidate& c) {
-  if (!c.keeps_track()) return fmt::format("lost track in {} of {}", c.runs - c.good_runs, c.runs);
+  if (!c.keeps_track())
+    return fmt::format("tracking lost in {} of {}", c.runs - c.good_runs, c.runs);
   if (!c.busy) return "time not measured";
-  return c.is_in_time() ? "usable" : "too slow here";
+  return c.is_in_time() ? "usable" : "too slow for real time";
 }
 
 ReportTable candidates_table(const std::string& world, const std::vector<Candidate>& all) {
-  ReportTable table{"decision-" + world,
-                    "All that was tried, " + world,
-                    "Usable: keeps track in every run (less than half of the map lies beyond 20 "
-                    "cm), and 95 of 100 scans take less time than there is "
-                    "between two of them. Usable ones first, then by the error of the map.",
-                    {"sensor, algorithm", "verdict", "map RMSE, cm", "map > 20 cm, %",
-                     "drift, cm per m", "P95, % of the period", "own memory, MB"},
-                    {}};
+  ReportTable table{
+      "decision-" + world,
+      "All combinations tried, " + world,
+      "Usable: tracking kept in every run (less than half of the map beyond 20 cm), and 95 % of "
+      "the scans processed within the scan period. Sorted by usability, then by map RMSE.",
+      {"sensor, algorithm", "verdict", "map RMSE, cm", "map > 20 cm, %", "drift, cm per m",
+       "P95, % of the period", "own memory, MB"},
+      {}};
   for (const Candidate& c : all) {
     std::vector<TableCell> cells{word(c.sensor + ", " + name_of(c)), word(verdict(c))};
     for (const double value : {c.map_rmse_cm, c.outliers_percent, c.drift_cm_per_m, c.memory_mb}) {

@@ -10,26 +10,27 @@
 
 namespace lidarena {
 
-/// A sensor with an algorithm in one world: medians over flights and seeds.
+/// A combination of sensor and algorithm in one world, with medians over flights and seeds.
 struct Candidate {
   std::string sensor, algorithm, reading;
   std::size_t runs = 0, good_runs = 0;
-  double map_rmse_cm = 0.0;       ///< of all scored returns moved with the estimated path
-  double outliers_percent = 0.0;  ///< of these
+  double map_rmse_cm = 0.0;       ///< of all scored returns, placed along the estimated path
+  double outliers_percent = 0.0;  ///< of the same map
   double drift_cm_per_m = 0.0;    ///< RPE over 1 m
-  std::optional<double> busy;     ///< P95 of the time for a scan, in scan periods, if measured
-  double memory_mb = 0.0;         ///< the algorithm's own
+  std::optional<double> busy;     ///< P95 of the processing time in scan periods, if measured
+  double memory_mb = 0.0;         ///< the algorithm's own memory
 
   bool keeps_track() const { return runs > 0 && good_runs == runs; }
   bool is_in_time() const { return busy && *busy < 1.0; }
   bool is_usable() const { return keeps_track() && is_in_time(); }
 };
 
-/// All of a world, the best first: usable ones before late ones before those that lost track, each
-/// by the error of the map. Faults of simulators (other modes than `rolling`) are no candidates.
+/// All combinations of a world, the best first: usable ones, then too slow ones, then those that
+/// lost tracking, each group sorted by map RMSE. Runs in a timing mode other than `rolling` (faults
+/// of simulators) are left out.
 std::vector<Candidate> candidates(const Results& results, const std::string& world);
 
-/// "Which LiDAR, which SLAM": for each world the choice in words, with the figures behind it.
+/// "Which LiDAR, which SLAM": for each world a recommendation, with the figures behind it.
 ReportSection decision_section(const Results& results);
 
 }  // namespace lidarena

@@ -8,8 +8,8 @@
 
 namespace lidarena {
 
-/// What lays a run's estimate over the truth by its metrics.json: SE(3) over all positions where
-/// that is determined, else the first pose. Empty where the metrics hold neither.
+/// The alignment of a run's estimate to the truth, from its metrics.json: SE(3) over all positions
+/// where that is determined, else the first pose. Empty if the metrics hold neither.
 std::optional<Pose> truth_from_estimate(const Json& metrics);
 
 }  // namespace lidarena

@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kPaletteColors = 256;
 
-/// A picture of few colors, as the format has it: a byte a pixel.
+/// A picture with a palette of at most 256 colors and one byte per pixel.
 struct Indexed {
   std::vector<Rgb> palette;
   std::vector<std::uint8_t> pixels;
 };
 
-/// Nothing when the picture has too many colors.
+/// Empty if the picture has too many colors.
 std::optional<Indexed> indexed(const Image& image) {
   Indexed result;
   std::map<Rgb, std::uint8_t> known;

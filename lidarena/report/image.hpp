@@ -27,13 +27,13 @@ struct Image {
   }
 };
 
-/// The picture as the bytes of a PNG file, with a palette where it has no more than 256 colors;
-/// the same picture gives the same bytes.
+/// The picture as the bytes of a PNG file, with a palette if it has no more than 256 colors; the
+/// same picture gives the same bytes.
 std::string encode_png(const Image& image);
 std::string base64(std::string_view bytes);
 
 /// Color of a point-to-mesh distance in meters: dark blue at 0 to yellow at 20 cm (ordered in
-/// lightness, so that it survives gray print and color blindness), red beyond.
+/// lightness, so that it is readable in gray print and with color blindness), red beyond.
 Rgb distance_color(double distance_m);
 
 }  // namespace lidarena

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Stands in where the viewer is not built.
+// Replaces the generated web_bundle.cpp where the viewer is not built.
 #include "lidarena/report/web_bundle.hpp"
 
 namespace lidarena {

@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPoints = 2'500'000;       // of all 3D views together: 8 bytes, 4/3 as text
-constexpr std::size_t kPointsOfRun = 120'000;    // at most
-constexpr std::size_t kPictureBytes = 12 << 20;  // of all maps from above, seldom reached
-constexpr std::size_t kTriangles = 400'000;  // of all meshes together: some 18 bytes, 4/3 as text
+constexpr std::size_t kPoints = 2'500'000;       // of all 3D views; 8 bytes each, 4/3 as text
+constexpr std::size_t kPointsOfRun = 120'000;    // maximum per run
+constexpr std::size_t kPictureBytes = 12 << 20;  // of all maps from above, rarely reached
+constexpr std::size_t kTriangles = 400'000;      // of all meshes; about 18 bytes each, 4/3 as text
 
 constexpr const char* kStyle = R"css(
 body{font:15px/1.5 system-ui,sans-serif;color:#1c2430;background:#f6f7f9;margin:0}
@@ -55,7 +55,7 @@ std::vector<std::string> worlds_of(const Results& results) {
   return StudyCells(results, "").worlds();
 }
 
-/// Pictures beside each other, as far as the budget of bytes goes.
+/// Pictures side by side, up to `budget` bytes.
 std::string figures(const std::vector<Picture>& pictures, std::size_t budget) {
   if (pictures.empty()) return {};
   std::string html = "<div class='row'>";
@@ -74,16 +74,16 @@ std::string color_key() {
   }
   const Rgb far = distance_color(1.0);
   return fmt::format(
-      "<p class='note'>Each map from above, like an X-ray: upright surfaces are dark. Color: mean "
-      "point-to-mesh distance, 0 <span class='ramp' "
+      "<p class='note'>Each map is shown from above, like an X-ray image: vertical surfaces are "
+      "dark. Color: mean point-to-mesh distance, 0 <span class='ramp' "
       "style='background:linear-gradient(90deg{})'></span> "
       "20 cm, beyond <span class='ramp' style='width:14px;background:rgb({},{},{})'></span>. Gray: "
-      "the true path; orange: the estimate, laid over it by SE(3) over all positions. First "
-      "seed.</p>",
+      "true path; orange: estimated path, aligned to it by SE(3) over all positions. Only the "
+      "first seed is shown.</p>",
       stops, far[0], far[1], far[2]);
 }
 
-/// The 3D view of a world: what stands in the page, and its blocks.
+/// The 3D view of a world as HTML elements: its header and its data blocks.
 std::string world_view(const Results& results, const std::string& world, std::size_t worlds,
                        std::size_t runs, const Parallel& parallel, LogSink& log) {
   Scene scene;
@@ -116,7 +116,7 @@ std::string section_html(const ReportSection& section, const std::vector<WorldPi
     ReportTable table = section.tables[i];
     const bool said_again =
         i + 1 < section.tables.size() && section.tables[i + 1].note == table.note;
-    if (said_again) table.note.clear();  // once is enough for tables side by side
+    if (said_again) table.note.clear();  // tables side by side show a common note once
     html += table_html(table);
   }
   if (section.id == "costs") html += "<div class='figures' id='figures'></div>";
@@ -133,7 +133,7 @@ std::string section_html(const ReportSection& section, const std::vector<WorldPi
              id, color_key(), figures(of_world->maps, budget));
 }
 
-/// The machines that the runs were made on, and with which version.
+/// The machines and versions of lidarena that the runs were made with.
 std::string made_on(const Results& results) {
   std::vector<std::string> machines;
   for (const ResultRow& row : results.rows) {
@@ -148,30 +148,30 @@ std::string made_on(const Results& results) {
 }
 
 std::string without_bundle() {
-  return "<p class='note'>This build has no viewer: charts and 3D views are left out; "
-         "results.csv and the folder tables hold all figures.</p>";
+  return "<p class='note'>This build has no viewer, so charts and 3D views are left out; "
+         "results.csv and the files in tables/ hold all figures.</p>";
 }
 
 constexpr const char* kTiming =
-    "The same flights, scanned in several ways. rolling: every shot from the pose at its own "
-    "instant, as a sensor scans. frozen: all shots of a scan from the pose at its stamp, stamped "
-    "as if the sensor had moved. frozen_unstamped: the same, without times of points. official: "
-    "as frozen_unstamped, and every range too short by the sensor's least one, as the makers' "
-    "plugin has it. What differs between the columns is the simulator's doing, not the method's.";
+    "The same flights, simulated in several timing modes. rolling: every shot is cast from the "
+    "pose at its own instant, as a real sensor does. frozen: all shots of a scan are cast from the "
+    "pose at its stamp, but have time stamps as if the sensor had moved. frozen_unstamped: the "
+    "same, without time stamps per point. official: like frozen_unstamped, and every range is too "
+    "short by the sensor's minimum range, as in the manufacturer's simulation plugin. Differences "
+    "between the columns are caused by the simulator, not by the algorithm.";
 constexpr const char* kReading =
-    "RPE: the true path is cut into meters, from one estimated pose to another; for each, the "
-    "motion that the algorithm found is set against the true one; root mean square over all. ATE: "
-    "distance between the two paths "
-    "after laying one over the other. Map: point-to-mesh distance to the very mesh that was "
-    "scanned. "
-    "Figures come from the final trajectory; metrics.json in each run's folder holds the live one, "
-    "the other segment lengths and gauges, and the id of each definition. A run that failed or "
-    "diverged stays in the tables with its reason.";
+    "RPE: the true path is cut into segments of 1 m that begin and end at estimated poses; in "
+    "each, the estimated motion is compared with the true one; root mean square over all segments. "
+    "ATE: distance between the two paths after aligning them. Map: point-to-mesh distance to the "
+    "same mesh that was scanned. All figures are those of the final trajectory; metrics.json in "
+    "each run's folder also holds those of the live trajectory, of other segment lengths and "
+    "alignments, and the id of each definition. A run that failed or diverged stays in the tables "
+    "with its reason.";
 
 ReportSection summary_section(const Results& results) {
   const auto ok = std::count_if(results.rows.begin(), results.rows.end(),
                                 [](const ResultRow& r) { return r.status == "ok"; });
-  std::string text = fmt::format("{} of {} runs went well.", ok, results.rows.size());
+  std::string text = fmt::format("{} of {} runs succeeded.", ok, results.rows.size());
   for (const std::string& preset : readings_of(results)) {
     std::size_t holds = 0;
     std::size_t fails = 0;
@@ -180,8 +180,7 @@ ReportSection summary_section(const Results& results) {
     }
     if (holds + fails == 0) continue;
     text += fmt::format(
-        " Preset {}: of the paper's findings that these runs can judge, {} hold here "
-        "and {} do not.",
+        " Preset {}: of the paper's findings that these runs can check, {} hold and {} do not.",
         preset, holds, fails);
   }
   ReportSection section{"summary", "Summary", text, "", {winners_table(results)}};
@@ -195,7 +194,7 @@ ReportSection summary_section(const Results& results) {
 
 std::vector<ReportSection> report_sections(const Results& results) {
   std::vector<ReportSection> sections{summary_section(results), decision_section(results)};
-  ReportSection claims{"claims", "The paper's findings, judged by these runs", "", "", {}};
+  ReportSection claims{"claims", "The paper's findings, checked with these runs", "", "", {}};
   for (const std::string& preset : readings_of(results)) {
     claims.tables.push_back(claims_table(paper_claims(results, preset), preset));
   }
@@ -205,13 +204,14 @@ std::vector<ReportSection> report_sections(const Results& results) {
                         paper_tables(results, preset)});
   }
   if (std::vector<ReportTable> tables = timing_tables(results); !tables.empty()) {
-    sections.push_back({"timing", "What the simulator's timing does", kTiming, "", tables});
+    sections.push_back({"timing", "Effect of the simulator's timing", kTiming, "", tables});
   }
   for (const std::string& world : worlds_of(results)) {
     sections.push_back({"world-" + world, world, "", world, {runs_table(results, world)}});
   }
   sections.push_back({"costs", "Error against cost", "", "", {}});
-  sections.push_back({"again", "How to make it again", kReading, "", {commands_table(results)}});
+  sections.push_back(
+      {"again", "How to reproduce these results", kReading, "", {commands_table(results)}});
   return sections;
 }
 
@@ -244,7 +244,7 @@ std::string html_page(const Results& results, const std::vector<ReportSection>& 
       "<link rel='icon' href='data:,'><title>{0}</title>"
       "<style>{1}{2}</style></head><body><main><h1>{0}</h1><nav>{3}</nav>{4}{5}"
       "<p class='note'>{7}This page was made by lidarena {6} from the result files "
-      "alone.</p></main>\n{8}</body></html>\n",
+      "only.</p></main>\n{8}</body></html>\n",
       escaped(results.title), kStyle, web_bundle("report.css"), nav, body,
       bundled ? "" : without_bundle(), LIDARENA_VERSION, escaped(made_on(results)), scripts);
 }

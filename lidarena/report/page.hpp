@@ -13,12 +13,12 @@
 
 namespace lidarena {
 
-/// A part of the page: tables below a heading.
+/// A part of the page: a heading, text and tables.
 struct ReportSection {
   std::string id;
   std::string title;
-  std::string text;   ///< before the tables, a line a paragraph; may be empty
-  std::string world;  ///< where set, the world's pictures, 3D view and charts follow
+  std::string text;   ///< before the tables, one paragraph per line; may be empty
+  std::string world;  ///< if set, the world's pictures, 3D view and charts follow
   std::vector<ReportTable> tables;
 };
 
@@ -26,9 +26,9 @@ struct ReportSection {
 /// the rest.
 std::vector<ReportSection> report_sections(const Results& results);
 
-/// The report as one HTML file that needs nothing else and no network; at most 60 MB whatever the
-/// study. `pictures` are those of all worlds (see draw_pictures()), `data` is what the charts are
-/// drawn from (see report_data()). Where the build has no viewer it is a plain page: tables and
+/// The report as one self-contained HTML file of at most 60 MB, whatever the size of the study; it
+/// needs no network. `pictures` are those of all worlds (see draw_pictures()), `data` is the data
+/// of the charts (see report_data()). If the build has no viewer, the page has only tables and
 /// pictures.
 std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
                       const std::vector<WorldPictures>& pictures, const Json& data,

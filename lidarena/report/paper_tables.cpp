@@ -38,7 +38,7 @@ std::string paper_text(std::optional<double> value) {
   return value ? fmt::format("{:g}", *value) : std::string();
 }
 
-/// Sensors down, algorithms across, as the paper has it.
+/// One row per sensor and one column per algorithm, as in the paper.
 ReportTable accuracy_table(const StudyCells& cells, const std::string& world, PaperTable kind,
                            const RowFigure& ours) {
   ReportTable table;
@@ -59,15 +59,15 @@ ReportTable accuracy_table(const StudyCells& cells, const std::string& world, Pa
   return table;
 }
 
-/// Table 1 from the datasets' own descriptions of their sensors.
+/// Table 1, from the datasets' descriptions of their sensors.
 ReportTable sensor_table(const Results& results) {
-  // the paper's Table 1: points a second in millions, range in meters
+  // the paper's Table 1: points per second in millions, range in meters
   static const std::map<std::string, std::array<const char*, 2>> paper{{"Os0-128", {"2.4", "100"}},
                                                                        {"Mid-360", {"0.2", "40"}}};
   ReportTable table{"table1",
                     "Table 1: the sensors as simulated",
-                    "In brackets: the paper's.",
-                    {"sensor", "shots, M/s", "range to, m", "rows", "scans/s"},
+                    "In brackets: the paper's figures.",
+                    {"sensor", "shots, M/s", "maximum range, m", "rows", "scans/s"},
                     {}};
   for (const std::string& sensor : StudyCells(results, "").sensors()) {
     const auto row =
@@ -88,7 +88,7 @@ ReportTable sensor_table(const Results& results) {
   return table;
 }
 
-/// The study's worlds that stand for the paper's Cave and House; empty where there is none.
+/// The study's world that corresponds to the paper's `paper_name`; empty if there is none.
 std::string world_called(const StudyCells& cells, const std::string& paper_name) {
   for (const std::string& world : cells.worlds()) {
     if (paper_world(world) == paper_name) return world;
@@ -103,7 +103,7 @@ std::optional<ReportTable> increase_table(const StudyCells& cells, const std::st
   ReportTable table{"table3-" + preset,
                     "Table 3: increase of the drift from Cave to House, %",
                     "The paper divides by the House's drift: (house - cave) / house. \"usual\": "
-                    "(house - cave) / cave. In brackets: the paper's.",
+                    "(house - cave) / cave. In brackets: the paper's figures.",
                     {"sensor"},
                     {}};
   for (const std::string& algorithm : cells.algorithms()) {
@@ -175,8 +175,7 @@ std::vector<ReportTable> paper_tables(const Results& results, const std::string&
       table.title = fmt::format("{}: {}, {}", kind.title, world, preset);
       table.note =
           "Bold: the best sensor for each algorithm; underlined: the best algorithm for each "
-          "sensor; "
-          "medians over flights and seeds; in brackets the paper's figures.";
+          "sensor; medians over flights and seeds; in brackets: the paper's figures.";
       tables.push_back(std::move(table));
     }
     if (kind.paper != PaperTable::kDrift) continue;

@@ -18,18 +18,18 @@ enum class PaperTable {
   kMapRmse    ///< Table 5: RMSE of the point-to-mesh distance, cm
 };
 
-/// The paper's own figure; empty where it has none. Names are the paper's (see study_cells.hpp).
+/// The paper's own figure; empty if it has none. Names are the paper's (see study_cells.hpp).
 std::optional<double> paper_figure(PaperTable table, const std::string& world,
                                    const std::string& sensor, const std::string& algorithm);
 
-/// The increase of the drift from `cave` to `house`, as the paper's Table 3 has it: (house - cave)
-/// / house, in per cent. That its figures are so divided was found by trying both on its Table 2.
+/// The increase of the drift from `cave` to `house`, as in the paper's Table 3: (house - cave) /
+/// house, in percent. This definition was found by computing Table 3 from Table 2 in both ways.
 double drift_increase_of_the_paper(double cave, double house);
-/// The usual one: (house - cave) / cave, in per cent.
+/// The usual definition: (house - cave) / cave, in percent.
 double drift_increase(double cave, double house);
 
-/// Tables 1 to 5 made from the runs of one preset, the paper's own figures beside ours where it has
-/// them. Worlds that the paper has not get tables of the same shape.
+/// Tables 1 to 5 from the runs of one preset, with the paper's own figures beside ours where it has
+/// any. Worlds that are not in the paper get tables of the same form.
 std::vector<ReportTable> paper_tables(const Results& results, const std::string& preset);
 
 }  // namespace lidarena

@@ -25,7 +25,7 @@ constexpr std::size_t kPointsOfMesh = 200'000;
 constexpr int kPlaceWidth = 420;
 constexpr int kMapWidth = 560;
 
-/// Positions of the estimate in the mesh's frame, by the gauge of its metrics.
+/// Positions of the estimate in the mesh's frame, by the alignment in its metrics.
 std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Trajectory& estimate) {
   const Pose gauge = truth_from_estimate(row.metrics).value_or(Pose::Identity());
   std::vector<Eigen::Vector3d> positions;
@@ -58,7 +58,7 @@ std::vector<Picture> map_pictures(const Results& results, const std::string& wor
   return pictures;
 }
 
-/// The true path of a dataset; none where it is not known.
+/// The true path of a dataset; empty if it is not known.
 std::vector<Eigen::Vector3d> positions_of(const fs::path& dataset) {
   std::vector<Eigen::Vector3d> positions;
   const auto truth = load_truth(dataset);
@@ -89,8 +89,8 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
   if (const auto mesh = find_world_mesh(dataset)) {
     Cloud surface;
     surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
-    pictures.push_back(place_picture("world-" + world, world + ", and the flight through it",
-                                     surface, positions_of(dataset)));
+    pictures.push_back(place_picture("world-" + world, world + ", with the flight path", surface,
+                                     positions_of(dataset)));
   }
   struct Scan {
     const char* id;
@@ -100,8 +100,9 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
   std::set<std::string> sensors;
   for (const ResultRow& row : results.rows) {
     if (row.world != world || !sensors.insert(row.sensor).second) continue;
-    for (const Scan& scan : {Scan{"scan", "_scan.ply", "a scan, each return by its own pose"},
-                             Scan{"skewed", "_scan_skewed.ply", "the same by one pose: skewed"}}) {
+    for (const Scan& scan :
+         {Scan{"scan", "_scan.ply", "one scan, de-skewed by the true motion"},
+          Scan{"skewed", "_scan_skewed.ply", "the same scan without de-skewing"}}) {
       const fs::path file = dataset / (row.sensor + scan.file);
       if (!fs::exists(file)) continue;
       pictures.push_back(place_picture(fmt::format("{}-{}-{}", scan.id, world, row.sensor),

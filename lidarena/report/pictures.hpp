@@ -8,23 +8,23 @@
 
 namespace lidarena {
 
-/// One SVG element that stands in the page and, as a file, alone.
+/// One SVG element, which is shown in the page and also written as a file.
 struct Picture {
   std::string id;  ///< name of its file
   std::string svg;
 };
 
-/// What can be seen of a world from above without WebGL.
+/// Pictures of a world from above, which need no WebGL.
 struct WorldPictures {
   std::string world;
-  std::vector<Picture> place;  ///< the mesh with the flight, example scans whole and skewed
+  std::vector<Picture> place;  ///< mesh with the flight; example scans, de-skewed and skewed
   std::vector<Picture> maps;   ///< of shown_rows(), with the paths
 };
 
-/// The first seed of each sensor, algorithm and reading of a world that went well.
+/// The first run with status ok for each sensor, algorithm and reading_of() of a world.
 std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world);
 
-/// Of every world what its folders still hold.
+/// The pictures of every world, as far as the folders still hold their files.
 std::vector<WorldPictures> draw_pictures(const Results& results);
 
 }  // namespace lidarena

@@ -15,7 +15,7 @@
 namespace lidarena {
 namespace {
 
-/// Every table as CSV, Markdown, LaTeX and JSON.
+/// Writes every table as CSV, Markdown, LaTeX and JSON.
 void write_tables(const std::vector<ReportSection>& sections, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const ReportSection& section : sections) {
@@ -28,7 +28,7 @@ void write_tables(const std::vector<ReportSection>& sections, const std::filesys
   }
 }
 
-/// Pictures from above, each as a file of its own.
+/// Writes every picture from above as a file.
 void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   for (const WorldPictures& world : worlds) {

@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kCurveValues = 400;
 
-/// Six digits are more than a chart shows.
+/// Rounded to six digits, which is more than a chart shows; null if not finite.
 Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
   if (value == 0.0) return 0;
@@ -31,7 +31,7 @@ Json map_json(const std::optional<MapFigures>& map) {
           {"points", map->points}};
 }
 
-/// Every k-th of `count` places, so that at most kCurveValues are left.
+/// Calls `take` with every k-th of `count` indices, at most kCurveValues of them.
 template <class Take>
 void for_thinned(std::size_t count, const Take& take) {
   const std::size_t stride = count / kCurveValues + 1;

@@ -6,8 +6,8 @@
 
 namespace lidarena {
 
-/// What the charts are drawn from; viewer/src/report/data.ts describes it. Curves are thinned to
-/// 400 values.
+/// The data of the charts; viewer/src/report/data.ts describes its format. Curves are thinned to at
+/// most 400 values.
 Json report_data(const Results& results);
 
 }  // namespace lidarena

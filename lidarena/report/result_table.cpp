@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// The number at `path` of `json`, times `factor`; empty when some part of the way is not there.
+/// The number at `path` of `json`, times `factor`; empty if there is none.
 std::optional<double> number(const Json& json, const std::string& path, double factor = 1.0) {
   const Json::json_pointer pointer(path);
   if (!json.is_structured() || !json.contains(pointer) || !json.at(pointer).is_number()) return {};
@@ -65,7 +65,7 @@ void summarize_resources(const fs::path& folder, ResultRow& row) {
   row.latency_p95_ms = *p95;
 }
 
-/// What the row's dataset says of its LiDAR and of how it was flown.
+/// Reads the description of the LiDAR and of the simulation from the manifest of the row's dataset.
 void read_dataset_manifest(ResultRow& row) {
   const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
   if (!row.manifest.contains("dataset") || !fs::exists(file)) return;
@@ -81,7 +81,7 @@ void read_dataset_manifest(ResultRow& row) {
 void read_row(ResultRow& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
     row.status = "missing";
-    row.reason = "the run left no files";
+    row.reason = "the run has left no files";
     return;
   }
   row.manifest = read_json(row.folder / "manifest.json");
@@ -170,7 +170,8 @@ Results read_results(const fs::path& folder) {
     results.title = row.name;
     results.rows.push_back(std::move(row));
   } else {
-    throw InputError(folder.string(), "holds no results", "give the folder of a study or of a run");
+    throw InputError(folder.string(), "contains no results",
+                     "give the folder of a study or of a run");
   }
   return results;
 }
@@ -219,7 +220,7 @@ std::string results_csv(const Results& results) {
 }
 
 std::string results_text(const Results& results) {
-  constexpr std::size_t kColumns = 10, kNames = 3;  // names stand left, figures right
+  constexpr std::size_t kColumns = 10, kNames = 3;  // names are aligned left, figures right
   using Line = std::array<std::string, kColumns>;
   std::vector<Line> lines{{"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm",
                            "outliers %", "x real", "own MB", "status"}};

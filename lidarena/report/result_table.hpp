@@ -11,7 +11,8 @@
 
 namespace lidarena {
 
-/// Figures of one map; the gauge is SE(3) over all positions where that is determined.
+/// Figures of one map, aligned by SE(3) over all positions where that is determined, else by the
+/// first pose.
 struct MapFigures {
   std::size_t points = 0;
   double rmse_cm = 0.0, rmse_inliers_cm = 0.0, median_cm = 0.0, p95_cm = 0.0;
@@ -19,12 +20,12 @@ struct MapFigures {
   std::vector<double> histogram_percent;  ///< 1 cm bins, 0..20 cm
 };
 
-/// One run as the report sees it. A figure that does not exist is empty, never zero.
+/// One run in the report. A figure that does not exist is empty, never zero.
 struct ResultRow {
-  std::string name;  ///< folder of the run
+  std::string name;  ///< name of the run's folder
   std::filesystem::path folder;
   std::string world, flight, sensor, algorithm, preset;
-  std::string mode;  ///< timing mode of the sensors where the study sets one: "rolling", ...
+  std::string mode;  ///< timing mode of the sensors if the study sets one: "rolling", ...
   std::uint64_t seed = 0;
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;
@@ -34,10 +35,11 @@ struct ResultRow {
   Json metrics;     ///< metrics.json, null if there is none
   Json manifest;    ///< manifest.json, null if there is none
   Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
-  Json simulation;  ///< how its dataset was flown, null if not by us
+  Json simulation;  ///< how its dataset was simulated, null if it was not
 };
 
-/// What a run is compared within: its preset, and its timing mode where the study sets one.
+/// Runs are compared only within one reading: the preset, or "PRESET-MODE" if the study sets timing
+/// modes.
 std::string reading_of(const ResultRow& row);
 std::string reading_of(const std::string& preset, const std::string& mode);
 
@@ -49,14 +51,14 @@ struct Results {
 /// Map, scan buffer and backlog together, MB.
 double own_memory_mb(const ResourceRow& row);
 
-/// Reads a study's folder (study.json names the runs; one that left nothing is a row all the same)
-/// or one RUN folder. Throws InputError when it is neither.
+/// Reads a study's folder (study.json names the runs; a run without files becomes a row, too) or
+/// one RUN folder. Throws InputError if it is neither.
 Results read_results(const std::filesystem::path& folder);
-/// The parts of one study, or several studies, as one: of runs of the same name the first that was
-/// scored counts.
+/// Merges the parts of one study, or several studies. Of runs with the same name, the first one
+/// that was scored is kept.
 Results merged(std::vector<Results> parts);
 
-/// One row a run, units in the column names, empty cells for figures that do not exist.
+/// One row per run, units in the column names, empty cells for figures that do not exist.
 std::string results_csv(const Results& results);
 /// The main figures, aligned for a terminal.
 std::string results_text(const Results& results);

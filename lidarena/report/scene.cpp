@@ -7,8 +7,8 @@
 namespace lidarena {
 namespace {
 
-constexpr std::size_t kSampled = 200'000;  // points of a cloud that its box is judged by
-constexpr double kStray = 0.001;           // share left out at either end
+constexpr std::size_t kSampled = 200'000;  // points of a cloud from which its box is computed
+constexpr double kStray = 0.001;           // share of the points ignored at either end
 
 Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3f>& points) {
   const std::size_t stride = points.size() / kSampled + 1;

@@ -16,16 +16,16 @@ namespace lidarena {
 /// A distance above which a point counts as an outlier, m: the paper's threshold.
 inline constexpr double kOutlier_m = 0.20;
 
-/// Points to be looked at, and what is known of each. A field is empty or has one value a point,
-/// NaN where there is none.
+/// Points to show, with their fields. A field is empty or has one value per point, NaN where a
+/// point has none.
 struct SceneCloud {
   std::string name;
   std::vector<Eigen::Vector3f> points;  ///< m, relative to Scene::origin
   std::vector<float> distance;          ///< to the mesh, m
   std::vector<float> intensity;
   std::vector<float> time;   ///< s since Scene::time_origin
-  std::size_t left_out = 0;  ///< points of the file that were thinned away
-  bool visible = true;       ///< at first
+  std::size_t left_out = 0;  ///< points of the file that were dropped
+  bool visible = true;       ///< shown at first
 };
 
 enum class PathRole { kTruth, kEstimate };
@@ -35,7 +35,7 @@ struct ScenePath {
   std::string name;
   PathRole role = PathRole::kEstimate;
   Trajectory trajectory;        ///< not relative to Scene::origin
-  std::vector<double> error_m;  ///< empty, or one a pose: distance to the truth
+  std::vector<double> error_m;  ///< empty, or one per pose: distance to the truth
 };
 
 struct SceneMesh {
@@ -46,17 +46,17 @@ struct SceneMesh {
 /// What the 3D view shows: everything in one frame, meters, z up.
 struct Scene {
   std::string title;
-  std::string frame = "world";                       ///< what coordinates are told in
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< keeps single precision fine far away
+  std::string frame = "world";                       ///< name of the coordinates' frame
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< keeps single precision accurate
   Time time_origin{0};
-  double window_s = 0.0;  ///< time shown at first, up to the first instant; 0 = all
+  double window_s = 0.0;  ///< length of the time window shown at first; 0 = all
   std::vector<SceneCloud> clouds;
   std::vector<ScenePath> paths;
   std::vector<SceneMesh> meshes;
 };
 
-/// Box to look at, relative to the origin: holds paths, meshes and, in each direction, 99.8 % of
-/// the points of each cloud, so that a few stray ones do not shrink the picture. A cube of a meter
+/// Box to show, relative to the origin: contains paths, meshes and, in each direction, 99.8 % of
+/// the points of each cloud, so that a few stray points do not shrink the picture. A cube of 1 m
 /// for an empty scene.
 Eigen::AlignedBox3d bounds_to_show(const Scene& scene);
 

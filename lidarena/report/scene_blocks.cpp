@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kChunkPoints = 65'536;
 constexpr std::size_t kBlockPoints = 1'000'000;
-constexpr double kLargest = 65'535.0;       // of a coordinate
-constexpr double kLargestValue = 65'534.0;  // of a field; 65535 is "none"
+constexpr double kLargest = 65'535.0;       // largest stored value of a coordinate
+constexpr double kLargestValue = 65'534.0;  // likewise of a field; 65535 means "none"
 constexpr std::uint16_t kNone = 65'535;
 
 static_assert(std::endian::native == std::endian::little);
@@ -62,7 +62,7 @@ std::vector<Field> fields_of(const SceneCloud& cloud) {
   return fields;
 }
 
-/// A point of a cloud and its number there; side by side, so that sorting reads memory in order.
+/// A point and its index in the cloud, stored together so that sorting accesses memory in order.
 struct Numbered {
   Eigen::Vector3f position;
   std::uint32_t number;
@@ -85,7 +85,7 @@ Eigen::AlignedBox3f box_of(Points points) {
   return box;
 }
 
-/// Parts the points into two halves across the longest side of their box.
+/// Splits the points into two halves along the longest side of their box.
 void halve(Points points) {
   Eigen::Index axis = 0;
   box_of(points).sizes().maxCoeff(&axis);
@@ -95,7 +95,7 @@ void halve(Points points) {
       [axis](const Numbered& a, const Numbered& b) { return a.position[axis] < b.position[axis]; });
 }
 
-/// Halves all, again and again, until they fit into chunks.
+/// Halves the points repeatedly until every part fits into a chunk.
 std::vector<Points> cut_into_chunks(Points all, const Parallel& parallel) {
   if (all.empty()) return {};
   std::vector<Points> chunks{all};
@@ -111,7 +111,7 @@ std::vector<Points> cut_into_chunks(Points all, const Parallel& parallel) {
   return chunks;
 }
 
-/// Fisher and Yates, with numbers that depend on the place alone.
+/// Fisher-Yates shuffle with random numbers that depend only on the index and on `stream`.
 void shuffle(Points points, std::uint32_t stream) {
   const CounterRandom random(0, stream);
   for (std::size_t i = points.size(); i > 1; --i) {
@@ -136,7 +136,7 @@ void append_points(std::string& bytes, const std::vector<Field>& fields,
   }
 }
 
-/// As sharePoints() of viewer/src/view/cloud.ts.
+/// The same as sharePoints() in viewer/src/view/cloud.ts.
 std::size_t share(std::size_t count, std::size_t part, std::size_t parts) {
   return count * part / parts;
 }

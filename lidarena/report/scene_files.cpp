@@ -22,18 +22,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFar_m = 1000.0;          // from here on coordinates are told from an origin
-constexpr double kOriginStep_m = 100.0;    // on which it is rounded
-constexpr double kReach_m = 2.0;           // of distances to the mesh
-constexpr double kEpoch_s = 1e6;           // larger times count from an epoch
-constexpr std::size_t kMaxPoses = 20'000;  // of a path: a picture shows no more
+constexpr double kFar_m = 1000.0;          // beyond this, coordinates are relative to an origin
+constexpr double kOriginStep_m = 100.0;    // the origin is rounded to multiples of this
+constexpr double kReach_m = 2.0;           // maximum distance to the mesh that is measured
+constexpr double kEpoch_s = 1e6;           // larger times are times since an epoch
+constexpr std::size_t kMaxPoses = 20'000;  // of a path; more would not be visible
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 bool is_empty(const Scene& scene) {
   return scene.clouds.empty() && scene.paths.empty() && scene.meshes.empty();
 }
 
-/// The first thing of a scene decides where its origin is.
+/// The first object of a scene determines the scene's origin.
 void choose_origin(Scene& scene, const Eigen::Vector3d& somewhere) {
   if (!is_empty(scene) || !(somewhere.norm() > kFar_m)) return;
   scene.origin = (somewhere / kOriginStep_m).array().round().matrix() * kOriginStep_m;
@@ -43,20 +43,20 @@ void choose_time_origin(Scene& scene, Time first) {
   if (scene.time_origin == Time{0}) scene.time_origin = first;
 }
 
-/// Keeps a random share of a stream of unknown length: all at first, half as many each time that
-/// the limit is passed. A point's fate depends on its number alone.
+/// Keeps a random sample of a stream of unknown length: all points at first, half as many each time
+/// the limit is exceeded. Whether a point is kept depends only on its index.
 class Thinning {
  public:
   explicit Thinning(std::size_t limit) : limit_(limit) {}
 
-  /// For the next point: whether it is to be kept.
+  /// Whether to keep the next point.
   bool takes() {
     const double draw = random_.uniform(seen_++);
     if (draw >= share_) return false;
     draws_.push_back(draw);
     return true;
   }
-  /// After one was kept; drops points of `cloud` when there are too many.
+  /// To be called after a point was kept: drops points of `cloud` if there are too many.
   void enforce(SceneCloud& cloud) {
     while (draws_.size() > limit_) {
       share_ /= 2;
@@ -86,7 +86,7 @@ class Thinning {
   std::vector<double> draws_;
 };
 
-/// At most kMaxPoses of a trajectory, the first and the last among them.
+/// At most about kMaxPoses poses of a trajectory, including the first and the last.
 Trajectory thinned(const Trajectory& trajectory) {
   const std::size_t stride = trajectory.size() / kMaxPoses + 1;
   if (stride == 1) return trajectory;
@@ -115,7 +115,7 @@ bool has_path(const Scene& scene, const std::string& name) {
                      [&](const ScenePath& path) { return path.name == name; });
 }
 
-/// Mesh and true path of a dataset, once even where several runs share it.
+/// Adds mesh and true path of a dataset, only once if several runs share it. Returns the truth.
 std::optional<Trajectory> add_truth(Scene& scene, const fs::path& dataset, LogSink& log) {
   const std::string name = dataset.lexically_normal().filename().string();
   const auto truth = load_truth(dataset);
@@ -127,13 +127,13 @@ std::optional<Trajectory> add_truth(Scene& scene, const fs::path& dataset, LogSi
     try {
       scene.meshes.push_back({"mesh of " + name, load_mesh(*mesh)});
     } catch (const InputError& error) {
-      log.warn(std::string("no mesh: ") + error.what());
+      log.warn(std::string("the mesh is left out: ") + error.what());
     }
   }
   return truth;
 }
 
-/// Distance to the truth at each pose; empty where the truth does not reach.
+/// Distance to the truth at each pose; NaN where the truth has no pose.
 std::vector<double> errors_against(const Trajectory& estimate, const Trajectory& truth) {
   std::vector<double> errors;
   for (const StampedPose& pose : estimate.poses()) {
@@ -183,8 +183,8 @@ SceneCloud cloud_of(Scene& scene, const PointTable& table, const Pose& scene_fro
   return cloud;
 }
 
-/// A scan's points into the world, each at its own instant; those when the truth is silent are
-/// skipped. Without a truth they stay in the sensor's frame.
+/// Collects the points of scans in the world frame, each by the true pose at its own instant;
+/// points without a true pose become NaN. Without a truth, points stay in the sensor's frame.
 class ScanCollector {
  public:
   ScanCollector(const Scene& scene, const Pose& body_from_lidar, const Trajectory* truth,
@@ -261,7 +261,7 @@ void add_dataset(Scene& scene, Dataset dataset, const SceneOptions& options, Log
   if (truth || collectors.empty()) return;
   scene.frame = "sensor";
   scene.window_s = std::max(0.1, to_seconds(longest_scan));
-  log.info("no truth: points are shown in the sensor's frame, a scan at a time");
+  log.info("no truth: points are shown in the sensor's frame, one scan at a time");
 }
 
 void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, LogSink& log) {
@@ -276,7 +276,7 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
   const std::string label = run_label(folder, manifest);
   const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), log);
   const auto gauge = truth_from_estimate(metrics);
-  if (truth && !gauge) log.warn(label + ": not scored, so the map is not laid over the mesh");
+  if (truth && !gauge) log.warn(label + ": not scored, so the map is not aligned with the mesh");
   const Pose scene_from_map = gauge.value_or(Pose::Identity());
 
   const Trajectory estimate =

@@ -13,8 +13,8 @@ namespace lidarena {
 
 /// Which maps of a RUN folder are shown.
 enum class MapChoice {
-  kReprojected,  ///< all returns with the estimated path
-  kOwn,          ///< as the program publishes it
+  kReprojected,  ///< all returns, placed along the estimated path
+  kOwn,          ///< the map that the algorithm publishes
   kBoth,
   kScored  ///< the sample of all returns that evaluation kept, with its distances
 };
@@ -26,30 +26,30 @@ struct EnumNames<MapChoice> {
 };
 
 struct SceneOptions {
-  std::size_t max_points = 5'000'000;  ///< of one cloud; a larger one is thinned at random
+  std::size_t max_points = 5'000'000;  ///< per cloud; a larger one is thinned at random
   MapChoice map = MapChoice::kReprojected;
 };
 
-/// Adds a .ply or .pcd file of points with its distance, intensity and time (s), where it has them.
-/// Throws InputError.
+/// Adds a .ply or .pcd file of points, with distance, intensity and time (s) if it has them. Throws
+/// InputError.
 void add_cloud_file(Scene& scene, const std::filesystem::path& file, const SceneOptions& options);
 
-/// Adds a trajectory of any format that we read. Throws InputError.
+/// Adds a trajectory of any supported format. Throws InputError.
 void add_path_file(Scene& scene, const std::filesystem::path& file);
 
-/// Adds the points of all LiDARs of a dataset, each moved to the world by the true motion at its
-/// own instant, the true path and the mesh. Without a truth points stay in the sensor's frame, a
-/// scan at a time. Throws InputError.
+/// Adds the points of all LiDARs of a dataset, each transformed to the world frame by the true pose
+/// at its own instant, the true path and the mesh. Without a truth, points stay in the sensor's
+/// frame and one scan is shown at a time. Throws InputError.
 void add_dataset(Scene& scene, Dataset dataset, const SceneOptions& options, LogSink& log);
 
-/// Adds the maps and the path of a RUN folder, laid over the truth by the SE(3) gauge of its
-/// metrics.json where there is one, and the truth and the mesh of its dataset, if found. Throws
-/// InputError when the folder is no finished run.
+/// Adds the maps and the path of a RUN folder, aligned to the truth by the alignment in its
+/// metrics.json if there is one, and the truth and the mesh of its dataset, if found. Throws
+/// InputError if the folder is not a finished run.
 void add_run(Scene& scene, const std::filesystem::path& folder, const SceneOptions& options,
              LogSink& log);
 
-/// Gives every cloud that has no distances yet those to the scene's meshes; nothing without a mesh.
-/// Points farther than 2 m from them get none (NaN).
+/// Computes the distances to the scene's meshes for every cloud that has none; does nothing without
+/// a mesh. Points farther than 2 m from the meshes get NaN.
 void measure_distances(Scene& scene, const Parallel& parallel);
 
 }  // namespace lidarena

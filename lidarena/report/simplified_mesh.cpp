@@ -8,7 +8,7 @@
 namespace lidarena {
 namespace {
 
-constexpr double kFirstCells = 512.0;  // along the mesh's diagonal
+constexpr double kFirstCells = 512.0;  // cells along the mesh's diagonal in the first try
 
 TriangleMesh clustered(const TriangleMesh& mesh, double cell) {
   TriangleMesh coarse;

@@ -5,12 +5,12 @@
 
 namespace lidarena {
 
-/// A coarser mesh for pictures: vertices that fall into one cell of a grid become one, its cells
-/// doubled until at most `max_triangles` are left (J. Rossignac, P. Borrel, "Multi-resolution 3D
+/// A coarser mesh for pictures: vertices in the same cell of a grid are merged, with cells doubled
+/// until at most `max_triangles` are left (J. Rossignac, P. Borrel, "Multi-resolution 3D
 /// approximations for rendering complex scenes", 1993). A mesh that is small enough is unchanged.
 TriangleMesh simplified(const TriangleMesh& mesh, std::size_t max_triangles);
 
-/// `count` points on the surface, evenly by area; the same ones each time.
+/// `count` points on the surface, evenly distributed by area; the same ones in each call.
 std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t count);
 
 }  // namespace lidarena

@@ -10,7 +10,7 @@
 
 namespace lidarena {
 
-/// Of a map's points, beyond 20 cm: the track was lost.
+/// If more of a map's points than this lie beyond 20 cm, tracking counts as lost.
 constexpr double kLostMap_percent = 50.0;
 
 using RowFigure = std::function<std::optional<double>(const ResultRow&)>;
@@ -19,11 +19,11 @@ std::optional<double> rpe_of(const ResultRow& row);       ///< cm per m
 std::optional<double> outliers_of(const ResultRow& row);  ///< %, of the published map
 std::optional<double> map_rmse_of(const ResultRow& row);  ///< cm, of the published map
 
-/// The runs of a study, asked by what was run. Figures are medians over flights and seeds of the
-/// runs that have them; how many have not, status_text() says.
+/// The runs of a study by world, sensor and algorithm. Figures are medians over flights and seeds
+/// of the runs that have them; status_text() says how many do not.
 class StudyCells {
  public:
-  /// Of one reading (see reading_of()); empty = all. `results` must outlive this.
+  /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
   StudyCells(const Results& results, const std::string& reading);
 
   std::vector<std::string> worlds() const;
@@ -35,7 +35,7 @@ class StudyCells {
                                      const std::string& algorithm) const;
   std::optional<double> median(const std::string& world, const std::string& sensor,
                                const std::string& algorithm, const RowFigure& figure) const;
-  /// What went wrong in a cell, in a few words ("1 of 3 diverged"); empty when nothing did.
+  /// How many runs of a cell did not succeed ("1 of 3 diverged"); empty if all did.
   std::string status_text(const std::string& world, const std::string& sensor,
                           const std::string& algorithm) const;
 
@@ -43,13 +43,13 @@ class StudyCells {
   std::vector<const ResultRow*> rows_;
 };
 
-/// Readings in the order of their first use, of the preset `original` first: it is the one to
-/// compare with the paper.
+/// All readings in the order of their first use, but those of the preset `original` first, since
+/// they are to be compared with the paper.
 std::vector<std::string> readings_of(const Results& results);
 
 /// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm
-/// ("Fast LIO2"); empty where the paper has none. Worlds and sensors are told by how their names
-/// begin or what they hold: cave..., house..., ...mid360..., ...os0...
+/// ("Fast LIO2"); empty if the paper has none. Worlds and sensors are recognized by a part of
+/// their name: cave..., house..., ...mid360..., ...os0...
 std::string paper_world(const std::string& world);
 std::string paper_sensor(const std::string& sensor);
 std::string paper_algorithm(const std::string& algorithm);

@@ -8,7 +8,7 @@
 namespace lidarena {
 namespace {
 
-/// "fast_lio2 (improved): 0.84" of the least figure; empty when none has one.
+/// The smallest figure with its algorithm: "fast_lio2 (improved): 0.84"; empty if there is none.
 std::string least(const Results& results, const std::string& world, const std::string& sensor,
                   const RowFigure& of) {
   std::optional<double> best;
@@ -30,14 +30,14 @@ std::optional<double> map_value(const std::optional<MapFigures>& map, double Map
   return map ? std::optional((*map).*member) : std::nullopt;
 }
 
-/// What is left of a path in a command: the file's or folder's own name, quoted.
+/// `text` as an argument of a shell command, quoted if necessary.
 std::string argument(const std::string& text) {
   return text.find_first_of(" '\"$&;()") == std::string::npos ? text : "'" + text + "'";
 }
 
 std::string simulate_command(const ResultRow& row) {
   const Json& made = row.simulation;
-  if (!made.is_object()) return "(the dataset was not flown by us)";
+  if (!made.is_object()) return "(the dataset was not simulated by lidarena)";
   std::string command =
       fmt::format("lidarena simulate --world {} --flight {}", argument(row.world),
                   argument(row.flight.empty() ? made.value("flight_source", "") : row.flight));
@@ -55,9 +55,9 @@ std::string simulate_command(const ResultRow& row) {
 
 ReportTable winners_table(const Results& results) {
   ReportTable table{"winners",
-                    "Who is best where",
-                    "Medians over flights and seeds of the runs that went well.",
-                    {"world, sensor", "least drift, cm per m", "fewest points beyond 20 cm, %"},
+                    "Best algorithm for each world and sensor",
+                    "Medians over flights and seeds of the successful runs.",
+                    {"world, sensor", "lowest drift, cm per m", "fewest points beyond 20 cm, %"},
                     {}};
   const StudyCells all(results, "");
   for (const std::string& world : all.worlds()) {
@@ -74,9 +74,9 @@ ReportTable runs_table(const Results& results, const std::string& world) {
   ReportTable table{
       "runs-" + world,
       "All runs, " + world,
-      "RPE over 1 m; ATE after SE(3); own map: as published, all returns: every return "
-      "moved with the estimated path; P95 of the time for a scan; own memory: map, scan "
-      "buffer and backlog as the algorithm counts them.",
+      "RPE over 1 m. ATE after alignment by SE(3). Own map: as published by the algorithm; all "
+      "returns: every return placed along the estimated path. P95 of the processing time per "
+      "scan. Own memory: map, scan buffer and backlog as the algorithm counts them.",
       {"sensor, algorithm, seed", "RPE, cm per m", "RPE, deg per m", "ATE, cm", "coverage, %",
        "own map RMSE, cm", "own map > 20 cm, %", "all returns RMSE, cm", "all returns > 20 cm, %",
        "times real time", "P95, ms", "own memory, MB"},
@@ -100,7 +100,7 @@ ReportTable runs_table(const Results& results, const std::string& world) {
 }
 
 ReportTable failures_table(const Results& results) {
-  ReportTable table{"failures", "Runs that did not go well", "", {"run", "state", "reason"}, {}};
+  ReportTable table{"failures", "Runs that did not succeed", "", {"run", "state", "reason"}, {}};
   for (const ResultRow& row : results.rows) {
     if (row.status == "ok") continue;
     table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
@@ -111,9 +111,9 @@ ReportTable failures_table(const Results& results) {
 ReportTable commands_table(const Results& results) {
   ReportTable table{
       "commands",
-      "How each run is made again",
-      "Noise is keyed by seed and sensor, so the same seed gives the same measurements; "
-      "all sensors of a study are flown together.",
+      "Commands that reproduce each run",
+      "The noise depends on seed and sensor only, so the same seed gives the same measurements. "
+      "All sensors of a study are simulated on the same flight.",
       {"run", "commands"},
       {}};
   for (const ResultRow& row : results.rows) {
@@ -129,9 +129,9 @@ ReportTable commands_table(const Results& results) {
 
 ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset) {
   ReportTable table{"claims-" + preset,
-                    "The paper's findings on our runs, " + preset,
-                    "A finding holds here when every one of its checks does.",
-                    {"finding", "here", "what is asked", "our figures"},
+                    "The paper's findings, checked with our runs, " + preset,
+                    "A finding holds if all of its checks hold.",
+                    {"finding", "here", "check", "our figures"},
                     {}};
   for (const Claim& claim : claims) {
     std::string evidence;
@@ -140,7 +140,8 @@ ReportTable claims_table(const std::vector<Claim>& claims, const std::string& pr
     const char* verdict = claim.holds              ? *claim.holds ? "holds" : "does not hold"
                           : claim.evidence.empty() ? "not measured"
                                                    : "cannot be judged";
-    if (claim.holds == false && !claim.guess.empty()) evidence += ". A guess why: " + claim.guess;
+    if (claim.holds == false && !claim.guess.empty())
+      evidence += ". Possible reason: " + claim.guess;
     table.rows.push_back({word(claim.text), word(verdict), word(claim.rule), word(evidence)});
   }
   return table;

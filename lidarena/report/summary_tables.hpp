@@ -11,11 +11,11 @@ namespace lidarena {
 
 /// The best algorithm for each world and sensor by drift, and by outliers of the map.
 ReportTable winners_table(const Results& results);
-/// All runs of a world with all their figures; failures are rows.
+/// All runs of a world with all their figures; failed runs are rows, too.
 ReportTable runs_table(const Results& results, const std::string& world);
 /// Runs that failed, diverged or were not scored, with their reasons.
 ReportTable failures_table(const Results& results);
-/// The commands that make each run again, from the dataset on.
+/// The commands that reproduce each run, including its dataset.
 ReportTable commands_table(const Results& results);
 /// Claims with their figures and "holds", "does not hold", "cannot be judged" or "not measured".
 ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);

@@ -38,7 +38,7 @@ std::vector<double> nice_ticks(double low, double high, int count) {
   const double ratio = raw / magnitude;
   const double step = magnitude * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
   std::vector<double> ticks;
-  // counted in whole steps, so that rounding does not add up
+  // computed from whole steps, so that rounding errors do not add up
   for (auto i = static_cast<long>(std::ceil(low / step - 1e-9));; ++i) {
     const double tick = static_cast<double>(i) * step;
     if (tick > high + 1e-9 * step) return ticks;

@@ -7,7 +7,7 @@
 
 namespace lidarena {
 
-/// Text made safe for HTML and SVG.
+/// `text` escaped for HTML and SVG.
 std::string escaped(std::string_view text);
 
 /// "Nice" tick positions (1, 2, 5 times a power of ten) that cover [low, high] in about `count`

@@ -15,7 +15,7 @@
 namespace lidarena {
 namespace {
 
-/// Calls `node SCRIPT DATA FOLDER` with its output thrown away; true when it ended well.
+/// Calls `node SCRIPT DATA FOLDER` and discards its output; true if its exit code is 0.
 bool call_node(std::string script, std::string data, std::string folder) {
   std::string node = "node";
   std::array<char*, 5> arguments{node.data(), script.data(), data.data(), folder.data(), nullptr};

@@ -31,7 +31,7 @@ std::string csv_quoted(const std::string& text) {
   return out + "\"";
 }
 
-/// Whether a column is read, not compared: it names the rows, or has words and no figure.
+/// Whether a column is aligned left: it is the first, or has words and no figure.
 bool holds_words(const ReportTable& table, std::size_t column) {
   if (column == 0) return true;
   bool words = false;
@@ -51,7 +51,7 @@ std::string html_cell(const TableCell& cell, bool words) {
   if (!cell.paper.empty()) {
     text += " <span class='paper'>(" + escaped(cell.paper) + ")</span>";
   }
-  const bool left = words || (!cell.value && !cell.text.empty());  // a state among figures
+  const bool left = words || (!cell.value && !cell.text.empty());  // a status among figures
   return fmt::format("<td{}>{}</td>", left ? " class='l'" : "", text);
 }
 
@@ -69,7 +69,7 @@ std::string latex_cell(const TableCell& cell) {
   return cell.paper.empty() ? text : text + " (" + latex_escaped(cell.paper) + ")";
 }
 
-/// Cells whose values are compared: all of `cells` that have one; marks the smallest by `mark`.
+/// Sets `mark` of the cell with the smallest value, if at least two cells have a value.
 void mark(const std::vector<TableCell*>& cells, bool TableCell::*mark) {
   std::vector<TableCell*> measured;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(measured),

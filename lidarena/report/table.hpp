@@ -9,20 +9,21 @@
 
 namespace lidarena {
 
-/// One figure of a table, or a word.
+/// A cell of a table: a figure or a text.
 struct TableCell {
-  std::string text;             ///< as shown; empty shows a dash
+  std::string text;             ///< as shown; a dash if empty
   std::optional<double> value;  ///< the unrounded figure
-  std::string paper;            ///< the paper's own figure, shown beside; empty = none
-  bool best_in_column = false;  ///< bold: of the sensors, this one serves the algorithm best
-  bool best_in_row = false;     ///< underlined: of the algorithms, this one serves the sensor best
+  std::string paper;            ///< the paper's own figure, shown in brackets; empty = none
+  bool best_in_column = false;  ///< bold: the best sensor for this algorithm
+  bool best_in_row = false;     ///< underlined: the best algorithm for this sensor
 };
 
+/// A cell with a text.
 TableCell word(std::string text);
 /// A figure with `digits` significant digits (whole numbers in full), or a dash.
 TableCell figure(std::optional<double> value, int digits = 3);
 
-/// A table as the page, CSV, JSON, Markdown and LaTeX files show it. The first column names rows.
+/// A table of the page and of the CSV, JSON, Markdown and LaTeX files. The first column names rows.
 struct ReportTable {
   std::string id;  ///< name of its files
   std::string title;
@@ -38,7 +39,7 @@ struct ReportTable {
 void mark_smallest(ReportTable& table);
 
 std::string table_html(const ReportTable& table);
-/// Unrounded figures; where the paper's stand beside ours, they have columns of their own.
+/// Unrounded figures; the paper's figures, if there are any, are in separate columns.
 std::string table_csv(const ReportTable& table);
 std::string table_markdown(const ReportTable& table);
 /// For the package booktabs.

@@ -50,7 +50,7 @@ ReportTable timing_table(const Results& results, const std::vector<std::string>&
 std::vector<ReportTable> timing_tables(const Results& results) {
   const StudyCells all(results, "");
   std::vector<std::string> modes = all.modes();
-  std::erase(modes, "");  // of a study beside that sets none
+  std::erase(modes, "");  // of further studies that set no mode
   std::vector<ReportTable> tables;
   if (modes.size() < 2) return tables;
   for (const std::string& world : all.worlds()) {

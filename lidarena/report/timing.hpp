@@ -8,8 +8,9 @@
 
 namespace lidarena {
 
-/// Of a study that flies the same flights in several timing modes: drift, map and outliers of every
-/// sensor and method, one column a mode, for each world and preset. None where there is one mode.
+/// For a study that simulates the same flights in several timing modes: drift, map RMSE and outlier
+/// share of every sensor and algorithm, one column per mode, for each world and preset. Empty if
+/// there are fewer than two modes.
 std::vector<ReportTable> timing_tables(const Results& results);
 
 }  // namespace lidarena

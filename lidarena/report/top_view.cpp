@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kMaxHeight = 900;
 constexpr int kTitleHeight = 24;
-constexpr double kMargin = 0.03;  // share of the picture left free on each side
-// At most 256 colors: a picture of noise takes less than half of the bytes.
+constexpr double kMargin = 0.03;  // share of the picture left empty on each side
+// Quantized to at most 256 colors, so that a noisy picture takes less than half of the bytes.
 constexpr double kOpacities = 10.0;
 constexpr double kDistanceStep_m = 0.01;
 
@@ -28,8 +28,8 @@ struct View {
   double py(double y) const { return (y1 - y) * pixels_per_m; }
 };
 
-/// Box that holds 99.8 % of the points in each direction and the whole path: a few stray points of
-/// a bad map must not shrink the picture.
+/// Box that contains 99.8 % of the points in each direction and the whole true path, so that a few
+/// stray points of a bad map do not shrink the picture.
 Eigen::AlignedBox2d framed(const TopView& view) {
   Eigen::AlignedBox2d box;
   if (view.truth != nullptr) {
@@ -74,7 +74,8 @@ View fit(const Eigen::AlignedBox2d& box, int width) {
   return view;
 }
 
-/// Points counted and their distances averaged per pixel; opacity grows with the log of the count.
+/// Counts the points and averages their distances per pixel; opacity grows with the log of the
+/// count.
 Image xray(const Cloud& map, const View& view) {
   const auto cells = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   std::vector<float> count(cells, 0.0F);

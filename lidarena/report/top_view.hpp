@@ -10,9 +10,9 @@
 
 namespace lidarena {
 
-/// A map seen from above like an X-ray: upright surfaces are dark because many points fall into one
-/// pixel, and the color is the mean point-to-mesh distance there (see distance_color). Over it the
-/// true path (gray) and the estimated one (orange), and a scale bar.
+/// A map seen from above like an X-ray image: vertical surfaces are dark because many points fall
+/// into one pixel, and the color is the mean point-to-mesh distance there (see distance_color). The
+/// true path (gray), the estimated path (orange) and a scale bar are drawn over it.
 struct TopView {
   std::string title;
   const Cloud* map = nullptr;  ///< in the mesh's frame, with distances
@@ -21,7 +21,7 @@ struct TopView {
   int width = 760;                        ///< pixels
 };
 
-/// One SVG element that carries the picture inside.
+/// One self-contained SVG element.
 std::string top_view_svg(const TopView& view);
 
 }  // namespace lidarena

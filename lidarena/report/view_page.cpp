@@ -23,7 +23,7 @@ void need_viewer() {
       "configure again with -DLIDARENA_WITH_VIEWER=ON");
 }
 
-/// All of the page up to the blocks; the view starts here, while the parser goes on.
+/// The page up to the data blocks; the view starts while the browser still parses the blocks.
 std::string head(const PackedScene& scene, const std::string& picture, const char* blocks) {
   const std::string title = escaped(scene.header.at("title").get<std::string>());
   const bool timed = !scene.header.at("time").is_null();

@@ -17,8 +17,8 @@ ConfigFolder ConfigFolder::find(const fs::path& start) {
     }
     if (folder == folder.parent_path()) break;
   }
-  throw InputError(start.string(), "no folder configs/ here or above",
-                   "run from the project's folder or pass --configs FOLDER");
+  throw InputError(start.string(), "no folder configs/ in this folder or above it",
+                   "run lidarena in the project's folder or give --configs FOLDER");
 }
 
 std::vector<std::string> ConfigFolder::names(const std::string& kind) const {
@@ -32,7 +32,7 @@ std::vector<std::string> ConfigFolder::names(const std::string& kind) const {
 }
 
 fs::path ConfigFolder::resolve(const std::string& kind, const std::string& name_or_path) const {
-  // a folder that happens to have the name of a world is none
+  // a folder that has the same name as, say, a world must not hide that world
   if (fs::exists(name_or_path) && !fs::is_directory(name_or_path)) return name_or_path;
   const fs::path file = root_ / kind / (name_or_path + ".yaml");
   if (fs::exists(file)) return file;
@@ -40,7 +40,7 @@ fs::path ConfigFolder::resolve(const std::string& kind, const std::string& name_
   const std::string nearest = nearest_word(name_or_path, known);
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
-  throw InputError(name_or_path, "there is no file of this name and nothing so called in " + kind,
+  throw InputError(name_or_path, "is neither a file nor a name in " + kind,
                    nearest.empty() ? "known: " + list : "did you mean '" + nearest + "'?");
 }
 

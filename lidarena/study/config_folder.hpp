@@ -7,8 +7,8 @@
 
 namespace lidarena {
 
-/// The folder `configs/` with its kinds worlds, flights, sensors, odometry and studies; a NAME is
-/// the stem of a file in one of them.
+/// The folder `configs/` with one subfolder per kind: worlds, flights, sensors, odometry, studies.
+/// A NAME is the stem of a file in one of them.
 class ConfigFolder {
  public:
   explicit ConfigFolder(std::filesystem::path root) : root_(std::move(root)) {}
@@ -20,8 +20,8 @@ class ConfigFolder {
   const std::filesystem::path& root() const { return root_; }
   /// Stems of the files of a kind, sorted.
   std::vector<std::string> names(const std::string& kind) const;
-  /// `name_or_path` itself where such a file exists, else the kind's file of that stem. Throws
-  /// InputError naming the nearest name.
+  /// `name_or_path` itself if such a file exists, else the kind's file of that stem. Otherwise
+  /// throws an InputError that suggests the most similar name.
   std::filesystem::path resolve(const std::string& kind, const std::string& name_or_path) const;
 
  private:

@@ -15,9 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Time kLook = std::chrono::minutes(1);
+constexpr Time kLook = std::chrono::minutes(1);  // only the first minute is searched
 
-/// How far the body turns while the scan is taken, rad.
+/// Rotation of the body during the scan, rad.
 double turn_within(const Scan& scan, const Trajectory& truth) {
   const auto begin = truth.at(scan.stamp), end = truth.at(end_of(scan));
   if (!begin || !end) return 0.0;
@@ -40,6 +40,8 @@ Scan fastest_turning_scan(EventSource& events, const std::string& lidar_id,
   return fastest;
 }
 
+/// The scan in the world frame: each point by the pose at its own instant, or all points by the
+/// pose at the scan's stamp if `skewed`.
 Cloud laid(const Scan& scan, LidarPoses poses, bool skewed) {
   Cloud cloud;
   for (const Point& point : scan.points) {

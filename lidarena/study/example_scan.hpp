@@ -7,11 +7,11 @@
 
 namespace lidarena {
 
-/// For pictures: of each LiDAR the scan of the first minute during which the body turns most, in
-/// the mesh's frame with each return's distance to the mesh, as SENSOR_scan.ply (each return laid
-/// by the true pose at its own instant) and SENSOR_scan_skewed.ply (all by that of the scan's
-/// start, as if nothing had moved) in the dataset's folder. Throws InputError where it has no truth
-/// or mesh.
+/// Writes one scan per LiDAR for pictures: the scan of the first minute during which the body
+/// rotates most, in the mesh's frame, with each return's distance to the mesh. SENSOR_scan.ply
+/// places each return by the true pose at its own instant; SENSOR_scan_skewed.ply places all
+/// returns by the true pose at the scan's start, as if nothing had moved. Both files go to the
+/// dataset's folder. Throws InputError if the dataset has no truth or no mesh.
 void write_example_scans(const std::filesystem::path& dataset, const Parallel& parallel);
 
 }  // namespace lidarena

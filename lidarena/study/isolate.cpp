@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kPollPeriod = std::chrono::milliseconds(20);
-constexpr auto kLookPeriod = std::chrono::milliseconds(250);  // all of /proc: worth a pause
+constexpr auto kLookPeriod = std::chrono::milliseconds(250);  // reads all of /proc, hence rarely
 
 [[noreturn]] void child(const std::function<void()>& work, int reason_fd) {
   std::string reason;
@@ -35,7 +35,7 @@ constexpr auto kLookPeriod = std::chrono::milliseconds(250);  // all of /proc: w
     work();
   } catch (const std::exception& e) {
     reason = e.what();
-    if (reason.empty()) reason = "an error without a text";
+    if (reason.empty()) reason = "an exception without a message";
   }
   std::fflush(nullptr);
   for (std::size_t sent = 0; sent < reason.size();) {
@@ -51,7 +51,7 @@ void use_only(const std::vector<int>& cores) {
   cpu_set_t set;
   CPU_ZERO(&set);
   for (const int core : cores) CPU_SET(static_cast<std::size_t>(core), &set);
-  sched_setaffinity(0, sizeof set, &set);  // a wish; without it the work is only less even
+  sched_setaffinity(0, sizeof set, &set);  // failure is harmless: the load is less even
 }
 
 struct Usage {
@@ -59,18 +59,19 @@ struct Usage {
   double resident_mb = 0.0;
 };
 
-/// One process's line of /proc, as far as it is wanted; nothing when it is gone.
+/// The values used of one process's line in /proc/PID/stat.
 struct ProcessLine {
   int group = 0;
   double busy_s = 0.0;
   double resident_mb = 0.0;
 };
 
+/// Empty if the process has ended.
 std::optional<ProcessLine> process_line(const fs::path& folder) {
   std::ifstream file(folder / "stat");
   std::string line;
   if (!std::getline(file, line)) return std::nullopt;
-  const std::size_t end_of_name = line.rfind(')');  // the name may hold anything
+  const std::size_t end_of_name = line.rfind(')');  // the name may contain any character
   if (end_of_name == std::string::npos) return std::nullopt;
   std::istringstream fields(line.substr(end_of_name + 1));
   // Fields 3 to 24 of proc(5): state ppid pgrp ... utime stime cutime cstime ... rss.
@@ -86,7 +87,7 @@ std::optional<ProcessLine> process_line(const fs::path& folder) {
                      number[20] * kPage * 1e-6};
 }
 
-/// What the processes of a group use together.
+/// Processor time and memory of all processes of a group.
 Usage usage_of_group(int group) {
   Usage usage;
   std::error_code ignored;
@@ -124,12 +125,12 @@ IsolatedWork::IsolatedWork(const std::function<void()>& work, const WorkLimits& 
   if (pid_ == 0) {
     setpgid(0, 0);
     prctl(PR_SET_PDEATHSIG, SIGKILL);
-    if (getppid() != parent) _exit(1);  // it ended before we could ask to follow it
+    if (getppid() != parent) _exit(1);  // the parent ended before prctl()
     use_only(cores);
     close(ends[0]);
     child(work, ends[1]);
   }
-  setpgid(pid_, pid_);  // whichever of the two is first
+  setpgid(pid_, pid_);  // set by both processes, since either may run first
   close(ends[1]);
   reason_fd_ = ends[0];
   fcntl(reason_fd_, F_SETFL, O_NONBLOCK);
@@ -153,19 +154,19 @@ void IsolatedWork::read_reason() {
   }
 }
 
-/// Which limit the work has passed, in words.
+/// A message naming the limit that the work has exceeded; empty if none.
 std::string IsolatedWork::beyond_limits() {
   const auto now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   if (limits_.seconds > 0 && seconds > limits_.seconds) {
-    return fmt::format("stopped: not done within its limit of {:.0f} s", limits_.seconds);
+    return fmt::format("stopped: not finished within its time limit of {:.0f} s", limits_.seconds);
   }
   if (limits_.memory_mb <= 0 && limits_.stall_seconds <= 0) return {};
   if (now - last_look_ < kLookPeriod) return {};
   last_look_ = now;
   const Usage usage = usage_of_group(pid_);
   if (limits_.memory_mb > 0 && usage.resident_mb > limits_.memory_mb) {
-    return fmt::format("stopped: it took {:.0f} MB, more than its limit of {:.0f} MB",
+    return fmt::format("stopped: it used {:.0f} MB, more than its limit of {:.0f} MB",
                        usage.resident_mb, limits_.memory_mb);
   }
   if (usage.busy_s > busy_s_ + 0.01 * limits_.stall_seconds || usage.busy_s < busy_s_) {
@@ -174,7 +175,8 @@ std::string IsolatedWork::beyond_limits() {
   }
   const double idle = std::chrono::duration<double>(now - last_busy_).count();
   if (limits_.stall_seconds > 0 && idle > limits_.stall_seconds) {
-    return fmt::format("stopped: it stalled, idle for {:.0f} s", limits_.stall_seconds);
+    return fmt::format("stopped: it stalled, with almost no processor time used for {:.0f} s",
+                       limits_.stall_seconds);
   }
   return {};
 }
@@ -184,8 +186,8 @@ std::optional<IsolatedOutcome> IsolatedWork::poll() {
   int status = 0;
   const pid_t ended = waitpid(pid_, &status, WNOHANG);
   if (ended == pid_) {
-    read_reason();         // what it said with its last breath
-    kill(-pid_, SIGKILL);  // what it may have left running
+    read_reason();         // what it wrote just before it ended
+    kill(-pid_, SIGKILL);  // ends processes that it left running
     pid_ = -1;
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return IsolatedOutcome{true, ""};
     return IsolatedOutcome{false, reason_of_end(status, reason_)};

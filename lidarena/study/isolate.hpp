@@ -10,11 +10,11 @@
 
 namespace lidarena {
 
-/// What a piece of work may use; zero = no limit.
+/// Limits of one piece of work; 0 = no limit.
 struct WorkLimits {
-  double seconds = 0.0;        ///< by the wall clock
-  double memory_mb = 0.0;      ///< resident, all its processes together
-  double stall_seconds = 0.0;  ///< without using the processor for a hundredth of that time
+  double seconds = 0.0;        ///< wall-clock time
+  double memory_mb = 0.0;      ///< resident memory of all its processes together
+  double stall_seconds = 0.0;  ///< of this time, it must use a processor for at least 1 %
 };
 
 struct IsolatedOutcome {
@@ -22,19 +22,20 @@ struct IsolatedOutcome {
   std::string reason;  ///< why it failed, in words; empty when ok
 };
 
-/// Work in a process of its own, so that a crash, a leak, an endless loop or a killer stops only
-/// it. It and what it starts form a process group that ends with this object, or when the calling
-/// process ends in whatever way. The caller must not have started threads.
+/// Runs work in a separate process, so that a crash, a memory leak, an endless loop or a kill
+/// signal ends only that process. It and the processes it starts form a process group that ends
+/// with this object, or when the calling process ends for any reason. The caller must not have
+/// started threads.
 class IsolatedWork {
  public:
-  /// Starts `work`; an exception is its failure. `cores`: the processors it may use, none = all.
+  /// Starts `work`; an exception counts as failure. `cores`: processors it may use, empty = all.
   explicit IsolatedWork(const std::function<void()>& work, const WorkLimits& limits = {},
                         const std::vector<int>& cores = {});
   ~IsolatedWork();
   IsolatedWork(const IsolatedWork&) = delete;
   IsolatedWork& operator=(const IsolatedWork&) = delete;
 
-  /// How it ended, once it has; never waits. Stops it when it is beyond its limits.
+  /// The outcome once the work has ended, else empty; never waits. Kills work beyond its limits.
   std::optional<IsolatedOutcome> poll();
 
  private:
@@ -53,7 +54,7 @@ class IsolatedWork {
   Clock::time_point last_look_ = begin_;
 };
 
-/// Does the work and waits for its end.
+/// Runs `work` in a separate process and waits until it ends.
 IsolatedOutcome run_isolated(const std::function<void()>& work, const WorkLimits& limits = {});
 
 /// The processors that this process may use.

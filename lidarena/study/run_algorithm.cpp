@@ -27,14 +27,15 @@ std::string chosen_lidar(const Dataset& dataset, const std::string& asked) {
     list += (list.empty() ? "" : ", ") + lidar.id;
   }
   if (asked.empty()) {
-    throw InputError(dataset.path.string(), "has several LiDARs", "choose with --sensor: " + list);
+    throw InputError(dataset.path.string(), "has several LiDARs",
+                     "choose one with --sensor: " + list);
   }
   const std::string nearest = nearest_word(asked, ids);
   throw InputError(dataset.path.string(), "has no LiDAR named '" + asked + "'",
                    nearest.empty() ? "it has: " + list : "did you mean '" + nearest + "'?");
 }
 
-/// `dataset` as seen from `run`, so that the two can be moved together.
+/// Path of `dataset` relative to `run`, so that both can be moved together.
 std::string relative_path(const fs::path& dataset, const fs::path& run) {
   const fs::path relative = fs::proximate(fs::absolute(dataset), fs::absolute(run));
   return relative.generic_string();
@@ -47,7 +48,7 @@ Cloud reprojected_map(const RunRequest& request, const std::string& lidar_id,
   return reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
 }
 
-/// SE(3) over all positions where that is determined, else the first pose.
+/// Aligned by SE(3) over all positions where that is determined, else by the first pose.
 Pose mesh_from_map_of(const Trajectory& estimate, const Trajectory& truth) {
   const Alignment best = align(estimate, truth, Gauge::kSe3);
   return best.determined() ? best.truth_from_estimate
@@ -67,7 +68,7 @@ Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& 
   return cloud;
 }
 
-/// The re-projected map made again, each point with what its ray hit.
+/// Computes the re-projected map again and finds what the ray of each point hit.
 IdentifiedMap identified_map(Dataset dataset, const LidarInfo& lidar, const Trajectory& trajectory,
                              ScanTruthSource& hits) {
   std::vector<ReturnOrigin> origins;
@@ -76,7 +77,7 @@ IdentifiedMap identified_map(Dataset dataset, const LidarInfo& lidar, const Traj
   return identify(map.points, origins, hits);
 }
 
-/// What the rays of the run's LiDAR hit; nothing, with a warning, when the dataset cannot be read
+/// What the rays of the run's LiDAR hit; empty, with a warning, if the dataset cannot be read
 /// again.
 std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar_id,
                                   const Trajectory& estimate, const Trajectory& truth,
@@ -97,7 +98,7 @@ std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar
     return RayTruth{observe(*hits, world, parallel),
                     identified_map(std::move(again), lidar, estimate, *hits_again)};
   } catch (const InputError& error) {
-    log.warn(std::string("no completeness and no signed distance: ") + error.what());
+    log.warn(std::string("completeness and signed distance are left out: ") + error.what());
     return std::nullopt;
   }
 }
@@ -163,7 +164,7 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
   const fs::path dataset = folder / run.manifest.at("dataset").get<std::string>();
   const auto truth = load_truth(dataset);
   if (!truth) {
-    throw InputError(dataset.string(), "carries no truth to score against",
+    throw InputError(dataset.string(), "contains no truth to score against",
                      "give one: evaluate --trajectory FILE --truth FILE");
   }
   std::unique_ptr<World> world;
@@ -179,7 +180,7 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
     write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
   }
   Json accuracy = metrics;
-  accuracy.erase("resources");  // time and memory differ from run to run: a file of their own
+  accuracy.erase("resources");  // differs between repeated runs, so it goes to its own file
   write_json(folder / "resources.json", metrics.at("resources"));
   write_json(folder / "metrics.json", accuracy);
   return metrics;

@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The dataset as one LiDAR and its IMU see it.
+/// A recording of one LiDAR of the dataset and its IMU.
 struct Recording {
   Rig rig;
   std::size_t scans = 0;
@@ -34,7 +34,7 @@ Rig rig_of_one(const Rig& rig, const std::string& lidar_id) {
   Rig one;
   one.body_frame = rig.body_frame;
   const LidarInfo* lidar = rig.find_lidar(lidar_id);
-  if (lidar == nullptr) throw InputError(lidar_id, "is no LiDAR of the dataset");
+  if (lidar == nullptr) throw InputError(lidar_id, "is not a LiDAR of the dataset");
   one.lidars.push_back(*lidar);
   if (const ImuInfo* imu = rig.imu_beside(*lidar)) one.imus.push_back(*imu);
   return one;
@@ -63,7 +63,7 @@ Recording record(const ExternalProgram& program, const RunRequest& request, cons
   return recording;
 }
 
-/// As one word of a shell's.
+/// `word` quoted for a shell.
 std::string quoted(const std::string& word) {
   std::string text = "'";
   for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -86,16 +86,16 @@ double seconds_of(const timeval& time) {
   return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
 }
 
-/// Runs the command line to its end, its output going to `log_file`.
+/// Runs the command line until it ends; its output goes to `log_file`.
 Usage run_command(const std::string& name, const std::string& command, const fs::path& log_file) {
   const std::string line = "exec " + command;
   const int log_fd = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
   if (log_fd < 0)
-    throw InputError(log_file.string(), std::string("cannot be made: ") + strerror(errno));
+    throw InputError(log_file.string(), std::string("cannot be created: ") + strerror(errno));
   const auto begin = std::chrono::steady_clock::now();
   const pid_t pid = fork();
   if (pid < 0) throw Error(std::string("fork: ") + strerror(errno));
-  if (pid == 0) {  // nothing here but system calls: other threads may have held locks
+  if (pid == 0) {  // system calls only: other threads may hold locks
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     dup2(log_fd, STDOUT_FILENO);
     dup2(log_fd, STDERR_FILENO);
@@ -110,7 +110,7 @@ Usage run_command(const std::string& name, const std::string& command, const fs:
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
     const std::string end = WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
                                               : fmt::format("signal {}", WTERMSIG(status));
-    throw Error(fmt::format("{} ended with {}; what it said is in {}", name, end,
+    throw Error(fmt::format("{} ended with {}; its output is in {}", name, end,
                             log_file.filename().string()));
   }
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
@@ -121,11 +121,11 @@ Usage run_command(const std::string& name, const std::string& command, const fs:
 Pose sensor_from_body(PoseOf pose_of, const Rig& rig) {
   if (pose_of == PoseOf::kBody) return Pose::Identity();
   if (pose_of == PoseOf::kLidar) return rig.lidars[0].body_from_lidar.inverse();
-  if (rig.imus.empty()) throw InputError("pose_of: imu", "but the dataset has no IMU");
+  if (rig.imus.empty()) throw InputError("pose_of: imu", "the dataset has no IMU");
   return rig.imus[0].body_from_imu.inverse();
 }
 
-/// Poses of the body, in the world in which the program's first pose is.
+/// Poses of the body in the program's world frame, from its poses of the sensor.
 Trajectory body_trajectory(const Trajectory& given, const Pose& sensor_from_body) {
   std::vector<StampedPose> poses;
   for (const StampedPose& pose : given.poses()) {
@@ -162,7 +162,7 @@ RunSummary run_external(const ExternalProgram& program, const RunRequest& reques
   const fs::path left = output / "trajectory.tum";
   if (!fs::exists(left)) {
     throw InputError(program.name, "left no trajectory.tum in {output}",
-                     "see docs/external_slam.md; what it said is in program.log");
+                     "see docs/external_slam.md; its output is in program.log");
   }
   RunFiles files;
   files.trajectory =

@@ -10,17 +10,17 @@
 
 namespace lidarena {
 
-/// File of a run with what the external program printed.
+/// File in a RUN folder that holds what the external program printed.
 inline constexpr const char* kProgramLog = "program.log";
 
-/// Lets a program of someone else's run over the dataset that `request` names, and writes the RUN
-/// folder `out` from what it leaves, so that it can be scored like an algorithm of ours. The
-/// program gets a recording of the one LiDAR and the IMU beside it, without the truth, and its
-/// command line with {input} (the recording: a file, or a folder of sweeps), {output} (an empty
-/// folder), {sensor} (the LiDAR's id) and {threads} replaced. It must leave trajectory.tum in
-/// {output}, poses of what `program.pose_of` says at the scans' stamps or as often as it likes, and
-/// may leave map.ply or map.pcd. What it prints goes to program.log. Throws Error when it ends
-/// otherwise than with exit code 0, InputError when what it left cannot be read.
+/// Runs an external program over the dataset that `request` names and writes the RUN folder `out`
+/// from its results, so that it can be scored like a built-in algorithm. The program gets a
+/// recording of the chosen LiDAR and the IMU beside it, without the truth. In its command line,
+/// {input} (the recording: a file, or a folder of sweeps), {output} (an empty folder), {sensor}
+/// (the LiDAR's id) and {threads} are replaced. It must write trajectory.tum to {output}: poses of
+/// the frame `program.pose_of`, at the scans' stamps or any others. It may write map.ply or
+/// map.pcd. What it prints goes to program.log. Throws Error if its exit code is not 0, InputError
+/// if its files cannot be read.
 RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
                         const std::filesystem::path& out, const Parallel& parallel, LogSink& log);
 

@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr Time kTruthStep = std::chrono::milliseconds(1);
 
-/// Everything that makes measurements, kept alive together.
+/// All objects that a simulation refers to, owned together.
 struct Scene {
   WorldModel model;  ///< its mesh is moved into `world`
   std::unique_ptr<World> world;
@@ -53,7 +53,7 @@ std::unique_ptr<Scene> make_scene(WorldModel model, const fs::path& flight_file,
   return scene;
 }
 
-/// An event source that owns the scene it measures.
+/// An event source that owns the scene it simulates.
 class FlownSource : public EventSource {
  public:
   FlownSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
@@ -67,7 +67,7 @@ class FlownSource : public EventSource {
   std::unique_ptr<EventSource> events_;
 };
 
-/// What the table of rays of a dataset's n-th sensor is called there.
+/// Name, in a dataset, of the ray table of its n-th sensor.
 std::string pattern_name(std::size_t sensor) { return fmt::format("pattern_{}.csv", sensor); }
 
 Json manifest_of(const SimulateRequest& request, const Scene& scene) {
@@ -91,7 +91,7 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"routes", routes}}}};
 }
 
-/// Writes the truth of the scored returns alone.
+/// Writes only the truth of the scored returns.
 class ScoredTruthWriter : public ScanTruthSink {
  public:
   ScoredTruthWriter(ScanTruthSink& writer, std::size_t most) : writer_(writer), most_(most) {}
@@ -156,15 +156,15 @@ void copy_over(const fs::path& from, const fs::path& to) {
   fs::copy_file(from, to, fs::copy_options::overwrite_existing);
 }
 
-/// Copies the flight's file into the dataset, and the recording that it replays to the same place
-/// relative to it, so that the dataset can be flown anew wherever it is.
+/// Copies the flight's file into the dataset, and the recording that it replays to the same
+/// relative path, so that the dataset can be simulated again after it was moved.
 void copy_flight(const fs::path& flight, const fs::path& out) {
   if (flight.extension() == ".yaml") {
     const fs::path replay = load_config<FlightConfig>(flight).replay;
     if (replay.is_relative() && !replay.empty()) {
       if (*replay.lexically_normal().begin() == "..") {
         throw InputError(flight.string(), "replays a file above its own folder",
-                         "put the recording beside it, or name it by its full path");
+                         "put the recording beside the flight's file, or give its full path");
       }
       copy_over(flight.parent_path() / replay, out / replay);
     }
@@ -172,7 +172,7 @@ void copy_flight(const fs::path& flight, const fs::path& out) {
   copy_over(flight, out / ("flight" + flight.extension().string()));
 }
 
-/// Copies the tables of rays that sensors fire, likewise.
+/// Copies the sensors' ray tables into the dataset, for the same reason.
 void copy_patterns(const std::vector<SensorConfig>& sensors, const fs::path& out) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (!sensors[i].pattern_file.empty()) {
@@ -192,7 +192,7 @@ double path_length(const Scene& scene) {
   return length;
 }
 
-/// What the LiDAR `sensor` hits, from a flight that is flown for it.
+/// What the LiDAR `sensor` hits, found by simulating the flight again.
 class FlownTruth : public ScanTruthSource, private ScanTruthSink {
  public:
   FlownTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
@@ -220,7 +220,7 @@ class FlownTruth : public ScanTruthSource, private ScanTruthSink {
 };
 
 std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& manifest) {
-  LogSink silent;  // the flight was described when the dataset was made
+  LogSink silent;  // its messages were logged when the dataset was made
   const Json& simulation = manifest.at("simulation");
   WorldModel model;
   model.name = (folder / "world.ply").string();
@@ -240,7 +240,7 @@ std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& man
                     std::move(sensors), options, silent);
 }
 
-/// The manifest of a dataset that is one alone, to be flown; null for any other.
+/// The manifest of a dataset without measurements, which has to be simulated; null for any other.
 Json manifest_to_fly(const fs::path& folder) {
   const fs::path file = folder / "manifest.json";
   if (!fs::exists(file) || has_measurements(folder)) return nullptr;
@@ -248,7 +248,7 @@ Json manifest_to_fly(const fs::path& folder) {
   return manifest.contains("simulation") ? manifest : nullptr;
 }
 
-/// A dataset that is a manifest alone, as a source of events.
+/// Opens a dataset without measurements; its events are simulated.
 Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::string& sensor,
                      const Parallel& parallel) {
   std::unique_ptr<Scene> scene = scene_of_manifest(folder, manifest);
@@ -262,7 +262,7 @@ Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::st
   return dataset;
 }
 
-/// Where the scored returns of a dataset are: in a folder of their own, else in the dataset.
+/// Where the scored returns of a dataset are: in its folder `scored`, else in the dataset itself.
 fs::path scored_place(const fs::path& dataset) {
   const fs::path folder = dataset / kScoredFolder;
   return fs::exists(folder / "manifest.json") ? folder : dataset;
@@ -283,10 +283,10 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   options.duration = from_seconds(request.seconds);
   options.noise = request.noise;
 
-  // The flight is judged before anything is written.
+  // The flight is checked before anything is written.
   const auto scene = make_scene(std::move(model), request.flight, std::move(sensors), options, log);
   if (request.seconds > 0 && options.duration > scene->flight->duration()) {
-    log.warn(fmt::format("the flight ends after {:.1f} s, before the {:.1f} s asked for",
+    log.warn(fmt::format("the flight ends after {:.1f} s; {:.1f} s were requested",
                          to_seconds(scene->flight->duration()), request.seconds));
   }
   SimulateSummary summary;
@@ -295,7 +295,7 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   summary.path_m = path_length(*scene);
 
   fs::create_directories(out);
-  // What an older dataset left here must not be taken for part of this one.
+  // Files of an older dataset in this folder must not be taken for part of this one.
   for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
   save_ply(out / "world.ply", scene->world->mesh());
   copy_flight(request.flight, out);
@@ -328,7 +328,7 @@ Dataset open_scored_returns(const fs::path& dataset, const ReadOptions& options,
                             const Parallel& parallel) {
   const fs::path place = scored_place(dataset);
   Dataset scored = open_any_dataset(place, options, parallel);
-  if (place != dataset) return scored;  // its own folder holds no others
+  if (place != dataset) return scored;  // that folder holds scored returns only
   const std::size_t most = scored_returns(scored.scan_count.value_or(0));
   scored.events = std::make_unique<ScoredEvents>(std::move(scored.events), most);
   return scored;

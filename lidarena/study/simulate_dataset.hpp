@@ -15,18 +15,18 @@
 
 namespace lidarena {
 
-/// What `lidarena simulate` is asked for. Files are resolved already.
+/// Input of `lidarena simulate`, with names resolved to files.
 struct SimulateRequest {
   std::filesystem::path world;
   std::filesystem::path flight;
   std::vector<std::filesystem::path> sensors;
-  std::uint64_t seed = 1;  ///< of all noise; a procedural world's own seed stands in its file
+  std::uint64_t seed = 1;  ///< of all noise; the seed of a procedural world is in its own file
   double seconds = 0.0;    ///< 0 = the whole flight
   bool noise = true;
-  std::optional<ScanMode> mode;  ///< of all sensors; empty = as their files say
-  bool data = true;              ///< false: a manifest alone, flown anew whenever it is used
-  bool truth = false;            ///< also what each point hit, as /truth/SENSOR/hits
-  bool scored_only = false;      ///< of each scan the returns alone that scoring looks at
+  std::optional<ScanMode> mode;  ///< of all sensors; empty = as in their files
+  bool data = true;              ///< false: a manifest only; simulated whenever it is read
+  bool truth = false;            ///< also write what each point hit, as /truth/SENSOR/hits
+  bool scored_only = false;      ///< write only the returns that scoring uses
   WriteOptions write;            ///< format and dialect of the measurements
 };
 
@@ -37,30 +37,30 @@ struct SimulateSummary {
   std::size_t points = 0;
   std::size_t imu_samples = 0;
   double seconds = 0.0;  ///< of flight
-  double path_m = 0.0;   ///< flown
+  double path_m = 0.0;   ///< length of the flown path
 };
 
-/// Flies the request and writes the dataset folder `out`: world.ply, truth.tum (1 kHz), data.mcap
-/// (or as `write` says) unless it is a manifest alone, and manifest.json last.
+/// Simulates the flight and writes the dataset folder `out`: world.ply, truth.tum (1 kHz),
+/// data.mcap (or the format of `write`) if `data` is set, and manifest.json last.
 SimulateSummary simulate_dataset(const SimulateRequest& request, const std::filesystem::path& out,
                                  const Parallel& parallel, LogSink& log);
 
-/// open_dataset(), and also datasets that are a manifest alone: these are flown on the fly, with
-/// the same points as if they had been written.
+/// Like open_dataset(), but also opens datasets without measurements: these are simulated while
+/// they are read, with the same points as if they had been written.
 Dataset open_any_dataset(const std::filesystem::path& path, const ReadOptions& options,
                          const Parallel& parallel);
 
-/// Folder in a dataset that is a manifest alone: its scored returns and what they hit, written once
-/// so that the flight need not be flown for each score. May be deleted at any time.
+/// Folder in a dataset without measurements: its scored returns and what they hit, written once so
+/// that the flight is not simulated again for each scoring. May be deleted at any time.
 inline constexpr const char* kScoredFolder = "scored";
 void write_scored_returns(const SimulateRequest& request, const std::filesystem::path& dataset,
                           const Parallel& parallel, LogSink& log);
 
-/// The returns of the dataset that scoring looks at (see scored_returns.hpp), from their own folder
-/// where there is one: the same either way.
+/// The returns of the dataset that scoring uses (see scored_returns.hpp), read from the folder
+/// `scored` if it exists; the returns are the same either way.
 Dataset open_scored_returns(const std::filesystem::path& dataset, const ReadOptions& options,
                             const Parallel& parallel);
-/// What they hit; null where neither the dataset knows nor the flight can be flown again.
+/// What they hit; null if the dataset does not contain it and cannot be simulated.
 std::unique_ptr<ScanTruthSource> open_scored_truth(const std::filesystem::path& dataset,
                                                    const std::string& sensor,
                                                    const Parallel& parallel);

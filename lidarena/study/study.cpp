@@ -32,12 +32,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kRequest = "request.json";  ///< what a finished stage was asked for
+constexpr const char* kRequest = "request.json";  ///< the request of a finished stage
 constexpr auto kPollPeriod = std::chrono::milliseconds(50);
 
 std::string digest_of(const fs::path& file) { return md5_of(read_bytes(file)); }
 
-/// True when the stage in `folder` was done with the very same request before.
+/// True if the stage in `folder` is complete and answers exactly this request.
 bool done_before(const fs::path& folder, const Json& request) {
   if (!fs::exists(folder / kRequest)) return false;
   try {
@@ -47,17 +47,18 @@ bool done_before(const fs::path& folder, const Json& request) {
   }
 }
 
-/// Nobody else works in the folder while this lives.
+/// Holds an exclusive lock on the folder during its lifetime.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder) {
     const fs::path file = folder / "study.lock";
     fd_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-    if (fd_ < 0) throw InputError(file.string(), std::string("cannot be made: ") + strerror(errno));
+    if (fd_ < 0)
+      throw InputError(file.string(), std::string("cannot be created: ") + strerror(errno));
     if (!lock_within_seconds()) {
       close(fd_);
-      throw InputError(folder.string(), "another study is at work here",
-                       "wait for it, or give --out another folder");
+      throw InputError(folder.string(), "another study is running in this folder",
+                       "wait until it ends, or give another folder with --out");
     }
   }
   ~FolderLock() { close(fd_); }
@@ -65,7 +66,7 @@ class FolderLock {
   FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  /// The processes of a study that was just killed take a moment to end.
+  /// Retries for 2 s: the processes of a study that was just killed take a moment to end.
   bool lock_within_seconds() const {
     for (int attempt = 0; attempt < 40; ++attempt) {
       if (flock(fd_, LOCK_EX | LOCK_NB) == 0) return true;
@@ -77,7 +78,7 @@ class FolderLock {
   int fd_ = -1;
 };
 
-/// Passes on what happens, but no progress: several jobs would write over each other's.
+/// Passes on messages but no progress: the progress lines of several jobs would be mixed up.
 class MessagesOnly : public LogSink {
  public:
   explicit MessagesOnly(LogSink& log) : log_(log) {}
@@ -103,7 +104,7 @@ DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec, const Co
   plan.request.seed = cell.seed;
   plan.request.seconds = cell.seconds;
   plan.request.mode = cell.mode;
-  plan.request.data = false;  // flown anew for each run: no gigabytes on the disk
+  plan.request.data = false;  // simulated again for each run, to save gigabytes of disk space
   plan.key = {{"program", program},
               {"world", digest_of(plan.request.world)},
               {"flight", digest_of(plan.request.flight)},
@@ -115,7 +116,7 @@ DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec, const Co
   return plan;
 }
 
-/// The sensor's id in the dataset: ids follow the order of the sensors.
+/// The sensor's id in the dataset, whose LiDARs are in the order of the study's sensors.
 std::string lidar_id_of(const fs::path& dataset, const StudySpec& spec, const std::string& sensor) {
   const Json manifest = read_json(dataset / "manifest.json");
   for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
@@ -135,12 +136,12 @@ void record_failure(const fs::path& run, const PlannedRun& cell, const std::stri
                                      {"failed", reason}});
 }
 
-/// One stage of the study: a flight to be planned, its returns to be written for scoring, or a cell
-/// to be run and scored.
+/// One stage of the study: planning a flight, writing its returns for scoring, or running and
+/// scoring a cell.
 struct Stage {
   std::string name;
-  const PlannedRun* cell = nullptr;  ///< none: a flight, or its returns
-  bool for_runs_alone = false;       ///< of no use once all cells are done
+  const PlannedRun* cell = nullptr;  ///< null for a flight or its returns
+  bool for_runs_alone = false;       ///< skipped once all cells of the dataset are done
   std::string dataset;
   fs::path folder;
   Json key;
@@ -148,7 +149,7 @@ struct Stage {
   double weight = 1.0;  ///< expected seconds
 };
 
-/// One study in progress: hands stages to processes, in order, as soon as what they need is there.
+/// Runs one study: starts the stages in order, each in its own process, once its flight is planned.
 class Runner {
  public:
   Runner(const StudySpec& spec, const ConfigFolder& configs, fs::path out,
@@ -273,7 +274,7 @@ class Runner {
     });
   }
 
-  /// Whether a cell of the dataset is waiting that was not done before.
+  /// Whether a cell of the dataset is waiting that is not complete.
   bool has_cells_left(const std::string& dataset) const {
     return std::ranges::any_of(waiting_, [&](const Stage& stage) {
       return stage.cell != nullptr && stage.dataset == dataset &&
@@ -287,7 +288,7 @@ class Runner {
     });
   }
 
-  /// Takes stages from the queue until one has to be worked at.
+  /// Takes stages from the queue until one has work to do, and starts that one.
   void start_next(Slot& slot) {
     while (true) {
       const auto next = std::ranges::find_if(
@@ -302,7 +303,7 @@ class Runner {
         finish(stage, {});
       } else if (done_before(stage.folder, stage.key)) {
         outcome_.reused += stage.cell != nullptr ? 1 : 0;
-        weight_of_all_ -= stage.weight;  // tells nothing of how long the others will take
+        weight_of_all_ -= stage.weight;  // its time says nothing about the others
         finish(stage, {});
       } else {
         start(slot);
@@ -348,7 +349,8 @@ class Runner {
     weight_left_ -= stage.weight;
     if (stage.cell == nullptr) {
       if (!reason.empty() && stage.for_runs_alone) {
-        log_.warn(fmt::format("{} failed ({}): flown anew for each score", stage.name, reason));
+        log_.warn(
+            fmt::format("{} failed ({}): simulating again for each scoring", stage.name, reason));
         fs::remove_all(stage.folder);
       } else if (!reason.empty()) {
         broken_[stage.dataset] = "flight: " + reason;
@@ -369,7 +371,7 @@ class Runner {
     outcome_.diverged += manifest.at("summary").at("diverged").get<bool>() ? 1 : 0;
   }
 
-  /// The study's own progress: between cells where a job shows its own, else all the time.
+  /// Shows the study's progress; with one job only between stages, since a stage shows its own.
   void show_progress() {
     if (slots_.size() == 1 && is_busy()) return;
     const double done = weight_of_all_ - weight_left_;
@@ -382,7 +384,7 @@ class Runner {
   LogSink& log_;
   std::vector<Slot> slots_;
   std::vector<Stage> waiting_;
-  std::map<std::string, std::string> broken_;  ///< datasets that could not be flown, and why
+  std::map<std::string, std::string> broken_;  ///< datasets whose flight failed, and why
   double weight_of_all_ = 0.0, weight_left_ = 0.0;
   std::size_t cells_ = 0;
   std::chrono::steady_clock::time_point begin_;

@@ -42,7 +42,7 @@ void check_algorithm(const StudySpec& spec, const std::string& text) {
   }
   const std::string nearest = nearest_word(request.algorithm, names);
   throw InputError(
-      request.algorithm, "is no algorithm of ours",
+      request.algorithm, "is not a known algorithm",
       nearest.empty() ? "see: lidarena list algorithms" : "did you mean '" + nearest + "'?");
 }
 
@@ -53,13 +53,13 @@ void check_external(const StudySpec& spec) {
     }
     for (const AlgorithmInfo& info : list_algorithms()) {
       if (info.name == program.name) {
-        throw InputError("study", "calls an external program '" + program.name +
-                                      "', which is an algorithm of ours");
+        throw InputError("study", "names an external program '" + program.name +
+                                      "', which is a built-in algorithm");
       }
     }
     if (program.name.find_first_of("/:") != std::string::npos) {
-      throw InputError("study", "names an external program '" + program.name + "'",
-                       "without '/' and ':', please: a folder will be called so");
+      throw InputError("study", "has an external program named '" + program.name + "'",
+                       "use a name without '/' and ':', since a folder is named after it");
     }
   }
 }
@@ -147,12 +147,12 @@ Shard parse_shard(const std::string& text) {
                     number(all.substr(slash + 1), shard.of) && 1 <= shard.part &&
                     shard.part <= shard.of;
   if (!fits)
-    throw InputError("--shard " + text, "is no part of a study", "write K/N, from 1/N to N/N");
+    throw InputError("--shard " + text, "is not a part of a study", "write K/N, from 1/N to N/N");
   return shard;
 }
 
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
-  // Measured over flights of 20, 60 and 300 s: methods differ by some 3 times in the middle one.
+  // Measured on flights of 20, 60 and 300 s; at 60 s, algorithms differ by a factor of about 3.
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
@@ -162,7 +162,7 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   if (seconds == 0.0 && flight.extension() == ".yaml") {
     seconds = load_config<FlightConfig>(flight).duration_s;
   }
-  constexpr double kUnknown = 120.0;  // once through, or a tour not planned yet
+  constexpr double kUnknown = 120.0;  // s, if the flight's file gives no duration
   if (seconds == 0.0) seconds = kUnknown;
   const double shots =
       seconds * static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
@@ -172,7 +172,7 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
 
 std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
                                  const ConfigFolder& configs) {
-  std::vector<double> middles;  // of each cell, in seconds since the study's begin
+  std::vector<double> middles;  // of each cell, in seconds since the study's start
   double end = 0.0;
   for (const PlannedRun& cell : cells) {
     const double seconds = estimate(cell, configs).seconds;

@@ -27,7 +27,7 @@ struct StudyScene {
   }
 };
 
-/// What moves along the poses that a program gives.
+/// The frame whose poses a program gives.
 enum class PoseOf { kBody, kLidar, kImu };
 template <>
 struct EnumNames<PoseOf> {
@@ -36,7 +36,7 @@ struct EnumNames<PoseOf> {
                                     std::pair{"imu", PoseOf::kImu}};
 };
 
-/// A program of someone else's, run by a command line. See docs/external_slam.md.
+/// A SLAM program that is not part of lidarena, run by a command line. See docs/external_slam.md.
 struct ExternalProgram {
   std::string name;
   std::string command;
@@ -46,15 +46,15 @@ struct ExternalProgram {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("name", self.name, "", "what the tables call it");
+    v("name", self.name, "", "name in the tables");
     v("command", self.command, "", "command line, with {input}, {output}, {sensor}, {threads}");
-    v("input", self.input, "", "form in which it gets the dataset");
-    v("dialect", self.dialect, "", "units and layouts: ours or those of the sensors' drivers");
-    v("pose_of", self.pose_of, "", "what its poses are of: the body, the LiDAR or the IMU");
+    v("input", self.input, "", "format in which it gets the dataset");
+    v("dialect", self.dialect, "", "units and layouts: SI or those of the sensors' drivers");
+    v("pose_of", self.pose_of, "", "frame of its poses: of the body, the LiDAR or the IMU");
   }
 };
 
-/// What one run may use; a run beyond it is stopped and becomes a failed row.
+/// Limits of one run; a run that exceeds one is stopped and becomes a failed row.
 struct RunLimits {
   double minutes = 0.0;
   double memory_mb = 0.0;
@@ -62,9 +62,9 @@ struct RunLimits {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("minutes", self.minutes, "min", "longest time of one run, 0 = no limit", at_least(0));
-    v("memory_mb", self.memory_mb, "MB", "most memory of one run, 0 = no limit", at_least(0));
-    v("stall_seconds", self.stall_seconds, "s", "longest idle time, 0 = no limit", at_least(0));
+    v("minutes", self.minutes, "min", "maximum time of one run, 0 = no limit", at_least(0));
+    v("memory_mb", self.memory_mb, "MB", "maximum memory of one run, 0 = no limit", at_least(0));
+    v("stall_seconds", self.stall_seconds, "s", "maximum idle time, 0 = no limit", at_least(0));
   }
 };
 
@@ -75,7 +75,7 @@ struct StudySpec {
   std::vector<std::string> sensors;
   std::vector<std::string> algorithms;  ///< NAME or NAME:PRESET, or the name of an external program
   std::vector<std::uint64_t> seeds = {1};
-  std::vector<ScanMode> modes;  ///< of all sensors; none = as their files say
+  std::vector<ScanMode> modes;  ///< of all sensors; empty = as in their files
   std::vector<ExternalProgram> external;
   RunLimits limits;
   bool keep_maps = true;
@@ -87,10 +87,10 @@ struct StudySpec {
     v("sensors", self.sensors, "", "names in configs/sensors, or files");
     v("algorithms", self.algorithms, "", "NAME or NAME:PRESET, or an external program's name");
     v("seeds", self.seeds, "", "seeds of the noise");
-    v("modes", self.modes, "", "timing modes of the sensors; none = as their files say");
-    v("external", self.external, "", "programs of others that run by a command line");
-    v("limits", self.limits, "", "what one run may use");
-    v("keep_maps", self.keep_maps, "", "off: a run's maps go once they are scored, figures stay");
+    v("modes", self.modes, "", "timing modes of the sensors; none = as in their files");
+    v("external", self.external, "", "external SLAM programs, run by a command line");
+    v("limits", self.limits, "", "limits of one run");
+    v("keep_maps", self.keep_maps, "", "off: delete a run's maps after scoring; metrics stay");
   }
 };
 
@@ -101,7 +101,7 @@ struct PlannedRun {
   std::string world, flight, sensor, algorithm, preset;
   std::uint64_t seed = 1;
   double seconds = 0.0;          ///< of flight, 0 = all of it
-  std::optional<ScanMode> mode;  ///< of the sensors; none = as their files say
+  std::optional<ScanMode> mode;  ///< of the sensors; empty = as in their files
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -118,11 +118,11 @@ struct PlannedRun {
   }
 };
 
-/// The program of this name, or none.
+/// The external program of this name, or null.
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name);
 
-/// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError for
-/// names that do not exist, before any work starts.
+/// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError if the
+/// study is incomplete or contradictory, or a name in it does not exist.
 std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs);
 
 /// Part K of N of a plan, 1 <= K <= N.
@@ -132,16 +132,16 @@ struct Shard {
 };
 /// From "K/N"; throws InputError otherwise.
 Shard parse_shard(const std::string& text);
-/// What a cell is expected to take, from the length of its flight and its sensor's shots.
+/// Expected cost of a cell, from the length of its flight and its sensor's shots per second.
 struct CellEstimate {
-  double seconds = 0.0;  ///< of two processor cores, as seen once; algorithms differ by times three
-  double record_mb = 0.0;  ///< trajectories, figures, its share of the flight
-  double maps_mb = 0.0;    ///< on top, where they are kept
+  double seconds = 0.0;    ///< on two cores; algorithms differ by a factor of 3
+  double record_mb = 0.0;  ///< trajectories, metrics, its share of the flight
+  double maps_mb = 0.0;    ///< in addition, if they are kept
 };
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 
-/// The cells of a part: neighbors, so that few flights are flown by two parts, and as many as are
-/// expected to take an N-th of the time.
+/// The cells of a part: consecutive ones, so that few flights are simulated by two parts, and as
+/// many as take about an N-th of the expected time.
 std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
                                  const ConfigFolder& configs);
 

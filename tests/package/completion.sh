@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: BSD-3-Clause
-# Completion as a shell calls it, and the manual page as man reads it. usage: completion.sh PROGRAM
+# Tests bash completion (called as a shell does) and the manual page (formatted by man).
+# usage: completion.sh PROGRAM
 set -euo pipefail
 PATH=$(dirname "$1"):$PATH
 source <(lidarena completion)
 
-# expect "words so far" WORD...: all of them are offered for the last word
+# expect LINE WORD...: every WORD must be offered as completion of the last word of LINE
 expect() {
   local line=$1 word
   shift
@@ -13,7 +14,7 @@ expect() {
   [ "${line: -1}" != " " ] || COMP_WORDS+=("")
   COMP_CWORD=$((${#COMP_WORDS[@]} - 1))
   COMPREPLY=()
-  _lidarena || true  # compgen is 1 where nothing matches
+  _lidarena || true  # compgen returns 1 if nothing matches
   for word in "$@"; do
     printf '%s\n' "${COMPREPLY[@]}" | grep -qxF -- "$word" || {
       echo "'$line' does not offer '$word' but: ${COMPREPLY[*]}" >&2
@@ -37,5 +38,5 @@ if command -v man >/dev/null; then
 fi
 page=$(lidarena man)
 for verb in simulate run evaluate study report view convert info list schema; do
-  [[ $page == *".SS $verb"* ]] || { echo "the manual page lacks $verb" >&2; exit 1; }
+  [[ $page == *".SS $verb"* ]] || { echo "the manual page does not contain $verb" >&2; exit 1; }
 done

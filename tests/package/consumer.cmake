@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Installs this build below WORK, moves it, and builds and runs the consumer against it: nothing of
-# the source or build tree may be needed, nor the place that was installed to.
+# Installs this build below WORK, moves it, and builds and runs the consumer against it. It must need
+# neither the source and build trees nor the original installation folder.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY)
 endfunction()
@@ -15,6 +15,6 @@ run(${CMAKE_COMMAND} -S ${SOURCE} -B ${WORK}/consumer -G ${GENERATOR} -DCMAKE_BU
 run(${CMAKE_COMMAND} --build ${WORK}/consumer)
 run(${WORK}/consumer/consumer)
 
-# the installed program finds its own configurations (from a folder that is not below ours)
+# the installed program must find its own configurations (run from outside the repository)
 execute_process(COMMAND ${WORK}/moved/bin/lidarena info livox_mid360 WORKING_DIRECTORY /
                 COMMAND_ERROR_IS_FATAL ANY)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Makes the Debian packages of this build and unpacks them: the program must name what it needs,
-# and must run from the unpacked tree.
+# Builds the Debian packages and unpacks them: the program's package must list the libraries that it
+# needs, and the program must run from the unpacked tree.
 function(run)
   execute_process(COMMAND ${ARGN} COMMAND_ERROR_IS_FATAL ANY OUTPUT_VARIABLE out
-                  WORKING_DIRECTORY /)  # not below the repository, whose configs/ would be found
+                  WORKING_DIRECTORY /)  # outside the repository, whose configs/ would be found
   set(out "${out}" PARENT_SCOPE)
 endfunction()
 
@@ -14,7 +14,7 @@ file(GLOB development ${WORK}/packages/liblidarena-dev_*.deb)
 run(dpkg-deb --field ${program} Depends)
 foreach(library IN ITEMS libc6 libyaml-cpp libtbb libpng16)
   if(NOT out MATCHES ${library})
-    message(FATAL_ERROR "the package does not say that it needs ${library}: ${out}")
+    message(FATAL_ERROR "the package does not list its dependency ${library}: ${out}")
   endif()
 endforeach()
 foreach(package IN ITEMS ${program} ${development})
@@ -25,11 +25,11 @@ foreach(file IN ITEMS share/doc/lidarena/copyright include/lidarena/world/world.
                       share/man/man1/lidarena.1 share/lidarena/schemas/sensor.schema.json
                       share/bash-completion/completions/lidarena)
   if(NOT EXISTS ${WORK}/unpacked/usr/${file})
-    message(FATAL_ERROR "the packages lack ${file}")
+    message(FATAL_ERROR "the packages do not contain ${file}")
   endif()
 endforeach()
 
-# the Python module, where it was built, with the configurations of the program's package
+# if the Python module was built, it must find the configurations of the program's package
 file(GLOB python ${WORK}/packages/python3-lidarena_*.deb)
 if(python)
   run(dpkg-deb --extract ${python} ${WORK}/unpacked)

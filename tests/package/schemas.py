@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every shipped YAML keeps to its schema, and what the program refuses the schema refuses too.
+"""Every shipped YAML is valid under its schema, and schemas reject what the program rejects.
 
 usage: schemas.py PROGRAM CONFIGS; exits 77 (skipped) without PyYAML and jsonschema.
 """
@@ -38,7 +38,7 @@ def kind_of(file):
 
 
 def refused(kind, document, why):
-    assert not schema(kind).is_valid(document), f"{kind}: {why} is not refused"
+    assert not schema(kind).is_valid(document), f"{kind}: {why} is not rejected"
 
 
 checked = 0
@@ -52,15 +52,15 @@ for file in sorted(CONFIGS.rglob("*.yaml")):
     checked += 1
 assert checked > 25, checked
 
-refused("sensor", {"max_range_m": "far"}, "text for a number")
-refused("sensor", {"mode": "rollin"}, "a word that is none of the allowed")
+refused("sensor", {"max_range_m": "far"}, "text instead of a number")
+refused("sensor", {"mode": "rollin"}, "a word that is not allowed")
 refused("sensor", {"rate_hz": 0}, "a value out of range")
-refused("sensor", {"imu": {"rate_hz": -5}}, "a value of a group out of range")
-refused("study", {"seeds": [1, -2]}, "a list's element out of range")
-refused("flight", {"waypoints": [[1, 2]]}, "a point of two numbers")
+refused("sensor", {"imu": {"rate_hz": -5}}, "a value out of range in a nested group")
+refused("study", {"seeds": [1, -2]}, "a list element out of range")
+refused("flight", {"waypoints": [[1, 2]]}, "a point with two coordinates")
 
 algorithms = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], check=True,
                                        capture_output=True, text=True).stdout)
 for algorithm in algorithms:
     assert schema(algorithm["name"]).schema["properties"], algorithm
-print(f"{checked} files keep to their schemas")
+print(f"{checked} files are valid under their schemas")

@@ -100,7 +100,7 @@ TEST(TopView, APointFallsWhereItsCoordinatesSay) {
   const std::string marker = "base64,";
   const std::size_t begin = svg.find(marker) + marker.size();
   const std::string text = svg.substr(begin, svg.find('\'', begin) - begin);
-  // decoded by the inverse of the tested encoder
+  // decodes base64, the inverse of the tested encoder
   std::string bytes;
   std::uint32_t group = 0;
   int bits = 0;
@@ -116,7 +116,7 @@ TEST(TopView, APointFallsWhereItsCoordinatesSay) {
   const Rgb white{255, 255, 255};
   EXPECT_EQ(image.at(106, 106), white) << "the middle of the square is empty";
   EXPECT_NE(image.at(106, 6), white) << "its far side, y = 10 m, is at the top";
-  EXPECT_NE(image.at(6, 106), white) << "its left side, x = 0";
+  EXPECT_NE(image.at(6, 106), white) << "its left side, x = 0, is on the left";
 }
 
 }  // namespace

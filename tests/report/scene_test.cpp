@@ -20,8 +20,8 @@ using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::SizeIs;
 
-/// Points on a lattice of centimeters, shuffled over 20 x 20 x 2 m by a multiplier without a common
-/// factor; each point's distance says which point it is.
+/// Points on a 1 cm lattice, scattered over 20 x 20 x 2 m by a multiplier that is coprime to the
+/// modulus; each point's distance is its index.
 SceneCloud lattice_cloud(std::size_t count) {
   SceneCloud cloud;
   for (std::size_t i = 0; i < count; ++i) {
@@ -110,7 +110,7 @@ TEST(SceneBlocks, TheFirstBlockIsAFairSampleOfTheWholeCloud) {
   const std::vector<Unpacked> half = unpacked(packed, 1);
   EXPECT_NEAR(static_cast<double>(half.size()), kCount / 2.0,
               static_cast<double>(cloud.at("chunks").size()));
-  // Each tenth of the points' numbers holds a tenth of the sample: binomial, five sigmas.
+  // Each tenth of the points' indices has a tenth of the sample: binomial, five sigmas.
   std::vector<double> tenths(10, 0.0);
   for (const Unpacked& u : half)
     tenths[static_cast<std::size_t>(*u.value / kCount * 9.999999)] += 1;
@@ -166,7 +166,7 @@ TEST(SceneFiles, DistancesToAPlaneAreHeights) {
   measure_distances(scene, Parallel(1));
   EXPECT_FLOAT_EQ(scene.clouds[0].distance[0], 0.25F);
   EXPECT_FLOAT_EQ(scene.clouds[0].distance[1], 1.0F);
-  EXPECT_TRUE(std::isnan(scene.clouds[0].distance[2])) << "beyond the reach of 2 m";
+  EXPECT_TRUE(std::isnan(scene.clouds[0].distance[2])) << "beyond the maximum distance of 2 m";
 }
 
 TEST(SceneFiles, ACloudFarFromTheOriginKeepsItsCentimeters) {

@@ -78,7 +78,7 @@ TEST(PaperTables, OnThePapersOwnFiguresTheMarksAreThePapers) {
 }
 
 TEST(PaperTables, Table3IsDividedByTheHouse) {
-  // Table 2 gives Table 3 (3.3, 32.5, 17.9, 55.8 %) only so, within the rounding of its figures.
+  // Only this formula gives Table 3 (3.3, 32.5, 17.9, 55.8 %) from Table 2, within its rounding.
   EXPECT_NEAR(drift_increase_of_the_paper(2.61, 2.70), 3.3, 0.3);
   EXPECT_NEAR(drift_increase_of_the_paper(1.08, 1.61), 32.5, 0.5);
   EXPECT_NEAR(drift_increase_of_the_paper(1.24, 1.51), 17.9, 0.4);
@@ -109,7 +109,8 @@ TEST(Claims, OneContraryFigureOverthrowsAClaimAndMissingRunsLeaveItOpen) {
   }
   EXPECT_EQ(paper_claims(results, "original").at(0).holds, false);
   std::erase_if(results.rows, [](const ResultRow& r) { return r.algorithm != "fast_lio2"; });
-  EXPECT_FALSE(paper_claims(results, "original").at(0).holds) << "alone, it beats nobody";
+  EXPECT_FALSE(paper_claims(results, "original").at(0).holds)
+      << "there is no other algorithm to compare with";
 }
 
 TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
@@ -130,10 +131,10 @@ TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
   };
   const Claim lost = about("KISS-ICP's Cave map");
   EXPECT_FALSE(lost.holds);
-  EXPECT_THAT(lost.evidence, testing::ElementsAre(HasSubstr("lost with either sensor")));
-  const Claim cure = about("cures the Cave");
+  EXPECT_THAT(lost.evidence, testing::ElementsAre(HasSubstr("tracking lost with both sensors")));
+  const Claim cure = about("improves the Cave map");
   EXPECT_FALSE(cure.holds);
-  EXPECT_THAT(cure.evidence, testing::Each(HasSubstr("nothing to cure")));
+  EXPECT_THAT(cure.evidence, testing::Each(HasSubstr("nothing to improve")));
   const Claim diverged = about("ten times the outliers");
   EXPECT_FALSE(diverged.holds);
   EXPECT_THAT(diverged.evidence, testing::Each(HasSubstr("ct_icp diverged")));
@@ -165,7 +166,7 @@ TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
     results.rows.push_back(row("cave", "livox_mid360", "ct_icp", rpe, 2.0 * rpe));
     results.rows.back().mode = mode;
   }
-  results.rows.push_back(row("cave", "livox_mid360", "kiss_icp", 9.0, 9.0));  // of no mode
+  results.rows.push_back(row("cave", "livox_mid360", "kiss_icp", 9.0, 9.0));  // without a mode
   const std::vector<ReportTable> tables = timing_tables(results);
   ASSERT_EQ(tables.size(), 3U);
   const ReportTable& drift = table_called(tables, "modes-drift-cave-original");
@@ -222,7 +223,7 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   const ReportTable runs = runs_table(results, "cave");
   ASSERT_EQ(runs.rows.at(2).size(), runs.head.size());
   EXPECT_EQ(runs.rows[2][1].text, "diverged: estimate left the world");
-  EXPECT_EQ(runs.rows[2].back().value, 12.5) << "the state takes the drift's place, no other's";
+  EXPECT_EQ(runs.rows[2].back().value, 12.5) << "the status replaces the drift only";
   EXPECT_THAT(
       commands_table(results).rows.at(0).at(1).text,
       HasSubstr("lidarena simulate --world cave --flight cave --sensor livox_mid360 --sensor "
@@ -249,7 +250,7 @@ TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
   EXPECT_NEAR(static_cast<double>(in_corner), 2250.0, 50.0);
 }
 
-/// A run that an engineer may choose: how its map lies, and how long a scan takes of 100 ms.
+/// A run with a map RMSE and a computing time per scan; the scan period is 100 ms.
 ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
                 double p95_ms) {
   ResultRow r = row("mine", sensor, algorithm, 1.0, 0.0);
@@ -278,10 +279,11 @@ TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
   EXPECT_EQ(found[3].algorithm, "lost");
   EXPECT_FALSE(found[3].keeps_track());
   const ReportSection section = decision_section(results);
-  EXPECT_THAT(section.text, HasSubstr("mine: take the dear with good; its map lies 1.5 cm"));
-  EXPECT_THAT(section.text, HasSubstr("With the cheap (0.265 kg, below 1000 EUR) good does best, "
-                                      "with 2.0 times the error of the map"));
-  EXPECT_EQ(section.tables.at(0).rows.at(3).at(1).text, "lost track in 1 of 1");
+  EXPECT_THAT(section.text,
+              HasSubstr("mine: use the dear with good: its map has an RMSE of 1.5 cm"));
+  EXPECT_THAT(section.text, HasSubstr("With the cheap (0.265 kg, below 1000 EUR), good is best, "
+                                      "with 2.0 times the map RMSE"));
+  EXPECT_EQ(section.tables.at(0).rows.at(3).at(1).text, "tracking lost in 1 of 1");
 }
 
 TEST(Decision, WhoseTimeIsNotKnownIsNotCalledUsable) {
@@ -302,7 +304,7 @@ TEST(Decision, AMapThatLiesElsewhereIsALostTrack) {
   EXPECT_EQ(found[0].algorithm, "good");
   EXPECT_FALSE(found[1].keeps_track());
   const ReportTable table = decision_section(results).tables.at(0);
-  EXPECT_EQ(table.rows.at(1).at(1).text, "lost track in 1 of 1");
+  EXPECT_EQ(table.rows.at(1).at(1).text, "tracking lost in 1 of 1");
   EXPECT_EQ(table.rows.at(1).at(2).text, "900");
 }
 
@@ -311,7 +313,8 @@ TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
   results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 1.0, 10.0)};
   results.rows[1].mode = "frozen";
   EXPECT_EQ(candidates(results, "mine").size(), 1U);
-  EXPECT_THAT(decision_section(results).text, HasSubstr("nothing of what was tried keeps track"));
+  EXPECT_THAT(decision_section(results).text,
+              HasSubstr("no combination that was tried keeps tracking"));
 }
 
 TEST(Readings, ModesOfTheSensorsStayApart) {
@@ -369,7 +372,7 @@ TEST(SimplifiedMesh, AFinePlaneBecomesCoarseAndStaysWhereItIs) {
   }
   const TriangleMesh coarse = simplified(plane, 3000);
   EXPECT_LE(coarse.triangles.size(), 3000U);
-  EXPECT_GT(coarse.triangles.size(), 300U) << "a doubled cell leaves about a quarter";
+  EXPECT_GT(coarse.triangles.size(), 300U) << "doubling the cell size leaves about a quarter";
   // vertices move by less than a cell; 3000 triangles of a 10 m square are 0.26 m wide or less than
   // twice that
   EXPECT_NEAR(coarse.area(), plane.area(), 0.15 * plane.area());

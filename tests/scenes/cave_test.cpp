@@ -13,8 +13,8 @@
 #include "lidarena/scenes/cave_field.hpp"
 #include "lidarena/scenes/cave_graph.hpp"
 #include "lidarena/world/world.hpp"
-#include "mesh_topology.hpp"
-#include "shapes.hpp"
+#include "tests/world/mesh_topology.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "shapes.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {

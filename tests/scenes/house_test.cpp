@@ -14,7 +14,7 @@
 #include "lidarena/scenes/house_shell.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/world.hpp"
-#include "shapes.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {

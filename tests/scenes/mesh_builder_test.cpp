@@ -5,7 +5,7 @@
 
 #include <numbers>
 
-#include "shapes.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {

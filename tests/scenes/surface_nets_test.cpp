@@ -6,8 +6,8 @@
 #include <functional>
 
 #include "lidarena/base/random.hpp"
-#include "mesh_topology.hpp"
-#include "shapes.hpp"
+#include "tests/world/mesh_topology.hpp"
+#include "tests/world/shapes.hpp"
 
 namespace lidarena {
 namespace {

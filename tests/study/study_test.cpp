@@ -59,7 +59,7 @@ TEST(Isolate, WorkBeyondItsTimeIsStoppedWithAReason) {
   };
   const auto begin = std::chrono::steady_clock::now();
   const IsolatedOutcome late = run_isolated(endless, {.seconds = 0.3});
-  EXPECT_THAT(late.reason, HasSubstr("not done within its limit"));
+  EXPECT_THAT(late.reason, HasSubstr("not finished within its time limit"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
@@ -83,7 +83,7 @@ TEST(Isolate, WorkThatTakesTooMuchMemoryIsStopped) {
   EXPECT_THAT(outcome.reason, HasSubstr("more than its limit of 200 MB"));
 }
 
-/// Whether a process still runs (one that ended but was not waited for does not).
+/// Whether a process still runs (a zombie, not yet waited for, does not).
 bool runs(pid_t pid) {
   std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
   std::string line;
@@ -100,7 +100,7 @@ bool ends_soon(pid_t pid) {
 }
 
 TEST(Isolate, NothingOutlivesTheProcessThatStartedIt) {
-  // A process starts work and is killed without warning; the work tells us who it is.
+  // A process starts work and is killed; the work sends its process id through the pipe.
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   const pid_t parent = fork();
@@ -213,7 +213,7 @@ TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
   EXPECT_THAT(error([](StudySpec& s) { s.seeds.clear(); }), HasSubstr("names no seeds"));
   EXPECT_THAT(error([](StudySpec& s) { s.seeds = {1, 1}; }), HasSubstr("plans two runs called"));
   EXPECT_THAT(error([](StudySpec& s) { s.external = {{.name = "kiss_icp", .command = "true"}}; }),
-              HasSubstr("which is an algorithm of ours"));
+              HasSubstr("which is a built-in algorithm"));
   EXPECT_THAT(error([](StudySpec& s) { s.external.emplace_back().name = "theirs"; }),
               HasSubstr("without a name or a command"));
 }
@@ -243,7 +243,8 @@ TEST(Plan, ShardsShareTheCellsAmongThem) {
       names.push_back(cell.name);
       seconds += estimate(cell, configs()).seconds;
     }
-    EXPECT_NEAR(seconds, all / 3.0, estimate(cells[2], configs()).seconds) << "within a long cell";
+    EXPECT_NEAR(seconds, all / 3.0, estimate(cells[2], configs()).seconds)
+        << "shards may differ by one long cell";
   }
   ASSERT_EQ(names.size(), cells.size());
   for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(names[i], cells[i].name);
@@ -276,7 +277,7 @@ StudySpec tiny_spec() {
 TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
   const TemporaryFolder scratch;
   LogSink log;
-  // The other study holds the folder while an external program waits for us.
+  // The other study keeps the folder locked while its external program sleeps.
   StudySpec waiting = tiny_spec();
   const std::string started = (scratch.path() / "started").string();
   waiting.external = {
@@ -294,7 +295,7 @@ TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
   EXPECT_THROW(run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log), InputError);
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
-  // Its work has ended with it, and the folder is free; the half-done run is not taken for whole.
+  // Its work ended with it, so the folder is not locked; the incomplete run is not reused.
   const StudyOutcome outcome = run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log);
   EXPECT_EQ(outcome.runs, 1U);
   EXPECT_EQ(outcome.failed, 0U);
@@ -313,11 +314,11 @@ TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAft
     ASSERT_GT(scan.points.size(), 10'000U) << picture;
     EXPECT_LT(std::accumulate(scan.distance.begin(), scan.distance.end(), 0.0F),
               0.05F * static_cast<float>(scan.points.size()))
-        << picture << ": noise of 2 cm, and next to no motion yet";
+        << picture << ": range noise of 2 cm, and almost no motion at the start";
   }
   const std::filesystem::path run = only_in(scratch.path() / "runs");
   const Json with_returns = read_json(run / "metrics.json");
-  EXPECT_FALSE(with_returns.contains("resources")) << "differs from run to run";
+  EXPECT_FALSE(with_returns.contains("resources")) << "resources differ between repeated runs";
   ASSERT_TRUE(
       with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
   const Json scored_again = score_run(run, Parallel(1), log);
@@ -346,13 +347,13 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 1U);
   spec.keep_maps = true;
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 0U)
-      << "the maps are wanted now";
+      << "the maps were deleted, so the run must be repeated";
 }
 
 TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   const TemporaryFolder scratch;
   LogSink log;
-  // Three programs: one that stands still, one that leaves nothing, one that fails.
+  // Three programs: one writes constant poses, one writes nothing, one fails.
   const std::string still =
       "sh -c 'for t in 0.0 0.1 0.2 0.3 0.4; do echo $t 0 0 0 0 0 0 1; done > \"$1\"/trajectory.tum'"
       " sh {output}";
@@ -371,14 +372,14 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   };
   const Json metrics = read_json(run("still") / "metrics.json");
   EXPECT_EQ(metrics.at("status"), "ok");
-  EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "gigabytes on a real flight";
+  EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "the recording must be deleted";
   const Json silent = read_json(run("silent") / "manifest.json");
   EXPECT_THAT(silent.at("failed").get<std::string>(), HasSubstr("left no trajectory.tum"));
   const Json broken = read_json(run("broken") / "manifest.json");
   EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
   EXPECT_EQ(read_bytes(run("broken") / "program.log"), "no such luck\n");
   const StudyOutcome again = run_study(spec, configs(), scratch.path(), {}, log);
-  EXPECT_EQ(again.reused, 1U) << "what failed is tried again";
+  EXPECT_EQ(again.reused, 1U) << "failed runs must be tried again";
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Who may include whom: prints each breach and exits 1 if there is any."""
+"""Checks which module may include which; prints each violation and exits with 1 if there is any."""
 import pathlib
 import re
 import sys
@@ -21,14 +21,14 @@ ALLOWED = {
               "odometry", "evaluation"},
     "report": {"base", "dataset", "world"},
 }
-# Where only some headers of a module are open: a sensor makes events and knows no files, and an
-# estimator must not be able to find the truth that lies beside a dataset.
+# Modules that may include only some headers of another one: a sensor creates events but must not
+# depend on files, and an estimator must not be able to read the truth of a dataset.
 ONLY = {
     ("sensor", "dataset"): {"event.hpp", "point_truth.hpp"},
     ("odometry", "dataset"): {"event.hpp", "run_files.hpp", "points/cloud.hpp"},
 }
-# Third-party libraries that stay inside the .cpp files of these modules. oneTBB is in world too:
-# Embree builds its tree on it, and the tree is built on one thread so that it is always the same.
+# Third-party libraries that may be included only in .cpp files of these modules. World uses oneTBB
+# to make Embree build its tree on one thread, so that the tree is always the same.
 HIDDEN = {
     "embree": {"world"}, "assimp/": {"world"}, "sdf/": {"world"}, "yaml-cpp": {"base"},
     "tbb/": {"base", "world"}, "zstd.h": {"dataset"}, "lz4": {"dataset"},
@@ -51,27 +51,27 @@ def breaches(root: pathlib.Path):
             name = match[1]
             if not name.startswith("lidarena/"):
                 if name in ("iostream",) or name.startswith(("ros/", "rclcpp/", "pcl/", "opencv")):
-                    yield f"{place}: the library does without <{name}>"
+                    yield f"{place}: the library must not include <{name}>"
                 for prefix, homes in HIDDEN.items():
                     hidden = module in homes and file.suffix == ".cpp"
                     if name.startswith(prefix) and not hidden:
-                        yield f"{place}: <{name}> stays inside .cpp files of {' and '.join(homes)}"
+                        yield f"{place}: <{name}> is only for .cpp files of {' and '.join(homes)}"
                 continue
             target = name.split("/")
             if module not in ALLOWED:
-                yield f"{place}: '{module}' is no module of the architecture"
+                yield f"{place}: '{module}' is not a known module, see ALLOWED"
             elif target[1] != module and target[1] not in ALLOWED[module]:
                 yield f"{place}: {module} must not include {target[1]}"
             elif "/".join(target[2:]) not in ONLY.get((module, target[1]), {"/".join(target[2:])}):
                 yield f"{place}: {module} must not include {name}"
             elif algorithm and target[1] == "odometry" and len(target) > 3 and target[2] != algorithm:
-                yield f"{place}: one algorithm never includes another"
+                yield f"{place}: an algorithm must not include another one"
 
 
 def main():
     root = pathlib.Path(__file__).resolve().parents[2]
     found = list(breaches(root))
-    print("\n".join(found) if found else "include rules hold")
+    print("\n".join(found) if found else "no include rule is violated")
     return 1 if found else 0
 
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The program as a user meets it: exit codes, one clear error each, and the whole way from a mesh
-// to a page.
+// The command-line program: exit codes, error messages, and all steps from a mesh to a report.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -86,7 +85,7 @@ TEST_F(Cli, BadInputIsOneClearErrorWithExitCode2) {
   EXPECT_THAT(refusal("simulate --mode frosen --world " + room + " --flight " + flight + rest),
               HasSubstr("use one of rolling, frozen"));
   EXPECT_FALSE(fs::exists(path("data") + "/manifest.json"))
-      << "nothing that looks whole may be left";
+      << "a failed call must not leave a complete dataset";
   EXPECT_THAT(refusal("run kiss_icp " + path("nowhere") + " --out " + path("run")),
               HasSubstr("nowhere"));
 }
@@ -111,8 +110,8 @@ TEST_F(Cli, FromAMeshToAScoredMap) {
   ASSERT_EQ(scored.exit_code, 0) << scored.err;
   const auto metrics = nlohmann::json::parse(scored.out);
   EXPECT_EQ(metrics.at("status"), "ok");
-  // An easy room: an odometry that works stays within a tenth of the path, and a map of it lies
-  // within a few range sigmas of the mesh for the most part.
+  // In this easy room, a working odometry has an RPE below 10 % of the path, and most of its map is
+  // within a few standard deviations of the range noise from the mesh.
   EXPECT_LT(metrics.at("/final/rpe/1m/translation/rmse_m"_json_pointer).get<double>(), 0.10);
   EXPECT_LT(metrics.at("/maps/reprojected/se3/distance/median_m"_json_pointer).get<double>(), 0.10);
   EXPECT_GT(metrics.at("/final/association/coverage"_json_pointer).get<double>(), 0.95);
@@ -124,7 +123,7 @@ TEST_F(Cli, FromAMeshToAScoredMap) {
                           HasSubstr("point-to-mesh distance")));
   for (const char* reach :
        {"src='http", "src=\"http", "href='http", "href=\"http", "<script src"}) {
-    EXPECT_THAT(page, Not(HasSubstr(reach))) << "the page needs no network";
+    EXPECT_THAT(page, Not(HasSubstr(reach))) << "the page must not need the network";
   }
   for (const char* picture : {"world-data", "map-data-livox_mid360-kiss_icp-improved"}) {
     const std::string svg = content(fs::path(run) / "figures" / (std::string(picture) + ".svg"));
@@ -158,7 +157,8 @@ TEST_F(Cli, AManifestAloneLeavesNoOlderMeasurementsToBeTakenForItsOwn) {
   EXPECT_FALSE(fs::exists(path("data") + "/data.mcap"));
   const Outcome ran = call("run --json kiss_icp " + path("data") + " --out " + path("run"));
   ASSERT_EQ(ran.exit_code, 0) << ran.err;
-  EXPECT_EQ(nlohmann::json::parse(ran.out).at("scans"), 10) << "the one second, not the three";
+  EXPECT_EQ(nlohmann::json::parse(ran.out).at("scans"), 10)
+      << "scans of the second call (1 s), not the first";
 }
 
 TEST_F(Cli, ARecordedFlightIsFlownAnewFromTheDatasetItself) {
@@ -233,7 +233,8 @@ TEST_F(Cli, AStudyIsResumedAndAFailedRunIsARow) {
   EXPECT_THAT(content(path("study_out") + "/report.html"), HasSubstr("A study of a test"));
   const Outcome second = call("study --json " + study + " --out " + path("study_out"));
   EXPECT_EQ(nlohmann::json::parse(second.out).at("reused"), 1);
-  EXPECT_EQ(content(path("study_out") + "/results.csv"), csv) << "nothing measured anew";
+  EXPECT_EQ(content(path("study_out") + "/results.csv"), csv)
+      << "the reused run must not be measured again";
 }
 
 }  // namespace

@@ -13,7 +13,7 @@
 
 #include "tests/temporary_folder.hpp"
 
-/// What tests of the program share: calling it in a folder of their own, and a room to fly through.
+/// Shared by the tests of the program: calling it in a temporary folder, and a room to fly through.
 namespace lidarena::testing {
 
 namespace fs = std::filesystem;
@@ -33,7 +33,7 @@ inline std::string content(const fs::path& file) {
 
 inline bool same(const fs::path& a, const fs::path& b) { return content(a) == content(b); }
 
-/// Each test has a folder, gone when it ends.
+/// Each test has a temporary folder, deleted when the test ends.
 class Cli : public ::testing::Test {
  protected:
   /// Calls the program in the test's folder.
@@ -44,7 +44,7 @@ class Cli : public ::testing::Test {
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content(path("out")),
             content(path("err"))};
   }
-  /// Bad input: exit code 2 and one line of error.
+  /// Calls the program with bad input; expects exit code 2 and one error line, which it returns.
   std::string refusal(const std::string& arguments) const {
     const Outcome outcome = call(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
@@ -67,7 +67,7 @@ class Cli : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-/// A closed room of 12 x 8 x 4 m around the origin's first octant, with two pillars, as OBJ.
+/// A closed room of 12 x 8 x 4 m with one corner at the origin and two pillars, as OBJ.
 inline std::string room_obj() {
   std::string obj;
   int base = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `lidarena convert`, and the formats that `simulate` writes, as a user meets them.
+// Calls `lidarena convert`, and `lidarena simulate` with its output formats.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 class Convert : public Cli {
  protected:
-  /// A second of the Mid-360 in the test room.
+  /// Simulates 1 s of the Mid-360 in the test room; returns the dataset's folder.
   std::string dataset(const std::string& options = "") {
     const std::string room = write("room.obj", room_obj());
     const std::string flight = write("flight.yaml", kRoomFlight);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// `lidarena evaluate` on files of anyone's, as a user meets it.
+// Calls `lidarena evaluate` on trajectory files of any program.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 using Position = std::array<double, 3>;
 
-/// A round trip with climbs, yawing at 0.3 rad/s.
+/// Position at time `t` of a closed tour with climbs; write_tum() adds a yaw rate of 0.3 rad/s.
 Position tour(double t) {
   return {4.0 * std::sin(0.35 * t), 3.0 * std::sin(0.5 * t + 0.4), 1.5 + 0.8 * std::sin(0.3 * t)};
 }
@@ -29,7 +29,7 @@ Position tour(double t) {
 class Evaluate : public Cli {
  protected:
   Outcome call(const std::string& arguments) const { return Cli::call("evaluate " + arguments); }
-  /// Bad input: exit code 2, nothing on standard output, and one line of error.
+  /// Calls with bad input; expects exit code 2, nothing on standard output, and one error line.
   std::string refusal(const std::string& arguments) const {
     const Outcome outcome = call(arguments);
     EXPECT_EQ(outcome.exit_code, 2) << arguments << "\n" << outcome.err;
@@ -37,7 +37,7 @@ class Evaluate : public Cli {
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
     return outcome.err;
   }
-  /// 30 s of `position` at `rate` Hz as TUM rows behind `comment`.
+  /// Writes `comment`, then 30 s of `position` at `rate` Hz as TUM rows.
   void write_tum(const std::string& name, const std::function<Position(double)>& position,
                  double rate, const std::string& comment = "") const {
     std::string text = comment;
@@ -114,7 +114,7 @@ TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
 
 TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
   write_tum("truth.tum", tour, 100, "# world_from_body\n");
-  // 0.5 m along x of a body that yaws 0.3 t
+  // 0.5 m along x from a body with yaw 0.3 t
   write_tum(
       "lidar.tum",
       [](double t) {
@@ -123,13 +123,13 @@ TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
       },
       10, "# map_from_lidar\n");
   const std::string files = " --trajectory lidar.tum --truth truth.tum";
-  EXPECT_THAT(refusal(files), AllOf(HasSubstr("lidar.tum: holds poses of 'lidar'"),
+  EXPECT_THAT(refusal(files), AllOf(HasSubstr("lidar.tum: contains poses of 'lidar'"),
                                     HasSubstr("those of 'body'; give --lever body_from_lidar=")));
   const json metrics = json::parse(call("--json --lever 0.5,0,0,0,0,0,1" + files).out);
   EXPECT_LT(metrics["final"]["ate"]["se3"]["translation"]["max_m"], 1e-6);
   EXPECT_EQ(call("--lever body_from_lidar=0.5,0,0,0,0,0,1" + files).exit_code, 0);
   EXPECT_THAT(refusal("--lever 0.5,0,0" + files), HasSubstr("--lever"));
-  // unnamed, it is seen and warned of, and scored as it is
+  // without frame names, the offset is detected and reported, and the file is scored unchanged
   write("silent.tum", content(path("lidar.tum")).substr(17));
   const Outcome warned = call("--trajectory silent.tum --truth truth.tum");
   EXPECT_THAT(warned.out, HasSubstr("another frame of the body, 0.5 m away"));

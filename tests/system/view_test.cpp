@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The interactive view as a user meets it: the page in a browser, and the small server.
+// The interactive view: the page in a browser, and the server of `lidarena view`.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ constexpr int kWidth = 640;
 constexpr int kHeight = 480;
 constexpr const char* kSoftwareGl = "--use-gl=angle --use-angle=swiftshader";
 
-/// A floor of 8 x 6 m, a point every 4 cm: 5 cm off the mesh where x < 4, beyond 20 cm elsewhere.
+/// A floor of 8 x 6 m with a point every 4 cm; its distance is 0 where x < 4 m, 0.5 m elsewhere.
 std::string floor_ply() {
   std::ostringstream rows;
   int points = 0;
@@ -62,21 +62,22 @@ class ViewInBrowser : public Cli {
     }
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
-  /// What this machine lacks to show any page with WebGL, apart from ours; empty: nothing.
+  /// What this machine lacks to show a page with WebGL (tried with a small page); empty if nothing.
   std::string lacking_to_browse() {
     if (std::system("command -v chromium >/dev/null") != 0) {
-      return "no chromium to look at the page with";
+      return "chromium is not installed";
     }
     const std::string probe =
         write("probe.html",
               "<canvas></canvas><script>document.documentElement.dataset.webgl ="
               " document.querySelector('canvas').getContext('webgl2') ? 'works' : 'none'</script>");
-    if (run_chromium("--dump-dom", probe, kSoftwareGl) != 0) return "chromium does not run here";
+    if (run_chromium("--dump-dom", probe, kSoftwareGl) != 0)
+      return "chromium does not run on this machine";
     const bool works =
         content(path("browser_out")).find("data-webgl=\"works\"") != std::string::npos;
-    return works ? "" : "chromium has no WebGL here";
+    return works ? "" : "chromium has no WebGL on this machine";
   }
-  /// Its exit code; what it prints is kept in browser_out, what the console says in browser_err.
+  /// Returns chromium's exit status; its output is in browser_out, console messages in browser_err.
   int run_chromium(const std::string& task, const std::string& address, const std::string& gl) {
     const std::string command =
         "cd " + folder_.path().string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
@@ -88,7 +89,7 @@ class ViewInBrowser : public Cli {
         task + " 'file://" + address + "' >browser_out 2>browser_err";
     return std::system(command.c_str());
   }
-  /// Opens the page with `state` after the "#".
+  /// Opens the page with the URL fragment `state` ("#..."); returns chromium's output.
   std::string browse(const std::string& task, const std::string& state,
                      const std::string& gl = kSoftwareGl) {
     EXPECT_EQ(run_chromium(task, path("page.html") + state, gl), 0) << content(path("browser_err"));
@@ -106,7 +107,7 @@ class ViewInBrowser : public Cli {
     EXPECT_NE(png_image_finish_read(&png, nullptr, picture.rgb.data(), 0, nullptr), 0);
     return picture;
   }
-  /// Lines of the console that are errors of the page.
+  /// Console messages of the page, except performance messages of the OpenGL driver.
   std::vector<std::string> page_errors() const {
     std::istringstream lines(content(path("browser_err")));
     std::vector<std::string> errors;
@@ -125,8 +126,8 @@ class ViewInBrowser : public Cli {
 TEST_F(ViewInBrowser, PixelsHaveTheColorsOfTheirDistancesAndTheConsoleStaysSilent) {
   const Picture picture = screenshot("#view=top&size=6");
   EXPECT_THAT(page_errors(), ElementsAre());
-  // Seen from above the floor is centered: x < 4 m on the left. Colors as distance_color() has
-  // them for 0 and for more than 20 cm.
+  // Seen from above, the floor is centered, with x < 4 m on the left. Expected are the colors of
+  // distance_color() for 0 and for more than 20 cm.
   EXPECT_THAT(picture.at(kWidth / 2 - 60, kHeight / 2), ElementsAre(0, 34, 78));
   EXPECT_THAT(picture.at(kWidth / 2 + 20, kHeight / 2), ElementsAre(214, 32, 39));
   EXPECT_THAT(picture.at(kWidth / 2, 3), ElementsAre(246, 247, 249)) << "background";
@@ -152,7 +153,7 @@ TEST_F(ViewInBrowser, WithoutWebGlThePictureInThePageStays) {
   EXPECT_THAT(dom, Not(HasSubstr("lidarena-view page live")));
 }
 
-/// A study of two runs in one world, as its result files tell it; no map, no dataset.
+/// Writes the result files of a study with two runs in one world, without maps and datasets.
 void write_study(const fs::path& folder) {
   nlohmann::json study{{"kind", "study"}, {"spec", {{"title", "Two runs"}}}, {"runs", {}}};
   for (const std::string algorithm : {"kiss_icp", "fast_lio2"}) {
@@ -185,7 +186,7 @@ TEST_F(ViewInBrowser, TheReportDrawsItsChartsAndItsFiles) {
   fs::rename(path("study") + "/report.html", path("page.html"));
   const std::string dom = browse("--dump-dom", "");
   EXPECT_THAT(page_errors(), ElementsAre());
-  // error and memory over time, and error against computing time and memory
+  // four figures: error over time, memory over time, error against computing time and memory
   EXPECT_THAT(dom, AllOf(HasSubstr("data-ready=\"1\""), HasSubstr("data-figures=\"4\"")));
   for (const char* file :
        {"results.csv", "report.json", "tables/runs-cave.csv", "tables/runs-cave.md",
@@ -198,7 +199,7 @@ TEST_F(ViewInBrowser, TheReportDrawsItsChartsAndItsFiles) {
   }
 }
 
-/// The program serving in the background; ended with the object.
+/// Runs the program as a server in the background until the object is destroyed.
 class Server {
  public:
   Server(const fs::path& folder, const std::string& arguments) {
@@ -222,7 +223,7 @@ class Server {
   Server& operator=(const Server&) = delete;
   int port() const { return port_; }
 
-  /// The answer to GET `target`, headers and all.
+  /// The answer to GET `target`, including its headers.
   std::string get(const std::string& target, const std::string& host) const {
     const int connection = ::socket(AF_INET, SOCK_STREAM, 0);
     sockaddr_in address{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cube's wall is 1 m away, and every algorithm of the table can be built.
+// Casts a ray at a wall 1 m away, measures a map error, and constructs every algorithm.
 #include <lidarena/base/parallel.hpp>
 #include <lidarena/evaluation/map/map_error.hpp>
 #include <lidarena/odometry/factory.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the charts are drawn from: written by lidarena/report/report_data.cpp.
+// The data of the charts, written by lidarena/report/report_data.cpp.
 
 export interface Series {
   t_s: number[];
@@ -23,11 +23,11 @@ export interface Run {
   seed: number;
   status: string;
   rpe_cm_per_m: number | null;
-  cpu_share: number | null;  // seconds of computing a second of flight
+  cpu_share: number | null;  // seconds of computing per second of flight
   memory_mb: number | null;
-  map: MapFigures | null;  // what the program publishes
-  all_returns: MapFigures | null;
-  error: Series | null;  // t_s, cm: distance of the paths after SE(3)
+  map: MapFigures | null;  // as published by the algorithm
+  all_returns: MapFigures | null;  // every return, placed by the estimated path
+  error: Series | null;  // t_s, cm: distance between the paths after SE(3) alignment
   memory: Series | null;  // t_s, map_mb, scan_buffer_mb, backlog_mb
 }
 
@@ -44,7 +44,7 @@ export interface Figure {
   width: number;
   height: number;
   option: Record<string, unknown>;  // ECharts
-  /** Marks of time charts follow the time line of the 3D view. */
+  /** The x axis is time: the chart marks the instant that the 3D view's time line shows. */
   overTime: boolean;
 }
 
@@ -52,12 +52,12 @@ export function label(run: { algorithm: string; preset: string }): string {
   return run.preset ? `${run.algorithm} (${run.preset})` : run.algorithm;
 }
 
-/** The distinct values of `key`, in the order of their first use. */
+/** The distinct values of `key`, in the order of their first occurrence. */
 export function distinct<T>(runs: Run[], key: (run: Run) => T): T[] {
   return [...new Set(runs.map(key))];
 }
 
-/** The mean of lists, place by place. */
+/** The element-wise mean of lists of equal length. */
 export function meanOf(lists: number[][]): number[] {
   return lists[0].map((_, i) => lists.reduce((sum, list) => sum + list[i], 0) / lists.length);
 }

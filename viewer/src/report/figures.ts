@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Under Node.js: node figures.cjs DATA.json OUT draws every figure as OUT/ID.svg and lists them on
-// standard output, one a line: id, tab, title, tab, caption.
+// For Node.js: `node figures.cjs DATA.json OUT` draws every figure as OUT/ID.svg and lists them on
+// standard output, one per line: id, title and caption, separated by tabs.
 import { mkdirSync, readFileSync, writeFileSync } from "node:fs";
 import path from "node:path";
 import { echarts } from "./charts";

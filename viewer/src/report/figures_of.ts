@@ -9,7 +9,10 @@ const THRESHOLD = "#e0a800";
 const FONT = "sans-serif";
 const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
 
-/** Blue for the Mid-360, red for the OS0-128, as in the paper's figures; others in turn. */
+/**
+ * Blue for the Mid-360, red for the OS0-128, as in the paper's figures; for others a color by their
+ * order.
+ */
 export function sensorColor(sensor: string, sensors: string[]): string {
   if (/mid.?360/i.test(sensor)) return "#2b6cb0";
   if (/os0/i.test(sensor)) return "#d1453b";
@@ -25,12 +28,12 @@ const base = (title: string) => ({
 
 interface Cell { left: number; top: number; width: number; height: number }
 
-/** Small multiples: where panel `i` of `columns` a row stands, px. */
+/** Position and size of panel `i` in a figure with `columns` panels per row, px. */
 function cellOf(i: number, columns: number, width: number, height: number): Cell {
   return { left: 56 + (i % columns) * width, top: 70 + Math.floor(i / columns) * height, width: width - 70, height: height - 72 };
 }
 
-/** Height of `count` panels with their title and legend, px. */
+/** Height of a figure of `count` panels with its title and legend, px. */
 function heightOf(count: number, columns: number, height: number): number {
   return 42 + height * Math.ceil(count / columns);
 }
@@ -47,8 +50,9 @@ const valueAxis = (gridIndex: number, name: string, more = {}) => ({
 type MapKind = "map" | "all_returns";
 
 /**
- * Figures 6 and 7 of the paper: shares of points by their distance to the mesh, a panel an
- * algorithm, the sensors over each other, the threshold in yellow. The last bar holds all beyond.
+ * Figures 6 and 7 of the paper: histograms of the points' distances to the mesh, one panel per
+ * algorithm, the sensors overlaid, the outlier threshold in yellow. The last bar is the share of
+ * points beyond it.
  */
 function histograms(data: ReportData, world: string, kind: MapKind): Figure | null {
   const runs = data.runs.filter((run) => run.world === world && run[kind]);
@@ -72,7 +76,7 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
     });
   }));
   const full = Math.min(100, Math.ceil((top * 1.02) / 20) * 20);
-  // the threshold stands on an axis of centimeters of its own, over the bars' axis of bins
+  // the threshold line has its own axis in centimeters, over the bars' axis of bins
   algorithms.forEach((_, panel) => series.push({
     type: "line", xAxisIndex: algorithms.length + panel, yAxisIndex: panel, symbol: "none", silent: true, tooltip: { show: false },
     lineStyle: { color: THRESHOLD, width: 2 }, data: [[bins, 0], [bins, full]],
@@ -81,8 +85,8 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
   const title = `Distance from map to mesh, ${world}` + (kind === "map" ? "" : ", all returns");
   return {
     id: `histogram-${world}${kind === "map" ? "" : "-all-returns"}`, title,
-    caption: `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar holds all beyond ${bins} cm (yellow line). ` +
-      (kind === "map" ? "The map as the program publishes it." : "Every return moved with the estimated path, made alike for every algorithm."),
+    caption: `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar is the share beyond ${bins} cm (yellow line). ` +
+      (kind === "map" ? "The map is the one that the algorithm publishes." : "The map consists of every return, placed by the estimated path, in the same way for every algorithm."),
     width: 60 + 290 * columns, height: heightOf(algorithms.length, columns, 230), overTime: false,
     option: {
       ...base(""),
@@ -100,7 +104,7 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
   };
 }
 
-/** Figure 8 of the paper: what the algorithm holds, its parts apart. */
+/** Figure 8 of the paper: the algorithm's memory over time, by its parts. */
 function memory(data: ReportData, world: string): Figure | null {
   const first = firstSeed(data.runs.filter((run) => run.world === world && run.memory));
   if (first.length === 0) return null;
@@ -109,9 +113,9 @@ function memory(data: ReportData, world: string): Figure | null {
   const parts: [string, string, string][] = [
     ["map_mb", "map (tree)", "#2b6cb0"], ["scan_buffer_mb", "scan buffer", "#d9a441"], ["backlog_mb", "backlog", "#d1453b"],
   ];
-  const title = `Memory that the algorithm holds, ${world}`;
+  const title = `Memory of the algorithm, ${world}`;
   return {
-    id: `memory-${world}`, title, caption: "As the algorithm itself counts it, stacked: map (or tree), scan buffer, backlog of measurements not worked on yet. First seed.",
+    id: `memory-${world}`, title, caption: "As counted by the algorithm, stacked: map (or tree), scan buffer, backlog of measurements not yet processed. First seed.",
     width: 60 + 290 * columns, height: heightOf(first.length, columns, 210), overTime: true,
     option: {
       ...base(""),
@@ -133,18 +137,21 @@ function memory(data: ReportData, world: string): Figure | null {
 const LEAST_ERROR_CM = 0.1; // where the logarithmic scale begins
 const onLogScale = (cm: number | null) => (cm === null ? null : Math.max(cm, LEAST_ERROR_CM));
 
-/** Error of the path over time, a panel a sensor, a line an algorithm; logarithmic, so that a lost one hides no other. */
+/**
+ * Error of the path over time, one panel per sensor, one line per algorithm; logarithmic, so that a
+ * diverged run does not hide the others.
+ */
 function drift(data: ReportData, world: string): Figure | null {
   const first = firstSeed(data.runs.filter((run) => run.world === world && run.error));
   if (first.length === 0) return null;
   const sensors = distinct(first, (run) => run.sensor);
   const algorithms = distinct(first, label);
   const columns = Math.min(sensors.length, 2);
-  const legend = 18 * (Math.ceil(algorithms.length / 7) - 1); // px of its further rows
+  const legend = 18 * (Math.ceil(algorithms.length / 7) - 1); // px of its rows after the first
   const cells = sensors.map((_, i) => cellOf(i, columns, 560, 260)).map((cell) => ({ ...cell, top: cell.top + legend }));
   const title = `Error of the path over time, ${world}`;
   return {
-    id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after laying the whole paths over each other by SE(3), on a logarithmic scale. First seed.",
+    id: `drift-${world}`, title, caption: "Distance between the estimated and the true position after aligning the whole paths by SE(3), on a logarithmic scale. First seed.",
     width: 60 + 560 * columns, height: heightOf(sensors.length, columns, 260) + legend, overTime: true,
     option: {
       ...base(""),
@@ -185,7 +192,7 @@ function spread(data: ReportData, world: string): Figure | null {
   }));
   const width = Math.max(480, 120 + 150 * algorithms.length);
   return {
-    id: `spread-${world}`, title, caption: "RPE over 1 m of each flight and seed: every run a dot; boxes from the lower to the upper quartile with the median, whiskers to the extremes.",
+    id: `spread-${world}`, title, caption: "RPE over 1 m of each flight and seed: every run is a dot; boxes reach from the lower to the upper quartile with the median, whiskers to the extremes.",
     width, height: 320, overTime: false,
     option: {
       ...base(title), legend: { top: 24, left: 50, data: sensors },
@@ -201,7 +208,7 @@ function valuesOf(runs: Run[], algorithm: string, sensor: string): number[] {
   return runs.filter((r) => label(r) === algorithm && r.sensor === sensor).map((r) => r.rpe_cm_per_m!);
 }
 
-/** Error against cost; who is on the lower left edge is beaten by nobody. */
+/** Error against cost, with the Pareto front: the runs for which no other run is better in both. */
 function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, axis: string): Figure | null {
   const runs = data.runs.filter((run) => run.rpe_cm_per_m !== null && run[key] !== null);
   if (runs.length < 2) return null;
@@ -209,7 +216,7 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
   const sensors = distinct(runs, (run) => run.sensor);
   const title = `Error against ${id === "pareto-cpu" ? "computing time" : "memory"}`;
   return {
-    id, title, caption: `Every run of every world: color the algorithm, shape the sensor. Lower left is better; the gray steps join the runs that no other beats in both.`,
+    id, title, caption: `Every run of every world: the color shows the algorithm, the shape the sensor. Lower left is better; the gray steps join the runs for which no other run is better in both.`,
     width: 560, height: 360 + 23 * Math.ceil(algorithms.length / 3), overTime: false,
     option: {
       ...base(title), legend: { top: 24, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
@@ -231,7 +238,7 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
   };
 }
 
-/** Points that no other beats in both coordinates, by the first. */
+/** The points for which no other is smaller in both coordinates, sorted by the first. */
 export function unbeaten(points: number[][]): number[][] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   let best = Infinity;
@@ -246,7 +253,7 @@ function firstSeed(runs: Run[]): Run[] {
   });
 }
 
-/** Outlier shares as bars, a group an algorithm: Table 4 at a glance. */
+/** Outlier shares (Table 4 of the paper) as bars, one group per algorithm. */
 function outliers(data: ReportData, world: string): Figure | null {
   const runs = data.runs.filter((run) => run.world === world && run.map);
   if (runs.length === 0) return null;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The report's page: draws the charts and the 3D views into the places that the page keeps for them,
-// and ties their time lines together.
+// Script of the report page: draws the charts and the 3D views into their elements of the page and
+// marks the instant of a 3D view's time line in the charts.
 import "../view/view.css";
 import "./report.css";
 import { Panel } from "../view/panel";
@@ -11,7 +11,7 @@ import { echarts } from "./charts";
 import type { Figure, ReportData } from "./data";
 import { figuresOf } from "./figures_of";
 
-const marks = document.documentElement.dataset;  // read by tests and by nobody else
+const marks = document.documentElement.dataset;  // read by tests only
 type Chart = ReturnType<typeof echarts.init>;
 const overTime: { chart: Chart; figure: Figure; world: string }[] = [];
 
@@ -41,7 +41,7 @@ function drawFigures(data: ReportData) {
   marks.figures = String(drawn);
 }
 
-/** A line at `time` in every chart over time of a world. */
+/** Draws a line at `time` in every chart over time of a world. */
 function markTime(world: string, time: number) {
   for (const entry of overTime) {
     if (entry.world !== world) continue;
@@ -58,7 +58,7 @@ function markTime(world: string, time: number) {
   }
 }
 
-/** Starts the 3D view of a world once it is asked for: several at once would be slow. */
+/** Adds a button that starts the 3D view of a world: starting all views at once would be slow. */
 function prepareView(world: string) {
   const root = document.getElementById(`view-${world}`);
   const header = jsonOf<SceneHeader>(`scene-${world}`);
@@ -66,13 +66,13 @@ function prepareView(world: string) {
   const start = document.createElement("button");
   start.type = "button";
   start.className = "start";
-  start.textContent = "Turn this picture into the interactive 3D view";
+  start.textContent = "Show the interactive 3D view instead of this picture";
   start.onclick = () => {
     start.remove();
     try {
       showView(world, root, header);
     } catch (error) {
-      root.classList.remove("open", "live");  // the pictures come back
+      root.classList.remove("open", "live");  // shows the pictures again
       root.querySelector(".message")!.textContent = `The interactive view could not start: ${error}`;
     }
   };
@@ -81,7 +81,7 @@ function prepareView(world: string) {
 }
 
 function showView(world: string, root: HTMLElement, header: SceneHeader) {
-  root.classList.add("open", "live");  // first, so that the view finds its size
+  root.classList.add("open", "live");  // first, because the view reads the size of its element
   const view = new View(root.querySelector<HTMLElement>(".stage")!, header);
   const state = { ...initialState(header), split: header.clouds.length > 1 };
   const panel = new Panel(view, root, state, { inAddress: false, onTime: (time) => markTime(world, time) });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// A cloud on the GPU: one buffer a chunk and column, made anew as the points it holds double.
+// A cloud on the GPU: one buffer per chunk and column, reallocated when the loaded points double.
 import * as THREE from "three";
 import type { ChunkHeader, CloudHeader, FieldHeader } from "./scene";
 import { pointMaterial, type PointStyle } from "./point_material";
@@ -7,7 +7,7 @@ import { pointMaterial, type PointStyle } from "./point_material";
 interface Column {
   name: string;
   width: number;
-  values: Uint16Array;  // of the whole chunk; what has not come yet is zero
+  values: Uint16Array;  // of the whole chunk; zero where not loaded yet
 }
 
 interface Chunk {
@@ -15,10 +15,10 @@ interface Chunk {
   columns: Column[];
   points: THREE.Points;
   box: THREE.Box3;
-  loaded: number;  // on the GPU
+  loaded: number;  // points on the GPU
 }
 
-/** How many points of a chunk the blocks before `part` hold, of `parts` in all. */
+/** Number of points of a chunk of `count` that are in the blocks before block `part` of `parts`. */
 export function sharePoints(count: number, part: number, parts: number): number {
   return Math.floor((count * part) / parts);
 }
@@ -54,7 +54,7 @@ export class Cloud {
     const columns = [column("position", 3), ...this.header.fields.map((field) => column(`a_${field.name}`, 1))];
     const points = new THREE.Points(new THREE.BufferGeometry(), this.material);
     points.visible = false;
-    points.frustumCulled = false;  // culled in plan(), which also shares the budget out
+    points.frustumCulled = false;  // plan() culls and also distributes the budget of points
     points.position.set(...header.min);
     points.scale.set(...(header.size.map((s) => Math.max(s, 1e-6)) as [number, number, number]));
     points.updateMatrixWorld();
@@ -65,9 +65,9 @@ export class Cloud {
   }
 
   /**
-   * Takes the next block: for each chunk its positions, then its fields one after the other. True when
-   * there is more to see: at the first, second, fourth, ... and the last block, so that all that ever goes
-   * to the GPU is less than three times the cloud.
+   * Adds the next block: for each chunk its positions, then its fields one after the other. Returns
+   * true when more points can be drawn: the GPU's buffers are updated at the first, second, fourth,
+   * ... and the last block, so that the data uploaded is less than three times the cloud.
    */
   addBlock(bytes: ArrayBuffer): boolean {
     const parts = this.header.blocks.length;
@@ -81,7 +81,7 @@ export class Cloud {
         offset += part.byteLength;
       }
     }
-    if (offset !== bytes.byteLength) throw new Error(`${this.header.name}: a block of odd length`);
+    if (offset !== bytes.byteLength) throw new Error(`${this.header.name}: a block has a wrong length`);
     this.partsLoaded += 1;
     const doubled = (this.partsLoaded & (this.partsLoaded - 1)) === 0;
     if (!doubled && this.partsLoaded < parts) return false;
@@ -89,7 +89,7 @@ export class Cloud {
     return true;
   }
 
-  /** Gives the GPU the first `count` points of a chunk. */
+  /** Uploads the first `count` points of a chunk to the GPU. */
   private toGpu(chunk: Chunk, count: number) {
     chunk.points.geometry.dispose();
     chunk.points.geometry = new THREE.BufferGeometry();
@@ -99,7 +99,7 @@ export class Cloud {
     chunk.loaded = count;
   }
 
-  /** Points of the chunks that `frustum` touches. */
+  /** Number of loaded points in the chunks that intersect `frustum`. */
   inSight(frustum: THREE.Frustum): number {
     let sum = 0;
     for (const chunk of this.chunks) {
@@ -108,7 +108,10 @@ export class Cloud {
     return sum;
   }
 
-  /** Sets what is drawn next: `share` of the points of each chunk in sight. Returns how many. */
+  /**
+   * Sets what the next frame draws: `share` of the points of each chunk in `frustum`. Returns their
+   * number.
+   */
   plan(frustum: THREE.Frustum, share: number): number {
     let drawn = 0;
     for (const chunk of this.chunks) {
@@ -133,7 +136,10 @@ export class Cloud {
     return { position, values };
   }
 
-  /** The drawn point nearest to a pixel, within `radius` pixels; of those the foremost. */
+  /**
+   * Of the drawn and accepted points within `radius` pixels of (x, y), the one closest to the
+   * camera.
+   */
   pick(toClip: THREE.Matrix4, width: number, height: number, x: number, y: number, radius: number,
        accepts: (picked: PickedPoint) => boolean): PickedPoint | null {
     let best: PickedPoint | null = null;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Colors of values: ramps ordered in lightness, so that they survive gray print and color
-// blindness.
+// Colors of values: the lightness of the ramps increases, so that they are readable in grayscale
+// print and with color blindness.
 
 export type Rgb = [number, number, number];
 
-/** Dark blue to yellow, as lidarena/report/image.cpp draws distances; beyond the end it is red. */
+/**
+ * Dark blue to yellow, the same as distance_color() in lidarena/report/image.cpp; red beyond the
+ * end.
+ */
 const DISTANCE_RAMP: Rgb[] = [
   [0, 34, 78], [55, 83, 130], [110, 125, 125], [180, 165, 90], [254, 226, 52],
 ];
@@ -13,7 +16,9 @@ const VALUE_RAMP: Rgb[] = [
 ];
 export const OUTLIER: Rgb = [214, 32, 39];
 export const TRUTH = "#4b5563";
-/** One color a run, the same in every chart and view; told apart also when colors look alike. */
+/**
+ * One color per run, the same in every chart and view; distinguishable with color blindness, too.
+ */
 export const RUN_COLORS = [
   "#2b6cb0", "#c2410c", "#4d7c0f", "#7c3aed", "#0f766e", "#be185d", "#a16207", "#334155",
   "#0891b2", "#f59e0b", "#65a30d", "#94a3b8",

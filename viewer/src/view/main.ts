@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of `lidarena view`: reads the scene that stands in it and shows it.
+// Script of the page of `lidarena view`: reads the scene from the page and shows it.
 import "./view.css";
 import { Panel } from "./panel";
 import { blocksFromServer, blocksInPage, type SceneHeader } from "./scene";
@@ -7,7 +7,7 @@ import { initialState, readHash } from "./state";
 import { View } from "./view";
 
 const root = document.getElementById("view")!;
-const marks = document.documentElement.dataset;  // read by tests and by nobody else
+const marks = document.documentElement.dataset;  // read by tests only
 
 function start() {
   const header = JSON.parse(document.getElementById("scene")!.textContent!) as SceneHeader;
@@ -33,7 +33,7 @@ function start() {
     panel.showLayers();
   }).then(() => {
     progress.hidden = true;
-    panel.change({ color: panel.state.color });  // tracks that came later take the color too
+    panel.change({ color: panel.state.color });  // also for tracks that were loaded later
     view.render();
     view.onFrame();
     marks.loadedMs = drawnMs();
@@ -49,5 +49,5 @@ function showError(error: unknown) {
 try {
   start();
 } catch (error) {
-  showError(error);  // no WebGL: the picture that stands in the page stays
+  showError(error);  // without WebGL the picture in the page remains visible
 }

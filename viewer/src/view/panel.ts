@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Controls around a View: what is shown and how, the time line, the color key, the point under the
-// pointer.
+// Controls around a View: what is shown and how, the time line, the color key, the values of the
+// clicked point.
 import { cssGradient, OUTLIER, rampColor, rampOf } from "./colors";
 import { button, checkbox, choice, element, section, slider, type Slider } from "./elements";
 import type { ColorBy } from "./point_material";
@@ -16,7 +16,7 @@ const FRAMES_PER_SECOND = 20;
 const CLICK_TOLERANCE_PX = 4;
 
 export interface PanelOptions {
-  /** Keep the choices in the address after "#". */
+  /** Keep the settings in the address after "#". */
   inAddress: boolean;
   /** Called when the time line moves. */
   onTime?: (time: number) => void;
@@ -48,9 +48,9 @@ export class Panel {
     const standpoints: [Standpoint, string][] = [["oblique", "3D"], ["top", "Top"], ["side", "Side"], ["front", "Front"]];
     const children: HTMLElement[] = [
       element("div", { className: "buttons" }, ...standpoints.map(([name, label]) =>
-        button(label, `look from there (${name})`, () => this.change({ view: name })))),
+        button(label, `look from this direction (${name})`, () => this.change({ view: name })))),
       element("div", { className: "buttons" },
-        button("Side by side", "two pictures under one camera", () => this.change({ split: !this.state.split })),
+        button("Side by side", "two pictures with the same camera", () => this.change({ split: !this.state.split })),
         button("Dark", "dark or light background", () => this.change({ dark: !this.state.dark })),
         button("PNG", "save this picture", () => this.savePicture())),
       section("Shown", this.layerList),
@@ -110,7 +110,7 @@ export class Panel {
     return element("div", { className: "timebar" }, play, this.timeSlider.element, window);
   }
 
-  /** Takes over some choices, shows them, and puts them into the address. */
+  /** Changes some settings, shows the result, and writes the settings to the address. */
   change(some: Partial<State>) {
     this.state = { ...this.state, ...some };
     this.apply(some);
@@ -167,7 +167,7 @@ export class Panel {
     step();
   }
 
-  /** The list of layers, with a tick for each side. */
+  /** Updates the list of layers, with a checkbox for each side. */
   showLayers() {
     const sides = this.state.split ? 2 : 1;
     this.layerList.replaceChildren(...this.view.layers.map((layer) => {
@@ -208,7 +208,7 @@ export class Panel {
     const loaded = view.clouds.reduce((sum, cloud) => sum + cloud.loaded, 0);
     const all = view.header.clouds.reduce((sum, cloud) => sum + cloud.points, 0);
     this.status.textContent = `${shortCount(view.drawn)} of ${shortCount(loaded)} points drawn` +
-      (loaded < all ? `, ${shortCount(all)} to come` : "") + ` (${view.header.frame})`;
+      (loaded < all ? `, ${shortCount(all)} in total` : "") + ` (${view.header.frame})`;
   }
 
   private listenForPicks() {
@@ -221,7 +221,7 @@ export class Panel {
     });
   }
 
-  /** Tells of the point under a pixel: where it is and what is known of it. */
+  /** Shows the position and the fields of the point under a pixel. */
   showPoint(x: number, y: number) {
     const picked = this.view.pick(x, y);
     this.readout.hidden = !picked;
@@ -243,7 +243,7 @@ export class Panel {
     }
   }
 
-  /** The picture with its color key, as a PNG file. */
+  /** Downloads the picture with its color key as a PNG file. */
   async savePicture() {
     this.view.render();
     const source = this.view.renderer.domElement;
@@ -272,7 +272,10 @@ export class Panel {
   }
 }
 
-/** A cut whose ends stand at the bounds cuts nothing there: stray points beyond stay. */
+/**
+ * The cut without limits where its ends are at the bounds, so that outliers beyond the bounds stay
+ * visible.
+ */
 function opened(cut: [Vec3, Vec3], low: Vec3, high: Vec3): [Vec3, Vec3] | null {
   const eps = [0, 1, 2].map((a) => (high[a] - low[a]) / 150);
   const from = cut[0].map((v, a) => (v <= low[a] + eps[a] ? -1e9 : v)) as Vec3;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// How points are colored, filtered and cut, all on the GPU.
+// Shaders that color, filter and cut the points on the GPU.
 import * as THREE from "three";
 import { OUTLIER, rampOf, rampTexels } from "./colors";
 import type { FieldHeader } from "./scene";
 
-/** Uniforms that all clouds share; a change shows in the next frame. */
+/** Uniforms shared by all clouds; a change takes effect in the next frame. */
 export interface PointStyle {
   uColorBy: { value: number };  // index into COLOR_BY
   uRange: { value: THREE.Vector2 };
   uRamp: { value: THREE.DataTexture };
-  uTime: { value: THREE.Vector2 };  // shown: from, to
+  uTime: { value: THREE.Vector2 };  // interval shown: from, to; s
   uCutMin: { value: THREE.Vector3 };
   uCutMax: { value: THREE.Vector3 };
   uOutliersOnly: { value: number };

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a page is given: a small header in JSON and blocks of bytes, written by
+// The data of a page: a small JSON header and binary blocks, written by
 // lidarena/report/scene_blocks.cpp. All coordinates are meters relative to `origin`, z up; times are
 // seconds since `time_origin_s`.
 
 export type Vec3 = [number, number, number];
 
-/** One value a point, stored as 16 bits: 0 ... 65534 over [min, max], 65535 where there is none. */
+/** One value per point, stored in 16 bits: 0 ... 65534 over [min, max], 65535 for no value. */
 export interface FieldHeader {
   name: "distance" | "intensity" | "time";
   unit: string;
@@ -13,7 +13,7 @@ export interface FieldHeader {
   max: number;
 }
 
-/** Points that lie together; positions are 16 bits a coordinate inside the box. */
+/** Neighboring points; positions have 16 bits per coordinate, over the box of the chunk. */
 export interface ChunkHeader {
   count: number;
   min: Vec3;
@@ -21,8 +21,8 @@ export interface ChunkHeader {
 }
 
 /**
- * The points of a chunk are in random order, so any prefix of it is a fair sample. Block p holds the
- * p-th share of every chunk: after the first block the whole cloud can be seen, thinly.
+ * The points of a chunk are in random order, so any prefix is a uniform sample. Block p contains
+ * the p-th share of every chunk: the first block shows the whole cloud at a low density.
  */
 export interface CloudHeader {
   name: string;
@@ -58,7 +58,7 @@ export interface SceneHeader {
   bounds: [Vec3, Vec3];
   time: [number, number] | null;
   time_origin_s: number;
-  window_s: number | null;  // shown at first: so long from the beginning; null: all
+  window_s: number | null;  // duration shown initially, from the beginning; null: all
   outlier_m: number;
   clouds: CloudHeader[];
   meshes: MeshHeader[];
@@ -66,7 +66,7 @@ export interface SceneHeader {
   block_bytes: number[];
 }
 
-/** Where the bytes of a block come from. */
+/** Loads the bytes of a block. */
 export type BlockSource = (index: number) => Promise<ArrayBuffer>;
 
 export function decodeBase64(text: string): ArrayBuffer {
@@ -77,15 +77,15 @@ export function decodeBase64(text: string): ArrayBuffer {
 }
 
 /**
- * Blocks that stand in the page as inert elements of id PREFIX-N. Those that the parser has not come
- * to yet are waited for; an element is emptied once it is decoded, so that its text is freed.
+ * Reads blocks from inert elements of the page with the ids PREFIX-N. Waits for those that the
+ * browser has not parsed yet; empties an element after decoding to free the memory of its text.
  */
 export function blocksInPage(prefix: string): BlockSource {
   return async (index) => {
     const id = `${prefix}-${index}`;
     let element = document.getElementById(id);
     while (!isWhole(element)) {
-      if (document.readyState !== "loading" && !element) throw new Error(`the page lacks ${id}`);
+      if (document.readyState !== "loading" && !element) throw new Error(`the page has no element ${id}`);
       await new Promise((done) => setTimeout(done, 20));
       element = document.getElementById(id);
     }
@@ -95,12 +95,12 @@ export function blocksInPage(prefix: string): BlockSource {
   };
 }
 
-/** While the page is being parsed, an element is whole once another follows it. */
+/** Whether an element is parsed completely: another one follows it, or the whole page is parsed. */
 function isWhole(element: HTMLElement | null): boolean {
   return !!element && (!!element.nextElementSibling || document.readyState !== "loading");
 }
 
-/** Blocks that the small server of `lidarena view` hands out. */
+/** Fetches blocks from the server of `lidarena view`. */
 export function blocksFromServer(): BlockSource {
   return async (index) => {
     const answer = await fetch(`block/${index}`);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What the user has chosen, kept in the address after "#", so that a link shows the same picture.
+// The user's settings, kept in the address after "#", so that a link shows the same picture.
 import { COLOR_BY, type ColorBy } from "./point_material";
 import type { SceneHeader, Vec3 } from "./scene";
 import { SURFACE_LOOKS, type SurfaceLook } from "./surface";
@@ -7,13 +7,13 @@ import type { Standpoint } from "./view";
 
 export interface State {
   color: ColorBy;
-  range: [number, number] | null;  // null: the usual one of the color
+  range: [number, number] | null;  // null: the default range of the color
   outliers: boolean;
   surface: SurfaceLook;
   split: boolean;
   view: Standpoint;
   size: number;  // of points, px
-  budget: number | null;  // null: as fast as the machine is
+  budget: number | null;  // points drawn at most; null: the View's default
   t: number | null;  // null: the end
   window: number | null;  // s before t that are shown; null: all
   cut: [Vec3, Vec3] | null;
@@ -24,7 +24,7 @@ export function hasField(header: SceneHeader, name: string): boolean {
   return header.clouds.some((cloud) => cloud.fields.some((field) => field.name === name));
 }
 
-/** Colors that the scene can show. */
+/** The color modes that the scene has data for. */
 export function colorsOf(header: SceneHeader): ColorBy[] {
   const always: ColorBy[] = ["height", "solid"];
   const byField = COLOR_BY.filter((by) => hasField(header, by));
@@ -32,7 +32,7 @@ export function colorsOf(header: SceneHeader): ColorBy[] {
   return [...byField, ...byPath, ...always];
 }
 
-/** The range of values that a color spans unless it is set. */
+/** The default range of values of a color mode. */
 export function usualRange(header: SceneHeader, by: ColorBy): [number, number] {
   if (by === "distance") return [0, header.outlier_m];
   if (by === "height") return [header.bounds[0][2], header.bounds[1][2]];
@@ -51,7 +51,7 @@ export function initialState(header: SceneHeader): State {
 
 const numbers = (text: string) => text.split(",").map(Number);
 
-/** Overrides `state` by what stands after "#"; what is not understood is passed over. */
+/** Overrides `state` by the settings after "#"; ignores unknown keys and invalid values. */
 export function readHash(state: State, hash: string): State {
   const given = new URLSearchParams(hash.replace(/^#/, ""));
   const next = { ...state };
@@ -77,7 +77,7 @@ export function readHash(state: State, hash: string): State {
   return next;
 }
 
-/** The inverse of readHash: what differs from `initial`. */
+/** The inverse of readHash: the settings that differ from `initial`. */
 export function writeHash(state: State, initial: State): string {
   const out = new URLSearchParams();
   for (const key of Object.keys(initial) as (keyof State)[]) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The mesh: flat shaded, solid, see-through or as a wire frame, cut by the same box as the points.
+// The mesh: flat shaded, solid, transparent or as a wire frame, cut by the same box as the points.
 import * as THREE from "three";
 import type { MeshHeader } from "./scene";
 
@@ -30,7 +30,7 @@ export class Surface {
     material.transparent = look === "see-through" || look === "wire";
     material.opacity = look === "see-through" ? 0.16 : look === "wire" ? 0.35 : 1;
     material.depthWrite = look === "solid" || look === "inside";
-    // seen from outside, the near walls vanish and the far ones show their inner side
+    // "inside": seen from outside, near walls are not drawn and far walls show their inner side
     material.side = look === "inside" ? THREE.BackSide : THREE.DoubleSide;
     this.object.renderOrder = material.transparent ? 2 : 0;
     material.needsUpdate = true;

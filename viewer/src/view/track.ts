@@ -31,7 +31,7 @@ export class Track {
     this.material = new THREE.LineBasicMaterial({ color, clippingPlanes: planes, depthTest: false, transparent: true });
     this.line = new THREE.Line(geometry, this.material);
     this.line.frustumCulled = false;
-    this.line.renderOrder = 5;  // over everything: a path inside a map would not be seen
+    this.line.renderOrder = 5;  // drawn over everything, because a map would hide a path inside it
     this.object.add(this.line, this.marker);
     AXIS_COLORS.forEach((axisColor, axis) => this.marker.add(axisLine(axis, markerLength, axisColor)));
   }
@@ -48,7 +48,7 @@ export class Track {
     this.marker.quaternion.fromArray(this.turns, 4 * i);
   }
 
-  /** Colors the line by its error, 0 ... `full` meters, or plainly again (null). */
+  /** Colors the line by its error, 0 ... `full` meters; null restores the single color. */
   setErrorColors(full: number | null) {
     const byError = full !== null && this.errors !== null;
     if (byError) {
@@ -65,7 +65,7 @@ export class Track {
     this.material.needsUpdate = true;
   }
 
-  /** Error at an instant, m; null outside the path or where the truth is not known. */
+  /** Error at an instant, m; null before the path begins or if the truth is not known. */
   errorAt(time: number): number | null {
     const i = upperBound(this.times, time) - 1;
     return this.errors && i >= 0 ? this.errors[i] : null;
@@ -78,7 +78,7 @@ function axisLine(axis: number, length: number, color: string): THREE.Line {
   return new THREE.Line(geometry, new THREE.LineBasicMaterial({ color, depthTest: false }));
 }
 
-/** Index of the first value above `x` in a list that grows. */
+/** Index of the first value above `x` in an ascending list. */
 export function upperBound(values: Float32Array, x: number): number {
   let low = 0;
   let high = values.length;

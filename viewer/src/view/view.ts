@@ -9,13 +9,13 @@ import type { BlockSource, SceneHeader, Vec3 } from "./scene";
 import { Surface, type SurfaceLook } from "./surface";
 import { Track } from "./track";
 
-const RESTING_MS = 250;         // without a move for so long, the picture is drawn in full
-const MOVING_FRAME_MS = 60;     // a frame while moving should take no longer
+const RESTING_MS = 250;         // all points are drawn this long after the last camera motion
+const MOVING_FRAME_MS = 60;     // target duration of a frame during camera motion
 const SOFTWARE_BUDGET = 1_000_000;
 const DEFAULT_BUDGET = 4_000_000;
 const PICK_RADIUS_PX = 8;
 
-/** What can be shown or hidden on either side. */
+/** An object that can be shown or hidden on either side. */
 export interface Layer {
   name: string;
   kind: "cloud" | "path" | "mesh";
@@ -38,7 +38,7 @@ export class View {
   colorBy: ColorBy = "height";
   range: [number, number] = [0, 1];
   split = false;
-  private stood: Standpoint | null = null; // where the camera was put, until someone moves it
+  private stood: Standpoint | null = null; // null after the user has moved the camera
   budget: number;
   surfaceLook: SurfaceLook = "see-through";
   drawn = 0;
@@ -95,7 +95,9 @@ export class View {
     this.invalidate();
   }
 
-  /** Fetches and shows everything; clouds appear with their first block and grow denser. */
+  /**
+   * Loads and shows everything; clouds appear with their first block, and their density increases.
+   */
   async load(source: BlockSource, onProgress: (share: number) => void = () => undefined) {
     const { clouds, meshes, paths, block_bytes } = this.header;
     const total = block_bytes.reduce((sum, bytes) => sum + bytes, 0);
@@ -111,7 +113,7 @@ export class View {
       this.addTrack(new Track(path, await fetchBlock(path.block), color, this.size() / 40, this.planes), color);
     }
     for (const mesh of meshes) this.addSurface(new Surface(mesh, await fetchBlock(mesh.block), this.planes));
-    if (this.stood) this.standAt(this.stood); // around the meshes
+    if (this.stood) this.standAt(this.stood); // fits the meshes into the picture
     const loads = clouds.map((cloud) => this.addCloud(new Cloud(cloud, this.style)));
     for (let part = 0; loads.some((cloud) => part < cloud.header.blocks.length); ++part) {
       for (const cloud of loads) {
@@ -130,7 +132,7 @@ export class View {
 
   private addTrack(track: Track, color: string) {
     this.tracks.push(track);
-    // the path of a run stands where its map does
+    // the path of a run is shown on the same side as its map
     const { clouds } = this.header;
     const ordinal = clouds.findIndex((cloud) => cloud.name === track.header.name);
     const shown: [boolean, boolean] = ordinal < 0 ? [true, true] : [clouds[ordinal].visible, ordinal === 1 || clouds.length === 1];
@@ -146,7 +148,7 @@ export class View {
 
   private addCloud(cloud: Cloud): Cloud {
     this.clouds.push(cloud);
-    // side by side, the first cloud stands on the left and the second on the right
+    // side by side, the first cloud is shown on the left and the second on the right
     const ordinal = this.clouds.length - 1;
     const shown: [boolean, boolean] = [cloud.header.visible, this.header.clouds.length > 1 ? ordinal === 1 : true];
     this.addLayer({ name: cloud.header.name, kind: "cloud", color: RUN_COLORS[ordinal % RUN_COLORS.length], shown, object: cloud.group });
@@ -165,7 +167,10 @@ export class View {
     return Math.max(Math.hypot(high[0] - low[0], high[1] - low[1], high[2] - low[2]), 0.1);
   }
 
-  /** What a picture of all should hold: the meshes, for a map that was lost reaches far beyond them; else everything. */
+  /**
+   * Box to fit into the picture: the meshes if there are any, because the map of a diverged run
+   * extends far beyond them; else everything.
+   */
   private framed(): THREE.Box3 {
     const box = new THREE.Box3();
     for (const surface of this.surfaces) box.expandByObject(surface.object);
@@ -189,7 +194,7 @@ export class View {
     this.invalidate();
   }
 
-  /** Distance from its center at which the box just fills the picture. */
+  /** Camera distance from the box's center at which the box just fills the picture. */
   private distanceToFit({ min, max }: THREE.Box3, direction: THREE.Vector3): number {
     const half = max.clone().sub(min).multiplyScalar(0.5);
     const right = new THREE.Vector3().crossVectors(this.camera.up, direction).normalize();
@@ -218,7 +223,7 @@ export class View {
     this.invalidate();
   }
 
-  /** Shows what was measured from `from` to `to`, seconds of the scene. */
+  /** Shows only what was measured from `from` to `to`, in seconds since the scene's time origin. */
   setTime(from: number, to: number) {
     this.time = [from, to];
     this.style.uTime.value.set(from, to);
@@ -226,7 +231,7 @@ export class View {
     this.invalidate();
   }
 
-  /** Cuts away what lies outside the box. */
+  /** Hides everything outside the box. */
   setCut(low: Vec3, high: Vec3) {
     this.style.uCutMin.value.set(...low);
     this.style.uCutMax.value.set(...high);
@@ -258,11 +263,11 @@ export class View {
     const { clientWidth, clientHeight } = this.container;
     if (clientWidth === 0 || clientHeight === 0) return;
     this.renderer.setSize(clientWidth, clientHeight);
-    if (this.stood) this.standAt(this.stood); // nobody has moved the camera since: all stays in the picture
+    if (this.stood) this.standAt(this.stood); // keeps everything in the picture
     this.invalidate();
   }
 
-  /** Asks for a frame. */
+  /** Requests a new frame. */
   invalidate() {
     if (this.queued) return;
     this.queued = true;
@@ -302,13 +307,19 @@ export class View {
     this.lastFrame_ms = performance.now() - begin;
   }
 
-  /** Waits until all is drawn. Browsers take gl.finish() for a mere flush; a pixel that is read cannot be had too early. */
+  /**
+   * Waits until everything is drawn. Browsers treat gl.finish() as a flush, but reading a pixel
+   * back waits for the GPU.
+   */
   finish() {
     const gl = this.renderer.getContext();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
   }
 
-  /** Near and far planes around the scene, so that depth is fine wherever the camera stands. */
+  /**
+   * Sets near and far planes around the scene, so that the depth resolution suffices at any camera
+   * position.
+   */
   private setDepthRange() {
     const [low, high] = this.header.bounds.map((v) => new THREE.Vector3(...v));
     const center = low.clone().add(high).multiplyScalar(0.5);
@@ -334,7 +345,7 @@ export class View {
     this.movingBudget = Math.min(Math.max(this.movingBudget * factor, 50_000), this.budget);
   }
 
-  /** Where a place in the world lands in the picture (of `side`), pixels from the top left. */
+  /** Projects a point of the scene into the picture (of `side`), in pixels from the top left. */
   project(point: Vec3, side = 0): [number, number] {
     const { clientWidth, clientHeight } = this.container;
     const width = this.split ? clientWidth / 2 : clientWidth;
@@ -342,7 +353,7 @@ export class View {
     return [side * width + (0.5 + 0.5 * p.x) * width, (0.5 - 0.5 * p.y) * clientHeight];
   }
 
-  /** The point under a pixel, if there is one that is shown. */
+  /** The visible point under a pixel, or null. */
   pick(x: number, y: number): PickedPoint | null {
     const { clientWidth, clientHeight } = this.container;
     const width = this.split ? clientWidth / 2 : clientWidth;
@@ -358,7 +369,7 @@ export class View {
     return best;
   }
 
-  /** The same filters as on the GPU. */
+  /** Whether a point passes the filters of the shader (cut, time, outliers only). */
   private isShown(point: PickedPoint): boolean {
     const { uCutMin, uCutMax, uTime, uOutliersOnly, uOutlier } = this.style;
     if (!new THREE.Box3(uCutMin.value, uCutMax.value).containsPoint(point.position)) return false;
