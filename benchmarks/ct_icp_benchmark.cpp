@@ -37,9 +37,9 @@ const Config& config() {
   return improved;
 }
 
-const VoxelHashMap& map() {
-  static const VoxelHashMap filled = [] {
-    VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+const map::VoxelHashMap& map() {
+  static const map::VoxelHashMap filled = [] {
+    map::VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();
@@ -49,13 +49,14 @@ const VoxelHashMap& map() {
 std::vector<TimedPoint> keypoints() {
   return sample_keypoints(scan_of(20'000, 2), KeypointSampling::kGrid,
                           config().sampling.keypoint_voxel_m, config().sampling.max_keypoints,
-                          VoxelRounding::kFloor);
+                          map::VoxelRounding::kFloor);
 }
 
 void thin_scan(benchmark::State& state) {
   const auto points = scan_of(static_cast<std::size_t>(state.range(0)), 2);
   for (auto _ : state)
-    benchmark::DoNotOptimize(thin(points, config().sampling.frame_voxel_m, VoxelRounding::kFloor));
+    benchmark::DoNotOptimize(
+        thin(points, config().sampling.frame_voxel_m, map::VoxelRounding::kFloor));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(thin_scan)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
@@ -65,13 +66,13 @@ void choose_keypoints(benchmark::State& state) {
   for (auto _ : state)
     benchmark::DoNotOptimize(
         sample_keypoints(frame, KeypointSampling::kGrid, config().sampling.keypoint_voxel_m,
-                         config().sampling.max_keypoints, VoxelRounding::kFloor));
+                         config().sampling.max_keypoints, map::VoxelRounding::kFloor));
 }
 BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
 
 void search_neighbors(benchmark::State& state) {
   const auto queries = keypoints();
-  std::vector<Neighbor> near(20);
+  std::vector<map::Neighbor> near(20);
   for (auto _ : state) {
     for (const TimedPoint& query : queries)
       benchmark::DoNotOptimize(map().nearest(query.position, 0.4F, near));
@@ -81,17 +82,17 @@ void search_neighbors(benchmark::State& state) {
 BENCHMARK(search_neighbors)->Unit(benchmark::kMillisecond);
 
 void describe_neighbors(benchmark::State& state) {
-  std::vector<Neighbor> near(20);
+  std::vector<map::Neighbor> near(20);
   near.resize(map().nearest(keypoints().front().position, 0.4F, near));
   for (auto _ : state) benchmark::DoNotOptimize(describe(near, PlanePoint::kMean));
 }
 BENCHMARK(describe_neighbors);
 
 /// Matches of a scan with the planes of the box.
-std::vector<ElasticMatch> matches() {
-  std::vector<ElasticMatch> made;
+std::vector<estimation::ElasticMatch> matches() {
+  std::vector<estimation::ElasticMatch> made;
   for (const TimedPoint& keypoint : keypoints()) {
-    ElasticMatch match;
+    estimation::ElasticMatch match;
     match.point = keypoint.position.cast<double>();
     match.alpha = keypoint.alpha;
     match.anchor = match.point;
@@ -107,13 +108,14 @@ std::vector<ElasticMatch> matches() {
 template <bool kCeresSolver>
 void solve(benchmark::State& state) {
   const auto made = matches();
-  const ElasticProblem problem{made, {}, RobustKernel::kCauchy, 0.05, true};
-  const auto guess = ElasticMotion::still(make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}),
-                                          static_cast<int>(state.range(0)));
+  const estimation::ElasticProblem problem{made, {}, estimation::RobustKernel::kCauchy, 0.05, true};
+  const auto guess = estimation::ElasticMotion::still(
+      make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}), static_cast<int>(state.range(0)));
   const Parallel one(1);
   for (auto _ : state) {
-    benchmark::DoNotOptimize(kCeresSolver ? align_by_ceres(problem, guess, 1)
-                                          : align_by_gauss_newton(problem, guess, 1, one));
+    benchmark::DoNotOptimize(kCeresSolver
+                                 ? estimation::align_by_ceres(problem, guess, 1)
+                                 : estimation::align_by_gauss_newton(problem, guess, 1, one));
   }
 }
 BENCHMARK(solve<false>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
@@ -121,9 +123,9 @@ BENCHMARK(solve<true>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
   const auto frame =
-      thin(scan_of(20'000, 3), config().sampling.frame_voxel_m, VoxelRounding::kFloor);
-  VoxelHashMap grown = [] {
-    VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+      thin(scan_of(20'000, 3), config().sampling.frame_voxel_m, map::VoxelRounding::kFloor);
+  map::VoxelHashMap grown = [] {
+    map::VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();

@@ -81,7 +81,8 @@ std::uintmax_t bytes_in(const fs::path& folder) {
 
 /// Writes 20 scans per iteration; reports points, bytes in memory (24 per point) and bytes on disk
 /// per second of CPU time.
-void write_scans(benchmark::State& state, Sensor (*make)(), DatasetFormat format, Dialect dialect) {
+void write_scans(benchmark::State& state, Sensor (*make)(), dataset::DatasetFormat format,
+                 dataset::Dialect dialect) {
   constexpr int kScans = 20;
   const Sensor sensor = make();
   std::uintmax_t stored = 0;
@@ -90,11 +91,11 @@ void write_scans(benchmark::State& state, Sensor (*make)(), DatasetFormat format
     state.PauseTiming();
     const ScratchFolder folder;
     state.ResumeTiming();
-    DatasetWriter out(folder.path(), sensor.rig, {.format = format, .dialect = dialect});
+    dataset::DatasetWriter out(folder.path(), sensor.rig, {.format = format, .dialect = dialect});
     Scan scan = sensor.scan;
     for (int i = 0; i < kScans; ++i) {
       scan.stamp = i * std::chrono::milliseconds(100);
-      out.write(Event{"lidar", scan});
+      out.write(dataset::Event{"lidar", scan});
       points += scan.points.size();
     }
     out.close();
@@ -109,9 +110,9 @@ void write_scans(benchmark::State& state, Sensor (*make)(), DatasetFormat format
   state.counters["B/point"] = static_cast<double>(stored) / static_cast<double>(points);
 }
 
-#define LIDARENA_WRITE(sensor, format, dialect)                                                \
-  BENCHMARK_CAPTURE(write_scans, sensor##_##format##_##dialect, sensor, DatasetFormat::format, \
-                    Dialect::dialect)                                                          \
+#define LIDARENA_WRITE(sensor, format, dialect)                                \
+  BENCHMARK_CAPTURE(write_scans, sensor##_##format##_##dialect, sensor,        \
+                    dataset::DatasetFormat::format, dataset::Dialect::dialect) \
       ->Unit(benchmark::kMillisecond)
 LIDARENA_WRITE(mid360, kMcap, kSi);
 LIDARENA_WRITE(mid360, kMcap, kDriver);
@@ -132,11 +133,11 @@ double resident_mb() {
 
 /// Ten minutes of a Mid-360: 200,000 points/s, IMU at 200 Hz, truth at 1 kHz. "grown MB" is the
 /// growth of the process from the tenth second to the last; "written MB" the size on disk.
-void ten_minutes(benchmark::State& state, DatasetFormat format) {
+void ten_minutes(benchmark::State& state, dataset::DatasetFormat format) {
   const Sensor sensor = mid360();
   for (auto _ : state) {
     const ScratchFolder folder;
-    DatasetWriter out(folder.path(), sensor.rig, {.format = format});
+    dataset::DatasetWriter out(folder.path(), sensor.rig, {.format = format});
     Scan scan = sensor.scan;
     constexpr int kMilliseconds = 600'000;
     double after_ten_seconds = 0.0;
@@ -144,10 +145,10 @@ void ten_minutes(benchmark::State& state, DatasetFormat format) {
       const Time now = std::chrono::milliseconds(ms);
       out.write_truth({now, Pose::Identity()});
       if (ms % 5 == 0) {
-        out.write(Event{"lidar", ImuSample{now, Eigen::Vector3d::Zero(), {0, 0, 9.8}}});
+        out.write(dataset::Event{"lidar", ImuSample{now, Eigen::Vector3d::Zero(), {0, 0, 9.8}}});
       }
       if (ms % 100 == 99) {
-        out.write(Event{"lidar", scan});
+        out.write(dataset::Event{"lidar", scan});
         scan.stamp += std::chrono::milliseconds(100);
       }
       if (ms == 10'000) after_ten_seconds = resident_mb();
@@ -158,11 +159,11 @@ void ten_minutes(benchmark::State& state, DatasetFormat format) {
     state.counters["written MB"] = 1e-6 * static_cast<double>(bytes_in(folder.path()));
   }
 }
-BENCHMARK_CAPTURE(ten_minutes, mcap, DatasetFormat::kMcap)
+BENCHMARK_CAPTURE(ten_minutes, mcap, dataset::DatasetFormat::kMcap)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();
-BENCHMARK_CAPTURE(ten_minutes, bag, DatasetFormat::kBag)
+BENCHMARK_CAPTURE(ten_minutes, bag, dataset::DatasetFormat::kBag)
     ->Unit(benchmark::kSecond)
     ->Iterations(1)
     ->UseRealTime();

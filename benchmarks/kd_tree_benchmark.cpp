@@ -42,7 +42,7 @@ Points scan_of(int index, const Eigen::Vector3f& half) {
     const float range = ((far - sensor.array()) / beam.array()).minCoeff();
     points.push_back(sensor + (range + 0.02F * static_cast<float>(random.normal())) * beam);
   }
-  return voxel_means(points, kVoxel);
+  return map::voxel_means(points, kVoxel);
 }
 
 /// The scans of a walk, computed once for each room; `length` is the room's length, m.
@@ -56,12 +56,12 @@ const std::vector<Points>& scans(int length) {
   return room;
 }
 
-void add(const Points& scan, KdTree& tree) {
+void add(const Points& scan, map::KdTree& tree) {
   for (const Eigen::Vector3f& point : scan) tree.insert_thinned(point, kVoxel);
 }
 
-KdTree walked(int length) {
-  KdTree tree;
+map::KdTree walked(int length) {
+  map::KdTree tree;
   for (const Points& scan : scans(length)) add(scan, tree);
   return tree;
 }
@@ -83,7 +83,7 @@ void kd_tree_insertion(benchmark::State& state) {
   std::vector<double> each;
   std::vector<double> whole;
   for (auto _ : state) {
-    KdTree tree;
+    map::KdTree tree;
     for (const Points& scan : walk) {
       const auto begin = Clock::now();
       for (const Eigen::Vector3f& point : scan) {
@@ -107,8 +107,8 @@ void kd_tree_insertion(benchmark::State& state) {
 void kd_tree_nearest(benchmark::State& state) {
   const auto length = static_cast<int>(state.range(0));
   const auto count = static_cast<std::size_t>(state.range(1));
-  const KdTree tree = walked(length);
-  std::array<Neighbor, kNeighbors> found;
+  const map::KdTree tree = walked(length);
+  std::array<map::Neighbor, kNeighbors> found;
   for (auto _ : state) {
     for (const Eigen::Vector3f& point : scans(length).back()) {
       benchmark::DoNotOptimize(tree.nearest(point, std::span(found).first(count), 2.236F));
@@ -122,15 +122,15 @@ void kd_tree_nearest(benchmark::State& state) {
 void kd_tree_rebuild(benchmark::State& state) {
   const Points points = walked(static_cast<int>(state.range(0))).points();
   for (auto _ : state) {
-    KdTree tree;
+    map::KdTree tree;
     tree.build(points);
     benchmark::DoNotOptimize(tree.size());
   }
   state.counters["map_points"] = static_cast<double>(points.size());
 }
 
-VoxelHashMap voxel_map(const Points& points) {
-  VoxelHashMap map({.voxel_size = 0.5, .max_points = 20, .min_spacing = 0.1});
+map::VoxelHashMap voxel_map(const Points& points) {
+  map::VoxelHashMap map({.voxel_size = 0.5, .max_points = 20, .min_spacing = 0.1});
   map.insert(points);
   return map;
 }
@@ -138,7 +138,7 @@ VoxelHashMap voxel_map(const Points& points) {
 void voxel_map_insertion(benchmark::State& state) {
   const std::vector<Points>& walk = scans(static_cast<int>(state.range(0)));
   for (auto _ : state) {
-    VoxelHashMap map = voxel_map({});
+    map::VoxelHashMap map = voxel_map({});
     for (const Points& scan : walk) map.insert(scan);
     state.counters["map_points"] = static_cast<double>(map.size());
   }
@@ -147,7 +147,7 @@ void voxel_map_insertion(benchmark::State& state) {
 /// The voxel map returns only the nearest point.
 void voxel_map_nearest(benchmark::State& state) {
   const auto length = static_cast<int>(state.range(0));
-  const VoxelHashMap map = voxel_map(walked(length).points());
+  const map::VoxelHashMap map = voxel_map(walked(length).points());
   for (auto _ : state) {
     for (const Eigen::Vector3f& point : scans(length).back()) {
       benchmark::DoNotOptimize(map.nearest(point, 2.236F));

@@ -37,7 +37,8 @@ Scan scan_of(const std::string& file, double begin_s) {
 
 int run(const std::string& folder, int scans, const std::string& preset) {
   const LidarInfo lidar;
-  kiss_icp::KissIcp odometry(kiss_icp::preset(preset, lidar), lidar, Parallel(1));
+  odometry::kiss_icp::KissIcp odometry(odometry::kiss_icp::preset(preset, lidar), lidar,
+                                       Parallel(1));
   std::ifstream index(folder + "/scans.txt");
   double begin_s = 0.0, end_s = 0.0;
   int number = 0, done = 0;

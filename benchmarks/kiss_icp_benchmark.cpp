@@ -69,9 +69,9 @@ struct Stage {
   Config config;
   Parallel parallel{1};
   Scan scan;
-  ScanTimes times;
+  estimation::ScanTimes times;
   TimedPoints points, map_points, keypoints;
-  VoxelHashMap map;
+  map::VoxelHashMap map;
   Departure departure;
   Pose guess;
   std::vector<Vector3f> in_map;
@@ -79,7 +79,7 @@ struct Stage {
   explicit Stage(std::size_t count)
       : config(preset("improved", LidarInfo{})),
         scan(scan_at(kScans, count)),
-        times(times_of(scan, Time{0})),
+        times(estimation::times_of(scan, Time{0})),
         points(preprocess(scan, times, se3::Vector6::Zero(), config, parallel)),
         map_points(thin_for_map(points)),
         keypoints(thin_for_registration(map_points)),
@@ -147,7 +147,7 @@ void register_keypoints(benchmark::State& state) {
 }
 
 void solve(benchmark::State& state) {
-  NormalEquations<6> equations;
+  estimation::NormalEquations<6> equations;
   for (int k = 0; k < 6; ++k)
     equations.add<1>(Eigen::Matrix<double, 1, 6>::Random(), Eigen::Matrix<double, 1, 1>(0.1), 1.0);
   for (auto _ : state) benchmark::DoNotOptimize(equations.solve());
@@ -157,8 +157,8 @@ void insert_into_map(benchmark::State& state) {
   const Stage& s = stage(state.range(0));
   for (auto _ : state) {
     state.PauseTiming();
-    VoxelHashMap map({s.config.voxel_size(), s.config.max_points_per_voxel, 0.09,
-                      s.config.cell_rounding, s.config.plane_thinness.value_or(0.0)});
+    map::VoxelHashMap map({s.config.voxel_size(), s.config.max_points_per_voxel, 0.09,
+                           s.config.cell_rounding, s.config.plane_thinness.value_or(0.0)});
     state.ResumeTiming();
     map.insert(s.in_map);
   }

@@ -40,12 +40,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kTogether = CastOrder::kTogether;
+constexpr std::size_t kTogether = sensor::CastOrder::kTogether;
 
 /// A closed room of 1,001,112 triangles, 40 m by 26 m by 8 m, with bumps of all sizes.
-TriangleMesh bumpy_room() {
+world::TriangleMesh bumpy_room() {
   constexpr int kAround = 708, kUp = 708;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (int j = 0; j <= kUp; ++j) {
     for (int i = 0; i < kAround; ++i) {
       const double a = 2.0 * std::numbers::pi * i / kAround;
@@ -75,7 +75,7 @@ struct BareScene {
   RTCScene scene = nullptr;
   std::int64_t bytes = 0;
 
-  explicit BareScene(const TriangleMesh& mesh) {
+  explicit BareScene(const world::TriangleMesh& mesh) {
     rtcSetDeviceMemoryMonitorFunction(
         device,
         [](void* self, ssize_t change, bool) {
@@ -92,8 +92,9 @@ struct BareScene {
     }
     auto* indices = static_cast<std::uint32_t*>(
         rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                                sizeof(Triangle), mesh.triangles.size()));
-    for (const Triangle& t : mesh.triangles) indices = std::copy(t.begin(), t.end(), indices);
+                                sizeof(world::Triangle), mesh.triangles.size()));
+    for (const world::Triangle& t : mesh.triangles)
+      indices = std::copy(t.begin(), t.end(), indices);
     rtcCommitGeometry(geometry);
     scene = rtcNewScene(device);
     rtcAttachGeometry(scene, geometry);
@@ -120,16 +121,16 @@ struct BareScene {
 
 /// Inputs of all rows, created once.
 struct Stage {
-  TriangleMesh mesh = bumpy_room();
+  world::TriangleMesh mesh = bumpy_room();
   BareScene bare{mesh};
-  World world{mesh};
-  SplineFlight flight = make_flight();
+  world::World world{mesh};
+  flight::SplineFlight flight = make_flight();
 
-  static SplineFlight make_flight() {
-    FlightConfig config;
-    config.style = FlightStyle::kAggressive;
+  static flight::SplineFlight make_flight() {
+    flight::FlightConfig config;
+    config.style = flight::FlightStyle::kAggressive;
     const std::vector<Vector3d> tour{{-9, -4, 0}, {9, -4, 1}, {9, 4, 0}, {-9, 4, 1}, {-9, -4, 0}};
-    return SplineFlight(tour, config, "benchmark");
+    return flight::SplineFlight(tour, config, "benchmark");
   }
   static const Stage& get() {
     static const Stage stage;
@@ -140,13 +141,14 @@ struct Stage {
 enum Sensor { kMid360, kOs0 };
 enum Effects { kGeometry, kFrozen, kRangeNoise, kSheet, kSplitBeam };
 
-SensorConfig config_of(Sensor sensor, Effects effects) {
-  SensorConfig config;
+sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
+  sensor::SensorConfig config;
   config.name = sensor == kOs0 ? "os0" : "mid360";
-  config.model = sensor == kOs0 ? LidarModel::kOusterOs0128 : LidarModel::kLivoxMid360;
+  config.model =
+      sensor == kOs0 ? sensor::LidarModel::kOusterOs0128 : sensor::LidarModel::kLivoxMid360;
   config.columns = sensor == kOs0 ? 2048 : 0;
   config.max_range_m = 100.0;
-  if (effects == kFrozen) config.mode = ScanMode::kFrozen;
+  if (effects == kFrozen) config.mode = sensor::ScanMode::kFrozen;
   if (effects >= kRangeNoise) config.range_noise_m = 0.02;
   if (effects >= kSheet) {
     config.noise.near_range_noise_m = 0.03;
@@ -164,15 +166,15 @@ SensorConfig config_of(Sensor sensor, Effects effects) {
 }
 
 /// The rays of a scan in the lidar's order of casting, as prepared packets.
-std::vector<RTCRayHit8> packets_of(const Lidar& lidar, const SensorConfig& config,
+std::vector<RTCRayHit8> packets_of(const sensor::Lidar& lidar, const sensor::SensorConfig& config,
                                    std::uint64_t index) {
   const Stage& stage = Stage::get();
-  std::vector<Beam> beams;
+  std::vector<sensor::Beam> beams;
   lidar.pattern().beams(index, beams);
-  const CastOrder order(beams);
+  const sensor::CastOrder order(beams);
   std::vector<RTCRayHit8> packets(beams.size() / kTogether);
   for (std::size_t i = 0; i < beams.size(); ++i) {
-    const Time dt{config.mode == ScanMode::kRolling ? beams[i].dt_ns : 0};
+    const Time dt{config.mode == sensor::ScanMode::kRolling ? beams[i].dt_ns : 0};
     const Pose pose = stage.flight.pose_at(lidar.stamp(index) + dt) * config.body_from_lidar;
     const Eigen::Vector3f origin = (pose * beams[i].origin.cast<double>()).cast<float>();
     const Eigen::Vector3f direction =
@@ -229,8 +231,8 @@ void cast_bare(const std::vector<RTCRayHit8>& packets, const Parallel& parallel)
 void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   const Stage& stage = Stage::get();
   const Parallel parallel(static_cast<int>(state.range(0)));
-  const SensorConfig config = config_of(sensor, effects);
-  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const sensor::SensorConfig config = config_of(sensor, effects);
+  const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, true);
   // Always the same scan in mid-flight; caches between scans are filled after the first run.
   const std::uint64_t index = static_cast<std::uint64_t>(to_seconds(stage.flight.duration()) * 4.0);
   const auto packets = packets_of(lidar, config, index);
@@ -273,19 +275,20 @@ void register_rows() {
 [[maybe_unused]] const bool kRegistered = (register_rows(), true);
 
 /// Three seconds of flight, written to a file. Bare calls: every fifth scan, five times.
-void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects, Dialect dialect) {
+void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects,
+                      dataset::Dialect dialect) {
   namespace fs = std::filesystem;
   constexpr std::uint64_t kEvery = 5;
   const Stage& stage = Stage::get();
   const Parallel parallel(static_cast<int>(state.range(0)));
-  SensorConfig config = config_of(sensor, effects);
+  sensor::SensorConfig config = config_of(sensor, effects);
   config.imu.emplace();
-  SimulationOptions options;
+  sensor::SimulationOptions options;
   options.duration = std::chrono::seconds(3);
   std::string name = (fs::temp_directory_path() / "lidarena_benchmark_XXXXXX").string();
   const fs::path folder = ::mkdtemp(name.data());
 
-  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, true);
   const auto scans = static_cast<std::uint64_t>(options.duration / lidar.pattern().period());
   std::vector<std::vector<RTCRayHit8>> packets;
   for (std::uint64_t i = 0; i < scans; i += kEvery) packets.push_back(packets_of(lidar, config, i));
@@ -299,8 +302,9 @@ void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects, D
     });
     points = 0;
     simulated.time([&] {
-      DatasetWriter out(folder, make_rig({config}), {DatasetFormat::kMcap, dialect});
-      const auto events = simulate(stage.world, stage.flight, {config}, options, parallel);
+      dataset::DatasetWriter out(folder, sensor::make_rig({config}),
+                                 {dataset::DatasetFormat::kMcap, dialect});
+      const auto events = sensor::simulate(stage.world, stage.flight, {config}, options, parallel);
       while (const auto event = events->next()) {
         if (const auto* scan = std::get_if<Scan>(&event->data)) points += scan->points.size();
         out.write(*event);
@@ -321,8 +325,8 @@ void register_simulations() {
   const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
   const std::pair<const char*, Effects> effects[] = {{"geometry", kGeometry},
                                                      {"range_noise", kRangeNoise}};
-  const std::pair<const char*, Dialect> dialects[] = {{"si", Dialect::kSi},
-                                                      {"driver", Dialect::kDriver}};
+  const std::pair<const char*, dataset::Dialect> dialects[] = {
+      {"si", dataset::Dialect::kSi}, {"driver", dataset::Dialect::kDriver}};
   for (const auto& sensor : sensors) {
     for (const auto& effect : effects) {
       for (const auto& dialect : dialects) {
@@ -343,8 +347,8 @@ void register_simulations() {
 
 /// Parts of a scan other than ray casting, on one thread.
 void pattern(benchmark::State& state, Sensor sensor) {
-  const auto made = make_pattern(config_of(sensor, kGeometry));
-  std::vector<Beam> beams;
+  const auto made = sensor::make_pattern(config_of(sensor, kGeometry));
+  std::vector<sensor::Beam> beams;
   std::uint64_t index = 0;
   for (auto _ : state) made->beams(index++, beams);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(beams.size()));
@@ -355,16 +359,16 @@ BENCHMARK_CAPTURE(pattern, os0, kOs0)->Unit(benchmark::kMillisecond);
 void motion(benchmark::State& state) {
   const Stage& stage = Stage::get();
   for (auto _ : state) {
-    benchmark::DoNotOptimize(
-        LidarMotion(stage.flight, Pose::Identity(), std::chrono::seconds(2), 99'995'000, true));
+    benchmark::DoNotOptimize(sensor::LidarMotion(stage.flight, Pose::Identity(),
+                                                 std::chrono::seconds(2), 99'995'000, true));
   }
 }
 BENCHMARK(motion)->Unit(benchmark::kMillisecond);
 
 /// Comparison of bare calls: single rays, and packets of eight rays in casting order.
 void bare_one_by_one(benchmark::State& state, Sensor sensor) {
-  const SensorConfig config = config_of(sensor, kGeometry);
-  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const sensor::SensorConfig config = config_of(sensor, kGeometry);
+  const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, true);
   const auto packets = packets_of(lidar, config, 20);
   RTCRayHit query{};
   for (auto _ : state) {
@@ -390,8 +394,8 @@ BENCHMARK_CAPTURE(bare_one_by_one, mid360, kMid360)->Unit(benchmark::kMillisecon
 BENCHMARK_CAPTURE(bare_one_by_one, os0, kOs0)->Unit(benchmark::kMillisecond);
 
 void bare_packets(benchmark::State& state, Sensor sensor) {
-  const SensorConfig config = config_of(sensor, kGeometry);
-  const Lidar lidar(config, make_pattern(config), config.name, 1, true);
+  const sensor::SensorConfig config = config_of(sensor, kGeometry);
+  const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, true);
   const auto packets = packets_of(lidar, config, 20);
   for (auto _ : state) cast_bare(packets, Parallel(1));
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(packets.size() * 8));
@@ -407,9 +411,9 @@ void memory(benchmark::State& state) {
   const auto vertices = static_cast<double>(stage.mesh.vertices.size());
   state.counters["triangles"] = triangles;
   state.counters["library"] = static_cast<double>(stage.bare.bytes) / triangles;
-  state.counters["mesh"] =
-      (vertices * sizeof(Vector3d) + triangles * (sizeof(Triangle) + sizeof(Eigen::Vector3f))) /
-      triangles;
+  state.counters["mesh"] = (vertices * sizeof(Vector3d) +
+                            triangles * (sizeof(world::Triangle) + sizeof(Eigen::Vector3f))) /
+                           triangles;
 }
 BENCHMARK(memory);
 

@@ -88,10 +88,11 @@ struct Scene {
       chosen.push_back(static_cast<std::uint32_t>(i));
     }
     scan = scan_from(Vector3d::Zero(), spinning, 1);
-    points = positions(scan);
+    points = estimation::positions(scan);
   }
   Features features_of(const Scan& seen) const {
-    return extract_features(project(seen, positions(seen), config), config, Parallel(1));
+    return extract_features(project(seen, estimation::positions(seen), config), config,
+                            Parallel(1));
   }
 };
 
@@ -169,13 +170,14 @@ void verify_loop(benchmark::State& state) {
     for (const Eigen::Vector3f& p : keyframe.features.surfaces)
       target.push_back(keyframe.world_from_lidar.cast<float>() * p);
   }
-  KdTree tree;
+  map::KdTree tree;
   tree.build(target);
   const Features source = thinned(s.features_of(s.scan), s.config);
   const Pose guess = make_pose(Eigen::Matrix3d::Identity(), {0.5, -0.4, 0.1});
   const Parallel parallel(1);
   for (auto _ : state)
-    benchmark::DoNotOptimize(align_clouds(source.surfaces, tree, guess, careful_loops(), parallel));
+    benchmark::DoNotOptimize(
+        loop::align_clouds(source.surfaces, tree, guess, loop::careful_loops(), parallel));
 }
 
 constexpr auto kUnit = benchmark::kMillisecond;

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
+#include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
@@ -19,26 +19,27 @@
 namespace lidarena {
 namespace {
 
-MapError error_of(const Odometry& odometry, const Trajectory& truth, const World& world,
-                  const Parallel& parallel) {
+evaluation::MapError error_of(const odometry::Odometry& odometry, const Trajectory& truth,
+                              const world::World& world, const Parallel& parallel) {
   constexpr std::size_t kMost = 200'000;
   const std::vector<Eigen::Vector3f> map = odometry.map();
   std::vector<Eigen::Vector3f> sample;
   const std::size_t stride = map.size() / kMost + 1;
   for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
-  const Alignment alignment = align(odometry.trajectory(), truth, Gauge::kSe3);
-  return map_error(sample, alignment.truth_from_estimate, world, parallel);
+  const evaluation::Alignment alignment =
+      evaluation::align(odometry.trajectory(), truth, evaluation::Gauge::kSe3);
+  return evaluation::map_error(sample, alignment.truth_from_estimate, world, parallel);
 }
 
 struct Contest {
-  std::unique_ptr<Odometry> without, with;
+  std::unique_ptr<odometry::Odometry> without, with;
   const Trajectory& truth;
-  const World& world;
+  const world::World& world;
   const Parallel& parallel;
 
   void print(Time stamp, double loops, double tried) const {
-    const MapError a = error_of(*without, truth, world, parallel);
-    const MapError b = error_of(*with, truth, world, parallel);
+    const evaluation::MapError a = error_of(*without, truth, world, parallel);
+    const evaluation::MapError b = error_of(*with, truth, world, parallel);
     fmt::print("| {:.1f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
                to_seconds(stamp - truth.begin_time()), loops, tried, 100.0 * a.distance_m.rmse,
                a.outliers_percent, 100.0 * b.distance_m.rmse, b.outliers_percent);
@@ -48,13 +49,14 @@ struct Contest {
 
 int show(const std::string& preset, const std::string& path, std::vector<std::string> overrides) {
   const Parallel parallel(0);
-  Dataset dataset = open_any_dataset(path, {}, parallel);
-  const std::optional<Trajectory> truth = load_truth(path);
+  dataset::Dataset dataset = study::open_any_dataset(path, {}, parallel);
+  const std::optional<Trajectory> truth = dataset::load_truth(path);
   if (!truth) throw InputError(path, "has no ground truth", "use a simulated dataset");
-  const World world(load_mesh(path + "/world.ply"));
+  const world::World world(world::load_mesh(path + "/world.ply"));
   const LidarInfo* lidar = dataset.rig.find_lidar("");
   const auto made = [&](const char* algorithm) {
-    return make_odometry({algorithm, preset, "", overrides}, dataset.rig, lidar->id, parallel)
+    return odometry::make_odometry({algorithm, preset, "", overrides}, dataset.rig, lidar->id,
+                                   parallel)
         .odometry;
   };
   const Contest contest{made("lio_sam"), made("lio_sam_lc"), *truth, world, parallel};
@@ -72,7 +74,7 @@ int show(const std::string& preset, const std::string& path, std::vector<std::st
     const auto* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar->id) continue;
     contest.without->register_scan(*scan);
-    const ScanResult result = contest.with->register_scan(*scan);
+    const odometry::ScanResult result = contest.with->register_scan(*scan);
     last = scan->stamp;
     if (!result.counters.contains("loops")) continue;
     tried = result.counters.at("loops_tried");

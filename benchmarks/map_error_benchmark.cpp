@@ -30,14 +30,14 @@ constexpr double kVoxel_m = 0.02;
 
 /// Map as given to an evaluation: returns along the route with range noise, the first of each
 /// voxel, in time order.
-std::vector<Vector3f> make_map(const World& world, const std::vector<Vector3d>& route) {
+std::vector<Vector3f> make_map(const world::World& world, const std::vector<Vector3d>& route) {
   SequentialRandom random(1);
-  PointMap map(kVoxel_m, kPoints);
+  map::PointMap map(kVoxel_m, kPoints);
   constexpr std::size_t kRays = 20'000;
-  std::vector<Ray> rays(kRays);
-  std::vector<Hit> hits(kRays);
+  std::vector<world::Ray> rays(kRays);
+  std::vector<world::Hit> hits(kRays);
   for (std::size_t place = 0; map.size() < kPoints; ++place) {
-    for (Ray& ray : rays) {
+    for (world::Ray& ray : rays) {
       const Vector3d direction(random.normal(), random.normal(), random.normal());
       ray = {route[place % route.size()], direction.normalized().cast<float>()};
     }
@@ -51,15 +51,15 @@ std::vector<Vector3f> make_map(const World& world, const std::vector<Vector3d>& 
   return map.take();
 }
 
-CaveConfig fine_cave() {
-  CaveConfig config;
+scenes::CaveConfig fine_cave() {
+  scenes::CaveConfig config;
   config.resolution_m = 0.1;
   return config;
 }
 
 struct Scene {
-  WorldModel model = make_cave(fine_cave(), 1);
-  World world{model.mesh};
+  world::WorldModel model = scenes::make_cave(fine_cave(), 1);
+  world::World world{model.mesh};
   std::vector<Vector3f> map = make_map(world, model.routes.front());
 };
 
@@ -78,7 +78,8 @@ void map_error_of_ten_million(benchmark::State& state) {
   const Parallel parallel(static_cast<int>(state.range(0)));
   const std::vector<Vector3f>& map = scene().map;
   for (auto _ : state) {
-    const MapError error = map_error(map, Pose::Identity(), scene().world, parallel);
+    const evaluation::MapError error =
+        evaluation::map_error(map, Pose::Identity(), scene().world, parallel);
     state.counters["rmse_cm"] = 100.0 * error.distance_m.rmse;
   }
   report(state, map.size());
@@ -95,16 +96,16 @@ struct Bare {
   RTCDevice device = rtcNewDevice(nullptr);
   RTCScene scene = rtcNewScene(device);
   std::vector<Vector3f> vertices;
-  std::vector<Triangle> triangles;
+  std::vector<world::Triangle> triangles;
 
-  explicit Bare(const TriangleMesh& mesh) : triangles(mesh.triangles) {
+  explicit Bare(const world::TriangleMesh& mesh) : triangles(mesh.triangles) {
     for (const Vector3d& v : mesh.vertices) vertices.push_back(v.cast<float>());
     vertices.emplace_back(0, 0, 0);  // Embree reads 16 bytes of the last one
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                vertices.data(), 0, sizeof(Vector3f), vertices.size() - 1);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
-                               triangles.data(), 0, sizeof(Triangle), triangles.size());
+                               triangles.data(), 0, sizeof(world::Triangle), triangles.size());
     rtcCommitGeometry(geometry);
     rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);

@@ -22,7 +22,7 @@ namespace lidarena {
 namespace {
 
 struct Arguments {
-  OdometryRequest odometry;
+  odometry::OdometryRequest odometry;
   std::string dataset, out, sensor;
   int threads = 1;
 };
@@ -65,8 +65,9 @@ double percentile(std::vector<double> values, double share) {
 }
 
 /// Prints the memory by part after `scans` scans.
-void print_state(std::size_t scans, const Odometry& odometry) {
-  fmt::print("scan {}: rss {:.1f} MB", scans, 1e-6 * static_cast<double>(resident_bytes()));
+void print_state(std::size_t scans, const odometry::Odometry& odometry) {
+  fmt::print("scan {}: rss {:.1f} MB", scans,
+             1e-6 * static_cast<double>(odometry::resident_bytes()));
   for (const auto& [part, bytes] : odometry.memory()) {
     fmt::print(", {} {:.3f}", part, 1e-6 * static_cast<double>(bytes));
   }
@@ -76,13 +77,14 @@ void print_state(std::size_t scans, const Odometry& odometry) {
 
 int measure(const Arguments& a) {
   const Parallel parallel(a.threads);
-  ReadOptions read;
+  dataset::ReadOptions read;
   read.sensor = a.sensor;
-  Dataset dataset = open_any_dataset(a.dataset, read, parallel);
+  dataset::Dataset dataset = study::open_any_dataset(a.dataset, read, parallel);
   const LidarInfo* lidar = dataset.rig.find_lidar(a.sensor);
   if (lidar == nullptr) throw InputError(a.dataset, "has several LiDARs", "choose with --sensor");
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
-  const auto odometry = make_odometry(a.odometry, dataset.rig, lidar->id, parallel).odometry;
+  const auto odometry =
+      odometry::make_odometry(a.odometry, dataset.rig, lidar->id, parallel).odometry;
   std::vector<double> scan_ms;
   double between = 0.0;  // CPU time of the IMU calls before the next scan, s
   std::map<std::string, std::size_t> statuses;
@@ -97,10 +99,10 @@ int measure(const Arguments& a) {
       between += cpu_seconds() - start;
       continue;
     }
-    const ScanResult result = odometry->register_scan(*scan);
+    const odometry::ScanResult result = odometry->register_scan(*scan);
     scan_ms.push_back(1e3 * (between + cpu_seconds() - start));
     between = 0.0;
-    ++statuses[to_string(result.status)];
+    ++statuses[odometry::to_string(result.status)];
     for (const auto& [name, value] : result.counters) sums[name] += value;
     const auto& counters = result.counters;
     if (counters.contains("near_planes") && counters.at("near_planes") > 0.0) {
@@ -120,7 +122,7 @@ int measure(const Arguments& a) {
   fmt::print("statuses: {}\nmeans:", statuses);
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
   fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", least_agreement);
-  if (!a.out.empty()) write_tum(a.out, odometry->trajectory(), "");
+  if (!a.out.empty()) dataset::write_tum(a.out, odometry->trajectory(), "");
   return 0;
 }
 

@@ -14,10 +14,10 @@ namespace {
 
 /// Everything is made once; the cave takes seconds.
 struct Scene {
-  WorldModel model = make_cave(CaveConfig{}, 1);
-  World world{model.mesh};
-  World bvh_world{model.mesh, "mesh", RayCaster::kBvh};
-  std::vector<Ray> rays;
+  world::WorldModel model = scenes::make_cave(scenes::CaveConfig{}, 1);
+  world::World world{model.mesh};
+  world::World bvh_world{model.mesh, "mesh", world::RayCaster::kBvh};
+  std::vector<world::Ray> rays;
   std::vector<Eigen::Vector3d> points;
 
   Scene() {
@@ -30,7 +30,7 @@ struct Scene {
       const double x = random.normal(), y = random.normal(), z = random.normal();
       rays.push_back({place, Eigen::Vector3d(x, y, z).normalized().cast<float>()});
     }
-    std::vector<Hit> hits(rays.size());
+    std::vector<world::Hit> hits(rays.size());
     world.cast(rays, 100.0, hits);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       if (!hits[i].valid()) continue;
@@ -46,36 +46,36 @@ const Scene& scene() {
   return scene;
 }
 
-const World& world(RayCaster caster) {
-  return caster == RayCaster::kBvh ? scene().bvh_world : scene().world;
+const world::World& world(world::RayCaster caster) {
+  return caster == world::RayCaster::kBvh ? scene().bvh_world : scene().world;
 }
 
-void cast(benchmark::State& state, RayCaster caster) {
-  std::vector<Hit> hits(scene().rays.size());
+void cast(benchmark::State& state, world::RayCaster caster) {
+  std::vector<world::Hit> hits(scene().rays.size());
   for (auto _ : state) world(caster).cast(scene().rays, 100.0, hits);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(hits.size()));
 }
 
-void closest_points(benchmark::State& state, RayCaster caster) {
+void closest_points(benchmark::State& state, world::RayCaster caster) {
   const Parallel one_thread(1);
-  std::vector<ClosestPoint> nearest(scene().points.size());
+  std::vector<world::ClosestPoint> nearest(scene().points.size());
   for (auto _ : state) world(caster).closest_points(scene().points, 1.0, nearest, one_thread);
   state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(nearest.size()));
 }
 
-void build(benchmark::State& state, RayCaster caster) {
-  for (auto _ : state) benchmark::DoNotOptimize(World(scene().model.mesh, "mesh", caster));
+void build(benchmark::State& state, world::RayCaster caster) {
+  for (auto _ : state) benchmark::DoNotOptimize(world::World(scene().model.mesh, "mesh", caster));
   state.counters["triangles"] = static_cast<double>(scene().model.mesh.triangles.size());
 }
 
 #if LIDARENA_EMBREE_MAJOR > 0
-BENCHMARK_CAPTURE(cast, embree, RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(closest_points, embree, RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, embree, RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(cast, embree, world::RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(closest_points, embree, world::RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(build, embree, world::RayCaster::kEmbree)->Unit(benchmark::kMillisecond);
 #endif
-BENCHMARK_CAPTURE(cast, bvh, RayCaster::kBvh)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(closest_points, bvh, RayCaster::kBvh)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(build, bvh, RayCaster::kBvh)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(cast, bvh, world::RayCaster::kBvh)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(closest_points, bvh, world::RayCaster::kBvh)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(build, bvh, world::RayCaster::kBvh)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace lidarena

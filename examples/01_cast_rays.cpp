@@ -5,23 +5,24 @@
 #include <numbers>
 #include <vector>
 
-#include "lidarena/study/config_folder.hpp"
 #include "lidarena/scenes/load_world.hpp"
+#include "lidarena/study/config_folder.hpp"
 #include "lidarena/world/world.hpp"
 
 int main() {
   using namespace lidarena;
   LogSink silent;
-  const ConfigFolder configs = ConfigFolder::find(".");
-  const World world(load_world(configs.resolve("worlds", "house"), {}, silent).mesh, "house");
+  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  const world::World world(scenes::load_world(configs.resolve("worlds", "house"), {}, silent).mesh,
+                           "house");
 
   const Eigen::Vector3d center(2.0, 2.0, 1.2);  // m
-  std::vector<Ray> rays;
+  std::vector<world::Ray> rays;
   for (int degrees = 0; degrees < 360; degrees += 30) {
     const double angle = degrees * std::numbers::pi / 180.0;
     rays.push_back({center, Eigen::Vector3d(std::cos(angle), std::sin(angle), 0.0).cast<float>()});
   }
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   world.cast(rays, 50.0, hits);
 
   float least = 50.0F;
@@ -29,7 +30,7 @@ int main() {
     std::printf("%4zu deg: %6.2f m\n", 30 * i, static_cast<double>(hits[i].range));
     least = std::min(least, hits[i].range);
   }
-  const ClosestPoint nearest = world.closest_point(center);
+  const world::ClosestPoint nearest = world.closest_point(center);
   std::printf("the nearest surface is %.3f m away, at %.3f %.3f %.3f\n", nearest.distance,
               nearest.point.x(), nearest.point.y(), nearest.point.z());
   return nearest.distance <= static_cast<double>(least) + 1e-4 ? 0 : 1;

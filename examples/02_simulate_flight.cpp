@@ -8,19 +8,19 @@
 int main(int argc, char** argv) {
   using namespace lidarena;
   const std::string folder = argc > 1 ? argv[1] : "out/house_flight";
-  const ConfigFolder configs = ConfigFolder::find(".");
-  SimulateRequest request;
+  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  study::SimulateRequest request;
   request.world = configs.resolve("worlds", "house");
   request.flight = configs.resolve("flights", "house");
   request.sensors = {configs.resolve("sensors", "livox_mid360")};
   request.seconds = 2.0;
   LogSink silent;
-  const SimulateSummary done = simulate_dataset(request, folder, Parallel(), silent);
+  const study::SimulateSummary done = study::simulate_dataset(request, folder, Parallel(), silent);
   std::printf("%zu scans, %zu points, %zu IMU samples along %.2f m, in %s\n", done.scans,
               done.points, done.imu_samples, done.path_m, folder.c_str());
 
   // Events are read in order, each scan after the IMU samples that span it.
-  Dataset dataset = open_dataset(folder);
+  dataset::Dataset dataset = dataset::open_dataset(folder);
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr) continue;

@@ -11,9 +11,9 @@
 namespace {
 
 /// A flight that stays at the origin.
-class Still : public lidarena::Flight {
+class Still : public lidarena::flight::Flight {
  public:
-  lidarena::Motion at(lidarena::Time) const override { return {}; }
+  lidarena::flight::Motion at(lidarena::Time) const override { return {}; }
   lidarena::Time duration() const override { return std::chrono::seconds(1); }
 };
 
@@ -21,9 +21,9 @@ class Still : public lidarena::Flight {
 
 int main() {
   using namespace lidarena;
-  SensorConfig sensor;  // or load_sensor("my_sensor.yaml"); the keys are the same
+  sensor::SensorConfig sensor;  // or load_sensor("my_sensor.yaml"); the keys are the same
   sensor.name = "mine";
-  sensor.model = LidarModel::kBeamTable;
+  sensor.model = sensor::LidarModel::kBeamTable;
   sensor.columns = 360;
   sensor.rate_hz = 10.0;
   sensor.max_range_m = 30.0;
@@ -33,9 +33,9 @@ int main() {
     sensor.beam_table->beams.emplace_back().elevation_deg = elevation;
   }
 
-  const World room(box_shape({6.0, 6.0, 6.0}), "room");
-  const Lidar lidar(sensor, make_pattern(sensor), sensor.name, 1, true);
-  std::vector<PointTruth> truth;
+  const world::World room(world::box_shape({6.0, 6.0, 6.0}), "room");
+  const sensor::Lidar lidar(sensor, sensor::make_pattern(sensor), sensor.name, 1, true);
+  std::vector<dataset::PointTruth> truth;
   const Scan scan = lidar.measure(room, Still(), 0, Parallel(), &truth);
   double squares = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "lidarena/world/export_world.hpp"
 #include "lidarena/scenes/load_world.hpp"
+#include "lidarena/world/export_world.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace {
@@ -15,8 +15,8 @@ constexpr std::uint32_t kCells = 80;
 
 double height(double x, double y) { return 0.3 * std::sin(x) * std::cos(y); }
 
-lidarena::TriangleMesh waves() {
-  lidarena::TriangleMesh mesh;
+lidarena::world::TriangleMesh waves() {
+  lidarena::world::TriangleMesh mesh;
   for (std::uint32_t i = 0; i <= kCells; ++i) {
     for (std::uint32_t j = 0; j <= kCells; ++j) {
       const double x = -10.0 + 20.0 * i / kCells;
@@ -38,12 +38,12 @@ int main(int argc, char** argv) {
   using namespace lidarena;
   const std::filesystem::path folder = argc > 1 ? argv[1] : "out/own_mesh";
   std::filesystem::create_directories(folder);
-  save_world(folder / "waves.ply", waves());
+  world::save_world(folder / "waves.ply", waves());
   LogSink silent;
-  const World world(load_world(folder / "waves.ply", {}, silent).mesh, "waves");
+  const world::World world(scenes::load_world(folder / "waves.ply", {}, silent).mesh, "waves");
 
-  const Ray down{{1.234, -4.321, 5.0}, -Eigen::Vector3f::UnitZ()};
-  Hit hit;
+  const world::Ray down{{1.234, -4.321, 5.0}, -Eigen::Vector3f::UnitZ()};
+  world::Hit hit;
   world.cast({&down, 1}, 10.0, {&hit, 1});
   const double found = 5.0 - static_cast<double>(hit.range);
   const double wanted = height(1.234, -4.321);

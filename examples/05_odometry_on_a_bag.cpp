@@ -8,10 +8,10 @@
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/odometry/run.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/study/config_folder.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
-#include "lidarena/scenes/load_world.hpp"
 
 namespace {
 
@@ -19,15 +19,16 @@ using namespace lidarena;
 
 void record(const std::filesystem::path& bag) {
   LogSink silent;
-  const ConfigFolder configs = ConfigFolder::find(".");
-  WorldModel model = load_world(configs.resolve("worlds", "house"), {}, silent);
-  const World world(std::move(model.mesh), model.name);
-  const auto flight = make_flight(configs.resolve("flights", "house"), model, world, silent);
-  const std::vector sensors{load_sensor(configs.resolve("sensors", "livox_mid360"))};
-  SimulationOptions options;
+  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  world::WorldModel model = scenes::load_world(configs.resolve("worlds", "house"), {}, silent);
+  const world::World world(std::move(model.mesh), model.name);
+  const auto flight =
+      flight::make_flight(configs.resolve("flights", "house"), model, world, silent);
+  const std::vector sensors{sensor::load_sensor(configs.resolve("sensors", "livox_mid360"))};
+  sensor::SimulationOptions options;
   options.duration = std::chrono::seconds(3);
-  const auto events = simulate(world, *flight, sensors, options, Parallel());
-  DatasetWriter writer(bag, make_rig(sensors));
+  const auto events = sensor::simulate(world, *flight, sensors, options, Parallel());
+  dataset::DatasetWriter writer(bag, sensor::make_rig(sensors));
   while (const auto event = events->next()) writer.write(*event);
   writer.close();
 }
@@ -41,18 +42,18 @@ int main(int argc, char** argv) {
     bag /= "my.bag";
     record(bag);
   }
-  Dataset dataset = open_dataset(bag);
+  dataset::Dataset dataset = dataset::open_dataset(bag);
   for (const std::string& note : dataset.notes) std::printf("note: %s\n", note.c_str());
-  OdometryRequest request;
+  odometry::OdometryRequest request;
   request.algorithm = argc > 2 ? argv[2] : "kiss_icp";
-  const MadeOdometry made = make_odometry(request, dataset.rig, "", Parallel());
+  const odometry::MadeOdometry made = odometry::make_odometry(request, dataset.rig, "", Parallel());
   LogSink silent;
-  const RunResult result = run(*made.odometry, *dataset.events, {}, silent);
+  const odometry::RunResult result = odometry::run(*made.odometry, *dataset.events, {}, silent);
   std::printf("%s: %zu scans, %.2f m, %.1f times real time, a map of %zu points\n",
               request.algorithm.c_str(), result.summary.scans,
               result.files.trajectory.path_length(),
               result.summary.sensor_seconds / result.summary.compute_seconds,
               result.files.map.points.size());
-  write_tum(bag.replace_extension(".tum"), result.files.trajectory, "world_from_body");
+  dataset::write_tum(bag.replace_extension(".tum"), result.files.trajectory, "world_from_body");
   return result.summary.scans > 0 && !result.summary.diverged ? 0 : 1;
 }

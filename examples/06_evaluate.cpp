@@ -31,16 +31,17 @@ Trajectory circle(double scale) {
 
 int main(int argc, char** argv) {
   const bool given = argc > 2;
-  const Trajectory estimate = given ? read_trajectory(argv[1]) : circle(1.01);
-  const Trajectory truth = given ? read_trajectory(argv[2]) : circle(1.0);
-  const Json metrics = evaluate_trajectory(estimate, truth);
+  const Trajectory estimate = given ? dataset::read_trajectory(argv[1]) : circle(1.01);
+  const Trajectory truth = given ? dataset::read_trajectory(argv[2]) : circle(1.0);
+  const Json metrics = evaluation::evaluate_trajectory(estimate, truth);
   const Json one_meter = metrics.at("rpe").at("1m").at("translation");
   std::printf("relative error over 1 m: %.2f cm RMSE of %d pieces\n",
               100.0 * one_meter.at("rmse_m").get<double>(), one_meter.at("count").get<int>());
   if (argc > 4) {
-    const Cloud map = read_cloud(argv[3]);
-    const World world(load_mesh(argv[4]), argv[4]);
-    const MapError error = map_error(map.points, Pose::Identity(), world, Parallel());
+    const dataset::Cloud map = dataset::read_cloud(argv[3]);
+    const world::World world(world::load_mesh(argv[4]), argv[4]);
+    const evaluation::MapError error =
+        evaluation::map_error(map.points, Pose::Identity(), world, Parallel());
     std::printf("map: %zu points, %.2f cm from the mesh on average, %.1f %% beyond 20 cm\n",
                 error.points, 100.0 * error.distance_m.mean, error.outliers_percent);
   }

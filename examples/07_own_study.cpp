@@ -14,20 +14,20 @@ int main(int argc, char** argv) {
   using namespace lidarena;
   const std::filesystem::path folder = argc > 1 ? argv[1] : "out/own_study";
   std::filesystem::create_directories(folder);
-  save_world(folder / "room.ply", box_shape({8.0, 6.0, 3.0}));
+  world::save_world(folder / "room.ply", world::box_shape({8.0, 6.0, 3.0}));
   std::ofstream(folder / "path.yaml") << "kind: waypoints\n"
                                          "waypoints: [[-2, -1, 0], [0, 1, 0.2], [2, 0, 0]]\n";
-  StudySpec spec;  // or load_config<StudySpec>("my_study.yaml"); the keys are the same
+  study::StudySpec spec;  // or load_config<StudySpec>("my_study.yaml"); the keys are the same
   spec.title = "Which sensor suits KISS-ICP here?";
   spec.scenes = {{(folder / "room.ply").string(), (folder / "path.yaml").string(), 3.0}};
   spec.sensors = {"livox_mid360", "velodyne_vlp16"};
   spec.algorithms = {"kiss_icp"};
 
   LogSink silent;
-  const ConfigFolder configs = ConfigFolder::find(".");
-  const StudyOutcome outcome = run_study(spec, configs, folder, {}, silent);
-  for (const PlannedRun& cell : plan(spec, configs)) {
-    const Json metrics = read_json(folder / "runs" / cell.name / "metrics.json");
+  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  const study::StudyOutcome outcome = study::run_study(spec, configs, folder, {}, silent);
+  for (const study::PlannedRun& cell : study::plan(spec, configs)) {
+    const Json metrics = dataset::read_json(folder / "runs" / cell.name / "metrics.json");
     const Json& error = metrics.at("live").at("rpe").at("1s").at("translation");
     std::printf("%-16s %.2f cm RPE over 1 s\n", cell.sensor.c_str(),
                 100.0 * error.at("rmse_m").get<double>());

@@ -55,18 +55,18 @@ std::map<Key, Cell> cells_of(const std::vector<Eigen::Vector3d>& points,
 }
 
 /// Aligns the cells of each scan with the planes of the first scan's cells.
-class CellPlanes : public Odometry {
+class CellPlanes : public odometry::Odometry {
  public:
   explicit CellPlanes(const LidarInfo& lidar) : body_from_lidar_(lidar.body_from_lidar) {}
-  OdometryTraits traits() const override { return {.publishes_scans = false}; }
-  ScanResult register_scan(const Scan& scan) override {
+  odometry::OdometryTraits traits() const override { return {.publishes_scans = false}; }
+  odometry::ScanResult register_scan(const Scan& scan) override {
     std::vector<Eigen::Vector3d> points;
     for (const Point& p : scan.points)
       points.push_back(body_from_lidar_ * p.position.cast<double>());
-    ScanResult result;
+    odometry::ScanResult result;
     if (reference_.empty()) {
       reference_ = cells_of(points, {0, 0, 0});
-      result.status = ScanStatus::kInitializing;
+      result.status = odometry::ScanStatus::kInitializing;
     }
     for (int i = 0; i < kIterations; ++i) position_ += step(points);
     result.estimate.stamp = scan.stamp;
@@ -121,14 +121,14 @@ Trajectory path() {
 }  // namespace
 
 int main() {
-  const World room(box_shape({7.3, 5.1, 3.7}), "room");
-  const ReplayFlight flight(path());
-  SensorConfig sensor;
+  const world::World room(world::box_shape({7.3, 5.1, 3.7}), "room");
+  const flight::ReplayFlight flight(path());
+  sensor::SensorConfig sensor;
   sensor.name = "mid360";
-  const auto events = simulate(room, flight, {sensor}, {}, Parallel());
-  CellPlanes odometry(make_rig({sensor}).lidars[0]);
+  const auto events = sensor::simulate(room, flight, {sensor}, {}, Parallel());
+  CellPlanes odometry(sensor::make_rig({sensor}).lidars[0]);
   LogSink silent;
-  const RunResult result = run(odometry, *events, {}, silent);
+  const odometry::RunResult result = odometry::run(odometry, *events, {}, silent);
   const auto poses = result.files.trajectory.poses();
   const Eigen::Vector3d moved = poses.back().world_from_body.translation();
   const Eigen::Vector3d wanted = flight.at(poses.back().stamp).world_from_body.translation();

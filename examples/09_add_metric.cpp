@@ -16,9 +16,9 @@ using namespace lidarena;
 
 /// RMS distance (m) of points to the best-fit plane of each face. `cloud` is in the mesh's frame;
 /// uses points within `reach` meters of a face, and faces that have `least` points or more.
-double flatness(const std::vector<Eigen::Vector3d>& cloud, const World& world, double reach = 0.2,
-                std::size_t least = 100) {
-  std::vector<ClosestPoint> nearest(cloud.size());
+double flatness(const std::vector<Eigen::Vector3d>& cloud, const world::World& world,
+                double reach = 0.2, std::size_t least = 100) {
+  std::vector<world::ClosestPoint> nearest(cloud.size());
   world.closest_points(cloud, reach, nearest, Parallel());
   std::map<std::uint32_t, std::vector<Eigen::Vector3d>> faces;
   for (std::size_t i = 0; i < cloud.size(); ++i) {
@@ -42,7 +42,7 @@ double flatness(const std::vector<Eigen::Vector3d>& cloud, const World& world, d
 
 int main() {
   // A floor sampled with 1 cm of noise must come out as 1 cm.
-  const World floor(plane_shape(Eigen::Vector3d::UnitZ(), {10.0, 10.0}), "floor");
+  const world::World floor(world::plane_shape(Eigen::Vector3d::UnitZ(), {10.0, 10.0}), "floor");
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> place(-5.0, 5.0);
   std::normal_distribution<double> noise(0.0, 0.01);

@@ -30,19 +30,19 @@ constexpr int kBandWidth = 10;  // deg of elevation
 constexpr int kBands = 6;       // -10 .. 50 deg
 
 /// A flight that stays at the origin.
-class Still : public Flight {
+class Still : public flight::Flight {
  public:
-  Motion at(Time) const override { return {}; }
+  flight::Motion at(Time) const override { return {}; }
   Time duration() const override { return std::chrono::seconds(1); }
 };
 
-Scan look_at_cylinder(const World& world, ScanMode mode) {
-  SensorConfig config;
+Scan look_at_cylinder(const world::World& world, sensor::ScanMode mode) {
+  sensor::SensorConfig config;
   config.name = "mid360";
-  config.model = LidarModel::kLivoxMid360;
+  config.model = sensor::LidarModel::kLivoxMid360;
   config.min_range_m = kMinRange;
   config.mode = mode;
-  const Lidar lidar(config, make_pattern(config), config.name, 1, false);
+  const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, false);
   return lidar.measure(world, Still(), 0, Parallel());
 }
 
@@ -99,9 +99,9 @@ void draw(const std::string& file, const Scan& official, const Scan& ours) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  const World world(cylinder_shape(kRadius, kHeight), "cylinder");
-  const Scan official = look_at_cylinder(world, ScanMode::kOfficial);
-  const Scan ours = look_at_cylinder(world, ScanMode::kRolling);
+  const world::World world(world::cylinder_shape(kRadius, kHeight), "cylinder");
+  const Scan official = look_at_cylinder(world, sensor::ScanMode::kOfficial);
+  const Scan ours = look_at_cylinder(world, sensor::ScanMode::kRolling);
 
   fmt::print("measured radius, m (true: {})\n", kRadius);
   fmt::print("elevation deg   official   R - m cos(phi)   Lidarena\n");

@@ -68,7 +68,7 @@ class FlightPlugin : public ::gazebo::ModelPlugin {
   }
 
   ::gazebo::physics::ModelPtr model_;
-  std::optional<ReplayFlight> flight_;
+  std::optional<flight::ReplayFlight> flight_;
   ::gazebo::event::ConnectionPtr update_;
 };
 

@@ -60,7 +60,7 @@ class GazeboOutput final : public Output {
       : points_(node_.Advertise<ignition::msgs::PointCloudPacked>(points_topic(config, rig))),
         imu_(node_.Advertise<ignition::msgs::IMU>(imu_topic(config, rig))) {}
 
-  void write(const Event& event) override {
+  void write(const dataset::Event& event) override {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       points_.Publish(packed(*scan));
       return;

@@ -29,9 +29,9 @@ Pose facing(const Vector3d& normal) {
 }
 
 /// All triangles of a mesh file, or of one of its sub-meshes, in mesh coordinates.
-TriangleMesh triangles_of(const ::gazebo::common::Mesh& mesh, const std::string& submesh,
-                          bool centered) {
-  TriangleMesh out;
+world::TriangleMesh triangles_of(const ::gazebo::common::Mesh& mesh, const std::string& submesh,
+                                 bool centered) {
+  world::TriangleMesh out;
   for (unsigned int s = 0; s < mesh.GetSubMeshCount(); ++s) {
     const auto* part = mesh.GetSubMesh(s);
     if (!submesh.empty() && part->GetName() != submesh) continue;
@@ -73,7 +73,7 @@ bool GazeboScene::has_changed() const {
   return models.empty();
 }
 
-std::shared_ptr<MovingWorld> GazeboScene::rebuilt_if_changed() {
+std::shared_ptr<world::MovingWorld> GazeboScene::rebuilt_if_changed() {
   if (!has_changed()) return nullptr;
   models_.clear();
   shapes_.clear();
@@ -84,7 +84,7 @@ std::shared_ptr<MovingWorld> GazeboScene::rebuilt_if_changed() {
   }
   gzmsg << "lidarena: the sensor sees " << shapes_.size() << " shapes, of which " << moving_.size()
         << " may move\n";
-  return std::make_shared<MovingWorld>(std::move(shapes_));
+  return std::make_shared<world::MovingWorld>(std::move(shapes_));
 }
 
 std::vector<Pose> GazeboScene::poses() const {
@@ -109,12 +109,12 @@ void GazeboScene::add_model(const physics::ModelPtr& model) {
 }
 
 void GazeboScene::add(const physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
-                      ShapePtr shape, const std::string& name) {
+                      world::ShapePtr shape, const std::string& name) {
   if (!shape) {
     gzwarn << "lidarena: the sensor does not see " << name << ": unsupported kind of shape\n";
     return;
   }
-  PlacedShape placed;
+  world::PlacedShape placed;
   placed.shape = std::move(shape);
   placed.world_from_shape = to_pose(link->WorldPose()) * link_from_shape;
   placed.moves = !is_static;
@@ -126,16 +126,16 @@ void GazeboScene::add_collisions(const physics::LinkPtr& link, bool is_static) {
   for (const auto& collision : link->GetCollisions()) {
     const physics::ShapePtr shape = collision->GetShape();
     Pose link_from_shape = to_pose(collision->RelativePose());
-    ShapePtr ours;
+    world::ShapePtr ours;
     if (auto box = boost::dynamic_pointer_cast<physics::BoxShape>(shape)) {
-      ours = make_mesh(box_shape(to_vector(box->Size())));
+      ours = world::make_mesh(world::box_shape(to_vector(box->Size())));
     } else if (auto sphere = boost::dynamic_pointer_cast<physics::SphereShape>(shape)) {
-      ours = make_sphere(sphere->GetRadius());
+      ours = world::make_sphere(sphere->GetRadius());
     } else if (auto cylinder = boost::dynamic_pointer_cast<physics::CylinderShape>(shape)) {
-      ours = make_cylinder(cylinder->GetRadius(), cylinder->GetLength());
+      ours = world::make_cylinder(cylinder->GetRadius(), cylinder->GetLength());
     } else if (auto plane = boost::dynamic_pointer_cast<physics::PlaneShape>(shape)) {
       link_from_shape = link_from_shape * facing(to_vector(plane->Normal()));
-      ours = make_plane();  // unlimited, as in ODE
+      ours = world::make_plane();  // unlimited, as in ODE
     } else if (auto mesh_shape = boost::dynamic_pointer_cast<physics::MeshShape>(shape)) {
       msgs::Geometry message;
       mesh_shape->FillMsg(message);
@@ -153,16 +153,17 @@ void GazeboScene::add_visuals(const physics::LinkPtr& link, bool is_static) {
     if (!visual.has_geometry()) continue;
     const msgs::Geometry& geometry = visual.geometry();
     const Pose link_from_shape = to_pose(msgs::ConvertIgn(visual.pose()));
-    ShapePtr ours;
+    world::ShapePtr ours;
     if (geometry.has_box()) {
-      ours = make_mesh(box_shape(to_vector(geometry.box().size())));
+      ours = world::make_mesh(world::box_shape(to_vector(geometry.box().size())));
     } else if (geometry.has_sphere()) {
-      ours = make_sphere(geometry.sphere().radius());
+      ours = world::make_sphere(geometry.sphere().radius());
     } else if (geometry.has_cylinder()) {
-      ours = make_cylinder(geometry.cylinder().radius(), geometry.cylinder().length());
+      ours = world::make_cylinder(geometry.cylinder().radius(), geometry.cylinder().length());
     } else if (geometry.has_plane()) {
-      ours = make_mesh(plane_shape(to_vector(geometry.plane().normal()),
-                                   {geometry.plane().size().x(), geometry.plane().size().y()}));
+      ours = world::make_mesh(
+          world::plane_shape(to_vector(geometry.plane().normal()),
+                             {geometry.plane().size().x(), geometry.plane().size().y()}));
     } else if (geometry.has_mesh()) {
       const msgs::MeshGeom& g = geometry.mesh();
       ours = mesh(g.filename(), g.submesh(), g.center_submesh(),
@@ -172,8 +173,8 @@ void GazeboScene::add_visuals(const physics::LinkPtr& link, bool is_static) {
   }
 }
 
-ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, bool centered,
-                           const Vector3d& scale) {
+world::ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, bool centered,
+                                  const Vector3d& scale) {
   const std::string file = ::gazebo::common::find_file(uri);
   std::ostringstream key;
   key << file << '|' << submesh << '|' << centered << '|' << scale.transpose();
@@ -184,11 +185,11 @@ ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, b
     gzerr << "lidarena: no mesh found at " << uri << "\n";
     return nullptr;
   }
-  TriangleMesh scaled;
+  world::TriangleMesh scaled;
   scaled.append(triangles_of(*loaded, submesh, centered), Pose::Identity(), scale);
   try {
-    clean_mesh(scaled, uri);
-    entry->second = make_mesh(std::move(scaled));
+    world::clean_mesh(scaled, uri);
+    entry->second = world::make_mesh(std::move(scaled));
   } catch (const Error& error) {
     gzerr << "lidarena: " << error.what() << "\n";
   }

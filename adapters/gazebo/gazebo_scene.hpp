@@ -25,7 +25,7 @@ class GazeboScene {
               const ::gazebo::physics::Link* carrier);
 
   /// A new MovingWorld if models were added or removed or a static one was moved; else nullptr.
-  std::shared_ptr<MovingWorld> rebuilt_if_changed();
+  std::shared_ptr<world::MovingWorld> rebuilt_if_changed();
   /// Poses of the shapes that may move, as MovingWorld::move() takes them.
   std::vector<Pose> poses() const;
 
@@ -45,17 +45,17 @@ class GazeboScene {
   void add_collisions(const ::gazebo::physics::LinkPtr& link, bool is_static);
   void add_visuals(const ::gazebo::physics::LinkPtr& link, bool is_static);
   void add(const ::gazebo::physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
-           ShapePtr shape, const std::string& name);
-  ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centered,
-                const Eigen::Vector3d& scale);
+           world::ShapePtr shape, const std::string& name);
+  world::ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centered,
+                       const Eigen::Vector3d& scale);
 
   ::gazebo::physics::WorldPtr world_;
   Geometry geometry_;
   const ::gazebo::physics::Link* carrier_;
   std::vector<Standing> models_;
-  std::vector<PlacedShape> shapes_;  ///< while building
+  std::vector<world::PlacedShape> shapes_;  ///< while building
   std::vector<Moving> moving_;
-  std::map<std::string, ShapePtr> meshes_;  ///< by file, part and scale
+  std::map<std::string, world::ShapePtr> meshes_;  ///< by file, part and scale
 };
 
 }  // namespace lidarena::gazebo_plugin

@@ -83,7 +83,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     link_ = boost::dynamic_pointer_cast<::gazebo::physics::Link>(
         world_->EntityByName(sensor.ParentName()));
     if (!link_) throw InputError(place, "the sensor does not belong to a link");
-    const Rig rig = make_rig({sensor_config_});
+    const Rig rig = sensor::make_rig({sensor_config_});
     if (!config_.record.empty()) outputs_.push_back(make_recorder(config_, rig));
     if (config_.gazebo) outputs_.push_back(make_gazebo_output(config_, rig));
     if (config_.ros) {
@@ -118,7 +118,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     if (config_.stop) std::raise(SIGINT);  // like Ctrl-C: the server shuts down cleanly
   }
 
-  void measure(const StampedPose& pose, MovingWorld& world, const std::vector<Pose>& moved) {
+  void measure(const StampedPose& pose, world::MovingWorld& world, const std::vector<Pose>& moved) {
     const double begin = thread_cpu_seconds();
     world.move(moved);
     if (!sensor_) {
@@ -129,7 +129,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
     cast_seconds_ += thread_cpu_seconds() - begin;
     for (const auto& output : outputs_) {
       output->write_truth(pose);
-      for (const Event& event : events_) output->write(event);
+      for (const dataset::Event& event : events_) output->write(event);
     }
     output_seconds_ += thread_cpu_seconds() - begin;
   }
@@ -158,14 +158,14 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
   }
 
   PluginConfig config_;
-  SensorConfig sensor_config_;
+  sensor::SensorConfig sensor_config_;
   ::gazebo::physics::WorldPtr world_;
   ::gazebo::physics::LinkPtr link_;
   std::unique_ptr<GazeboScene> scene_;
-  std::shared_ptr<MovingWorld> surroundings_;
-  std::optional<SteppedSensor> sensor_;
+  std::shared_ptr<world::MovingWorld> surroundings_;
+  std::optional<sensor::SteppedSensor> sensor_;
   std::vector<std::unique_ptr<Output>> outputs_;
-  std::vector<Event> events_;
+  std::vector<dataset::Event> events_;
   Time start_{-1};
   bool is_done_ = false;
   std::chrono::steady_clock::time_point start_wall_;

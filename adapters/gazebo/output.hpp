@@ -15,7 +15,7 @@ namespace lidarena::gazebo_plugin {
 class Output {
  public:
   virtual ~Output() = default;
-  virtual void write(const Event& event) = 0;
+  virtual void write(const dataset::Event& event) = 0;
   /// True pose of the link that carries the sensor; called at every step.
   virtual void write_truth(const StampedPose&) {}
   /// Completes the output; no further calls follow.

@@ -21,10 +21,10 @@ fs::path sensor_folder() {
   return folder != nullptr ? folder : LIDARENA_SENSOR_FOLDER;
 }
 
-SensorConfig named_sensor(const std::string& name, const std::string& place) {
-  if (fs::is_regular_file(name)) return load_sensor(name);
+sensor::SensorConfig named_sensor(const std::string& name, const std::string& place) {
+  if (fs::is_regular_file(name)) return sensor::load_sensor(name);
   const fs::path file = sensor_folder() / (name + ".yaml");
-  if (fs::is_regular_file(file)) return load_sensor(file);
+  if (fs::is_regular_file(file)) return sensor::load_sensor(file);
   throw InputError(place, "no sensor '" + name + "' in " + sensor_folder().string(),
                    "give a name from that folder or the path of a file, or set LIDARENA_SENSORS");
 }
@@ -43,17 +43,17 @@ std::string sensor_of_table(const std::string& file) {
   return {};
 }
 
-SensorConfig table_sensor(const PluginConfig& config, const SensorElement& element,
-                          const std::string& place) {
+sensor::SensorConfig table_sensor(const PluginConfig& config, const SensorElement& element,
+                                  const std::string& place) {
   const std::string known = sensor_of_table(config.csv_file_name);
   if (!fs::is_regular_file(config.csv_file_name)) {
     if (!known.empty()) return named_sensor(known, place);
     throw InputError(place, "no file " + config.csv_file_name,
                      "give the table's full path, or the name of a sensor in <sensor>");
   }
-  SensorConfig sensor;
+  sensor::SensorConfig sensor;
   sensor.name = fs::path(config.csv_file_name).stem().string();
-  sensor.model = LidarModel::kLivoxCsv;
+  sensor.model = sensor::LidarModel::kLivoxCsv;
   sensor.pattern_file = config.csv_file_name;
   sensor.lines = 4;
   sensor.rate_hz = element.update_rate > 0.0 ? element.update_rate : sensor.rate_hz;
@@ -63,10 +63,10 @@ SensorConfig table_sensor(const PluginConfig& config, const SensorElement& eleme
 
 }  // namespace
 
-SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
-                       const std::string& place) {
-  SensorConfig sensor = config.csv_file_name.empty() ? named_sensor(config.sensor, place)
-                                                     : table_sensor(config, element, place);
+sensor::SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
+                               const std::string& place) {
+  sensor::SensorConfig sensor = config.csv_file_name.empty() ? named_sensor(config.sensor, place)
+                                                             : table_sensor(config, element, place);
   if (!config.csv_file_name.empty()) {  // only here the SDF file describes the sensor
     if (element.min_range > 0.0) sensor.min_range_m = element.min_range;
     if (element.max_range > 0.0) sensor.max_range_m = element.max_range;
@@ -76,7 +76,7 @@ SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
   if (!config.id.empty()) sensor.name = config.id;
   if (!config.imu) sensor.imu.reset();
   sensor.body_from_lidar = element.body_from_sensor;
-  make_pattern(sensor, place);  // throws if the model does not have this mode
+  sensor::make_pattern(sensor, place);  // throws if the model does not have this mode
   return sensor;
 }
 

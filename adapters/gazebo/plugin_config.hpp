@@ -15,11 +15,10 @@ enum class Geometry { kCollision, kVisual };
 }  // namespace lidarena::gazebo_plugin
 
 namespace lidarena {
-template <>
-struct EnumNames<gazebo_plugin::Geometry> {
-  static constexpr std::array names{std::pair{"collision", gazebo_plugin::Geometry::kCollision},
-                                    std::pair{"visual", gazebo_plugin::Geometry::kVisual}};
-};
+constexpr auto enum_names(gazebo_plugin::Geometry) {
+  return std::array{std::pair{"collision", gazebo_plugin::Geometry::kCollision},
+                    std::pair{"visual", gazebo_plugin::Geometry::kVisual}};
+}
 }  // namespace lidarena
 
 namespace lidarena::gazebo_plugin {
@@ -37,7 +36,7 @@ struct PluginConfig {
   std::string record;
   double record_seconds = 0.0;
   bool stop = false;
-  Dialect dialect = Dialect::kSi;
+  dataset::Dialect dialect = dataset::Dialect::kSi;
   bool ros = true;
   bool gazebo = false;
   std::string topic;
@@ -94,7 +93,7 @@ struct SensorElement {
 
 /// Configuration of the sensor to simulate. Throws InputError (place: the plugin's name) if the
 /// configuration names a sensor or file that does not exist.
-SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
-                       const std::string& place);
+sensor::SensorConfig sensor_of(const PluginConfig& config, const SensorElement& element,
+                               const std::string& place);
 
 }  // namespace lidarena::gazebo_plugin

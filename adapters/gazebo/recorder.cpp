@@ -8,13 +8,13 @@ namespace {
 class Recorder final : public Output {
  public:
   Recorder(const PluginConfig& config, const Rig& rig)
-      : writer_(config.record, rig, {DatasetFormat::kMcap, config.dialect, false}) {}
-  void write(const Event& event) override { writer_.write(event); }
+      : writer_(config.record, rig, {dataset::DatasetFormat::kMcap, config.dialect, false}) {}
+  void write(const dataset::Event& event) override { writer_.write(event); }
   void write_truth(const StampedPose& pose) override { writer_.write_truth(pose); }
   void finish() override { writer_.finish({{"kind", "dataset"}, {"source", "gazebo"}}); }
 
  private:
-  DatasetWriter writer_;
+  dataset::DatasetWriter writer_;
 };
 
 }  // namespace

@@ -21,11 +21,11 @@ class BytesPublisher {
  public:
   BytesPublisher(::ros::NodeHandle& node, const std::string& topic, std::string_view type) {
     constexpr std::uint32_t kQueue = 100;
-    shape_.morph(lidarena::ros::ros1_md5_of(type), lidarena::ros::ros1_name(type),
-                 lidarena::ros::definition_of(type, Encoding::kRos1), "0");
+    shape_.morph(lidarena::dataset::ros::ros1_md5_of(type), lidarena::dataset::ros::ros1_name(type),
+                 lidarena::dataset::ros::definition_of(type, dataset::Encoding::kRos1), "0");
     publisher_ = shape_.advertise(node, topic, kQueue);
   }
-  void publish(Bytes bytes) {
+  void publish(dataset::Bytes bytes) {
     std::vector<std::uint8_t> copy(bytes.size());
     std::memcpy(copy.data(), bytes.data(), bytes.size());
     ::ros::serialization::IStream stream(copy.data(), static_cast<std::uint32_t>(copy.size()));
@@ -42,15 +42,17 @@ class RosOutput final : public Output {
  public:
   RosOutput(const PluginConfig& config, const Rig& rig)
       : info_(rig.lidars.front()),
-        driver_(config.dialect == Dialect::kDriver ? driver_of(info_) : Driver::kUnknown),
+        driver_(config.dialect == dataset::Dialect::kDriver ? driver_of(info_)
+                                                            : dataset::Driver::kUnknown),
         custom_(config.publish_pointcloud_type == 3),
         frame_(config.frame.empty() ? info_.id + "_lidar" : config.frame),
         points_(node_, points_topic(config, rig),
-                custom_ ? livox_type(info_, Encoding::kRos1) : lidarena::ros::kPointCloud2),
-        imu_(node_, imu_topic(config, rig), lidarena::ros::kImu),
-        odometry_(node_, "/truth/odometry", lidarena::ros::kOdometry) {}
+                custom_ ? dataset::livox_type(info_, dataset::Encoding::kRos1)
+                        : lidarena::dataset::ros::kPointCloud2),
+        imu_(node_, imu_topic(config, rig), lidarena::dataset::ros::kImu),
+        odometry_(node_, "/truth/odometry", lidarena::dataset::ros::kOdometry) {}
 
-  void write(const Event& event) override {
+  void write(const dataset::Event& event) override {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
       encode_driver_imu(*sample, driver_, info_.id + "_imu", message_);
       return imu_.publish(message_.bytes());
@@ -58,29 +60,29 @@ class RosOutput final : public Output {
     const auto& scan = std::get<Scan>(event.data);
     if (custom_) {
       encode_livox_custom(scan, info_, frame_, message_);
-    } else if (driver_ == Driver::kLivox) {
+    } else if (driver_ == dataset::Driver::kLivox) {
       encode_livox_cloud(scan, info_, frame_, message_);
-    } else if (driver_ == Driver::kOuster) {
+    } else if (driver_ == dataset::Driver::kOuster) {
       encode_ouster_cloud(scan, info_, frame_, message_);
     } else {
-      lidarena::ros::encode_scan(scan, frame_, message_);
+      lidarena::dataset::ros::encode_scan(scan, frame_, message_);
     }
     points_.publish(message_.bytes());
   }
 
   void write_truth(const StampedPose& pose) override {
-    lidarena::ros::encode_odometry(pose, "world", "body", message_);
+    lidarena::dataset::ros::encode_odometry(pose, "world", "body", message_);
     odometry_.publish(message_.bytes());
   }
 
  private:
   ::ros::NodeHandle node_;
   LidarInfo info_;
-  Driver driver_;
+  dataset::Driver driver_;
   bool custom_;
   std::string frame_;
   BytesPublisher points_, imu_, odometry_;
-  MessageWriter message_{Encoding::kRos1};
+  dataset::MessageWriter message_{dataset::Encoding::kRos1};
 };
 
 }  // namespace

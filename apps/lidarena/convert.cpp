@@ -6,14 +6,14 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/export_world.hpp"
-#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/world/ply.hpp"
 
 namespace lidarena {
@@ -26,7 +26,7 @@ struct ConvertOptions {
   std::string format;  ///< of datasets; empty: chosen by the extension of `out`
   std::string dialect = "si";
   bool compress = false;
-  ReadOptions read;
+  dataset::ReadOptions read;
 };
 
 /// What is converted, as detected from the input and output paths.
@@ -41,7 +41,7 @@ bool ends_in(const fs::path& file, const std::array<const char*, N>& endings) {
 bool has_faces(const fs::path& file) {
   if (file.extension() != ".ply") return true;
   try {
-    return !read_ply(file).empty();
+    return !world::read_ply(file).empty();
   } catch (const InputError&) {
     return false;  // not a readable mesh: handled as a cloud, whose reader reports errors
   }
@@ -67,19 +67,19 @@ Kind kind_of(const fs::path& in, const fs::path& out) {
 }
 
 Json convert_world(const fs::path& in, const fs::path& out, LogSink& log) {
-  WorldModel model = load_world(in, {}, log);
-  const std::size_t dropped = clean_mesh(model.mesh, in.string());
+  world::WorldModel model = scenes::load_world(in, {}, log);
+  const std::size_t dropped = world::clean_mesh(model.mesh, in.string());
   if (dropped > 0) log.info(fmt::format("left out {} degenerate triangles", dropped));
-  save_world(out, model.mesh);
+  world::save_world(out, model.mesh);
   return {{"kind", "world"}, {"triangles", model.mesh.triangles.size()}};
 }
 
 Json convert_cloud(const fs::path& in, const fs::path& out) {
-  const Cloud cloud = read_cloud(in);
+  const dataset::Cloud cloud = dataset::read_cloud(in);
   if (out.extension() == ".ply") {
-    write_ply(out, cloud);
+    dataset::write_ply(out, cloud);
   } else if (out.extension() == ".pcd") {
-    write_pcd(out, cloud);
+    dataset::write_pcd(out, cloud);
   } else {
     refuse_ending(out, "clouds", ".ply or .pcd");
   }
@@ -88,25 +88,25 @@ Json convert_cloud(const fs::path& in, const fs::path& out) {
 
 /// Writes TUM (.tum), or KITTI (.txt: rows of twelve numbers; the times go to FILE.times.txt).
 Json convert_trajectory(const fs::path& in, const fs::path& out, double rate_hz) {
-  const FramedTrajectory read = read_framed_trajectory(in, {}, rate_hz);
+  const dataset::FramedTrajectory read = dataset::read_framed_trajectory(in, {}, rate_hz);
   const Trajectory& trajectory = read.trajectory;
   if (out.extension() == ".tum") {
     const std::string frames = (read.world.empty() ? "world" : read.world) + "_from_" +
                                (read.body.empty() ? "body" : read.body);
-    write_tum(out, trajectory, frames + "\ntime[s] x y z[m] qx qy qz qw");
+    dataset::write_tum(out, trajectory, frames + "\ntime[s] x y z[m] qx qy qz qw");
   } else if (out.extension() == ".txt") {
-    write_kitti_poses(out, trajectory);
+    dataset::write_kitti_poses(out, trajectory);
     std::vector<Time> times;
     for (const StampedPose& pose : trajectory.poses()) times.push_back(pose.stamp);
-    write_times(fs::path(out).replace_extension(".times.txt"), times);
+    dataset::write_times(fs::path(out).replace_extension(".times.txt"), times);
   } else {
     refuse_ending(out, "trajectories", ".tum (TUM) or .txt (KITTI)");
   }
   return {{"kind", "trajectory"}, {"poses", trajectory.size()}};
 }
 
-WriteOptions write_options(const ConvertOptions& o) {
-  WriteOptions options;
+dataset::WriteOptions write_options(const ConvertOptions& o) {
+  dataset::WriteOptions options;
   const std::string ending = fs::path(o.out).extension().string();
   const std::string format = !o.format.empty() ? o.format : ending == ".bag" ? "bag" : "mcap";
   read_value(ConfigNode::parse(format, "--format"), options.format, {});
@@ -116,9 +116,9 @@ WriteOptions write_options(const ConvertOptions& o) {
 }
 
 Json convert_dataset(const ConvertOptions& o, const Parallel& parallel, LogSink& log) {
-  Dataset in = open_any_dataset(o.in, o.read, parallel);
+  dataset::Dataset in = study::open_any_dataset(o.in, o.read, parallel);
   for (const std::string& note : in.notes) log.info("note: " + note);
-  const CopySummary copied = copy_dataset(in, o.out, write_options(o));
+  const dataset::CopySummary copied = dataset::copy_dataset(in, o.out, write_options(o));
   return {{"kind", "dataset"},           {"scans", copied.scans},
           {"points", copied.points},     {"imu_samples", copied.imu_samples},
           {"truth_poses", copied.poses}, {"truth_scans", copied.truth_scans}};

@@ -4,12 +4,12 @@
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/evaluate_evo.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
-#include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/diagnosis/lever_arm.hpp"
+#include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/metrics_table.hpp"
 #include "lidarena/evaluation/run_statistics.hpp"
 #include "lidarena/study/run_algorithm.hpp"
@@ -31,9 +31,10 @@ struct EvaluateOptions {
 };
 
 /// Reads a file of poses, or the truth of a dataset folder.
-FramedTrajectory read_poses(const std::string& path, const std::string& topic, double rate_hz) {
-  if (!fs::is_directory(path)) return read_framed_trajectory(path, topic, rate_hz);
-  const auto truth = load_truth(path);
+dataset::FramedTrajectory read_poses(const std::string& path, const std::string& topic,
+                                     double rate_hz) {
+  if (!fs::is_directory(path)) return dataset::read_framed_trajectory(path, topic, rate_hz);
+  const auto truth = dataset::load_truth(path);
   if (!truth) throw InputError(path, "contains no truth", "give a file of poses");
   return {*truth, "world", "body"};
 }
@@ -49,9 +50,10 @@ Pose parse_lever(const std::string& text) {
 
 /// The estimate as poses of the truth's body frame. Throws InputError if no `lever` is given and
 /// both files name their body frame, with different names.
-Trajectory in_truths_body(const FramedTrajectory& estimate, const FramedTrajectory& truth,
-                          const std::string& name, const std::string& lever) {
-  if (!lever.empty()) return moved_to_body(estimate.trajectory, parse_lever(lever));
+Trajectory in_truths_body(const dataset::FramedTrajectory& estimate,
+                          const dataset::FramedTrajectory& truth, const std::string& name,
+                          const std::string& lever) {
+  if (!lever.empty()) return evaluation::moved_to_body(estimate.trajectory, parse_lever(lever));
   if (!estimate.body.empty() && !truth.body.empty() && estimate.body != truth.body) {
     throw InputError(
         name,
@@ -76,42 +78,44 @@ class Files {
       throw InputError(o.truth, "contains a single pose; a truth needs at least two");
     }
     if (o.map.empty()) return;
-    map_ = read_cloud(o.map);
-    world_ = std::make_unique<World>(load_mesh(o.mesh), o.mesh);
+    map_ = dataset::read_cloud(o.map);
+    world_ = std::make_unique<world::World>(world::load_mesh(o.mesh), o.mesh);
   }
   const Trajectory& truth() const { return truth_.trajectory; }
   Trajectory estimate(const std::string& file) const {
     return in_truths_body(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
   }
-  ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
-    RunFiles run;
+  evaluation::ScoredRun score(const std::string& file, const Parallel& parallel,
+                              LogSink& log) const {
+    dataset::RunFiles run;
     run.trajectory = estimate(file);
     run.live = run.trajectory;
     run.map = map_;
-    ScoredRun scored;
+    evaluation::ScoredRun scored;
     scored.name = file;
-    scored.metrics = evaluate_run(run, truth_.trajectory, world_.get(), parallel, log);
+    scored.metrics = evaluation::evaluate_run(run, truth_.trajectory, world_.get(), parallel, log);
     scored.metrics["frames"] = {{"truth", truth_.body}, {"lever", o_.lever}};
     return scored;
   }
 
  private:
   const EvaluateOptions& o_;
-  FramedTrajectory truth_;
-  Cloud map_;
-  std::unique_ptr<World> world_;
+  dataset::FramedTrajectory truth_;
+  dataset::Cloud map_;
+  std::unique_ptr<world::World> world_;
 };
 
 /// Fills in algorithm, flight and seed from the manifests of the run and of its dataset.
-void describe(const fs::path& folder, ScoredRun& run) {
+void describe(const fs::path& folder, evaluation::ScoredRun& run) {
   if (!fs::exists(folder / "manifest.json")) return;
-  const Json manifest = read_json(folder / "manifest.json");
+  const Json manifest = dataset::read_json(folder / "manifest.json");
   run.algorithm = fmt::format("{}:{} on {}", manifest.value("algorithm", "?"),
                               manifest.value("preset", "?"), manifest.value("sensor", "?"));
   const fs::path dataset = folder / manifest.value("dataset", "");
   run.flight = dataset.filename().string();
   if (!fs::exists(dataset / "manifest.json")) return;
-  const Json simulation = read_json(dataset / "manifest.json").value("simulation", Json::object());
+  const Json simulation =
+      dataset::read_json(dataset / "manifest.json").value("simulation", Json::object());
   if (!simulation.contains("seed")) return;
   run.seed = simulation.at("seed").dump();
   run.flight = fmt::format("{} {}", fs::path(simulation.value("world", "")).stem().string(),
@@ -121,7 +125,7 @@ void describe(const fs::path& folder, ScoredRun& run) {
 /// Why a run of a study failed; empty if it did not.
 std::string failure_of(const fs::path& folder) {
   if (!fs::exists(folder / "manifest.json")) return {};
-  const Json manifest = read_json(folder / "manifest.json");
+  const Json manifest = dataset::read_json(folder / "manifest.json");
   return manifest.contains("failed") ? manifest.at("failed").get<std::string>() : std::string();
 }
 
@@ -129,14 +133,15 @@ Json failed(const std::string& reason) { return {{"status", "failed"}, {"reason"
 
 /// Scores a RUN folder. If that is impossible, throws if it is the only folder (`alone`), else
 /// returns the status "failed" with the reason.
-ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel, LogSink& log) {
-  ScoredRun run;
+evaluation::ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel,
+                                   LogSink& log) {
+  evaluation::ScoredRun run;
   const bool bare = folder.filename().empty();  // "run/"
   run.name = (bare ? folder.parent_path() : folder).filename().string();
   try {
     describe(folder, run);
     const std::string failure = failure_of(folder);
-    run.metrics = failure.empty() ? score_run(folder, parallel, log) : failed(failure);
+    run.metrics = failure.empty() ? study::score_run(folder, parallel, log) : failed(failure);
   } catch (const InputError& error) {
     if (alone) throw;
     run.metrics = failed(error.what());
@@ -144,8 +149,9 @@ ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& paral
   return run;
 }
 
-std::vector<ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel, LogSink& log) {
-  std::vector<ScoredRun> runs;
+std::vector<evaluation::ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel,
+                                             LogSink& log) {
+  std::vector<evaluation::ScoredRun> runs;
   for (const std::string& folder : o.runs) {
     runs.push_back(score_folder(folder, o.runs.size() == 1, parallel, log));
   }
@@ -155,27 +161,28 @@ std::vector<ScoredRun> score_all(const EvaluateOptions& o, const Parallel& paral
   return runs;
 }
 
-void print_runs_json(const std::vector<ScoredRun>& runs) {
+void print_runs_json(const std::vector<evaluation::ScoredRun>& runs) {
   if (runs.size() == 1) return print_json(runs[0].metrics);
   Json list = Json::array();
-  for (const ScoredRun& run : runs) {
+  for (const evaluation::ScoredRun& run : runs) {
     list.push_back({{"run", run.name},
                     {"algorithm", run.algorithm},
                     {"flight", run.flight},
                     {"seed", run.seed},
                     {"metrics", run.metrics}});
   }
-  print_json({{"runs", list}, {"statistics", statistics_json(runs)}});
+  print_json({{"runs", list}, {"statistics", evaluation::statistics_json(runs)}});
 }
 
 void print_runs(const Common& common, const EvaluateOptions& o,
-                const std::vector<ScoredRun>& runs) {
+                const std::vector<evaluation::ScoredRun>& runs) {
   if (common.json) return print_runs_json(runs);
-  if (o.csv) return fmt::print("{}", metrics_csv(runs));
-  if (o.markdown) return fmt::print("{}", metrics_markdown(runs));
-  if (o.latex) return fmt::print("{}", metrics_latex(runs));
-  for (const ScoredRun& run : runs) fmt::print("{}\n", metrics_text(run));
-  if (runs.size() > 1) fmt::print("{}", statistics_text(statistics_json(runs)));
+  if (o.csv) return fmt::print("{}", evaluation::metrics_csv(runs));
+  if (o.markdown) return fmt::print("{}", evaluation::metrics_markdown(runs));
+  if (o.latex) return fmt::print("{}", evaluation::metrics_latex(runs));
+  for (const evaluation::ScoredRun& run : runs) fmt::print("{}\n", evaluation::metrics_text(run));
+  if (runs.size() > 1)
+    fmt::print("{}", evaluation::statistics_text(evaluation::statistics_json(runs)));
 }
 
 int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
@@ -204,9 +211,9 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
   }
   if (!o.evo.tool.empty()) return evaluate_as_evo(common, o);
   Console console(common.quiet);
-  const std::vector<ScoredRun> runs = score_all(o, Parallel(common.threads), console);
+  const std::vector<evaluation::ScoredRun> runs = score_all(o, Parallel(common.threads), console);
   print_runs(common, o, runs);
-  for (const ScoredRun& run : runs) {
+  for (const evaluation::ScoredRun& run : runs) {
     if (run.metrics.value("status", "") != "ok") return kWorkFailed;
   }
   return kDone;

@@ -15,24 +15,24 @@ constexpr const char* kGroup = "With --compat evo";
 template <class E>
 std::vector<std::string> names_of() {
   std::vector<std::string> names;
-  for (const auto& [name, value] : EnumNames<E>::names) names.emplace_back(name);
+  for (const auto& [name, value] : enum_names(E{})) names.emplace_back(name);
   return names;
 }
 
 /// `name` must be one of names_of<E>(), which the command-line parser checks.
 template <class E>
 E value_of(const std::string& name) {
-  for (const auto& [known, value] : EnumNames<E>::names) {
+  for (const auto& [known, value] : enum_names(E{})) {
     if (name == known) return value;
   }
   throw InputError(name, "is not known");
 }
 
-EvoOptions options_of(const EvoArguments& a) {
-  EvoOptions o;
-  o.metric = value_of<EvoMetric>(a.metric);
-  o.relation = value_of<EvoRelation>(a.relation);
-  o.unit = value_of<EvoUnit>(a.unit);
+evaluation::EvoOptions options_of(const EvoArguments& a) {
+  evaluation::EvoOptions o;
+  o.metric = value_of<evaluation::EvoMetric>(a.metric);
+  o.relation = value_of<evaluation::EvoRelation>(a.relation);
+  o.unit = value_of<evaluation::EvoUnit>(a.unit);
   o.delta = a.delta;
   o.delta_tolerance = a.delta_tolerance;
   o.all_pairs = a.all_pairs;
@@ -78,9 +78,10 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
   const auto option = [&](const char* name, auto& value, const char* help) {
     verb.add_option(name, value, help)->needs(compat)->group(kGroup)->capture_default_str();
   };
-  choice("--metric", a.metric, "Absolute or relative pose error", names_of<EvoMetric>());
+  choice("--metric", a.metric, "Absolute or relative pose error",
+         names_of<evaluation::EvoMetric>());
   choice("--relation", a.relation, "Part of the pose error that is measured",
-         names_of<EvoRelation>());
+         names_of<evaluation::EvoRelation>());
   option("--t-max-diff", a.t_max_diff, "Maximum difference of stamps that are matched, s");
   option("--t-offset", a.t_offset, "Added to the estimate's stamps, s");
   flag("--align", a.align, "Align by rotation and translation");
@@ -89,7 +90,7 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
   option("--n-to-align", a.n_to_align, "Fit only the first N pairs, 0 = all");
   option("--delta", a.delta, "Distance between the two poses of a pair (rpe), in --unit");
   choice("--unit", a.unit, "Unit of --delta: frames, meters, degrees, radians",
-         names_of<EvoUnit>());
+         names_of<evaluation::EvoUnit>());
   option("--delta-tolerance", a.delta_tolerance, "Tolerance relative to --delta, with --all-pairs");
   flag("--all-pairs", a.all_pairs, "A pair starts at every pose, else consecutive pairs");
   flag("--pairs-from-reference", a.pairs_from_reference,
@@ -97,10 +98,10 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
 }
 
 Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments) {
-  const EvoOptions options = options_of(arguments);
-  const EvoResult result = compat_evo(truth, estimate, options);
-  const EvoStatistics& s = result.statistics;
-  const Similarity& gauge = result.reference_from_estimate;
+  const evaluation::EvoOptions options = options_of(arguments);
+  const evaluation::EvoResult result = evaluation::compat_evo(truth, estimate, options);
+  const evaluation::EvoStatistics& s = result.statistics;
+  const evaluation::Similarity& gauge = result.reference_from_estimate;
   const Pose pose = make_pose(gauge.rotation, gauge.translation);
   return {{"compat", "evo"},
           {"options", options_json(arguments)},
@@ -110,7 +111,7 @@ Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArgu
           {"errors", result.errors.size()},
           {"reference_from_estimate_m_quaternion", value_to_json(pose)},
           {"scale", gauge.scale},
-          {"unit", unit_of(options.relation)},
+          {"unit", evaluation::unit_of(options.relation)},
           {"statistics",
            {{"rmse", s.rmse},
             {"mean", s.mean},

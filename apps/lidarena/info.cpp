@@ -7,11 +7,11 @@
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/pattern_info.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
-#include "lidarena/scenes/load_world.hpp"
 
 namespace lidarena {
 namespace {
@@ -25,9 +25,9 @@ struct InfoOptions {
   std::string out;
 };
 
-Json sensor_info(const SensorConfig& sensor) {
+Json sensor_info(const sensor::SensorConfig& sensor) {
   Json json = to_json(sensor);
-  const auto pattern = make_pattern(sensor);
+  const auto pattern = sensor::make_pattern(sensor);
   json["beams_per_scan"] = pattern->beams_per_scan();
   json["points_per_second"] =
       static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
@@ -40,7 +40,7 @@ Json box_json(const Eigen::AlignedBox3d& box) {
 }
 
 Json world_info(const fs::path& file, LogSink& log) {
-  const WorldModel model = load_world(file, {}, log);
+  const world::WorldModel model = scenes::load_world(file, {}, log);
   Json routes = Json::array();
   for (const auto& route : model.routes) {
     double length = 0.0;
@@ -56,7 +56,7 @@ Json world_info(const fs::path& file, LogSink& log) {
 }
 
 Json cloud_info(const fs::path& file) {
-  const Cloud cloud = read_cloud(file);
+  const dataset::Cloud cloud = dataset::read_cloud(file);
   Eigen::AlignedBox3d box;
   std::size_t invalid = 0;
   for (const Eigen::Vector3f& p : cloud.points) {
@@ -72,7 +72,7 @@ Json cloud_info(const fs::path& file) {
 
 /// Reads the whole dataset, so that damage anywhere in it is reported.
 Json dataset_info(const fs::path& path) {
-  Dataset dataset = open_any_dataset(path, {}, Parallel());
+  dataset::Dataset dataset = study::open_any_dataset(path, {}, Parallel());
   struct Counts {
     std::size_t messages = 0, points = 0, untimed = 0;
     Time first{0}, last{0}, longest_gap{0};
@@ -120,14 +120,15 @@ Json ply_info(const fs::path& file, LogSink& log) {
   }
 }
 
-Json info_of(const ConfigFolder& configs, const std::string& thing, LogSink& log) {
+Json info_of(const study::ConfigFolder& configs, const std::string& thing, LogSink& log) {
   const fs::path path = thing;
   if (fs::is_directory(path)) {
     if (fs::exists(path / "manifest.json")) {
-      const Json manifest = read_json(path / "manifest.json");
+      const Json manifest = dataset::read_json(path / "manifest.json");
       if (manifest.value("kind", "") == "run") {
         Json json = manifest;
-        if (fs::exists(path / "metrics.json")) json["metrics"] = read_json(path / "metrics.json");
+        if (fs::exists(path / "metrics.json"))
+          json["metrics"] = dataset::read_json(path / "metrics.json");
         return json;
       }
     }
@@ -144,7 +145,8 @@ Json info_of(const ConfigFolder& configs, const std::string& thing, LogSink& log
     const bool known = std::find(names.begin(), names.end(), thing) != names.end();
     if (!known && !(fs::exists(path) && std::string(kind) == "sensors")) continue;
     const fs::path file = configs.resolve(kind, thing);
-    return std::string(kind) == "sensors" ? sensor_info(load_sensor(file)) : world_info(file, log);
+    return std::string(kind) == "sensors" ? sensor_info(sensor::load_sensor(file))
+                                          : world_info(file, log);
   }
   std::vector<std::string> names = configs.names("sensors");
   for (const std::string& world : configs.names("worlds")) names.push_back(world);
@@ -169,17 +171,17 @@ void print_tree(const Json& json, int depth) {
 
 int info_verb(const Common& common, const InfoOptions& o) {
   Console console(common.quiet);
-  const ConfigFolder configs = common.config_folder();
+  const study::ConfigFolder configs = common.config_folder();
   if (o.rays > 0) {
-    print_rays(load_sensor(configs.resolve("sensors", o.thing)), o.rays);
+    print_rays(sensor::load_sensor(configs.resolve("sensors", o.thing)), o.rays);
     return kDone;
   }
   if (!o.out.empty() && !o.pattern) {
     throw InputError("--out", "is only for the drawing of a scan pattern", "add --pattern");
   }
-  const Json json = o.pattern
-                        ? pattern_info(load_sensor(configs.resolve("sensors", o.thing)), o.out)
-                        : info_of(configs, o.thing, console);
+  const Json json =
+      o.pattern ? pattern_info(sensor::load_sensor(configs.resolve("sensors", o.thing)), o.out)
+                : info_of(configs, o.thing, console);
   if (common.json) {
     print_json(json);
   } else {

@@ -23,7 +23,7 @@ std::string first_comment(const std::filesystem::path& file) {
 
 int list_algorithms_verb(const Common& common) {
   Json list = Json::array();
-  for (const AlgorithmInfo& info : list_algorithms()) {
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
     list.push_back({{"name", info.name},
                     {"summary", info.summary},
                     {"presets", info.presets},
@@ -42,9 +42,9 @@ std::string figure(double low, double high, const char* unit) {
                                  : fmt::format("{:g} {}", high, unit);
 }
 
-std::string fov_of(const SensorFacts& facts) {
+std::string fov_of(const sensor::SensorFacts& facts) {
   if (!facts.fov) return "-";
-  const FieldOfView& fov = *facts.fov;
+  const sensor::FieldOfView& fov = *facts.fov;
   if (fov.half_angle_deg < 180.0) return fmt::format("circle {:g}", 2.0 * fov.half_angle_deg);
   return fmt::format("{:g} x {:g}", fov.azimuth_max_deg - fov.azimuth_min_deg,
                      fov.elevation_max_deg - fov.elevation_min_deg);
@@ -52,7 +52,7 @@ std::string fov_of(const SensorFacts& facts) {
 
 /// Prints one line per sensor with its main specifications, or the error if its file is invalid.
 int list_sensors(const Common& common) {
-  const ConfigFolder configs = common.config_folder();
+  const study::ConfigFolder configs = common.config_folder();
   constexpr const char* kRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
   if (!common.json) {
     fmt::print(kRow, "sensor", "FOV, deg", "points/s", "range", "weight", "power", "price");
@@ -62,11 +62,11 @@ int list_sensors(const Common& common) {
     const auto file = configs.resolve("sensors", name);
     Json json{{"name", name}, {"summary", first_comment(file)}};
     try {
-      const SensorConfig sensor = load_sensor(file);
-      const auto pattern = make_pattern(sensor);
+      const sensor::SensorConfig sensor = sensor::load_sensor(file);
+      const auto pattern = sensor::make_pattern(sensor);
       const double rate =
           static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
-      const SensorFacts& facts = sensor.facts;
+      const sensor::SensorFacts& facts = sensor.facts;
       json.update({{"fov_deg", fov_of(facts)},
                    {"points_per_second", rate},
                    {"max_range_m", sensor.max_range_m},
@@ -88,7 +88,7 @@ int list_sensors(const Common& common) {
 }
 
 int list_configs(const Common& common, const std::string& kind) {
-  const ConfigFolder configs = common.config_folder();
+  const study::ConfigFolder configs = common.config_folder();
   Json list = Json::array();
   for (const std::string& name : configs.names(kind)) {
     const std::string summary = first_comment(configs.resolve(kind, name));

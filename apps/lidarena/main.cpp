@@ -10,12 +10,12 @@
 
 namespace lidarena {
 
-ConfigFolder Common::config_folder() const {
-  if (!configs.empty()) return ConfigFolder(configs);
+study::ConfigFolder Common::config_folder() const {
+  if (!configs.empty()) return study::ConfigFolder(configs);
   try {
-    return ConfigFolder::find(std::filesystem::current_path());
+    return study::ConfigFolder::find(std::filesystem::current_path());
   } catch (const InputError&) {
-    return ConfigFolder::find(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+    return study::ConfigFolder::find(std::filesystem::read_symlink("/proc/self/exe").parent_path());
   }
 }
 

@@ -18,16 +18,18 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kInstants[] = {0.1, 0.5, 1.0, 4.0};  // s
 
 /// Cell size in degrees: finer for narrow fields of view.
-double cell_of(const FieldOfView& fov) {
+double cell_of(const sensor::FieldOfView& fov) {
   return fov.azimuth_max_deg - fov.azimuth_min_deg > 180.0 ? 0.5 : 0.25;
 }
 
-FieldOfView field_of_view(const SensorConfig& sensor, const ScanPattern& pattern) {
-  return sensor.facts.fov ? *sensor.facts.fov : observed_field_of_view(pattern, from_seconds(1.0));
+sensor::FieldOfView field_of_view(const sensor::SensorConfig& sensor,
+                                  const sensor::ScanPattern& pattern) {
+  return sensor.facts.fov ? *sensor.facts.fov
+                          : sensor::observed_field_of_view(pattern, from_seconds(1.0));
 }
 
 /// The drawn area: the bounding box of the field of view and ten cells around it.
-FieldOfView margin_around(const FieldOfView& fov, double cell_deg) {
+sensor::FieldOfView margin_around(const sensor::FieldOfView& fov, double cell_deg) {
   const double margin = 10 * cell_deg;
   return {std::max(-180.0, fov.azimuth_min_deg - margin),
           std::min(180.0, fov.azimuth_max_deg + margin),
@@ -35,7 +37,7 @@ FieldOfView margin_around(const FieldOfView& fov, double cell_deg) {
           std::min(90.0, fov.elevation_max_deg + margin)};
 }
 
-std::vector<std::pair<double, double>> outline_of(const FieldOfView& fov) {
+std::vector<std::pair<double, double>> outline_of(const sensor::FieldOfView& fov) {
   if (fov.half_angle_deg >= 90.0) {
     return {{fov.azimuth_min_deg, fov.elevation_min_deg},
             {fov.azimuth_max_deg, fov.elevation_min_deg},
@@ -52,8 +54,8 @@ std::vector<std::pair<double, double>> outline_of(const FieldOfView& fov) {
   return circle;
 }
 
-CellPanel panel_of(const Coverage& grid, double seconds, double share) {
-  CellPanel panel;
+report::CellPanel panel_of(const sensor::Coverage& grid, double seconds, double share) {
+  report::CellPanel panel;
   panel.title = fmt::format("{:g} s: {:.1f} % covered", seconds, 100.0 * share);
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
@@ -65,25 +67,25 @@ CellPanel panel_of(const Coverage& grid, double seconds, double share) {
 
 }  // namespace
 
-void print_rays(const SensorConfig& sensor, std::size_t count) {
-  const auto pattern = make_pattern(sensor);
-  Shots shots(*pattern);
+void print_rays(const sensor::SensorConfig& sensor, std::size_t count) {
+  const auto pattern = sensor::make_pattern(sensor);
+  sensor::Shots shots(*pattern);
   fmt::print("index,dt_ns,x,y,z,ring\n");
   for (std::size_t i = 0; i < count; ++i, shots.advance()) {
-    const Beam& b = shots.beam();
+    const sensor::Beam& b = shots.beam();
     fmt::print("{},{},{:.9g},{:.9g},{:.9g},{}\n", i, shots.time().count(), b.direction.x(),
                b.direction.y(), b.direction.z(), b.ring);
   }
 }
 
-Json pattern_info(const SensorConfig& sensor, const std::filesystem::path& svg) {
-  const auto pattern = make_pattern(sensor);
-  const FieldOfView fov = field_of_view(sensor, *pattern);
+Json pattern_info(const sensor::SensorConfig& sensor, const std::filesystem::path& svg) {
+  const auto pattern = sensor::make_pattern(sensor);
+  const sensor::FieldOfView fov = field_of_view(sensor, *pattern);
   const double cell_deg = cell_of(fov);
-  const FieldOfView view = margin_around(fov, cell_deg);
-  Coverage inside(fov, cell_deg);
-  Coverage drawn(view, cell_deg);
-  CellChart chart{
+  const sensor::FieldOfView view = margin_around(fov, cell_deg);
+  sensor::Coverage inside(fov, cell_deg);
+  sensor::Coverage drawn(view, cell_deg);
+  report::CellChart chart{
       .title = sensor.name,
       .caption = fmt::format("cells of {:g} deg with at least one shot; share of the field "
                              "of view's solid angle",
@@ -107,7 +109,7 @@ Json pattern_info(const SensorConfig& sensor, const std::filesystem::path& svg) 
             {"cell_deg", cell_deg},
             {"coverage", Json::object()}};
   if (!sensor.facts.approximate.empty()) json["approximate"] = sensor.facts.approximate;
-  Shots shots(*pattern);
+  sensor::Shots shots(*pattern);
   for (const double seconds : kInstants) {
     for (; shots.time() < from_seconds(seconds); shots.advance()) {
       inside.add(shots.beam().direction);
@@ -117,8 +119,8 @@ Json pattern_info(const SensorConfig& sensor, const std::filesystem::path& svg) 
     chart.panels.push_back(panel_of(drawn, seconds, inside.share()));
   }
   if (!svg.empty()) {
-    PartFile out(svg);
-    out.write(cell_chart_svg(chart));
+    dataset::PartFile out(svg);
+    out.write(report::cell_chart_svg(chart));
     out.commit();
     json["drawing"] = svg.string();
   }

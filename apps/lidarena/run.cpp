@@ -19,15 +19,17 @@ Pose parse_extrinsics(const std::string& text) {
   return pose;
 }
 
-int run_verb(const Common& common, const RunRequest& request, const std::string& out) {
+int run_verb(const Common& common, const study::RunRequest& request, const std::string& out) {
   Console console(common.quiet);
-  const RunSummary s = run_algorithm(request, out, Parallel(common.threads), console);
+  const odometry::RunSummary s =
+      study::run_algorithm(request, out, Parallel(common.threads), console);
   const double factor = s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0;
   Json statuses = Json::object();
   std::string counts;
   for (const auto& [status, count] : s.statuses) {
-    statuses[to_string(status)] = count;
-    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, to_string(status));
+    statuses[odometry::to_string(status)] = count;
+    counts +=
+        fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
   }
   if (common.json) {
     print_json({{"run", out},
@@ -59,7 +61,7 @@ int run_verb(const Common& common, const RunRequest& request, const std::string&
 
 void add_run(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand("run", "Run an algorithm on a dataset, bag or folder of sweeps");
-  auto r = std::make_shared<RunRequest>();
+  auto r = std::make_shared<study::RunRequest>();
   auto out = std::make_shared<std::string>();
   auto dataset = std::make_shared<std::string>();
   auto extrinsics = std::make_shared<std::string>();

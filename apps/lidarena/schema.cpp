@@ -9,9 +9,9 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
+#include "lidarena/scenes/world_config.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/study_spec.hpp"
-#include "lidarena/scenes/world_config.hpp"
 
 namespace lidarena {
 namespace {
@@ -19,13 +19,14 @@ namespace {
 /// Functions that make the schema of each kind of YAML file, and of each algorithm's configuration.
 std::map<std::string, std::function<Json()>> schemas() {
   std::map<std::string, std::function<Json()>> all{
-      {"world", [] { return schema_document<WorldConfig>("A world of Lidarena"); }},
-      {"flight", [] { return schema_document<FlightConfig>("A flight of Lidarena"); }},
-      {"sensor", [] { return schema_document<SensorConfig>("A sensor of Lidarena"); }},
-      {"beams", [] { return schema_document<SpinningHead>("The beams of a spinning head"); }},
-      {"study", [] { return schema_document<StudySpec>("A study of Lidarena"); }}};
-  for (const AlgorithmInfo& info : list_algorithms()) {
-    all[info.name] = [name = info.name] { return algorithm_schema(name); };
+      {"world", [] { return schema_document<scenes::WorldConfig>("A world of Lidarena"); }},
+      {"flight", [] { return schema_document<flight::FlightConfig>("A flight of Lidarena"); }},
+      {"sensor", [] { return schema_document<sensor::SensorConfig>("A sensor of Lidarena"); }},
+      {"beams",
+       [] { return schema_document<sensor::SpinningHead>("The beams of a spinning head"); }},
+      {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }}};
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
+    all[info.name] = [name = info.name] { return odometry::algorithm_schema(name); };
   }
   return all;
 }
@@ -41,7 +42,8 @@ Json schema_of(const std::string& kind) {
 
 int write_all(const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  for (const auto& [name, make] : schemas()) write_json(folder / (name + ".schema.json"), make());
+  for (const auto& [name, make] : schemas())
+    dataset::write_json(folder / (name + ".schema.json"), make());
   return kDone;
 }
 

@@ -12,7 +12,7 @@ namespace {
 struct SimulateOptions {
   std::string world, flight, out;
   std::vector<std::string> sensors;
-  SimulateRequest request;
+  study::SimulateRequest request;
   std::string noise = "on";
   std::string mode;
   std::string format = "mcap";
@@ -22,8 +22,8 @@ struct SimulateOptions {
 };
 
 int simulate_verb(const Common& common, const SimulateOptions& options) {
-  const ConfigFolder configs = common.config_folder();
-  SimulateRequest request = options.request;
+  const study::ConfigFolder configs = common.config_folder();
+  study::SimulateRequest request = options.request;
   request.world = configs.resolve("worlds", options.world);
   request.flight = configs.resolve("flights", options.flight);
   for (const std::string& sensor : options.sensors) {
@@ -39,8 +39,8 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   read_value(ConfigNode::parse(options.dialect, "--dialect"), request.write.dialect, {});
   request.write.compress = options.compress;
   Console console(common.quiet);
-  const SimulateSummary s =
-      simulate_dataset(request, options.out, Parallel(common.threads), console);
+  const study::SimulateSummary s =
+      study::simulate_dataset(request, options.out, Parallel(common.threads), console);
   if (common.json) {
     print_json({{"dataset", options.out},
                 {"triangles", s.triangles},

@@ -25,7 +25,7 @@ struct StudyRequest {
 };
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
-StudySpec spec_of_one_place(const StudyRequest& request) {
+study::StudySpec spec_of_one_place(const StudyRequest& request) {
   if (request.world.empty()) {
     throw InputError("study", "neither a study nor a world is given",
                      "name a study, or give --world and --sensors");
@@ -33,7 +33,7 @@ StudySpec spec_of_one_place(const StudyRequest& request) {
   if (!request.tour) {
     throw InputError("study --world", "has no flight", "give --auto to plan a tour of the world");
   }
-  StudySpec spec;
+  study::StudySpec spec;
   spec.title = "Which LiDAR, which SLAM: " + std::filesystem::path(request.world).stem().string();
   spec.scenes = {{request.world, "auto", request.seconds}};
   spec.sensors = request.sensors;
@@ -42,17 +42,18 @@ StudySpec spec_of_one_place(const StudyRequest& request) {
       spec.algorithms.push_back(algorithm);
       continue;
     }
-    for (const AlgorithmInfo& info : list_algorithms()) spec.algorithms.push_back(info.name);
+    for (const odometry::AlgorithmInfo& info : odometry::list_algorithms())
+      spec.algorithms.push_back(info.name);
   }
   return spec;
 }
 
-void print_plan(const StudySpec& spec, const std::vector<PlannedRun>& cells,
-                const ConfigFolder& configs) {
+void print_plan(const study::StudySpec& spec, const std::vector<study::PlannedRun>& cells,
+                const study::ConfigFolder& configs) {
   double seconds = 0.0;
   double disk_mb = 0.0;
-  for (const PlannedRun& cell : cells) {
-    const CellEstimate one = estimate(cell, configs);
+  for (const study::PlannedRun& cell : cells) {
+    const study::CellEstimate one = study::estimate(cell, configs);
     const double mb = one.record_mb + (spec.keep_maps ? one.maps_mb : 0.0);
     fmt::print("{:70} {:>8} {:6.0f} MB\n", cell.name, clock_text(one.seconds), mb);
     seconds += one.seconds;
@@ -63,22 +64,22 @@ void print_plan(const StudySpec& spec, const std::vector<PlannedRun>& cells,
 }
 
 int study_verb(const Common& common, const StudyRequest& request) {
-  const ConfigFolder configs = common.config_folder();
+  const study::ConfigFolder configs = common.config_folder();
   const auto spec = request.name.empty()
                         ? spec_of_one_place(request)
-                        : load_config<StudySpec>(configs.resolve("studies", request.name));
-  StudyOptions options;
+                        : load_config<study::StudySpec>(configs.resolve("studies", request.name));
+  study::StudyOptions options;
   options.threads = common.threads;
   options.jobs = request.jobs;
-  options.shard = parse_shard(request.shard);
+  options.shard = study::parse_shard(request.shard);
   if (request.dry) {
-    print_plan(spec, cells_of(plan(spec, configs), options.shard, configs), configs);
+    print_plan(spec, study::cells_of(study::plan(spec, configs), options.shard, configs), configs);
     return kDone;
   }
   Console console(common.quiet);
   const std::string& out = request.out;
-  const StudyOutcome outcome = run_study(spec, configs, out, options, console);
-  const ReportFiles report = write_report({out}, out, console);
+  const study::StudyOutcome outcome = study::run_study(spec, configs, out, options, console);
+  const report::ReportFiles report = report::write_report({out}, out, console);
   if (common.json) {
     print_json({{"study", out},
                 {"runs", outcome.runs},
@@ -107,7 +108,7 @@ int report_verb(const Common& common, const ReportRequest& request) {
   Console console(common.quiet);
   const std::filesystem::path out =
       request.out.empty() ? request.folders.front() : std::filesystem::path(request.out);
-  const ReportFiles report = write_report(request.folders, out, console);
+  const report::ReportFiles report = report::write_report(request.folders, out, console);
   if (common.json) {
     print_json({{"report", report.page.string()}});
   } else {

@@ -22,7 +22,7 @@ struct Common {
   int threads = 0;
   std::string configs;  ///< folder given with --configs; empty = search
 
-  ConfigFolder config_folder() const;
+  study::ConfigFolder config_folder() const;
 };
 
 /// Adds --json, --quiet, --threads, --configs to `verb`. When the verb is parsed, runs `action` and

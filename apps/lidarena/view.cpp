@@ -11,8 +11,8 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/view_page.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/scenes/load_world.hpp"
+#include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
@@ -26,12 +26,12 @@ struct ViewOptions {
   std::string map = "reprojected";
   double million_points = 5.0;
   int port = 0;
-  ReadOptions read;
+  dataset::ReadOptions read;
 };
 
 bool is_run(const fs::path& folder) {
   const fs::path manifest = folder / "manifest.json";
-  return fs::exists(manifest) && read_json(manifest).value("kind", "") == "run";
+  return fs::exists(manifest) && dataset::read_json(manifest).value("kind", "") == "run";
 }
 
 /// Whether the header of a .ply declares faces; a .ply without faces is a point cloud.
@@ -47,13 +47,14 @@ bool has_faces(const fs::path& file) {
   return false;
 }
 
-void add_world(Scene& scene, const fs::path& file, LogSink& log) {
-  scene.meshes.push_back({file.stem().string(), load_world(file, {}, log).mesh});
+void add_world(report::Scene& scene, const fs::path& file, LogSink& log) {
+  scene.meshes.push_back({file.stem().string(), scenes::load_world(file, {}, log).mesh});
 }
 
 /// Adds a folder, a file, or the world called `name` in configs/worlds to the scene.
-void add_thing(Scene& scene, const Common& common, const ViewOptions& o, const std::string& name,
-               const SceneOptions& options, const Parallel& parallel, LogSink& log) {
+void add_thing(report::Scene& scene, const Common& common, const ViewOptions& o,
+               const std::string& name, const report::SceneOptions& options,
+               const Parallel& parallel, LogSink& log) {
   fs::path path = name;
   if (!fs::exists(path)) path = common.config_folder().resolve("worlds", name);
   std::string ending = path.extension().string();
@@ -61,15 +62,15 @@ void add_thing(Scene& scene, const Common& common, const ViewOptions& o, const s
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool is_cloud = ending == ".pcd" || (ending == ".ply" && !has_faces(path));
   if (fs::is_directory(path) && is_run(path)) {
-    add_run(scene, path, options, log);
+    report::add_run(scene, path, options, log);
   } else if (fs::is_directory(path) || ending == ".mcap" || ending == ".bag") {
-    Dataset dataset = open_any_dataset(path, o.read, parallel);
+    dataset::Dataset dataset = study::open_any_dataset(path, o.read, parallel);
     for (const std::string& note : dataset.notes) log.info("note: " + note);
-    add_dataset(scene, std::move(dataset), options, log);
+    report::add_dataset(scene, std::move(dataset), options, log);
   } else if (is_cloud) {
-    add_cloud_file(scene, path, options);
+    report::add_cloud_file(scene, path, options);
   } else if (ending == ".tum" || ending == ".txt" || ending == ".csv") {
-    add_path_file(scene, path);
+    report::add_path_file(scene, path);
   } else {
     add_world(scene, path, log);
   }
@@ -85,18 +86,18 @@ std::string title_of(const std::vector<std::string>& files) {
   return title;
 }
 
-Scene load_scene(const Common& common, const ViewOptions& o, const Parallel& parallel,
-                 LogSink& log) {
-  SceneOptions options;
+report::Scene load_scene(const Common& common, const ViewOptions& o, const Parallel& parallel,
+                         LogSink& log) {
+  report::SceneOptions options;
   options.max_points = static_cast<std::size_t>(o.million_points * 1e6);
   read_value(ConfigNode::parse(o.map, "--map"), options.map, {});
-  Scene scene;
+  report::Scene scene;
   scene.title = title_of(o.files);
   for (const std::string& file : o.files) {
     add_thing(scene, common, o, file, options, parallel, log);
   }
-  measure_distances(scene, parallel);
-  for (const SceneCloud& cloud : scene.clouds) {
+  report::measure_distances(scene, parallel);
+  for (const report::SceneCloud& cloud : scene.clouds) {
     if (cloud.left_out == 0) continue;
     log.info(fmt::format("{}: shows {} of {} points, chosen at random (--points raises the limit)",
                          cloud.name, cloud.points.size(), cloud.points.size() + cloud.left_out));
@@ -104,7 +105,7 @@ Scene load_scene(const Common& common, const ViewOptions& o, const Parallel& par
   return scene;
 }
 
-Json summary_of(const PackedScene& packed) {
+Json summary_of(const report::PackedScene& packed) {
   Json layers = Json::array();
   for (const Json& cloud : packed.header.at("clouds")) {
     layers.push_back({{"cloud", cloud.at("name")},
@@ -123,15 +124,15 @@ Json summary_of(const PackedScene& packed) {
 int view_verb(const Common& common, const ViewOptions& o) {
   Console console(common.quiet);
   std::string picture;
-  const PackedScene packed = [&] {
+  const report::PackedScene packed = [&] {
     const Parallel parallel(common.threads);
-    const Scene scene = load_scene(common, o, parallel, console);
-    picture = scene_picture(scene);
-    return pack(scene, parallel);
+    const report::Scene scene = load_scene(common, o, parallel, console);
+    picture = report::scene_picture(scene);
+    return report::pack(scene, parallel);
   }();
   Json told{{"layers", summary_of(packed)}};
   if (!o.out.empty()) {
-    write_view_page(o.out, packed, picture);
+    report::write_view_page(o.out, packed, picture);
     told["page"] = o.out;
     if (common.json) {
       print_json(told);
@@ -140,16 +141,18 @@ int view_verb(const Common& common, const ViewOptions& o) {
     }
     return kDone;
   }
-  serve_view(served_view_page(packed, picture), packed, o.port, [&](const std::string& address) {
-    told["address"] = address;
-    if (common.json) {
-      print_json(told);
-    } else {
-      fmt::print("{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",
-                 address);
-    }
-    std::fflush(stdout);
-  });
+  serve_view(
+      report::served_view_page(packed, picture), packed, o.port, [&](const std::string& address) {
+        told["address"] = address;
+        if (common.json) {
+          print_json(told);
+        } else {
+          fmt::print(
+              "{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",
+              address);
+        }
+        std::fflush(stdout);
+      });
   return kDone;
 }
 

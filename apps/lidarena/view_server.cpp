@@ -28,7 +28,7 @@ void refuse_foreign_hosts(httplib::Server& server, int port) {
   });
 }
 
-void serve_block(const PackedScene& scene, const httplib::Request& request,
+void serve_block(const report::PackedScene& scene, const httplib::Request& request,
                  httplib::Response& response) {
   const std::string number = request.matches[1];
   const std::size_t index = number.size() > 9 ? scene.blocks.size() : std::stoul(number);
@@ -46,7 +46,7 @@ void serve_block(const PackedScene& scene, const httplib::Request& request,
 
 }  // namespace
 
-void serve_view(const std::string& page, const PackedScene& scene, int port,
+void serve_view(const std::string& page, const report::PackedScene& scene, int port,
                 const std::function<void(const std::string& address)>& listening) {
   httplib::Server server;
   server.Get("/", [&](const httplib::Request&, httplib::Response& response) {

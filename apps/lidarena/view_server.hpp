@@ -13,7 +13,7 @@ namespace lidarena {
 /// their Host header are rejected, so that a foreign web page cannot read the data through a host
 /// name that resolves to 127.0.0.1 (DNS rebinding). `port` 0 = any free port; `listening` is called
 /// with the address. Throws InputError if the port is in use, Error if this build has no server.
-void serve_view(const std::string& page, const PackedScene& scene, int port,
+void serve_view(const std::string& page, const report::PackedScene& scene, int port,
                 const std::function<void(const std::string& address)>& listening);
 
 }  // namespace lidarena

@@ -155,9 +155,16 @@ std::int64_t ConfigNode::as_integer() const {
   return number;
 }
 
-void ConfigNode::reject_unknown(const std::vector<std::string>& known) const {
+void ConfigNode::reject_unknown(const std::vector<std::string>& known,
+                                std::span<const RenamedKey> renamed) const {
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    const auto former = std::find_if(renamed.begin(), renamed.end(),
+                                     [&](const RenamedKey& names) { return names.first == key; });
+    if (former != renamed.end()) {
+      throw InputError(where(key), "the key '" + key + "' has another name",
+                       "write '" + std::string(former->second) + "'");
+    }
     const std::string nearest = nearest_word(key, known);
     throw InputError(
         where(key), "unknown key '" + key + "'",

@@ -9,9 +9,11 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/error.hpp"
@@ -37,10 +39,8 @@ inline Limits at_least(double low) { return {low, std::numeric_limits<double>::i
 inline Limits above(double low) { return {low, std::numeric_limits<double>::infinity(), true}; }
 inline Limits between(double low, double high) { return {low, high, false}; }
 
-/// Specialize for an enum: `static constexpr std::array names{std::pair{"rolling",
-/// Mode::kRolling}};`
-template <class E>
-struct EnumNames;
+/// Former name of a key and its name, for errors.
+using RenamedKey = std::pair<std::string_view, std::string_view>;
 
 template <class T>
 concept ConfigStruct = std::is_class_v<T> && requires(T& t) {
@@ -70,8 +70,10 @@ class ConfigNode {
   double as_double() const;
   std::int64_t as_integer() const;
 
-  /// Throws InputError with the nearest known key when this map has a key that is not in `known`.
-  void reject_unknown(const std::vector<std::string>& known) const;
+  /// Throws InputError when this map has a key that is not in `known`: with the key's name if it is
+  /// a former name in `renamed`, else with the nearest known key.
+  void reject_unknown(const std::vector<std::string>& known,
+                      std::span<const RenamedKey> renamed = {}) const;
   /// Throws InputError when `value` is outside `limits`.
   void check(double value, const Limits& limits) const;
   /// Throws InputError that lists the allowed values.
@@ -104,12 +106,14 @@ void read_value(const ConfigNode& node, T& out, const Limits& limits) {
   out = static_cast<T>(value);
 }
 
+/// The names of an enum E are those of a function beside it, found by argument-dependent lookup:
+/// `constexpr auto enum_names(E) { return std::array{std::pair{"rolling", E::kRolling}, ...}; }`
 template <class E>
 requires std::is_enum_v<E>
 void read_value(const ConfigNode& node, E& out, const Limits&) {
   const std::string text = node.text();
   std::vector<std::string> allowed;
-  for (const auto& [name, value] : EnumNames<E>::names) {
+  for (const auto& [name, value] : enum_names(E{})) {
     if (text == name) {
       out = value;
       return;
@@ -155,7 +159,11 @@ void read_config(const ConfigNode& node, C& config) {
     known.emplace_back(name);
     if (const auto child = node.find(name)) read_value(*child, member, limits);
   });
-  node.reject_unknown(known);
+  if constexpr (requires { C::renamed_keys; }) {
+    node.reject_unknown(known, C::renamed_keys);
+  } else {
+    node.reject_unknown(known);
+  }
 }
 
 template <ConfigStruct C>

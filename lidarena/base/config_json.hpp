@@ -16,7 +16,7 @@ Json to_json(const C& config);
 template <class T>
 Json value_to_json(const T& value) {
   if constexpr (std::is_enum_v<T>) {
-    for (const auto& [name, candidate] : EnumNames<T>::names) {
+    for (const auto& [name, candidate] : enum_names(T{})) {
       if (candidate == value) return name;
     }
     return nullptr;

@@ -63,7 +63,7 @@ template <class T>
 Json schema_of_value(const T& value, const Limits& limits) {
   if constexpr (std::is_enum_v<T>) {
     Json names = Json::array();
-    for (const auto& [name, candidate] : EnumNames<T>::names) names.push_back(name);
+    for (const auto& [name, candidate] : enum_names(T{})) names.push_back(name);
     return {{"enum", names}};
   } else if constexpr (schema::IsOptional<T>::value) {
     return {{"anyOf", {schema_of_value(typename T::value_type{}, limits), {{"type", "null"}}}}};

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 static_assert(std::endian::native == std::endian::little,
               "the byte streams need little endian as the native byte order");
@@ -74,4 +74,4 @@ class ByteReader {
   Bytes rest_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

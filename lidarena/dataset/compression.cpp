@@ -12,7 +12,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 struct DeleteZstd {
@@ -164,4 +164,4 @@ void decompress(std::string_view method, Bytes input, std::uint64_t size,
   throw std::runtime_error("is compressed with the unknown method '" + std::string(method) + "'");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

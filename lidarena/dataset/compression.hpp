@@ -10,7 +10,7 @@
 
 #include "lidarena/dataset/byte_stream.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// CRC-32 of IEEE 802.3, as computed by zlib; `crc` is that of the preceding bytes.
 std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc = 0);
@@ -42,4 +42,4 @@ Bytes compress_lz4(Bytes input, std::vector<std::byte>& output);
 void decompress(std::string_view method, Bytes input, std::uint64_t size,
                 std::vector<std::byte>& output);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,7 +7,7 @@
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ CopySummary copy_dataset(Dataset& in, const fs::path& out, const WriteOptions& o
   return summary;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

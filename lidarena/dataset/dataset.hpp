@@ -13,7 +13,7 @@
 #include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// What to read, and values that the data themselves may not state.
 struct ReadOptions {
@@ -62,23 +62,19 @@ inline constexpr const char* kTruthHeader =
 /// with one file per sweep (000000.pcd, .ply, or velodyne/000000.bin with only x y z intensity),
 /// times.txt and imu.txt.
 enum class DatasetFormat { kMcap, kBag, kPcd, kPly, kKitti };
-template <>
-struct EnumNames<DatasetFormat> {
-  static constexpr std::array names{
-      std::pair{"mcap", DatasetFormat::kMcap}, std::pair{"bag", DatasetFormat::kBag},
-      std::pair{"pcd", DatasetFormat::kPcd}, std::pair{"ply", DatasetFormat::kPly},
-      std::pair{"kitti", DatasetFormat::kKitti}};
-};
+constexpr auto enum_names(DatasetFormat) {
+  return std::array{std::pair{"mcap", DatasetFormat::kMcap}, std::pair{"bag", DatasetFormat::kBag},
+                    std::pair{"pcd", DatasetFormat::kPcd}, std::pair{"ply", DatasetFormat::kPly},
+                    std::pair{"kitti", DatasetFormat::kKitti}};
+}
 
 enum class Dialect {
   kSi,      ///< SI units, one layout for all sensors
   kDriver,  ///< the units and layouts of the manufacturer's driver, if it is known
 };
-template <>
-struct EnumNames<Dialect> {
-  static constexpr std::array names{std::pair{"si", Dialect::kSi},
-                                    std::pair{"driver", Dialect::kDriver}};
-};
+constexpr auto enum_names(Dialect) {
+  return std::array{std::pair{"si", Dialect::kSi}, std::pair{"driver", Dialect::kDriver}};
+}
 
 struct WriteOptions {
   DatasetFormat format = DatasetFormat::kMcap;
@@ -145,4 +141,4 @@ struct CopySummary {
 CopySummary copy_dataset(Dataset& in, const std::filesystem::path& out,
                          const WriteOptions& options = {});
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

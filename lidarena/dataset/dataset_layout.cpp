@@ -3,7 +3,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena::layout {
+namespace lidarena::dataset::layout {
 namespace {
 
 void add(std::map<std::string, std::string>& topics, const std::string& id, const char* kind) {
@@ -74,4 +74,4 @@ std::optional<Description> description_in(const RecordingInfo& info, const std::
   }
 }
 
-}  // namespace lidarena::layout
+}  // namespace lidarena::dataset::layout

@@ -11,7 +11,7 @@
 #include "lidarena/dataset/recording_source.hpp"
 
 /// Names and keys shared by the writer and the reader of Lidarena dataset folders.
-namespace lidarena::layout {
+namespace lidarena::dataset::layout {
 
 inline constexpr const char* kManifest = "manifest.json";
 inline constexpr const char* kManifestPart = "manifest.json.part";  ///< while it is being written
@@ -53,4 +53,4 @@ StringMap describe(const Description& description);
 /// Empty when the file was not written by Lidarena.
 std::optional<Description> description_in(const RecordingInfo& info, const std::string& place);
 
-}  // namespace lidarena::layout
+}  // namespace lidarena::dataset::layout

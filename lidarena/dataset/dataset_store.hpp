@@ -11,7 +11,7 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Stores the measurements of a dataset, in one recording or in a folder of sweeps. The caller
 /// makes sure that all sensors are in the rig.
@@ -36,4 +36,4 @@ std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& 
 std::unique_ptr<DatasetStore> make_sweep_store(const std::filesystem::path& folder, const Rig& rig,
                                                DatasetFormat format);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

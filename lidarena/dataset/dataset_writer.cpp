@@ -12,7 +12,7 @@
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ void DatasetWriter::finish(const Json& manifest) {
 
 void DatasetWriter::close() { finish(Json::object()); }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/base/scan.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// One measurement and the sensor (its id in the rig) that made it.
 struct Event {
@@ -34,4 +34,4 @@ class EventSink {
   virtual void close() = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -6,7 +6,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 std::vector<ImuSample> read_imu_text(const std::filesystem::path& file) {
   TextRows rows(file);
@@ -41,4 +41,4 @@ void ImuTextWriter::write(const ImuSample& sample) {
                          w.z(), a.x(), a.y(), a.z()));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,7 +7,7 @@
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/dataset/part_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Reads rows t wx wy wz ax ay az (s, rad/s, m/s^2) with strictly increasing times. Throws
 /// InputError naming file and line.
@@ -24,4 +24,4 @@ class ImuTextWriter {
   PartFile out_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

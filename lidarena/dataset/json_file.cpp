@@ -5,7 +5,7 @@
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 Json read_json(const std::filesystem::path& file) {
   const std::string text = read_bytes(file);
@@ -21,4 +21,4 @@ void write_json(const std::filesystem::path& file, const Json& json) {
   write_text_file(file, json.dump(2) + "\n");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

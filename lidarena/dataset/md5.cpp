@@ -5,7 +5,7 @@
 
 #include <array>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 std::string md5_of(std::string_view text) {
   std::array<char, MD5_DIGEST_STRING_LENGTH> digits{};
@@ -13,4 +13,4 @@ std::string md5_of(std::string_view text) {
   return digits.data();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -4,9 +4,9 @@
 #include <string>
 #include <string_view>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// MD5 (RFC 1321) as 32 hexadecimal digits. A name for message types, no protection.
 std::string md5_of(std::string_view text);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

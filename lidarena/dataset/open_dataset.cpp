@@ -5,15 +5,15 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/dataset/recording.hpp"
-#include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
-#include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/points/sweep_dataset.hpp"
 #include "lidarena/dataset/points/sweeps.hpp"
+#include "lidarena/dataset/recording.hpp"
+#include "lidarena/dataset/recording_source.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -296,4 +296,4 @@ std::optional<fs::path> find_world_mesh(const fs::path& dataset) {
   return fs::exists(mesh) ? std::optional(mesh) : std::nullopt;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

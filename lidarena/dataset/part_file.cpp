@@ -11,7 +11,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 constexpr std::size_t kBufferBytes = 256 * 1024;  // a few system calls per megabyte
 
@@ -91,4 +91,4 @@ void write_text_file(const std::filesystem::path& file, std::string_view text) {
   out.commit();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

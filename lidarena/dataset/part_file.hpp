@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// A file being written. Bytes go to NAME.part; commit() makes sure that they are on the disk and
 /// only then renames it to NAME. Without commit() NAME.part remains, so that an unfinished file is
@@ -50,4 +50,4 @@ class PartFile {
 /// Writes `file` with the content `text`, through a PartFile.
 void write_text_file(const std::filesystem::path& file, std::string_view text);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

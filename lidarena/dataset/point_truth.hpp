@@ -10,7 +10,7 @@
 
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Ground truth of one simulated return: the surface point that was hit; 32 bytes. For evaluation
 /// only: stored apart from the measurements (topic /truth/SENSOR/hits), never passed to an
@@ -44,4 +44,4 @@ class ScanTruthSink {
   virtual void write(const ScanTruth& truth) = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,16 +7,16 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros1/bag_reader.hpp"
-#include "lidarena/dataset/ros1/bag_writer.hpp"
 #include "lidarena/dataset/mcap/mcap_info.hpp"
 #include "lidarena/dataset/mcap/mcap_reader.hpp"
 #include "lidarena/dataset/mcap/mcap_writer.hpp"
-#include "lidarena/dataset/part_file.hpp"
-#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/mcap/rosbag2_metadata.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/part_file.hpp"
+#include "lidarena/dataset/ros1/bag_reader.hpp"
+#include "lidarena/dataset/ros1/bag_writer.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -226,4 +226,4 @@ std::unique_ptr<RecordingWriter> create_recording(const fs::path& file,
   return std::make_unique<McapRecordingWriter>(file, options);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

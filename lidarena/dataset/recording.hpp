@@ -14,7 +14,7 @@
 #include "lidarena/dataset/messages/message_stream.hpp"
 
 /// Recordings of ROS messages: one interface to MCAP files and ROS 1 bags.
-namespace lidarena {
+namespace lidarena::dataset {
 
 using StringMap = std::map<std::string, std::string>;
 
@@ -102,4 +102,4 @@ struct RecordingOptions {
 std::unique_ptr<RecordingWriter> create_recording(const std::filesystem::path& file,
                                                   const RecordingOptions& options);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

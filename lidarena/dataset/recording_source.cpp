@@ -9,7 +9,7 @@
 #include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/stream_merge.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 class RecordedEvents final : public EventSource {
@@ -118,4 +118,4 @@ bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic) {
   return mean > 0.5 && mean < 2.0;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -11,7 +11,7 @@
 #include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// The sensors of a recording by topic.
 struct RecordedSensors {
@@ -38,4 +38,4 @@ bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic);
 /// Standard gravity, m/s^2.
 inline constexpr double kStandardGravity = 9.80665;
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,10 +8,10 @@
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/dataset_store.hpp"
 #include "lidarena/dataset/messages/driver_layouts.hpp"
-#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr const char* kWorldFrame = "world";
@@ -189,4 +189,4 @@ std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& 
   return std::make_unique<RecordingStore>(file, rig, options, is_folder);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

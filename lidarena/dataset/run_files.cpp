@@ -13,7 +13,7 @@
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -106,4 +106,4 @@ RunFiles read_run(const fs::path& folder) {
   return run;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// One row of resources.csv: state after one scan.
 struct ResourceRow {
@@ -41,4 +41,4 @@ RunFiles read_run(const std::filesystem::path& folder);
 /// Reads a resources.csv alone; throws InputError naming file and line.
 std::vector<ResourceRow> read_resources(const std::filesystem::path& file);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options) {
   LidarInfo lidar;
@@ -38,4 +38,4 @@ void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig
   lidars.front().body_from_lidar = *options.body_from_lidar;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

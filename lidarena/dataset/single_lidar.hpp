@@ -5,7 +5,7 @@
 
 #include "lidarena/dataset/dataset.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Rig of third-party data with one LiDAR, named "lidar", mounted at `options.body_from_lidar`
 /// (identity if empty). Throws InputError (place `path`) when options.sensor
@@ -17,4 +17,4 @@ Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& optio
 /// LiDAR, or when body_from_lidar is given and several LiDARs are left.
 void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 StreamMerge::StreamMerge(std::string place, const std::vector<std::string>& imu_ids)
     : place_(std::move(place)) {
@@ -79,4 +79,4 @@ void StreamMerge::release() {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

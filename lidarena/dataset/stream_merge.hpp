@@ -11,7 +11,7 @@
 #include "lidarena/base/time.hpp"
 #include "lidarena/dataset/event.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Brings measurements, in whatever order a file stores them, into the order that EventSource
 /// guarantees: a scan is released only once each of the IMUs has delivered a sample at or after the
@@ -50,4 +50,4 @@ class StreamMerge {
   std::deque<Event> ready_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

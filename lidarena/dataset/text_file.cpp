@@ -14,7 +14,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/number.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr std::string_view kBlanks = " \t\r\v\f";
@@ -211,4 +211,4 @@ Time seconds_at(std::string_view word, const std::string& place) {
   return *time;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -9,7 +9,7 @@
 
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// The whole file. Throws InputError when it is missing, a folder, or cannot be read.
 std::string read_bytes(const std::filesystem::path& file);
@@ -56,4 +56,4 @@ std::string format_seconds(Time time);
 /// A time in seconds; throws InputError (place `place`) otherwise.
 Time seconds_at(std::string_view word, const std::string& place);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

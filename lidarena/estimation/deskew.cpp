@@ -5,7 +5,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 namespace {
 constexpr double kStraight = 1e-9;    // rad/s; below counts as straight: 0.5 nm error per m and s
@@ -53,4 +53,4 @@ std::vector<Eigen::Vector3f> positions(const Scan& scan) {
   return measured;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -9,7 +9,7 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/base/se3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Motion with a constant body twist (m/s, rad/s): after t seconds the pose is exp(t * twist). The
 /// coefficients of the closed form are computed once, so that a pose costs one sine and one cosine.
@@ -39,4 +39,4 @@ std::vector<Eigen::Vector3f> deskew(const Scan& scan, const se3::Vector6& twist_
 /// The positions as measured, without de-skewing.
 std::vector<Eigen::Vector3f> positions(const Scan& scan);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -9,7 +9,7 @@
 #include "lidarena/estimation/least_squares.hpp"
 #include "lidarena/estimation/robust_kernel.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 namespace {
 
@@ -206,4 +206,4 @@ ElasticMotion align_by_gauss_newton(const ElasticProblem& problem, ElasticMotion
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

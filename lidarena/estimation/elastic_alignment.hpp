@@ -9,7 +9,7 @@
 #include "lidarena/estimation/elastic_motion.hpp"
 #include "lidarena/estimation/robust_kernel.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// A point of a scan and a shape in the map that the point should lie on. error = weight * shape *
 /// (position - anchor).
@@ -63,4 +63,4 @@ ElasticMotion align_by_gauss_newton(const ElasticProblem& problem, ElasticMotion
 /// lowers the cost by less than 1e-6 of it.
 ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion, int iterations);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

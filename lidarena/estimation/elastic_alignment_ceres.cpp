@@ -12,7 +12,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/elastic_alignment.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 namespace {
 
@@ -244,4 +244,4 @@ ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 namespace {
 constexpr double kStraight = 1e-9;  // rad; below this, a segment counts as not rotating
@@ -115,4 +115,4 @@ Eigen::Vector3d ElasticTrack::place(const Eigen::Vector3d& point, double alpha) 
   return segments_[segment].place(point, a);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/pose.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Motion during one scan: at least two poses (knots) at equal time steps from its first to its
 /// last instant. Between neighbors: linear in position, spherical-linear in rotation. With two
@@ -83,4 +83,4 @@ class ElasticTrack {
   std::vector<ElasticSegment> segments_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

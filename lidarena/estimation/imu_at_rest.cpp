@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
@@ -62,4 +62,4 @@ Eigen::Matrix3d upright(const Vector3d& up) {
       .toRotationMatrix();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

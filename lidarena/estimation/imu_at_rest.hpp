@@ -11,7 +11,7 @@
 /// Inertial, and Multisensor Integrated Navigation Systems", 2nd ed., 2013, section 5.6; as the
 /// start of a LiDAR-inertial odometry: W. Xu, F. Zhang, "FAST-LIO", IEEE RA-L 2021). The mean rate
 /// is the gyro's bias; the mean specific force points up.
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Mean and spread of some samples, in the IMU's frame.
 struct ImuStatistics {
@@ -41,4 +41,4 @@ Eigen::Vector3d accel_bias_along(const ImuStatistics& imu, double gravity, doubl
 /// The rotation without yaw that maps `up` (body frame, any length) to the direction of z.
 Eigen::Matrix3d upright(const Eigen::Vector3d& up);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <chrono>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 constexpr Time kMaxPause = std::chrono::seconds(1);  // no IMU pauses longer and then continues
@@ -112,4 +112,4 @@ void ImuBuffer::forget_before(Time t) {
   while (samples_.size() > 1 && samples_[1].stamp <= t) samples_.pop_front();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/imu_sample.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Rate and specific force between two instants, held constant: the mean of the values at both.
 struct ImuInterval {
@@ -66,4 +66,4 @@ class ImuBuffer {
   std::size_t refused_ = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/estimation/imu_noise.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 // Data sheet of the ICM-40609-D inside a Livox Mid-360; the walks are assumed.
@@ -19,4 +19,4 @@ ImuNoise noise_of(const ImuInfo& imu, double factor) {
           density(imu.accel_bias_walk, kNominalNoise.accel_walk)};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -3,7 +3,7 @@
 
 #include "lidarena/base/rig.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Noise of an IMU: continuous densities, as on data sheets.
 struct ImuNoise {
@@ -22,4 +22,4 @@ inline constexpr double kMaxPlausibleSpeed = 100.0;
 /// The noise that a rig names, times `factor`; what it leaves out (zero) is a Mid-360's.
 ImuNoise noise_of(const ImuInfo& imu, double factor);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -6,7 +6,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/deskew.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 constexpr std::size_t kGrain = 2048;  // points per task
@@ -46,4 +46,4 @@ std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
   return moved;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

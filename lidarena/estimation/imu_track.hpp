@@ -8,7 +8,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/scan.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Motion over one IMU step: rate and acceleration constant from `begin` to the next step's begin.
 struct ImuStep {
@@ -34,4 +34,4 @@ std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
                                     const Pose& imu_from_lidar, const Pose& world_from_imu_at_end,
                                     const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -7,7 +7,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/inertial_state.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = NavState;
@@ -165,4 +165,4 @@ void InertialSmoother::marginalize_oldest() {
   measurements_.pop_front();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

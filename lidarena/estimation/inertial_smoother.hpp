@@ -7,7 +7,7 @@
 
 #include "lidarena/estimation/preintegration.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// A pose of the IMU measured by another method, e.g. scan matching.
 struct PoseMeasurement {
@@ -77,4 +77,4 @@ class InertialSmoother {
   NavState::Matrix covariance_ = NavState::Matrix::Identity();
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = InertialState;
@@ -119,4 +119,4 @@ State::Matrix step_noise(const ImuNoise& noise, double seconds) {
   return variances.asDiagonal();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

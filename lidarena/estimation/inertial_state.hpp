@@ -8,7 +8,7 @@
 #include "lidarena/estimation/imu_noise.hpp"
 #include "lidarena/estimation/nav_state.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Motion of an IMU, its biases, gravity, and the pose of the LiDAR on it: the state of
 /// LiDAR-inertial filters (Xu, Cai, He, Lin, Zhang, "FAST-LIO2", IEEE T-RO 2022, section IV). World
@@ -69,4 +69,4 @@ InertialState::Matrix propagate(InertialState& state, const Eigen::Vector3d& gyr
 /// part.
 InertialState::Matrix step_noise(const ImuNoise& noise, double seconds);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

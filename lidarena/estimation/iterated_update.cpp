@@ -3,7 +3,7 @@
 
 #include <Eigen/Cholesky>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = InertialState;
@@ -91,4 +91,4 @@ Belief pose_update(const Belief& prior, const Pose& world_from_imu, double posit
                     minus(measured, prior.state).segment<6>(State::kPosition), sigma);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -7,7 +7,7 @@
 #include "lidarena/estimation/inertial_state.hpp"
 #include "lidarena/estimation/least_squares.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Estimate of the motion: the state and the covariance of its error.
 struct Belief {
@@ -53,4 +53,4 @@ Belief zero_velocity_update(const Belief& prior, double sigma);
 Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
                    double rotation_sigma);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

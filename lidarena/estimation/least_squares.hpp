@@ -7,7 +7,7 @@
 
 #include "lidarena/base/parallel.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Gauss-Newton's normal equations H dx = -g of the cost 1/2 sum w |r + J dx|^2 in N unknowns.
 template <int N>
@@ -57,4 +57,4 @@ NormalEquations<N> accumulate_normal_equations(const Parallel& parallel, std::si
       [](NormalEquations<N>& total, const NormalEquations<N>& part) { total += part; });
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -3,7 +3,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 NavState plus(const NavState& state, const NavState::Vector& delta) {
   NavState moved = state;
@@ -23,4 +23,4 @@ NavState::Vector minus(const NavState& a, const NavState& b) {
   return delta;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/pose.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Biases of an IMU: slowly changing offsets of its samples.
 struct ImuBias {
@@ -29,4 +29,4 @@ NavState plus(const NavState& state, const NavState::Vector& delta);
 /// The tangent vector at `b` that leads to `a`: plus(b, minus(a, b)) is a.
 NavState::Vector minus(const NavState& a, const NavState& b);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

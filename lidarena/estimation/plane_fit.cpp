@@ -3,7 +3,7 @@
 
 #include <Eigen/Dense>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 /// In single precision, as the published programs solve it.
@@ -43,4 +43,4 @@ std::optional<Plane> fit_plane(const FivePoints& points, PlaneFit method, double
   return plane;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

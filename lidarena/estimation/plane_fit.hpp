@@ -8,7 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// normal . x + offset = 0, with a unit normal.
 struct Plane {
@@ -22,11 +22,10 @@ enum class PlaneFit {
   kPrincipal,   ///< across the direction in which the points vary least
 };
 
-template <>
-struct EnumNames<PlaneFit> {
-  static constexpr std::array names{std::pair{"unit_offset", PlaneFit::kUnitOffset},
-                                    std::pair{"principal", PlaneFit::kPrincipal}};
-};
+constexpr auto enum_names(PlaneFit) {
+  return std::array{std::pair{"unit_offset", PlaneFit::kUnitOffset},
+                    std::pair{"principal", PlaneFit::kPrincipal}};
+}
 
 /// Five points (m) as columns: the neighborhood that LiDAR odometries fit their shapes to.
 using FivePoints = Eigen::Matrix<double, 3, 5>;
@@ -46,4 +45,4 @@ PrincipalAxes principal_axes(const FivePoints& points);
 std::optional<Plane> fit_plane(const FivePoints& points, PlaneFit method, double max_distance,
                                double min_aspect = 0.0);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

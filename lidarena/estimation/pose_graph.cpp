@@ -10,7 +10,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 /// The parameters of a node in the solver.
@@ -199,4 +199,4 @@ PoseGraphSolution optimize(const PoseGraph& graph, int max_iterations) {
   return solution;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -8,7 +8,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/robust_kernel.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Robust kernel of a measurement, on its Mahalanobis distance.
 struct RobustLoss {
@@ -69,4 +69,4 @@ struct PoseGraphSolution {
 /// or has a covariance that is not positive definite.
 PoseGraphSolution optimize(const PoseGraph& graph, int max_iterations = 50);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

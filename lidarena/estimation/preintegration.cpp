@@ -3,7 +3,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = NavState;
@@ -123,4 +123,4 @@ InertialResidual Preintegration::residual(const NavState& first, const NavState&
   return r;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

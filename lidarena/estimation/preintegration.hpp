@@ -7,7 +7,7 @@
 #include "lidarena/estimation/imu_noise.hpp"
 #include "lidarena/estimation/nav_state.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Motion between two instants as measured by the IMU alone, in its frame at the first one: without
 /// gravity and without initial velocity.
@@ -63,4 +63,4 @@ class Preintegration {
   Eigen::Matrix<double, 9, 6> by_bias_ = Eigen::Matrix<double, 9, 6>::Zero();
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 double robust_cost(RobustKernel kernel, double squared_residual, double scale) {
   const double ratio = squared_residual / (scale * scale);
@@ -54,4 +54,4 @@ ceres::LossFunction* make_ceres_loss(RobustKernel kernel, double scale) {
   return nullptr;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -10,7 +10,7 @@ namespace ceres {
 class LossFunction;
 }
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// Robust kernels: costs rho(r) that grow slower than r^2 / 2 beyond a scale. All are r^2 / 2 for
 /// small residuals r; the scale is in the residual's unit.
@@ -21,12 +21,11 @@ enum class RobustKernel {
   kTukey,   ///< scale^2 / 6 (1 - (1 - r^2 / scale^2)^3), constant beyond `scale`
 };
 
-template <>
-struct EnumNames<RobustKernel> {
-  static constexpr std::array names{
+constexpr auto enum_names(RobustKernel) {
+  return std::array{
       std::pair{"none", RobustKernel::kNone}, std::pair{"huber", RobustKernel::kHuber},
       std::pair{"cauchy", RobustKernel::kCauchy}, std::pair{"tukey", RobustKernel::kTukey}};
-};
+}
 
 /// rho(r).
 double robust_cost(RobustKernel kernel, double squared_residual, double scale);
@@ -35,4 +34,4 @@ double robust_weight(RobustKernel kernel, double squared_residual, double scale)
 /// The same kernel for Ceres, owned by the caller; null for kNone.
 ceres::LossFunction* make_ceres_loss(RobustKernel kernel, double scale);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

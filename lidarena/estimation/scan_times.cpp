@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 ScanTimes times_of(const Scan& scan, Time nominal_duration) {
   ScanTimes times{scan.stamp, scan.stamp + nominal_duration, false};
@@ -17,4 +17,4 @@ ScanTimes times_of(const Scan& scan, Time nominal_duration) {
   return times;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -3,7 +3,7 @@
 
 #include "lidarena/base/scan.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 
 /// When a scan was taken.
 struct ScanTimes {
@@ -16,4 +16,4 @@ struct ScanTimes {
 /// An empty scan counts as lasting `nominal_duration`.
 ScanTimes times_of(const Scan& scan, Time nominal_duration);
 
-}  // namespace lidarena
+}  // namespace lidarena::estimation

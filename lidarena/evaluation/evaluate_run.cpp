@@ -5,11 +5,11 @@
 
 #include <algorithm>
 
+#include "lidarena/evaluation/diagnosis/suspicion.hpp"
 #include "lidarena/evaluation/metrics_json.hpp"
 #include "lidarena/evaluation/resources.hpp"
-#include "lidarena/evaluation/diagnosis/suspicion.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kLowCoverage = 0.9;     // below, numbers describe only a part of the flight
@@ -42,7 +42,7 @@ Status status_of(const Trajectory& estimate, const Trajectory& truth) {
 }
 
 /// The status of the manifest unless it is "ok", else that of the poses.
-Status status_of(const RunFiles& run, const Trajectory& truth) {
+Status status_of(const dataset::RunFiles& run, const Trajectory& truth) {
   if (run.manifest.is_object()) {
     const std::string said = run.manifest.value("status", "ok");
     if (said != "ok") return {said, run.manifest.value("reason", "its manifest gives no reason")};
@@ -112,9 +112,9 @@ Json with_floor(const RelativePoseError& error, const RelativePoseError& of_perf
 }
 
 /// Null when the run has no such map.
-Json evaluate_map_of(const Cloud& cloud, const RunFiles& run, const Trajectory& truth,
-                     const World& world, const Parallel& parallel, const SeenSurface* seen,
-                     const IdentifiedMap* identified = nullptr) {
+Json evaluate_map_of(const dataset::Cloud& cloud, const dataset::RunFiles& run,
+                     const Trajectory& truth, const world::World& world, const Parallel& parallel,
+                     const SeenSurface* seen, const IdentifiedMap* identified = nullptr) {
   if (cloud.points.empty()) return nullptr;
   return evaluate_map(cloud.points, run.trajectory, truth, world, parallel, seen, identified);
 }
@@ -172,7 +172,7 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
   return json;
 }
 
-Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* world,
+Json evaluate_run(const dataset::RunFiles& run, const Trajectory& truth, const world::World* world,
                   const Parallel& parallel, LogSink& log, const Observe& observe) {
   const Status status = status_of(run, truth);
   Json json{{"schema", "lidarena.metrics"},
@@ -215,4 +215,4 @@ Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* wor
   return json;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

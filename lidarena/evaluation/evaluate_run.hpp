@@ -13,7 +13,7 @@
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Version of the document that evaluate_run() writes; increased when a name or a meaning changes.
 inline constexpr int kMetricsSchemaVersion = 2;
@@ -27,7 +27,7 @@ using Observe = std::function<std::optional<RayTruth>()>;
 /// see divergence_of()) has a status and a reason, and no errors. `observe`, if given, is called
 /// once when maps are scored; without it, or if it returns nothing, completeness, signed distance
 /// and identity error are null.
-Json evaluate_run(const RunFiles& run, const Trajectory& truth, const World* world,
+Json evaluate_run(const dataset::RunFiles& run, const Trajectory& truth, const world::World* world,
                   const Parallel& parallel, LogSink& log, const Observe& observe = {});
 
 /// Scores one trajectory: association, RPE for each piece length, ATE in each gauge, errors over
@@ -39,4 +39,4 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
 /// worse than standing still, and worse than flying the right path in any wrong direction.
 std::string divergence_of(const Trajectory& estimate, const Trajectory& truth);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

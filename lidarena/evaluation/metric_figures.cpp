@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string_view>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -150,4 +150,4 @@ std::optional<double> coverage_of(const Json& metrics, const MetricFigure& figur
   return coverage_percent(metrics, live ? "live" : "final");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/evaluation/statistics.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The tables of metrics_table.hpp in which a figure may be a column.
 enum class FigureTable { kNone, kMain, kMap };
@@ -51,4 +51,4 @@ std::string run_status(const Json& metrics);
 /// "diverged: REASON", or the status alone.
 std::string status_and_reason(const Json& metrics);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 double rounded(double value) { return std::round(value * 1e6) / 1e6; }
@@ -186,4 +186,4 @@ Json errors_over_time(std::span<const PoseError> poses, Time start, std::size_t 
   return columns(poses, start, limit);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -4,16 +4,16 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
+#include "lidarena/evaluation/diagnosis/time_offset.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/trajectory/hover_jitter.hpp"
 #include "lidarena/evaluation/trajectory/kitti_error.hpp"
-#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
-#include "lidarena/evaluation/map/map_error.hpp"
-#include "lidarena/evaluation/diagnosis/time_offset.hpp"
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 
 /// Metrics as JSON. Names contain the units; a number that does not exist is null, never zero or
 /// NaN; each metric has the id of its definition in docs/metrics.md.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// E.g. "rpe_1m[ref-arc,1m,disjoint,interp,gap1.5]".
 std::string definition_id(const RelativePoseError& rpe);
@@ -42,4 +42,4 @@ Json to_json(const HoverJitter& jitter);
 Json errors_over_time(std::span<const SegmentError> segments, Time start, std::size_t limit = 2000);
 Json errors_over_time(std::span<const PoseError> poses, Time start, std::size_t limit = 2000);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

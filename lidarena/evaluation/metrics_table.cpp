@@ -11,7 +11,7 @@
 
 #include "lidarena/evaluation/metric_figures.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
@@ -323,4 +323,4 @@ std::string metrics_latex(std::span<const ScoredRun> runs) {
   return text += latex_table(runs, map_figures);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -9,7 +9,7 @@
 
 /// The main figures of metrics.json as text: for a terminal, as CSV, Markdown and LaTeX. Coverage
 /// is shown beside every error; a run without figures is a row with the reason.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// One run and its metrics.json.
 struct ScoredRun {
@@ -35,4 +35,4 @@ std::string metrics_markdown(std::span<const ScoredRun> runs);
 /// The same for the booktabs package: best bold, second best underlined, failures in words.
 std::string metrics_latex(std::span<const ScoredRun> runs);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

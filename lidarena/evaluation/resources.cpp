@@ -8,27 +8,27 @@
 #include <utility>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
-using Bytes = std::function<std::uint64_t(const ResourceRow&)>;
+using Bytes = std::function<std::uint64_t(const dataset::ResourceRow&)>;
 
-std::uint64_t own_bytes(const ResourceRow& row) {
+std::uint64_t own_bytes(const dataset::ResourceRow& row) {
   return row.map_bytes + row.scan_buffer_bytes + row.backlog_bytes;
 }
 
-double slope_of(std::span<const ResourceRow> rows, const Bytes& bytes) {
+double slope_of(std::span<const dataset::ResourceRow> rows, const Bytes& bytes) {
   if (rows.size() < 3) return 0.0;
   const auto n = static_cast<double>(rows.size());
   double t_mean = 0.0;
   double b_mean = 0.0;
-  for (const ResourceRow& row : rows) {
+  for (const dataset::ResourceRow& row : rows) {
     t_mean += row.t_sensor_s / n;
     b_mean += static_cast<double>(bytes(row)) / n;
   }
   double tt = 0.0;
   double tb = 0.0;
-  for (const ResourceRow& row : rows) {
+  for (const dataset::ResourceRow& row : rows) {
     const double t = row.t_sensor_s - t_mean;
     tt += t * t;
     tb += t * (static_cast<double>(bytes(row)) - b_mean);
@@ -36,9 +36,9 @@ double slope_of(std::span<const ResourceRow> rows, const Bytes& bytes) {
   return tt > 0.0 ? tb / tt : 0.0;
 }
 
-MemoryFigures memory_of(std::span<const ResourceRow> rows, const Bytes& bytes) {
+MemoryFigures memory_of(std::span<const dataset::ResourceRow> rows, const Bytes& bytes) {
   MemoryFigures figures;
-  for (const ResourceRow& row : rows) {
+  for (const dataset::ResourceRow& row : rows) {
     figures.peak_bytes = std::max(figures.peak_bytes, static_cast<double>(bytes(row)));
   }
   figures.final_bytes = static_cast<double>(bytes(rows.back()));
@@ -47,7 +47,7 @@ MemoryFigures memory_of(std::span<const ResourceRow> rows, const Bytes& bytes) {
 }
 
 /// Share of scans that were not processed when the next one ended.
-double late_share(std::span<const ResourceRow> rows) {
+double late_share(std::span<const dataset::ResourceRow> rows) {
   if (rows.size() < 2) return 0.0;
   std::size_t late = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
@@ -64,18 +64,18 @@ Json to_json(const MemoryFigures& figures) {
 
 const std::array<std::pair<const char*, Bytes>, 6>& kinds() {
   static const std::array<std::pair<const char*, Bytes>, 6> kinds{{
-      {"rss", [](const ResourceRow& r) { return r.rss_bytes; }},
-      {"pss", [](const ResourceRow& r) { return r.pss_bytes; }},
+      {"rss", [](const dataset::ResourceRow& r) { return r.rss_bytes; }},
+      {"pss", [](const dataset::ResourceRow& r) { return r.pss_bytes; }},
       {"own", own_bytes},
-      {"map", [](const ResourceRow& r) { return r.map_bytes; }},
-      {"scan_buffer", [](const ResourceRow& r) { return r.scan_buffer_bytes; }},
-      {"backlog", [](const ResourceRow& r) { return r.backlog_bytes; }},
+      {"map", [](const dataset::ResourceRow& r) { return r.map_bytes; }},
+      {"scan_buffer", [](const dataset::ResourceRow& r) { return r.scan_buffer_bytes; }},
+      {"backlog", [](const dataset::ResourceRow& r) { return r.backlog_bytes; }},
   }};
   return kinds;
 }
 
 /// Columns t_s, latency_s and bytes of each kind.
-Json over_time(std::span<const ResourceRow> rows, std::size_t limit) {
+Json over_time(std::span<const dataset::ResourceRow> rows, std::size_t limit) {
   const std::size_t run = std::max<std::size_t>(1, (rows.size() + limit - 1) / limit);
   Json columns{{"largest_of", run}, {"t_s", Json::array()}, {"latency_s", Json::array()}};
   for (const auto& [name, bytes] : kinds()) columns[std::string(name) + "_bytes"] = Json::array();
@@ -83,11 +83,11 @@ Json over_time(std::span<const ResourceRow> rows, std::size_t limit) {
     const auto some = rows.subspan(begin, std::min(run, rows.size() - begin));
     columns["t_s"].push_back(some.front().t_sensor_s);
     double latency_s = 0.0;
-    for (const ResourceRow& row : some) latency_s = std::max(latency_s, row.latency_s);
+    for (const dataset::ResourceRow& row : some) latency_s = std::max(latency_s, row.latency_s);
     columns["latency_s"].push_back(latency_s);
     for (const auto& [name, bytes] : kinds()) {
       std::uint64_t largest = 0;
-      for (const ResourceRow& row : some) largest = std::max(largest, bytes(row));
+      for (const dataset::ResourceRow& row : some) largest = std::max(largest, bytes(row));
       columns[std::string(name) + "_bytes"].push_back(largest);
     }
   }
@@ -96,13 +96,13 @@ Json over_time(std::span<const ResourceRow> rows, std::size_t limit) {
 
 }  // namespace
 
-std::optional<ResourceFigures> resource_figures(std::span<const ResourceRow> rows) {
+std::optional<ResourceFigures> resource_figures(std::span<const dataset::ResourceRow> rows) {
   if (rows.empty()) return std::nullopt;
   ResourceFigures figures;
   figures.scans = rows.size();
   std::vector<double> latencies;
   double compute_s = 0.0;
-  for (const ResourceRow& row : rows) {
+  for (const dataset::ResourceRow& row : rows) {
     latencies.push_back(row.latency_s);
     compute_s += row.latency_s;
   }
@@ -115,7 +115,7 @@ std::optional<ResourceFigures> resource_figures(std::span<const ResourceRow> row
   return figures;
 }
 
-Json resources_json(std::span<const ResourceRow> rows, std::size_t limit) {
+Json resources_json(std::span<const dataset::ResourceRow> rows, std::size_t limit) {
   const std::optional<ResourceFigures> figures = resource_figures(rows);
   if (!figures) return nullptr;
   const Summary& latency = figures->latency_s;
@@ -137,4 +137,4 @@ Json resources_json(std::span<const ResourceRow> rows, std::size_t limit) {
           {"over_time", over_time(rows, limit)}};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Memory of one kind over a run.
 struct MemoryFigures {
@@ -34,10 +34,10 @@ struct ResourceFigures {
 };
 
 /// Empty without rows.
-std::optional<ResourceFigures> resource_figures(std::span<const ResourceRow> rows);
+std::optional<ResourceFigures> resource_figures(std::span<const dataset::ResourceRow> rows);
 
 /// With the figures over sensor time: at most `limit` rows, each the maximum of several consecutive
 /// ones. Null without rows.
-Json resources_json(std::span<const ResourceRow> rows, std::size_t limit = 500);
+Json resources_json(std::span<const dataset::ResourceRow> rows, std::size_t limit = 500);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

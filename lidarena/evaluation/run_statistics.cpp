@@ -10,7 +10,7 @@
 #include "lidarena/evaluation/metric_figures.hpp"
 #include "lidarena/evaluation/statistics.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 bool scored(const ScoredRun& run) { return run_status(run.metrics) == "ok"; }
@@ -130,4 +130,4 @@ std::string statistics_text(const Json& statistics) {
   return text;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -11,7 +11,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr std::size_t kMinFlights = 3;  // of two there are only three different resamples
@@ -196,4 +196,4 @@ std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences
   return ranks.doubled.size() <= kExact ? exact_p(ranks) : normal_p(ranks);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

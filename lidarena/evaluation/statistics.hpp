@@ -10,7 +10,7 @@
 
 /// Statistics over several runs: seeds and flights of one algorithm, and two algorithms on the same
 /// flights and seeds. Runs that failed or diverged are counted and listed, never left out silently.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// One figure of one run.
 struct RunFigure {
@@ -68,4 +68,4 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
 /// the normal approximation. Empty when no difference is left.
 std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

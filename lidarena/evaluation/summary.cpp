@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 double quantile(std::span<double> values, double p) {
   const double rank = p * static_cast<double>(values.size() - 1);
@@ -38,4 +38,4 @@ Summary summarize(std::span<const double> errors) {
   return summary;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Statistics of a set of non-negative errors; all zero with count 0 when the set is empty.
 /// Quantiles are exact (of the sorted values, linear between neighbors), sums run in index order.
@@ -19,4 +19,4 @@ Summary summarize(std::span<const double> errors);
 /// values, linear between neighbors. Reorders `values`, which must not be empty nor hold NaN.
 double quantile(std::span<double> values, double p);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::flight {
 
-std::optional<Encounter> first_encounter(const Flight& flight, const World& world,
+std::optional<Encounter> first_encounter(const Flight& flight, const world::World& world,
                                          double clearance) {
   constexpr Time kStep = std::chrono::milliseconds(5);
   Eigen::Vector3d asked = flight.pose_at(Time{0}).translation();  // position of the last query
@@ -17,7 +17,7 @@ std::optional<Encounter> first_encounter(const Flight& flight, const World& worl
     flown += (here - last).norm();
     last = here;
     if (flown >= margin) {
-      const ClosestPoint nearest = world.closest_point(here);
+      const world::ClosestPoint nearest = world.closest_point(here);
       const bool passes_through = here != asked && !world.visible(asked, here);
       if (passes_through || nearest.distance < clearance) {
         return Encounter{t, here, nearest.point, passes_through ? 0.0 : nearest.distance};
@@ -30,4 +30,4 @@ std::optional<Encounter> first_encounter(const Flight& flight, const World& worl
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

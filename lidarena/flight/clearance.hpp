@@ -7,7 +7,7 @@
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Point at which a flight comes too close to a surface.
 struct Encounter {
@@ -21,7 +21,7 @@ struct Encounter {
 /// through it. The distance to a surface changes by at most the path length flown. The world is
 /// therefore queried again only when the path length reaches the remaining margin; the path between
 /// two queries is clear by the same argument, up to the path length flown in 5 ms.
-std::optional<Encounter> first_encounter(const Flight& flight, const World& world,
+std::optional<Encounter> first_encounter(const Flight& flight, const world::World& world,
                                          double clearance);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

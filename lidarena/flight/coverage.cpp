@@ -7,11 +7,11 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 using Eigen::Vector3d;
 
-std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t count) {
+std::vector<SurfaceSample> sample_surface(const world::TriangleMesh& mesh, std::size_t count) {
   std::vector<double> area_until;  // cumulative area up to and including each triangle
   area_until.reserve(mesh.triangles.size());
   double area = 0.0;
@@ -38,10 +38,10 @@ std::vector<SurfaceSample> sample_surface(const TriangleMesh& mesh, std::size_t 
 namespace {
 
 /// Marks the samples that are visible from `place` and not yet marked.
-void look(const World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
+void look(const world::World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
           double range_m, Seen& seen) {
   constexpr double kBefore = 0.002;  // m; rounding error of the ray caster in a world of 1 km
-  std::vector<Ray> rays;
+  std::vector<world::Ray> rays;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     const Vector3d way = samples[i].point - place;
@@ -50,7 +50,7 @@ void look(const World& world, const Vector3d& place, std::span<const SurfaceSamp
     rays.push_back({place, (way / length).cast<float>()});
     index.push_back(i);
   }
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   world.cast(rays, range_m + 1.0, hits);
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const SurfaceSample& sample = samples[index[k]];
@@ -61,14 +61,14 @@ void look(const World& world, const Vector3d& place, std::span<const SurfaceSamp
 
 }  // namespace
 
-Seen seen_from(const World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
-               double range_m) {
+Seen seen_from(const world::World& world, const Vector3d& place,
+               std::span<const SurfaceSample> samples, double range_m) {
   Seen seen(samples.size(), 0);
   look(world, place, samples, range_m, seen);
   return seen;
 }
 
-std::vector<Seen> seen_from_each(const World& world, std::span<const Vector3d> places,
+std::vector<Seen> seen_from_each(const world::World& world, std::span<const Vector3d> places,
                                  std::span<const SurfaceSample> samples, double range_m,
                                  const Parallel& parallel) {
   std::vector<Seen> views(places.size());
@@ -78,8 +78,8 @@ std::vector<Seen> seen_from_each(const World& world, std::span<const Vector3d> p
   return views;
 }
 
-Seen seen_along(const World& world, const Flight& flight, std::span<const SurfaceSample> samples,
-                double range_m, double spacing_m) {
+Seen seen_along(const world::World& world, const Flight& flight,
+                std::span<const SurfaceSample> samples, double range_m, double spacing_m) {
   Seen seen(samples.size(), 0);
   Vector3d last = Vector3d::Constant(std::numeric_limits<double>::infinity());
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
@@ -122,4 +122,4 @@ std::vector<std::size_t> choose_views(std::span<const Seen> views, double share)
   return chosen;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::flight {
 
 FlightFigures figures_of(const Flight& flight) {
   constexpr Time kStep = std::chrono::milliseconds(1);
@@ -45,4 +45,4 @@ std::string describe(const FlightFigures& f) {
       f.max_tilt * 180.0 / std::numbers::pi, f.max_angular_rate, 100.0 * f.lively_share);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -5,7 +5,7 @@
 
 #include "lidarena/flight/flight.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Key figures of a flight; maxima over samples 1 ms apart.
 struct FlightFigures {
@@ -24,4 +24,4 @@ FlightFigures figures_of(const Flight& flight);
 /// One-line summary for the log.
 std::string describe(const FlightFigures& figures);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

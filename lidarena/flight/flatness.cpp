@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Matrix3d;
@@ -91,4 +91,4 @@ Motion motion_of(const FlatOutputs& outputs) {
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

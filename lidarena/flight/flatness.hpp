@@ -6,7 +6,7 @@
 
 #include "lidarena/flight/flight.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// The flat outputs of a quadrotor and their time derivatives: [n] holds the n-th derivative of
 /// (x, y, z, yaw) in m and rad, world frame.
@@ -23,4 +23,4 @@ Eigen::Matrix3d attitude_of(const Eigen::Vector3d& acceleration, double yaw);
 /// The full motion; attitude, body rate and angular acceleration by exact differentiation.
 Motion motion_of(const FlatOutputs& outputs);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Magnitude of gravity, m/s^2; it points along -z of the world.
 inline constexpr double kGravity = 9.80665;
@@ -32,4 +32,4 @@ class Flight {
   virtual Pose pose_at(Time t) const { return at(t).world_from_body; }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

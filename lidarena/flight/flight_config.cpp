@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/flight/flight_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 FlightLimits limits_of(FlightStyle style) {
   switch (style) {
@@ -25,4 +25,4 @@ FlightLimits limits_of(const FlightConfig& config) {
           .max_yaw_rate = own.max_yaw_rate.value_or(style.max_yaw_rate)};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -10,25 +10,23 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/flight/quadrotor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Source of the path.
 enum class FlightKind { kWaypoints, kRoute, kReplay, kAuto };
-template <>
-struct EnumNames<FlightKind> {
-  static constexpr std::array names{
-      std::pair{"waypoints", FlightKind::kWaypoints}, std::pair{"route", FlightKind::kRoute},
-      std::pair{"replay", FlightKind::kReplay}, std::pair{"auto", FlightKind::kAuto}};
-};
+constexpr auto enum_names(FlightKind) {
+  return std::array{std::pair{"waypoints", FlightKind::kWaypoints},
+                    std::pair{"route", FlightKind::kRoute},
+                    std::pair{"replay", FlightKind::kReplay}, std::pair{"auto", FlightKind::kAuto}};
+}
 
 /// Preset of the flight's limits.
 enum class FlightStyle { kGentle, kBrisk, kAggressive };
-template <>
-struct EnumNames<FlightStyle> {
-  static constexpr std::array names{std::pair{"gentle", FlightStyle::kGentle},
-                                    std::pair{"brisk", FlightStyle::kBrisk},
-                                    std::pair{"aggressive", FlightStyle::kAggressive}};
-};
+constexpr auto enum_names(FlightStyle) {
+  return std::array{std::pair{"gentle", FlightStyle::kGentle},
+                    std::pair{"brisk", FlightStyle::kBrisk},
+                    std::pair{"aggressive", FlightStyle::kAggressive}};
+}
 
 /// Bounds that hold at every instant of a flight through waypoints.
 struct FlightLimits {
@@ -60,12 +58,11 @@ struct LimitsConfig {
 };
 
 enum class HeadingMode { kAlongPath, kFixed, kSweep };
-template <>
-struct EnumNames<HeadingMode> {
-  static constexpr std::array names{std::pair{"along_path", HeadingMode::kAlongPath},
-                                    std::pair{"fixed", HeadingMode::kFixed},
-                                    std::pair{"sweep", HeadingMode::kSweep}};
-};
+constexpr auto enum_names(HeadingMode) {
+  return std::array{std::pair{"along_path", HeadingMode::kAlongPath},
+                    std::pair{"fixed", HeadingMode::kFixed},
+                    std::pair{"sweep", HeadingMode::kSweep}};
+}
 
 struct HeadingConfig {
   HeadingMode mode = HeadingMode::kAlongPath;
@@ -174,4 +171,4 @@ struct FlightConfig {
 /// The limits of the style, overridden by those of the file.
 FlightLimits limits_of(const FlightConfig& config);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

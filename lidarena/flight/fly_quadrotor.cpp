@@ -13,7 +13,7 @@
 #include "lidarena/flight/pose_spline_flight.hpp"
 #include "lidarena/flight/quadrotor.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 constexpr double kStep = 0.002;      // s; a tenth of a rotor's lag: order 4 has errors of 1e-6
@@ -102,4 +102,4 @@ TrackingError tracking_error(const Flight& flown, const Flight& reference) {
   return error;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

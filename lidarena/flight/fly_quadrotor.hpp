@@ -7,7 +7,7 @@
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/flight/quadrotor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// The flight of a simulated quadrotor (see Quadrotor, Gusts) whose controller (tracking_wrench)
 /// follows `reference`, with the same duration. The body starts hovering at the reference's first
@@ -25,4 +25,4 @@ struct TrackingError {
 };
 TrackingError tracking_error(const Flight& flown, const Flight& reference);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 #include <limits>
 #include <unordered_map>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -36,10 +36,11 @@ std::uint64_t key_of(const Vector3i& at) {
 /// Cell whose point is moved by hill climbing to the place in the cube around `center` that is
 /// farthest from the surface. The point stays at the center if that already has the preferred
 /// distance, or if the minimum distance cannot be reached within the cube.
-Cell settled(const World& world, const Vector3d& center, double edge, const Distances& wanted) {
+Cell settled(const world::World& world, const Vector3d& center, double edge,
+             const Distances& wanted) {
   Cell cell{center, 0.0, {}};
   cell.next.fill(FreeSpace::kNone);
-  ClosestPoint nearest = world.closest_point(center, kFar);
+  world::ClosestPoint nearest = world.closest_point(center, kFar);
   cell.clearance = std::min(nearest.distance, kFar);
   const double most = cell.clearance + 0.5 * std::sqrt(3.0) * edge;
   if (most < wanted.least || cell.clearance == 0.0) return cell;
@@ -48,7 +49,7 @@ Cell settled(const World& world, const Vector3d& center, double edge, const Dist
     const Vector3d away = (cell.point - nearest.point) / nearest.distance;
     const Vector3d offset = (cell.point + step * away - center).cwiseMax(-0.5 * edge);
     const Vector3d there = center + offset.cwiseMin(0.5 * edge);
-    const ClosestPoint next = world.closest_point(there, kFar);
+    const world::ClosestPoint next = world.closest_point(there, kFar);
     if (next.distance < cell.clearance + 1e-3) continue;
     cell.point = there;
     cell.clearance = std::min(next.distance, kFar);
@@ -60,7 +61,7 @@ Cell settled(const World& world, const Vector3d& center, double edge, const Dist
 
 /// True when the line between the points of two cells keeps the distance `least`. This follows from
 /// the clearances at both ends if they are large enough; otherwise the world is queried.
-bool is_joined(const World& world, const Cell& a, const Cell& b, double least) {
+bool is_joined(const world::World& world, const Cell& a, const Cell& b, double least) {
   const double apart = (a.point - b.point).norm();
   if (0.5 * (a.clearance + b.clearance - apart) >= least) return true;
   return is_clear(world, a.point, b.point, least);
@@ -68,7 +69,7 @@ bool is_joined(const World& world, const Cell& a, const Cell& b, double least) {
 
 /// Connects `cell` at the grid coordinates `at`, which will be appended to `cells`, with its
 /// neighbors; returns false if it cannot be connected with any.
-bool join(const World& world, double least, const Grid& grid, const Vector3i& at, Cell& cell,
+bool join(const world::World& world, double least, const Grid& grid, const Vector3i& at, Cell& cell,
           std::vector<Cell>& cells) {
   bool joined = false;
   for (std::size_t side = 0; side < kSteps.size(); ++side) {
@@ -85,7 +86,7 @@ bool join(const World& world, double least, const Grid& grid, const Vector3i& at
 
 }  // namespace
 
-FreeSpace::FreeSpace(const World& world, const Vector3d& start, const Distances& distances,
+FreeSpace::FreeSpace(const world::World& world, const Vector3d& start, const Distances& distances,
                      double cell_m, std::size_t max_cells, const Parallel& parallel)
     : distances_(distances), cell_m_(kCoarser * cell_m) {
   const bool is_small = explore(world, start, max_cells, parallel);
@@ -95,7 +96,7 @@ FreeSpace::FreeSpace(const World& world, const Vector3d& start, const Distances&
   while (!explore(world, start, max_cells, parallel)) cell_m_ *= 1.5;
 }
 
-bool FreeSpace::explore(const World& world, const Vector3d& start, std::size_t max_cells,
+bool FreeSpace::explore(const world::World& world, const Vector3d& start, std::size_t max_cells,
                         const Parallel& parallel) {
   const Eigen::AlignedBox3d box = world.mesh().bounds();
   cells_.clear();
@@ -184,7 +185,8 @@ std::vector<std::int32_t> FreeSpace::way(std::int32_t from, std::int32_t to) con
   return cells;
 }
 
-bool is_clear(const World& world, const Vector3d& from, const Vector3d& to, double clearance) {
+bool is_clear(const world::World& world, const Vector3d& from, const Vector3d& to,
+              double clearance) {
   constexpr double kLeastStep = 0.02;  // m
   const double length = (to - from).norm();
   if (length > 0.0 && !world.visible(from, to)) return false;
@@ -197,4 +199,4 @@ bool is_clear(const World& world, const Vector3d& from, const Vector3d& to, doub
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

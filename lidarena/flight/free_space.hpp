@@ -11,7 +11,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Distances from surfaces.
 struct Distances {
@@ -36,7 +36,7 @@ class FreeSpace {
   /// Explores from `start` with cells of edge `cell_m`, or larger ones if there would be more than
   /// `max_cells`, which is estimated with cells of four times the edge. Empty when `start` itself
   /// is too close to a surface or outside the box.
-  FreeSpace(const World& world, const Eigen::Vector3d& start, const Distances& distances,
+  FreeSpace(const world::World& world, const Eigen::Vector3d& start, const Distances& distances,
             double cell_m, std::size_t max_cells, const Parallel& parallel);
 
   std::span<const Cell> cells() const { return cells_; }
@@ -53,7 +53,7 @@ class FreeSpace {
 
  private:
   /// Fills `cells_`; returns false when there are more than `max_cells`.
-  bool explore(const World& world, const Eigen::Vector3d& start, std::size_t max_cells,
+  bool explore(const world::World& world, const Eigen::Vector3d& start, std::size_t max_cells,
                const Parallel& parallel);
 
   Distances distances_;
@@ -63,7 +63,7 @@ class FreeSpace {
 
 /// Whether every point of the line segment keeps `clearance` (sphere tracing; a violation by less
 /// than 1 cm between two query points may be missed).
-bool is_clear(const World& world, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+bool is_clear(const world::World& world, const Eigen::Vector3d& from, const Eigen::Vector3d& to,
               double clearance);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Matrix3d;
@@ -61,4 +61,4 @@ Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
               state.rate.cross(c.inertia.cwiseProduct(state.rate))};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -4,7 +4,7 @@
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/flight/quadrotor.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// The wrench that makes a quadrotor follow the motion `reference`: the geometric tracking
 /// controller on SE(3) of Lee, Leok, McClamroch (CDC 2010) with its attitude error separated into
@@ -16,4 +16,4 @@ namespace lidarena {
 Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
                        const Motion& reference);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

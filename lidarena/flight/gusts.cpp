@@ -7,7 +7,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 Gusts::Gusts(const GustConfig& config)
     : wind_(config.wind),
@@ -38,4 +38,4 @@ Eigen::Vector3d Gusts::at(double t_s) const {
   return u * u * u * (10.0 - u * (15.0 - 6.0 * u)) * air;  // twice differentiable
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 
 #include "lidarena/flight/quadrotor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Velocity of the air as a pure and infinitely smooth function of time: the mean wind plus, on
 /// each axis, a sum of sines whose frequencies sample the longitudinal Dryden spectrum
@@ -36,4 +36,4 @@ class Gusts {
   bool still_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 // Minimum horizontal part of a unit vector; the heading of steeper directions is undefined.
@@ -41,4 +41,4 @@ void limit_steps(std::span<double> yaw, double step) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -7,7 +7,7 @@
 
 #include "lidarena/flight/flight_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Yaw (rad, without jumps of 2 pi) of each direction; for nearly vertical directions the previous
 /// yaw is kept.
@@ -20,4 +20,4 @@ double sweep_at(double t, double begin_s, double end_s, double amplitude, double
 /// Limits the change of `yaw` (rad) between consecutive control points to `step`.
 void limit_steps(std::span<double> yaw, double step);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -13,7 +13,7 @@
 #include "lidarena/flight/spline_flight.hpp"
 #include "lidarena/flight/tour.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 bool is_recording(const std::filesystem::path& file) {
@@ -31,7 +31,7 @@ FlightConfig config_of(const std::filesystem::path& file) {
   return config;
 }
 
-const std::vector<Eigen::Vector3d>& route_of(const WorldModel& model, int route,
+const std::vector<Eigen::Vector3d>& route_of(const world::WorldModel& model, int route,
                                              const std::string& place) {
   const auto index = static_cast<std::size_t>(route);
   if (index < model.routes.size()) return model.routes[index];
@@ -43,7 +43,8 @@ const std::vector<Eigen::Vector3d>& route_of(const WorldModel& model, int route,
 }
 
 std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightConfig& config,
-                              const WorldModel& model, const World& world, LogSink& log) {
+                              const world::WorldModel& model, const world::World& world,
+                              LogSink& log) {
   const std::string place = file.string();
   switch (config.kind) {
     case FlightKind::kReplay: {
@@ -77,7 +78,7 @@ std::unique_ptr<Flight> flown(const Flight& reference, const DynamicsConfig& dyn
   return flight;
 }
 
-void require_clear(const Flight& flight, const World& world, double clearance,
+void require_clear(const Flight& flight, const world::World& world, double clearance,
                    const std::string& place) {
   const auto encounter = first_encounter(flight, world, clearance);
   if (!encounter) return;
@@ -96,8 +97,9 @@ void require_clear(const Flight& flight, const World& world, double clearance,
 
 }  // namespace
 
-std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const WorldModel& model,
-                                    const World& world, LogSink& log) {
+std::unique_ptr<Flight> make_flight(const std::filesystem::path& file,
+                                    const world::WorldModel& model, const world::World& world,
+                                    LogSink& log) {
   const FlightConfig config = config_of(file);
   std::unique_ptr<Flight> flight = build(file, config, model, world, log);
   if (config.dynamics) flight = flown(*flight, *config.dynamics, file.string(), log);
@@ -106,4 +108,4 @@ std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const Wor
   return flight;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

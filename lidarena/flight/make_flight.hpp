@@ -9,13 +9,14 @@
 #include "lidarena/world/world.hpp"
 #include "lidarena/world/world_model.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Builds the flight that `file` describes (a YAML file as in configs/flights, or a TUM trajectory
 /// to replay) in `world`; `model` provides the world's routes.
 /// Throws InputError when the path comes closer to the mesh than the configured clearance (with
 /// position and time), exceeds its limits, or the world does not have the selected route.
-std::unique_ptr<Flight> make_flight(const std::filesystem::path& file, const WorldModel& model,
-                                    const World& world, LogSink& log);
+std::unique_ptr<Flight> make_flight(const std::filesystem::path& file,
+                                    const world::WorldModel& model, const world::World& world,
+                                    LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

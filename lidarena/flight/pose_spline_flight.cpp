@@ -7,7 +7,7 @@
 
 #include "lidarena/flight/spline_fit.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Quaterniond;
@@ -81,4 +81,4 @@ Motion PoseSplineFlight::at(Time t) const {
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/flight/uniform_spline.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// A flight along poses that were computed at equal time steps: one B-spline of degree 6 in
 /// position and quaternion (the quaternion is divided by its norm, which is close to 1), so that
@@ -34,4 +34,4 @@ class PoseSplineFlight final : public Flight {
   Time duration_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

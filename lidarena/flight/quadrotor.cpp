@@ -6,7 +6,7 @@
 
 #include "lidarena/flight/flight.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 using Eigen::Array4d;
 using Eigen::Matrix3d;
@@ -70,4 +70,4 @@ QuadrotorState advanced(const QuadrotorState& s, const QuadrotorRate& rate, doub
   return next;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

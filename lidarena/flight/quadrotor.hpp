@@ -6,7 +6,7 @@
 
 #include "lidarena/flight/quadrotor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// State of a quadrotor. Body frame: x forward, y left, z up, at the center of mass. Rotors: front
 /// left, front right, rear left, rear right.
@@ -78,4 +78,4 @@ QuadrotorState runge_kutta(const QuadrotorState& state, double t, double h,
   return next;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Wind and gusts. Each axis of the gusts is an approximately Gaussian stationary process with the
 /// spectrum of the longitudinal Dryden model (see Gusts). Both are faded in over the first second
@@ -69,4 +69,4 @@ struct DynamicsConfig {
   }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

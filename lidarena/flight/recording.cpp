@@ -15,7 +15,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/number.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 /// Converts decimal seconds to integer nanoseconds without the rounding of large stamps to
@@ -87,4 +87,4 @@ Trajectory placed(const Trajectory& recording, const Pose& world_from_recording,
   return Trajectory(std::move(poses));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

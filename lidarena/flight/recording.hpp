@@ -5,7 +5,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// The poses of a TUM file ("t x y z qx qy qz qw", '#' comments); time stamps are exact to the
 /// nanosecond. Throws InputError with file and line. (lidarena/dataset also reads these files, but
@@ -20,4 +20,4 @@ Trajectory thinned(const Trajectory& recording, double step_s);
 Trajectory placed(const Trajectory& recording, const Pose& world_from_recording,
                   const Pose& recorded_from_body);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

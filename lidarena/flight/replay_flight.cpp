@@ -10,7 +10,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/flight/rotation_rates.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Matrix3d;
@@ -152,4 +152,4 @@ Motion ReplayFlight::at(Time t) const {
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

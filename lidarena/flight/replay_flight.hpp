@@ -8,7 +8,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/flight/flight.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Replay of a recorded trajectory: passes through every recorded pose at its instant and is twice
 /// continuously differentiable in position and rotation. Time 0 is the first pose.
@@ -45,4 +45,4 @@ class ReplayFlight final : public Flight {
   std::vector<Time> ends_;  ///< end of each piece, increasing
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -4,7 +4,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -48,4 +48,4 @@ Vector3d body_acceleration(const Vector3d& v, const Vector3d& dv, const Vector3d
          q.c * (dv.cross(turn) + v.cross(dturn));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

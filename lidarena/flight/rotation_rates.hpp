@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Body rate (rad/s) of R(t) = R0 exp(v(t)) for the rotation vector `v` with time derivative `dv`:
 /// right_jacobian(v) * dv. |v| < 2 pi.
@@ -13,4 +13,4 @@ Eigen::Vector3d body_rate(const Eigen::Vector3d& v, const Eigen::Vector3d& dv);
 Eigen::Vector3d body_acceleration(const Eigen::Vector3d& v, const Eigen::Vector3d& dv,
                                   const Eigen::Vector3d& ddv);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

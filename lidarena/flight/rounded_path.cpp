@@ -9,7 +9,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -117,4 +117,4 @@ void check_waypoints(std::span<const Vector3d> waypoints, const std::string& pla
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

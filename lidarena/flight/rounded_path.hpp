@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// A straight line segment or a circular arc.
 struct PathPiece {
@@ -44,4 +44,4 @@ RoundedPath round_corners(std::span<const Eigen::Vector3d> waypoints, double tol
 /// repeats the previous one.
 void check_waypoints(std::span<const Eigen::Vector3d> waypoints, const std::string& place);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

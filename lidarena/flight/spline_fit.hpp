@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Number of samples on either side of a control point that controls_through() uses.
 inline constexpr std::size_t kFitReach = 3;
@@ -43,4 +43,4 @@ std::vector<Value> controls_through(const std::vector<Value>& samples) {
   return controls;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

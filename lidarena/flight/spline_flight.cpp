@@ -15,7 +15,7 @@
 #include "lidarena/flight/rounded_path.hpp"
 #include "lidarena/flight/time_law.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -184,4 +184,4 @@ Pose SplineFlight::pose_at(Time t) const {
   return make_pose(attitude_of(spline_.derivative<2>(at).head<3>(), value.w()), value.head<3>());
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -8,7 +8,7 @@
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/uniform_spline.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// A flight along the polyline through waypoints, from rest to rest.
 ///
@@ -52,4 +52,4 @@ class SplineFlight final : public Flight {
   Time duration_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 constexpr double kCell = 0.02;  // m, maximum length of a cell of constant acceleration
@@ -90,4 +90,4 @@ TimeLaw law_of_duration(const RoundedPath& path, const PathLimits& limits, doubl
   return {path, limits, high};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -5,7 +5,7 @@
 
 #include "lidarena/flight/rounded_path.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 struct PathLimits {
   double max_speed = 1.0;         ///< m/s
@@ -43,4 +43,4 @@ class TimeLaw {
 /// path.
 TimeLaw law_of_duration(const RoundedPath& path, const PathLimits& limits, double duration);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -18,7 +18,7 @@
 #include "lidarena/flight/tour_order.hpp"
 #include "lidarena/flight/tour_start.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -26,8 +26,9 @@ using Eigen::Vector3d;
 constexpr double kSlack = 0.005;          // m; allows for violations between two query points
 constexpr double kCoverageSpacing = 0.2;  // m, between viewpoints along the flight
 
-Vector3d start_of(const WorldModel& model, const World& world, const TourConfig& config,
-                  double clearance, const std::string& place, const Parallel& parallel) {
+Vector3d start_of(const world::WorldModel& model, const world::World& world,
+                  const TourConfig& config, double clearance, const std::string& place,
+                  const Parallel& parallel) {
   if (config.start) return *config.start;
   if (!model.routes.empty() && !model.routes.front().empty()) return model.routes.front().front();
   if (const auto found = most_enclosed_place(world, clearance, parallel)) return *found;
@@ -37,7 +38,7 @@ Vector3d start_of(const WorldModel& model, const World& world, const TourConfig&
                    "set tour.start, or reduce clearance_m");
 }
 
-FreeSpace explored(const World& world, const Vector3d& start, const FlightConfig& config,
+FreeSpace explored(const world::World& world, const Vector3d& start, const FlightConfig& config,
                    const std::string& place, const Parallel& parallel) {
   const double least = config.clearance_m + config.tour.margin_m + kSlack;
   FreeSpace space(world, start, {least, least + config.corner_m}, config.tour.cell_m,
@@ -111,7 +112,7 @@ std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std:
 /// Appends the points of `line` after its first one, which is already in `way`, to its last one,
 /// and skips those that a straight segment with this clearance can bypass. The longest segment is
 /// found by doubling the number of skipped points, then by bisection.
-void append_pulled(const World& world, std::span<const Vector3d> line, double clearance,
+void append_pulled(const world::World& world, std::span<const Vector3d> line, double clearance,
                    std::vector<Vector3d>& way) {
   for (std::size_t from = 0; from + 1 < line.size();) {
     const std::size_t left = line.size() - 1 - from;
@@ -136,8 +137,8 @@ void append_pulled(const World& world, std::span<const Vector3d> line, double cl
 
 /// Appends the path along `cells`, shortened by straight segments: wide sections keep the preferred
 /// distance; narrow sections, with one more cell at either end, keep the minimum distance.
-void append_way(const World& world, const FreeSpace& space, std::span<const std::int32_t> cells,
-                std::vector<Vector3d>& way) {
+void append_way(const world::World& world, const FreeSpace& space,
+                std::span<const std::int32_t> cells, std::vector<Vector3d>& way) {
   const auto wide = [&](std::size_t i) { return space.is_wide(cells[i]); };
   for (std::size_t from = 0; from + 1 < cells.size();) {
     const bool is_wide = wide(from) && wide(from + 1);
@@ -162,7 +163,7 @@ std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
 }
 
 /// The path from each cell to the next, and from the last to the first.
-std::vector<Vector3d> way_through(const World& world, const FreeSpace& space,
+std::vector<Vector3d> way_through(const world::World& world, const FreeSpace& space,
                                   const std::vector<std::int32_t>& visits) {
   std::vector<Vector3d> way{space.cells()[static_cast<std::size_t>(visits.front())].point};
   for (std::size_t i = 0; i < visits.size(); ++i) {
@@ -208,8 +209,8 @@ double share_of(const Seen& seen) {
 }
 
 /// Corners near which the flight comes closer to a surface than `clearance`.
-std::vector<std::size_t> tight_corners(const Flight& flight, const World& world, double clearance,
-                                       const std::vector<Corner>& corners) {
+std::vector<std::size_t> tight_corners(const Flight& flight, const world::World& world,
+                                       double clearance, const std::vector<Corner>& corners) {
   constexpr Time kStep = std::chrono::milliseconds(5);
   std::vector<std::size_t> tight;
   double margin = 0.0;  // path length within which no new query is needed
@@ -230,7 +231,7 @@ std::vector<std::size_t> tight_corners(const Flight& flight, const World& world,
 }
 
 /// The path as waypoints whose flight keeps the clearance at its corners, if possible.
-std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& world,
+std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const world::World& world,
                                 const FlightConfig& config, const std::string& place) {
   constexpr int kRounds = 8;
   constexpr double kFirstReach = 0.8;  // m; halved in each further round
@@ -250,8 +251,8 @@ std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const World& w
 
 }  // namespace
 
-Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& config,
-               const std::string& place, const Parallel& parallel) {
+Tour plan_tour(const world::WorldModel& model, const world::World& world,
+               const FlightConfig& config, const std::string& place, const Parallel& parallel) {
   const TourConfig& wanted = config.tour;
   const Vector3d start =
       start_of(model, world, wanted, config.clearance_m + wanted.margin_m, place, parallel);
@@ -294,4 +295,4 @@ std::string as_yaml(const Tour& tour, const FlightConfig& config) {
   return to_json(saved).dump(2) + "\n";  // JSON is valid YAML
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

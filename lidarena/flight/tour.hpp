@@ -10,7 +10,7 @@
 #include "lidarena/world/world.hpp"
 #include "lidarena/world/world_model.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// A closed path through a world and its coverage. Shares are shares of the mesh's area, estimated
 /// by samples.
@@ -37,8 +37,8 @@ struct Tour {
 /// rays, and views * cells; memory is about 150 bytes per cell plus one byte per view and sample.
 /// Throws InputError (place `place`) when the start is too close to a surface, or no start is
 /// found.
-Tour plan_tour(const WorldModel& model, const World& world, const FlightConfig& config,
-               const std::string& place, const Parallel& parallel);
+Tour plan_tour(const world::WorldModel& model, const world::World& world,
+               const FlightConfig& config, const std::string& place, const Parallel& parallel);
 
 /// One-line summary for the log.
 std::string describe(const Tour& tour);
@@ -47,4 +47,4 @@ std::string describe(const Tour& tour);
 /// waypoints and the tour's waypoints, rounded to the millimeter.
 std::string as_yaml(const Tour& tour, const FlightConfig& config);
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

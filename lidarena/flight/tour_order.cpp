@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Lengths = std::vector<std::vector<std::int32_t>>;
@@ -45,4 +45,4 @@ std::vector<std::size_t> order_of_visits(const Lengths& lengths) {
   return order;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

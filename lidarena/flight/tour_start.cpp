@@ -6,7 +6,7 @@
 #include <numbers>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -53,24 +53,24 @@ struct Score {
   }
 };
 
-Score score_of(const World& world, const Vector3d& place, double clearance) {
+Score score_of(const world::World& world, const Vector3d& place, double clearance) {
   constexpr double kRoom = 1.0;  // m
   const double nearest = world.closest_point(place, clearance + kRoom).distance;
   if (nearest < clearance) return {};
   static const std::vector<Eigen::Vector3f> kSphere = directions();
-  std::vector<Ray> rays{{place, -Eigen::Vector3f::UnitZ()}};
+  std::vector<world::Ray> rays{{place, -Eigen::Vector3f::UnitZ()}};
   for (const Eigen::Vector3f& direction : kSphere) rays.push_back({place, direction});
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   world.cast(rays, world.mesh().bounds().diagonal().norm(), hits);
   if (!hits.front().valid()) return {};
-  const auto enclosed =
-      std::count_if(hits.begin() + 1, hits.end(), [](const Hit& hit) { return hit.valid(); });
+  const auto enclosed = std::count_if(hits.begin() + 1, hits.end(),
+                                      [](const world::Hit& hit) { return hit.valid(); });
   return {static_cast<int>(enclosed), std::min(nearest, kRoom)};
 }
 
 }  // namespace
 
-std::optional<Vector3d> most_enclosed_place(const World& world, double clearance,
+std::optional<Vector3d> most_enclosed_place(const world::World& world, double clearance,
                                             const Parallel& parallel) {
   const std::vector<Vector3d> places = grid(world.mesh().bounds());
   std::vector<Score> scores(places.size());
@@ -81,4 +81,4 @@ std::optional<Vector3d> most_enclosed_place(const World& world, double clearance
   return places[static_cast<std::size_t>(best - scores.begin())];
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -6,7 +6,7 @@
 #include <array>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::flight {
 
 /// Uniform B-spline of degree D with values in R^N (de Boor, "A Practical Guide to Splines").
 /// Interval k spans [k, k+1) * knot seconds and depends on the control points k .. k+D; control
@@ -108,4 +108,4 @@ class UniformSpline {
   double rate_;  ///< knots per second
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::flight

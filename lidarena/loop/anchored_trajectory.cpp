@@ -3,7 +3,7 @@
 
 #include "lidarena/base/se3.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 void AnchoredTrajectory::add_anchor(Time stamp, const Pose& previous_from_this) {
   anchors_.push_back({stamp, previous_from_this});
@@ -41,4 +41,4 @@ std::uint64_t AnchoredTrajectory::memory_bytes() const {
   return anchors_.capacity() * sizeof(Anchor) + poses_.capacity() * sizeof(Hanging);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

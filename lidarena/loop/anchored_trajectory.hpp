@@ -9,7 +9,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 /// Poses relative to keyframes, which move along when the keyframes are corrected later. The
 /// correction of the motion between two keyframes is distributed evenly over the time between them.
@@ -41,4 +41,4 @@ class AnchoredTrajectory {
   std::vector<Hanging> poses_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/loop/config.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 LoopConfig careful_loops() {
   LoopConfig config;
@@ -29,4 +29,4 @@ LoopConfig careful_loops() {
   return config;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 /// Distances that ICP minimizes.
 enum class IcpMetric {
@@ -130,14 +130,9 @@ struct LoopConfig {
 /// overlap, fitness and the possible drift of the odometry, and accepted only if two agree.
 LoopConfig careful_loops();
 
-}  // namespace lidarena
+constexpr auto enum_names(IcpMetric) {
+  return std::array{std::pair{"points", IcpMetric::kPoints},
+                    std::pair{"planes", IcpMetric::kPlanes}};
+}
 
-namespace lidarena {
-
-template <>
-struct EnumNames<IcpMetric> {
-  static constexpr std::array names{std::pair{"points", IcpMetric::kPoints},
-                                    std::pair{"planes", IcpMetric::kPlanes}};
-};
-
-}  // namespace lidarena
+}  // namespace lidarena::loop

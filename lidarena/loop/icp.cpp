@@ -10,10 +10,11 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/least_squares.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
-using Equations = NormalEquations<6>;  // rotation about the target's origin, translation
+using Equations =
+    estimation::NormalEquations<6>;  // rotation about the target's origin, translation
 using Eigen::Vector3d;
 
 constexpr std::size_t kPlanePoints = 6;
@@ -24,12 +25,12 @@ constexpr double kStill = 3e-4;      // m, rad: converged below this step
 constexpr double kShrink = 0.7;      // factor on the maximum distance per iteration
 
 /// Fits a plane to the points `near`; returns whether they are flat.
-bool find_normal(std::span<const Neighbor> near, Vector3d& normal) {
+bool find_normal(std::span<const map::Neighbor> near, Vector3d& normal) {
   Vector3d center = Vector3d::Zero();
-  for (const Neighbor& n : near)
+  for (const map::Neighbor& n : near)
     center += n.point.cast<double>() / static_cast<double>(near.size());
   Eigen::Matrix3d spread = Eigen::Matrix3d::Zero();
-  for (const Neighbor& n : near) {
+  for (const map::Neighbor& n : near) {
     const Vector3d d = n.point.cast<double>() - center;
     spread += d * d.transpose();
   }
@@ -39,8 +40,8 @@ bool find_normal(std::span<const Neighbor> near, Vector3d& normal) {
   return solver.eigenvalues()[0] < kFlat * solver.eigenvalues()[1];
 }
 
-void add_point(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
-  std::array<Neighbor, 1> near;
+void add_point(const Vector3d& moved, const map::KdTree& target, double reach, Equations& sum) {
+  std::array<map::Neighbor, 1> near;
   if (target.nearest(moved.cast<float>(), near, static_cast<float>(reach)) == 0) return;
   Eigen::Matrix<double, 3, 6> j;
   j << -so3::hat(moved), Eigen::Matrix3d::Identity();
@@ -48,8 +49,8 @@ void add_point(const Vector3d& moved, const KdTree& target, double reach, Equati
   sum.add<3>(j, residual, 1.0);
 }
 
-void add_plane(const Vector3d& moved, const KdTree& target, double reach, Equations& sum) {
-  std::array<Neighbor, kPlanePoints> near;
+void add_plane(const Vector3d& moved, const map::KdTree& target, double reach, Equations& sum) {
+  std::array<map::Neighbor, kPlanePoints> near;
   const std::size_t found =
       target.nearest(moved.cast<float>(), near, static_cast<float>(std::max(reach, kPlaneReach)));
   if (found < kPlanePoints || double{near[0].squared_distance} > reach * reach) return;
@@ -64,16 +65,16 @@ void add_plane(const Vector3d& moved, const KdTree& target, double reach, Equati
   sum.add<1>(j, Eigen::Matrix<double, 1, 1>(distance), weight * weight);
 }
 
-Equations equations(std::span<const Eigen::Vector3f> source, const KdTree& target, const Pose& pose,
-                    IcpMetric metric, double reach, const Parallel& parallel) {
-  return accumulate_normal_equations<6>(
+Equations equations(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                    const Pose& pose, IcpMetric metric, double reach, const Parallel& parallel) {
+  return estimation::accumulate_normal_equations<6>(
       parallel, source.size(), [&](std::size_t i, Equations& sum) {
         const Vector3d moved = pose * source[i].cast<double>();
         (metric == IcpMetric::kPlanes ? add_plane : add_point)(moved, target, reach, sum);
       });
 }
 
-void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
+void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
              const LoopConfig& config, IcpResult& result) {
   double sum = 0.0;
   std::size_t reached = 0;
@@ -81,7 +82,7 @@ void measure(std::span<const Eigen::Vector3f> source, const KdTree& target,
   const bool planes = config.metric == IcpMetric::kPlanes;
   const auto reach = static_cast<float>(planes ? config.inlier_m : config.correspondence_m);
   for (const Eigen::Vector3f& p : source) {
-    std::array<Neighbor, 1> near;
+    std::array<map::Neighbor, 1> near;
     const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
     if (target.nearest(moved, near, reach) == 0) continue;
     const auto squared = static_cast<double>(near[0].squared_distance);
@@ -112,7 +113,7 @@ double constraint_of(Equations sum, double lever, const Vector3d& center) {
 
 }  // namespace
 
-IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& target,
+IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
                        const Pose& guess, const LoopConfig& config, const Parallel& parallel) {
   IcpResult result;
   result.target_from_source = guess;
@@ -142,4 +143,4 @@ IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& ta
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -10,7 +10,7 @@
 #include "lidarena/loop/config.hpp"
 #include "lidarena/map/kd_tree.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 /// Result of the alignment of one cloud to another.
 struct IcpResult {
@@ -26,7 +26,7 @@ struct IcpResult {
 /// planes the maximum distance of correspondences shrinks from `correspondence_m` to `inlier_m`
 /// over the iterations. Fitness and overlap are those of the final pose. Not converged: too few
 /// correspondences, or steps still too large at the last iteration.
-IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const KdTree& target,
+IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
                        const Pose& guess, const LoopConfig& config, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -11,10 +11,10 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
-using Covariance = PoseGraph::Covariance;
+using Covariance = estimation::PoseGraph::Covariance;
 
 constexpr double kLeastShift = 0.1;       // m: sigma of the drift at path length zero
 constexpr double kLeastTurn = 0.01;       // rad: likewise
@@ -158,7 +158,7 @@ std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_
         (graph_.nodes[keyframe].inverse() * graph_.nodes[i]).cast<float>();
     for (const Eigen::Vector3f& p : cloud(i)) points.push_back(moved * p);
   }
-  return shuffled(voxel_means(points, config_.leaf_m));
+  return shuffled(map::voxel_means(points, config_.leaf_m));
 }
 
 bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
@@ -192,7 +192,7 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
     return loop;
   if (config_.source_points > 0 && source.size() > static_cast<std::size_t>(config_.source_points))
     source.resize(static_cast<std::size_t>(config_.source_points));
-  KdTree tree;
+  map::KdTree tree;
   tree.build(std::move(target));
   const IcpResult icp = align_clouds(source, tree, candidate.guess, config_, parallel_);
   const Pose contradiction =
@@ -277,9 +277,10 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
     const bool by_fitness = config_.loop_shift_sigma_m <= 0.0;
     const double variance = std::max(loop.fitness, kLeastVariance);
     const auto squared = [](double sigma) { return sigma * sigma; };
-    const RobustLoss loss = config_.robust_scale > 0.0
-                                ? RobustLoss{RobustKernel::kCauchy, config_.robust_scale}
-                                : RobustLoss{};
+    const estimation::RobustLoss loss =
+        config_.robust_scale > 0.0
+            ? estimation::RobustLoss{estimation::RobustKernel::kCauchy, config_.robust_scale}
+            : estimation::RobustLoss{};
     graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
                                by_fitness
                                    ? diagonal(variance, variance)
@@ -294,15 +295,15 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
     }
   }
   waiting_.clear();
-  graph_.nodes = optimize(graph_).nodes;
+  graph_.nodes = estimation::optimize(graph_).nodes;
 }
 
 std::uint64_t LoopCloser::memory_bytes() const {
   return due_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
          steps_.capacity() * sizeof(double) + descriptors_.capacity() * sizeof(PlaceDescriptor) +
          graph_.nodes.capacity() * sizeof(Pose) +
-         graph_.betweens.capacity() * sizeof(PoseGraph::Between) +
+         graph_.betweens.capacity() * sizeof(estimation::PoseGraph::Between) +
          (records_.capacity() + waiting_.capacity() + accepted_.capacity()) * sizeof(LoopRecord);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

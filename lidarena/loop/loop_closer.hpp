@@ -15,7 +15,7 @@
 #include "lidarena/loop/icp.hpp"
 #include "lidarena/loop/place_descriptor.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 
 /// Result of the verification of a loop candidate.
 enum class LoopVerdict {
@@ -102,11 +102,11 @@ class LoopCloser {
   std::vector<Time> stamps_;
   std::vector<double> steps_;  ///< m, path length from the keyframe before
   std::vector<PlaceDescriptor> descriptors_;
-  PoseGraph graph_;
+  estimation::PoseGraph graph_;
   std::vector<Candidate> due_;  ///< of the last search, not verified yet
   std::vector<LoopRecord> records_;
   std::vector<LoopRecord> waiting_;
   std::vector<LoopRecord> accepted_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
 constexpr float kDepth = 5.0F;  // m: heights are measured from this far below the place
@@ -57,4 +57,4 @@ Resemblance compare(const PlaceDescriptor& first, const PlaceDescriptor& second)
   return best;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-namespace lidarena {
+namespace lidarena::loop {
 
 /// Appearance of a place from above, for any heading: the maximum height in each cell of a polar
 /// grid around it (Kim, Kim, "Scan Context", IROS 2018). Rows are rings, columns sectors.
@@ -24,4 +24,4 @@ struct Resemblance {
 };
 Resemblance compare(const PlaceDescriptor& first, const PlaceDescriptor& second);
 
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// Orientation of a voxel grid in the frame of its points. Where a wall lies along a border between
 /// cells, range noise divides its points between two layers of cells. Each cell has one mean,
@@ -20,11 +20,10 @@ enum class GridAxes {
   kAskew,     ///< rotated grid: no axis within 23 degrees of an axis of the frame
 };
 
-template <>
-struct EnumNames<GridAxes> {
-  static constexpr std::array names{std::pair{"parallel", GridAxes::kParallel},
-                                    std::pair{"askew", GridAxes::kAskew}};
-};
+constexpr auto enum_names(GridAxes) {
+  return std::array{std::pair{"parallel", GridAxes::kParallel},
+                    std::pair{"askew", GridAxes::kAskew}};
+}
 
 /// Rotation from the frame of the points to that of the grid.
 inline Eigen::Matrix3d grid_turn(GridAxes axes) {
@@ -36,4 +35,4 @@ inline Eigen::Matrix3d grid_turn(GridAxes axes) {
       .toRotationMatrix();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// State of a nearest-neighbor search: the best points so far, sorted. Points farther away than the
 /// last entry are discarded.
@@ -315,4 +315,4 @@ std::uint64_t KdTree::memory_bytes() const {
          scratch_.capacity() * sizeof(Eigen::Vector3f);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -12,7 +12,7 @@
 
 #include "lidarena/map/neighbor.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// A k-d tree of points (m) with insertion and removal that stays balanced, after Cai, Xu, Zhang,
 /// "ikd-Tree: An Incremental K-D Tree for Robotic Applications" (arXiv 2102.10808): it downsamples
@@ -114,4 +114,4 @@ class KdTree {
   Index root_ = kNone;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// A point of a map (m) and its squared distance (m^2) from the query.
 struct Neighbor {
@@ -23,4 +23,4 @@ Eigen::Matrix<double, 3, static_cast<int>(N)> columns_of(const std::array<Neighb
   return columns;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

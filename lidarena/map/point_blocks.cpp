@@ -3,7 +3,7 @@
 
 #include <cassert>
 
-namespace lidarena {
+namespace lidarena::map {
 
 Eigen::Vector3f* PointBlocks::allocate(int level) {
   const std::size_t count = capacity(level);
@@ -34,4 +34,4 @@ std::size_t PointBlocks::memory_bytes() const {
   return bytes;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

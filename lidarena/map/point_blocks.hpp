@@ -7,7 +7,7 @@
 #include <memory>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// Memory for many short lists of points, allocated in pages instead of one heap block per list. A
 /// block holds 1, 2, 4, 8 ... points (its level is the exponent); freed blocks are reused.
@@ -29,4 +29,4 @@ class PointBlocks {
   std::vector<std::vector<Eigen::Vector3f*>> free_;  ///< by level
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 PointMap::PointMap(double voxel_size, std::size_t expected)
     : inverse_size_(static_cast<float>(1.0 / voxel_size)) {
@@ -41,4 +41,4 @@ std::size_t PointMap::memory_bytes() const {
   return points_.capacity() * sizeof(Eigen::Vector3f) + blocks_.bucket_count() * kBucketBytes;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

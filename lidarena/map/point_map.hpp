@@ -11,7 +11,7 @@
 
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// A point cloud with at most one point per voxel, in insertion order: the first point of a voxel
 /// is kept, later ones are rejected. Nothing is averaged, so noise stays visible. Occupied voxels
@@ -41,4 +41,4 @@ class PointMap {
   Blocks blocks_;  ///< which of a block's 64 voxels are occupied
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -11,7 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 namespace {
 
@@ -131,4 +131,4 @@ std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points
   return sums;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

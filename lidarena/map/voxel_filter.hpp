@@ -2,14 +2,16 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// Indices of the points (m) that are the first of their voxel, in input order, so the result
 /// depends only on the input. Points that are not finite are left out.
@@ -25,6 +27,12 @@ enum class ThinningOrder {
                    ///< Mueller, Pomerantes, Gross, "Optimized spatial hashing" (VMV 2003)
   kTeschnerPrime,  ///< the same with 19349669, which, unlike 19349663 = 41 * 471943, is a prime
 };
+
+constexpr auto enum_names(ThinningOrder) {
+  return std::array{std::pair{"mixed", ThinningOrder::kMixed},
+                    std::pair{"teschner", ThinningOrder::kTeschner},
+                    std::pair{"teschner_prime", ThinningOrder::kTeschnerPrime}};
+}
 
 struct Thinning {
   VoxelRounding rounding = VoxelRounding::kFloor;
@@ -46,4 +54,4 @@ std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, doubl
 std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
                                          GridAxes axes = GridAxes::kParallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -9,7 +9,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 namespace {
 
@@ -257,4 +257,4 @@ std::size_t VoxelHashMap::memory_bytes() const {
          planes_.capacity() * sizeof(Plane) + free_planes_.capacity() * sizeof(std::uint32_t);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

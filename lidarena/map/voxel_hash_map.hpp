@@ -13,7 +13,7 @@
 #include "lidarena/map/point_blocks.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// A local map: a hash table from cubic cells to a few points each, as in Vizzo et al., "KISS-ICP"
 /// (RA-L 2023), section III-D. Points are stored as float: resolution 8 um at 100 m, 0.06 mm at 1
@@ -100,4 +100,4 @@ class VoxelHashMap {
   std::size_t size_ = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -10,7 +10,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// Integer cell of a cubic grid, by default floor(coordinate / edge) on each axis.
 using Voxel = Eigen::Vector3i;
@@ -21,11 +21,10 @@ enum class VoxelRounding {
   kTruncate,  ///< toward zero: the cells around the planes x = 0, y = 0, z = 0 are twice as wide
 };
 
-template <>
-struct EnumNames<VoxelRounding> {
-  static constexpr std::array names{std::pair{"floor", VoxelRounding::kFloor},
-                                    std::pair{"truncate", VoxelRounding::kTruncate}};
-};
+constexpr auto enum_names(VoxelRounding) {
+  return std::array{std::pair{"floor", VoxelRounding::kFloor},
+                    std::pair{"truncate", VoxelRounding::kTruncate}};
+}
 
 /// A voxel as one integer, 21 bits per axis. The keys of two neighbors differ by a constant.
 using VoxelKey = std::uint64_t;
@@ -66,4 +65,4 @@ struct VoxelKeyHash {
   }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

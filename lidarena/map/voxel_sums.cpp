@@ -5,7 +5,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 constexpr double kMicrometers = 1e6;  // in a meter
@@ -78,4 +78,4 @@ std::uint64_t VoxelSums::memory_bytes() const {
          places_.bucket_count() * sizeof(std::pair<std::uint64_t, std::uint64_t>);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -11,7 +11,7 @@
 #include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 
 /// Means of the points in each cell of a grid, updated as points are added and removed: a map that
 /// moves with a sensor costs time only for what changes. Coordinates are summed in integer
@@ -47,4 +47,4 @@ class VoxelSums {
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< index in `cells_`
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::map

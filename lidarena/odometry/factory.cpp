@@ -8,7 +8,7 @@
 #include "lidarena/odometry/lio_sam/lio_sam.hpp"
 #include "lidarena/odometry/with_loop.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 namespace {
 
@@ -194,4 +194,4 @@ MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,
       nearest.empty() ? "use one of " + listed(names) : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -10,7 +10,7 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 /// Which odometry to build, and its settings.
 struct OdometryRequest {
@@ -45,4 +45,4 @@ struct MadeOdometry {
 MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,
                            const std::string& lidar_id, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 const char* to_string(ScanStatus status) {
   switch (status) {
@@ -19,4 +19,4 @@ const char* to_string(ScanStatus status) {
   return "unknown";
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -13,7 +13,7 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 enum class ScanStatus {
   kTracked,       ///< the estimate was updated with this scan
@@ -67,4 +67,4 @@ class Odometry {
   virtual std::map<std::string, std::uint64_t> memory() const = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

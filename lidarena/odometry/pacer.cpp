@@ -5,9 +5,9 @@
 
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
-void Pacer::offer(Event event) {
+void Pacer::offer(dataset::Event event) {
   const auto* scan = std::get_if<Scan>(&event.data);
   if (scan == nullptr) {
     waiting_.push_back(std::move(event));
@@ -45,4 +45,4 @@ void Pacer::drop_waiting_scan() {
   for (; !waiting_.empty(); waiting_.pop_front()) process_(waiting_.front());
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -7,7 +7,7 @@
 
 #include "lidarena/dataset/event.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 /// Hands over events at the pace of a live robot: if the algorithm is late, only the newest waiting
 /// scan is kept and older ones are dropped; IMU samples are never dropped. Nothing sleeps: the
@@ -15,11 +15,11 @@ namespace lidarena {
 class Pacer {
  public:
   /// Processes one event and returns the time that this took, s.
-  using Process = std::function<double(const Event&)>;
+  using Process = std::function<double(const dataset::Event&)>;
   explicit Pacer(Process process) : process_(std::move(process)) {}
 
   /// Takes the next event of the algorithm's own sensors, in the order of EventSource.
-  void offer(Event event);
+  void offer(dataset::Event event);
   /// Call after the last event: hands over the events that still wait.
   void flush();
 
@@ -32,10 +32,10 @@ class Pacer {
   void drop_waiting_scan();
 
   Process process_;
-  std::deque<Event> waiting_;  ///< at most one scan, which then is the first element
-  Time free_{Time::min()};     ///< when the algorithm has processed what it was handed
+  std::deque<dataset::Event> waiting_;  ///< at most one scan, which then is the first element
+  Time free_{Time::min()};              ///< when the algorithm has processed what it was handed
   std::size_t dropped_ = 0;
   double longest_delay_s_ = 0.0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -6,7 +6,7 @@
 #include <fstream>
 #include <string>
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 std::uint64_t resident_bytes() {
   std::ifstream statm("/proc/self/statm");
@@ -25,4 +25,4 @@ std::optional<std::uint64_t> proportional_bytes() {
   return std::nullopt;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 /// Resident memory of this process, bytes; 0 if /proc does not provide it. Cheap.
 std::uint64_t resident_bytes();
@@ -14,4 +14,4 @@ std::uint64_t resident_bytes();
 /// nearly a millisecond.
 std::optional<std::uint64_t> proportional_bytes();
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -7,7 +7,7 @@
 #include "lidarena/odometry/pacer.hpp"
 #include "lidarena/odometry/process_memory.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 namespace {
 
@@ -30,9 +30,9 @@ class Recorder {
         map_(options.map_voxel_m) {}
 
   /// True for samples of the run's IMU and for scans of its LiDAR that are in time order.
-  bool wants(const Event& event);
+  bool wants(const dataset::Event& event);
   /// Hands a wanted event to the odometry; returns the wall time that this took, s.
-  double feed(const Event& event);
+  double feed(const dataset::Event& event);
 
   bool diverged() const { return result_.summary.diverged; }
   RunSummary& summary() { return result_.summary; }
@@ -52,18 +52,18 @@ class Recorder {
   std::optional<Time> first_stamp_;
   Time last_stamp_{0};
   std::vector<StampedPose> live_;
-  PointMap map_;
+  map::PointMap map_;
   RunResult result_;
 };
 
-bool Recorder::wants(const Event& event) {
+bool Recorder::wants(const dataset::Event& event) {
   const auto* scan = std::get_if<Scan>(&event.data);
   std::string& chosen = scan != nullptr ? lidar_id_ : imu_id_;
   if (chosen.empty()) chosen = event.sensor_id;
   return event.sensor_id == chosen && (scan == nullptr || in_order(*scan));
 }
 
-double Recorder::feed(const Event& event) {
+double Recorder::feed(const dataset::Event& event) {
   if (diverged()) return 0.0;
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&start] {
@@ -109,7 +109,7 @@ void Recorder::keep_result(const ScanResult& result) {
 void Recorder::keep_resources(const Scan& scan, double latency_s) {
   auto& rows = result_.files.resources;
   const auto memory = odometry_.memory();
-  ResourceRow row;
+  dataset::ResourceRow row;
   row.t_sensor_s = to_seconds(end_of(scan) - *first_stamp_);
   row.latency_s = latency_s;
   row.rss_bytes = resident_bytes();
@@ -130,7 +130,7 @@ void Recorder::diverge(const std::string& reason) {
 }
 
 RunResult Recorder::finish() {
-  RunFiles& files = result_.files;
+  dataset::RunFiles& files = result_.files;
   files.live = Trajectory(live_, "live estimates");
   if (diverged()) {
     files.trajectory = files.live;  // after divergence the algorithm's own may be invalid
@@ -144,11 +144,12 @@ RunResult Recorder::finish() {
 
 }  // namespace
 
-RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log) {
+RunResult run(Odometry& odometry, dataset::EventSource& events, const RunOptions& options,
+              LogSink& log) {
   Recorder recorder(odometry, options, log);
-  Pacer pacer([&](const Event& event) { return recorder.feed(event); });
+  Pacer pacer([&](const dataset::Event& event) { return recorder.feed(event); });
   while (!recorder.diverged()) {
-    std::optional<Event> event = events.next();
+    std::optional<dataset::Event> event = events.next();
     if (!event) break;
     if (!recorder.wants(*event)) continue;
     if (options.paced) {
@@ -163,4 +164,4 @@ RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options
   return recorder.finish();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

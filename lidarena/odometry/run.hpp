@@ -10,7 +10,7 @@
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 struct RunOptions {
   std::string lidar_id{};                   ///< scans of other LiDARs are skipped
@@ -32,12 +32,13 @@ struct RunSummary {
 };
 
 struct RunResult {
-  RunFiles files;  ///< all except `reprojected` and `manifest`
+  dataset::RunFiles files;  ///< all except `reprojected` and `manifest`
   RunSummary summary;
 };
 
 /// Feeds `events` to `odometry` and collects the results. A paced run depends on the speed of the
 /// machine, so it is not repeatable.
-RunResult run(Odometry& odometry, EventSource& events, const RunOptions& options, LogSink& log);
+RunResult run(Odometry& odometry, dataset::EventSource& events, const RunOptions& options,
+              LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

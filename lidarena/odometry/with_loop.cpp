@@ -4,7 +4,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 OdometryTraits WithLoop::traits() const {
   OdometryTraits traits = odometry_->traits();
@@ -45,7 +45,7 @@ void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
   for (const Eigen::Vector3f& p : odometry_->registered_scan()) cloud.push_back(body_from_odom * p);
   const Pose previous_from_this =
       clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
-  clouds_.push_back(voxel_means(cloud, config_.cloud_leaf_m));
+  clouds_.push_back(map::voxel_means(cloud, config_.cloud_leaf_m));
   poses_.add_anchor(stamp, previous_from_this);
   odom_from_keyframe_ = odom_from_body;
   closer_.add(stamp, previous_from_this, [this](std::size_t keyframe) {
@@ -72,4 +72,4 @@ std::map<std::string, std::uint64_t> WithLoop::memory() const {
   return memory;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

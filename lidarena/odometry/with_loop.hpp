@@ -10,13 +10,13 @@
 #include "lidarena/loop/loop_closer.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 
 struct WithLoopConfig {
   double keyframe_distance_m = 1.0;
   double keyframe_angle_rad = 0.5;
   double cloud_leaf_m = 0.1;
-  LoopConfig loop = careful_loops();
+  loop::LoopConfig loop = loop::careful_loops();
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -50,7 +50,7 @@ class WithLoop : public Odometry {
   std::vector<Eigen::Vector3f> map() const override;
   std::map<std::string, std::uint64_t> memory() const override;
 
-  const LoopCloser& loops() const { return closer_; }
+  const loop::LoopCloser& loops() const { return closer_; }
 
  private:
   bool is_keyframe(const Pose& odom_from_body) const;
@@ -58,11 +58,11 @@ class WithLoop : public Odometry {
 
   std::unique_ptr<Odometry> odometry_;
   WithLoopConfig config_;
-  LoopCloser closer_;
+  loop::LoopCloser closer_;
   Pose world_from_odom_ = Pose::Identity();
   Pose odom_from_keyframe_ = Pose::Identity();  ///< of the last keyframe
   std::vector<std::vector<Eigen::Vector3f>> clouds_;
-  AnchoredTrajectory poses_;
+  loop::AnchoredTrajectory poses_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -5,7 +5,7 @@
 
 #include "lidarena/report/svg.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr double kLeft = 46.0;  // px, space for the tick labels
@@ -129,4 +129,4 @@ std::string cell_chart_svg(const CellChart& chart) {
   return svg + "</svg>\n";
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

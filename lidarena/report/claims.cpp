@@ -9,7 +9,7 @@
 #include "lidarena/report/paper_tables.hpp"
 #include "lidarena/report/table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -190,17 +190,17 @@ class Judge {
   /// Least-squares line of the algorithm's own memory over time; empty if it was not measured.
   static std::optional<Line> memory_line(const ResultRow& row) {
     if (row.status != "ok" || !fs::exists(row.folder / "resources.csv")) return std::nullopt;
-    const auto rows = read_resources(row.folder / "resources.csv");
+    const auto rows = dataset::read_resources(row.folder / "resources.csv");
     if (rows.size() < 3) return std::nullopt;
     double t = 0.0;
     double m = 0.0;
-    for (const ResourceRow& r : rows) t += r.t_sensor_s, m += own_memory_mb(r);
+    for (const dataset::ResourceRow& r : rows) t += r.t_sensor_s, m += own_memory_mb(r);
     t /= static_cast<double>(rows.size());
     m /= static_cast<double>(rows.size());
     double tt = 0.0;
     double tm = 0.0;
     double mm = 0.0;
-    for (const ResourceRow& r : rows) {
+    for (const dataset::ResourceRow& r : rows) {
       const double dt = r.t_sensor_s - t;
       const double dm = own_memory_mb(r) - m;
       tt += dt * dt;
@@ -330,4 +330,4 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
           "that doubles its capacity when it is full grows in steps"))};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 
 #include "lidarena/report/study_cells.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A finding of the paper, checked with our own runs.
 struct Claim {
@@ -21,4 +21,4 @@ struct Claim {
 /// The paper's findings, checked with the runs of one preset.
 std::vector<Claim> paper_claims(const Results& results, const std::string& preset);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

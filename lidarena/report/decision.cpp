@@ -8,7 +8,7 @@
 
 #include "lidarena/report/study_cells.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr double kAlike = 1.1;  // ratio below which two map errors count as equal
@@ -177,4 +177,4 @@ ReportSection decision_section(const Results& results) {
   return section;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -8,7 +8,7 @@
 #include "lidarena/report/page.hpp"
 #include "lidarena/report/result_table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A combination of sensor and algorithm in one world, with medians over flights and seeds.
 struct Candidate {
@@ -33,4 +33,4 @@ std::vector<Candidate> candidates(const Results& results, const std::string& wor
 /// "Which LiDAR, which SLAM": for each world a recommendation, with the figures behind it.
 ReportSection decision_section(const Results& results);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

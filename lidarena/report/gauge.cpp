@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace lidarena {
+namespace lidarena::report {
 
 std::optional<Pose> truth_from_estimate(const Json& metrics) {
   for (const std::string gauge : {"se3", "first_pose"}) {
@@ -16,4 +16,4 @@ std::optional<Pose> truth_from_estimate(const Json& metrics) {
   return std::nullopt;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

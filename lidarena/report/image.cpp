@@ -10,7 +10,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr std::size_t kPaletteColors = 256;
@@ -92,4 +92,4 @@ Rgb distance_color(double distance_m) {
   return color;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::report {
 
 using Rgb = std::array<std::uint8_t, 3>;
 
@@ -36,4 +36,4 @@ std::string base64(std::string_view bytes);
 /// lightness, so that it is readable in gray print and with color blindness), red beyond.
 Rgb distance_color(double distance_m);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -19,7 +19,7 @@
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/report/web_bundle.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -249,4 +249,4 @@ std::string html_page(const Results& results, const std::vector<ReportSection>& 
       bundled ? "" : without_bundle(), LIDARENA_VERSION, escaped(made_on(results)), scripts);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -11,7 +11,7 @@
 #include "lidarena/report/result_table.hpp"
 #include "lidarena/report/table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A part of the page: a heading, text and tables.
 struct ReportSection {
@@ -34,4 +34,4 @@ std::string html_page(const Results& results, const std::vector<ReportSection>& 
                       const std::vector<WorldPictures>& pictures, const Json& data,
                       const Parallel& parallel, LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

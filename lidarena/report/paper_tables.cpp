@@ -7,7 +7,7 @@
 #include <array>
 #include <map>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 /// Columns of the paper's tables 2, 4 and 5.
@@ -184,4 +184,4 @@ std::vector<ReportTable> paper_tables(const Results& results, const std::string&
   return tables;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

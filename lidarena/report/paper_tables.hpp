@@ -8,7 +8,7 @@
 #include "lidarena/report/study_cells.hpp"
 #include "lidarena/report/table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// Figures of F. Vultaggio, F. d'Apolito, C. Sulzbachner, P. Fanta-Jende, "Simulation of low-cost
 /// MEMS-LiDAR and analysis of its effect on the performances of state-of-the-art SLAMs", 2023.
@@ -32,4 +32,4 @@ double drift_increase(double cave, double house);
 /// any. Worlds that are not in the paper get tables of the same form.
 std::vector<ReportTable> paper_tables(const Results& results, const std::string& preset);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <set>
 
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/report/gauge.hpp"
 #include "lidarena/report/scene_files.hpp"
@@ -16,7 +16,7 @@
 #include "lidarena/report/top_view.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -36,10 +36,10 @@ std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Traje
 }
 
 Picture map_picture(const ResultRow& row) {
-  const auto truth = load_truth(row.folder / row.manifest.value("dataset", ""));
-  const Trajectory estimate = read_tum(row.folder / "trajectory.tum");
-  Cloud map;
-  if (fs::exists(row.folder / "scored.ply")) map = read_cloud(row.folder / "scored.ply");
+  const auto truth = dataset::load_truth(row.folder / row.manifest.value("dataset", ""));
+  const Trajectory estimate = dataset::read_tum(row.folder / "trajectory.tum");
+  dataset::Cloud map;
+  if (fs::exists(row.folder / "scored.ply")) map = dataset::read_cloud(row.folder / "scored.ply");
   TopView view;
   view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, reading_of(row));
   view.map = &map;
@@ -61,7 +61,7 @@ std::vector<Picture> map_pictures(const Results& results, const std::string& wor
 /// The true path of a dataset; empty if it is not known.
 std::vector<Eigen::Vector3d> positions_of(const fs::path& dataset) {
   std::vector<Eigen::Vector3d> positions;
-  const auto truth = load_truth(dataset);
+  const auto truth = dataset::load_truth(dataset);
   if (!truth) return positions;
   for (const StampedPose& p : truth->poses()) {
     positions.push_back(p.world_from_body.translation());
@@ -69,7 +69,7 @@ std::vector<Eigen::Vector3d> positions_of(const fs::path& dataset) {
   return positions;
 }
 
-Picture place_picture(const std::string& id, const std::string& title, const Cloud& cloud,
+Picture place_picture(const std::string& id, const std::string& title, const dataset::Cloud& cloud,
                       std::vector<Eigen::Vector3d> path = {}) {
   TopView view;
   view.title = title;
@@ -86,9 +86,9 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
   });
   if (first == results.rows.end()) return pictures;
   const fs::path dataset = first->folder / first->manifest.value("dataset", "");
-  if (const auto mesh = find_world_mesh(dataset)) {
-    Cloud surface;
-    surface.points = points_on(load_mesh(*mesh), kPointsOfMesh);
+  if (const auto mesh = dataset::find_world_mesh(dataset)) {
+    dataset::Cloud surface;
+    surface.points = points_on(world::load_mesh(*mesh), kPointsOfMesh);
     pictures.push_back(place_picture("world-" + world, world + ", with the flight path", surface,
                                      positions_of(dataset)));
   }
@@ -106,7 +106,7 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
       const fs::path file = dataset / (row.sensor + scan.file);
       if (!fs::exists(file)) continue;
       pictures.push_back(place_picture(fmt::format("{}-{}-{}", scan.id, world, row.sensor),
-                                       row.sensor + ": " + scan.title, read_cloud(file)));
+                                       row.sensor + ": " + scan.title, dataset::read_cloud(file)));
     }
   }
   return pictures;
@@ -134,4 +134,4 @@ std::vector<WorldPictures> draw_pictures(const Results& results) {
   return pictures;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

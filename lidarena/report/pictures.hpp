@@ -6,7 +6,7 @@
 
 #include "lidarena/report/result_table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// One SVG element, which is shown in the page and also written as a file.
 struct Picture {
@@ -27,4 +27,4 @@ std::vector<const ResultRow*> shown_rows(const Results& results, const std::stri
 /// The pictures of every world, as far as the folders still hold their files.
 std::vector<WorldPictures> draw_pictures(const Results& results);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

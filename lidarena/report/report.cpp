@@ -12,7 +12,7 @@
 #include "lidarena/report/table.hpp"
 #include "lidarena/report/web_bundle.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 /// Writes every table as CSV, Markdown, LaTeX and JSON.
@@ -20,10 +20,10 @@ void write_tables(const std::vector<ReportSection>& sections, const std::filesys
   std::filesystem::create_directories(folder);
   for (const ReportSection& section : sections) {
     for (const ReportTable& table : section.tables) {
-      write_text_file(folder / (table.id + ".csv"), table_csv(table));
-      write_text_file(folder / (table.id + ".md"), table_markdown(table));
-      write_text_file(folder / (table.id + ".tex"), table_latex(table));
-      write_json(folder / (table.id + ".json"), table_json(table));
+      dataset::write_text_file(folder / (table.id + ".csv"), table_csv(table));
+      dataset::write_text_file(folder / (table.id + ".md"), table_markdown(table));
+      dataset::write_text_file(folder / (table.id + ".tex"), table_latex(table));
+      dataset::write_json(folder / (table.id + ".json"), table_json(table));
     }
   }
 }
@@ -34,7 +34,7 @@ void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesys
   for (const WorldPictures& world : worlds) {
     for (const auto& pictures : {world.place, world.maps}) {
       for (const Picture& picture : pictures) {
-        write_text_file(folder / (picture.id + ".svg"), picture.svg);
+        dataset::write_text_file(folder / (picture.id + ".svg"), picture.svg);
       }
     }
   }
@@ -55,18 +55,19 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   const std::vector<ReportSection> sections = report_sections(results);
   const std::vector<WorldPictures> pictures = draw_pictures(results);
   const Json data = report_data(results);
-  write_text_file(files.csv, results_csv(results));
+  dataset::write_text_file(files.csv, results_csv(results));
   write_tables(sections, folder / "tables");
-  write_json(folder / "report.json", data);
+  dataset::write_json(folder / "report.json", data);
   if (!draw_svg_figures(folder / "report.json", folder / "figures")) {
     log.info(web_bundle("figures.cjs").empty()
                  ? "figures are left out: this build has no viewer"
                  : "SVG files of the figures are left out: they need Node.js; the page has them");
   }
   write_pictures(pictures, folder / "figures");
-  write_text_file(files.page, html_page(results, sections, pictures, data, Parallel(), log));
+  dataset::write_text_file(files.page,
+                           html_page(results, sections, pictures, data, Parallel(), log));
   files.text_table = results_text(results);
   return files;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/log.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 struct ReportFiles {
   std::filesystem::path page;  ///< report.html, one self-contained file
@@ -22,4 +22,4 @@ struct ReportFiles {
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
                          const std::filesystem::path& out, LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -54,7 +54,7 @@ Json error_curve(const Json& metrics) {
 
 Json memory_curve(const fs::path& folder) {
   if (!fs::exists(folder / "resources.csv")) return nullptr;
-  const std::vector<ResourceRow> rows = read_resources(folder / "resources.csv");
+  const std::vector<dataset::ResourceRow> rows = dataset::read_resources(folder / "resources.csv");
   if (rows.empty()) return nullptr;
   Json curve{{"t_s", Json::array()},
              {"map_mb", Json::array()},
@@ -106,4 +106,4 @@ Json report_data(const Results& results) {
   return data;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -4,10 +4,10 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/report/result_table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// The data of the charts; viewer/src/report/data.ts describes its format. Curves are thinned to at
 /// most 400 values.
 Json report_data(const Results& results);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

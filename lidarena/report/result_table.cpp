@@ -11,7 +11,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/run_files.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -48,11 +48,11 @@ std::optional<MapFigures> map_figures(const Json& metrics, const std::string& ma
 }
 
 void summarize_resources(const fs::path& folder, ResultRow& row) {
-  const std::vector<ResourceRow> rows = read_resources(folder / "resources.csv");
+  const std::vector<dataset::ResourceRow> rows = dataset::read_resources(folder / "resources.csv");
   std::vector<double> latency_ms;
   double process_mb = 0.0;
   double own_mb = 0.0;
-  for (const ResourceRow& r : rows) {
+  for (const dataset::ResourceRow& r : rows) {
     latency_ms.push_back(1e3 * r.latency_s);
     process_mb = std::max(process_mb, static_cast<double>(r.rss_bytes) / 1e6);
     own_mb = std::max(own_mb, own_memory_mb(r));
@@ -69,7 +69,7 @@ void summarize_resources(const fs::path& folder, ResultRow& row) {
 void read_dataset_manifest(ResultRow& row) {
   const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
   if (!row.manifest.contains("dataset") || !fs::exists(file)) return;
-  const Json manifest = read_json(file);
+  const Json manifest = dataset::read_json(file);
   row.simulation = manifest.value("simulation", Json());
   const Json::json_pointer lidars("/rig/lidars");
   if (!manifest.contains(lidars)) return;
@@ -84,7 +84,7 @@ void read_row(ResultRow& row) {
     row.reason = "the run has left no files";
     return;
   }
-  row.manifest = read_json(row.folder / "manifest.json");
+  row.manifest = dataset::read_json(row.folder / "manifest.json");
   row.algorithm = row.manifest.value("algorithm", row.algorithm);
   row.preset = row.manifest.value("preset", row.preset);
   row.sensor = row.manifest.value("sensor", row.sensor);
@@ -103,7 +103,7 @@ void read_row(ResultRow& row) {
     row.reason = "no metrics.json: run `lidarena evaluate`";
     return;
   }
-  row.metrics = read_json(row.folder / "metrics.json");
+  row.metrics = dataset::read_json(row.folder / "metrics.json");
   row.status = row.metrics.value("status", "ok");
   row.reason = row.metrics.value("reason", "");
   row.rpe_cm_per_m = number(row.metrics, "/final/rpe/1m_at_poses/translation/rmse_m", 100.0);
@@ -137,14 +137,14 @@ std::string reading_of(const std::string& preset, const std::string& mode) {
   return mode.empty() ? preset : preset + "-" + mode;
 }
 
-double own_memory_mb(const ResourceRow& row) {
+double own_memory_mb(const dataset::ResourceRow& row) {
   return static_cast<double>(row.map_bytes + row.scan_buffer_bytes + row.backlog_bytes) / 1e6;
 }
 
 Results read_results(const fs::path& folder) {
   Results results;
   if (fs::exists(folder / "study.json")) {
-    const Json study = read_json(folder / "study.json");
+    const Json study = dataset::read_json(folder / "study.json");
     results.title = study.at("spec").value("title", "Study");
     for (const Json& run : study.at("runs")) {
       ResultRow row;
@@ -161,7 +161,7 @@ Results read_results(const fs::path& folder) {
       results.rows.push_back(std::move(row));
     }
   } else if (fs::exists(folder / "manifest.json") &&
-             read_json(folder / "manifest.json").value("kind", "") == "run") {
+             dataset::read_json(folder / "manifest.json").value("kind", "") == "run") {
     ResultRow row;
     row.name = folder.filename().string();
     row.folder = folder;
@@ -250,4 +250,4 @@ std::string results_text(const Results& results) {
   return text;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

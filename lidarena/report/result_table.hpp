@@ -9,7 +9,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/run_files.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// Figures of one map, aligned by SE(3) over all positions where that is determined, else by the
 /// first pose.
@@ -49,7 +49,7 @@ struct Results {
 };
 
 /// Map, scan buffer and backlog together, MB.
-double own_memory_mb(const ResourceRow& row);
+double own_memory_mb(const dataset::ResourceRow& row);
 
 /// Reads a study's folder (study.json names the runs; a run without files becomes a row, too) or
 /// one RUN folder. Throws InputError if it is neither.
@@ -63,4 +63,4 @@ std::string results_csv(const Results& results);
 /// The main figures, aligned for a terminal.
 std::string results_text(const Results& results);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

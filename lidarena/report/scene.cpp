@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr std::size_t kSampled = 200'000;  // points of a cloud from which its box is computed
@@ -69,4 +69,4 @@ std::optional<std::pair<double, double>> time_span(const Scene& scene) {
   return std::pair{first, last};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -11,7 +11,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A distance above which a point counts as an outlier, m: the paper's threshold.
 inline constexpr double kOutlier_m = 0.20;
@@ -40,7 +40,7 @@ struct ScenePath {
 
 struct SceneMesh {
   std::string name;
-  TriangleMesh mesh;  ///< not relative to Scene::origin
+  world::TriangleMesh mesh;  ///< not relative to Scene::origin
 };
 
 /// What the 3D view shows: everything in one frame, meters, z up.
@@ -63,4 +63,4 @@ Eigen::AlignedBox3d bounds_to_show(const Scene& scene);
 /// First and last instant of paths and timed points, s since the time origin.
 std::optional<std::pair<double, double>> time_span(const Scene& scene);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -10,7 +10,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr std::size_t kChunkPoints = 65'536;
@@ -202,7 +202,7 @@ class Packer {
       const Eigen::Vector3d position = vertex - scene_.origin;
       for (const double x : position) append(bytes, static_cast<float>(x));
     }
-    for (const Triangle& triangle : mesh.mesh.triangles) {
+    for (const world::Triangle& triangle : mesh.mesh.triangles) {
       for (const std::uint32_t corner : triangle) append(bytes, corner);
     }
     return {{"name", mesh.name},
@@ -265,4 +265,4 @@ PackedScene pack(const Scene& scene, const Parallel& parallel) {
   return Packer(scene, parallel).packed();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

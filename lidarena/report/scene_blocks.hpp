@@ -8,7 +8,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/report/scene.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A scene packed for a browser; viewer/src/view/scene.ts describes the header.
 struct PackedScene {
@@ -23,4 +23,4 @@ struct PackedScene {
 /// not finite are left out. The same scene gives the same bytes on any number of threads.
 PackedScene pack(const Scene& scene, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

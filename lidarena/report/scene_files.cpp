@@ -17,7 +17,7 @@
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,14 +118,14 @@ bool has_path(const Scene& scene, const std::string& name) {
 /// Adds mesh and true path of a dataset, only once if several runs share it. Returns the truth.
 std::optional<Trajectory> add_truth(Scene& scene, const fs::path& dataset, LogSink& log) {
   const std::string name = dataset.lexically_normal().filename().string();
-  const auto truth = load_truth(dataset);
+  const auto truth = dataset::load_truth(dataset);
   if (truth && !has_path(scene, "truth of " + name)) {
     add_path(scene, "truth of " + name, PathRole::kTruth, *truth);
   }
-  const auto mesh = find_world_mesh(dataset);
+  const auto mesh = dataset::find_world_mesh(dataset);
   if (mesh && !has_mesh(scene, "mesh of " + name)) {
     try {
-      scene.meshes.push_back({"mesh of " + name, load_mesh(*mesh)});
+      scene.meshes.push_back({"mesh of " + name, world::load_mesh(*mesh)});
     } catch (const InputError& error) {
       log.warn(std::string("the mesh is left out: ") + error.what());
     }
@@ -150,14 +150,14 @@ Trajectory moved(const Trajectory& trajectory, const Pose& by) {
   return Trajectory(std::move(poses));
 }
 
-SceneCloud cloud_of(Scene& scene, const PointTable& table, const Pose& scene_from_cloud,
+SceneCloud cloud_of(Scene& scene, const dataset::PointTable& table, const Pose& scene_from_cloud,
                     std::size_t limit) {
-  const Column& x = table.require("x");
-  const Column& y = table.require("y");
-  const Column& z = table.require("z");
-  const Column* distance = table.find({"distance", "scalar_distance"});
-  const Column* intensity = table.find({"intensity", "scalar_intensity", "reflectivity"});
-  const Column* time = table.find({"time", "scalar_time", "timestamp", "gps_time"});
+  const dataset::Column& x = table.require("x");
+  const dataset::Column& y = table.require("y");
+  const dataset::Column& z = table.require("z");
+  const dataset::Column* distance = table.find({"distance", "scalar_distance"});
+  const dataset::Column* intensity = table.find({"intensity", "scalar_intensity", "reflectivity"});
+  const dataset::Column* time = table.find({"time", "scalar_time", "timestamp", "gps_time"});
   const auto at = [&](std::size_t i) -> Eigen::Vector3d {
     return scene_from_cloud *
            Eigen::Vector3d(table.number(x, i), table.number(y, i), table.number(z, i));
@@ -172,7 +172,7 @@ SceneCloud cloud_of(Scene& scene, const PointTable& table, const Pose& scene_fro
   for (std::size_t i = 0; i < table.size; ++i) {
     if (share < 1.0 && random.uniform(i) >= share) continue;
     cloud.points.push_back((at(i) - scene.origin).cast<float>());
-    const auto add = [&](std::vector<float>& values, const Column* from, double zero) {
+    const auto add = [&](std::vector<float>& values, const dataset::Column* from, double zero) {
       if (from != nullptr) values.push_back(static_cast<float>(table.number(*from, i) - zero));
     };
     add(cloud.distance, distance, 0.0);
@@ -233,16 +233,18 @@ std::string run_label(const fs::path& folder, const Json& manifest) {
 }  // namespace
 
 void add_cloud_file(Scene& scene, const fs::path& file, const SceneOptions& options) {
-  SceneCloud cloud = cloud_of(scene, read_point_table(file), Pose::Identity(), options.max_points);
+  SceneCloud cloud =
+      cloud_of(scene, dataset::read_point_table(file), Pose::Identity(), options.max_points);
   cloud.name = file.filename().string();
   scene.clouds.push_back(std::move(cloud));
 }
 
 void add_path_file(Scene& scene, const fs::path& file) {
-  add_path(scene, file.filename().string(), PathRole::kEstimate, read_trajectory(file));
+  add_path(scene, file.filename().string(), PathRole::kEstimate, dataset::read_trajectory(file));
 }
 
-void add_dataset(Scene& scene, Dataset dataset, const SceneOptions& options, LogSink& log) {
+void add_dataset(Scene& scene, dataset::Dataset dataset, const SceneOptions& options,
+                 LogSink& log) {
   const auto truth = add_truth(scene, dataset.path, log);
   std::map<std::string, ScanCollector> collectors;
   Time longest_scan{0};
@@ -270,9 +272,9 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
     throw InputError(folder.string(), "is not a finished run: it has no manifest.json",
                      "run the algorithm again");
   }
-  const Json manifest = read_json(manifest_file);
+  const Json manifest = dataset::read_json(manifest_file);
   const Json metrics =
-      fs::exists(folder / "metrics.json") ? read_json(folder / "metrics.json") : Json();
+      fs::exists(folder / "metrics.json") ? dataset::read_json(folder / "metrics.json") : Json();
   const std::string label = run_label(folder, manifest);
   const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), log);
   const auto gauge = truth_from_estimate(metrics);
@@ -280,13 +282,15 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
   const Pose scene_from_map = gauge.value_or(Pose::Identity());
 
   const Trajectory estimate =
-      moved(read_tum(folder / "trajectory.tum", EmptyTrajectory::kAllowed), scene_from_map);
+      moved(dataset::read_tum(folder / "trajectory.tum", dataset::EmptyTrajectory::kAllowed),
+            scene_from_map);
   add_path(scene, label, PathRole::kEstimate, estimate);
   if (truth && !estimate.empty()) {
     scene.paths.back().error_m = errors_against(scene.paths.back().trajectory, *truth);
   }
   const auto add_map = [&](const char* file, const std::string& what, const Pose& placed) {
-    SceneCloud cloud = cloud_of(scene, read_point_table(folder / file), placed, options.max_points);
+    SceneCloud cloud =
+        cloud_of(scene, dataset::read_point_table(folder / file), placed, options.max_points);
     cloud.name = label + what;
     cloud.visible = scene.clouds.empty();
     scene.clouds.push_back(std::move(cloud));
@@ -306,10 +310,10 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
 void measure_distances(Scene& scene, const Parallel& parallel) {
   const bool needed = std::any_of(scene.clouds.begin(), scene.clouds.end(),
                                   [](const SceneCloud& c) { return c.distance.empty(); });
-  TriangleMesh all;
+  world::TriangleMesh all;
   for (const SceneMesh& mesh : scene.meshes) all.append(mesh.mesh);
   if (!needed || all.empty() || scene.frame == "sensor") return;
-  const World world(std::move(all));
+  const world::World world(std::move(all));
   for (SceneCloud& cloud : scene.clouds) {
     if (!cloud.distance.empty()) continue;
     cloud.distance.resize(cloud.points.size());
@@ -319,14 +323,14 @@ void measure_distances(Scene& scene, const Parallel& parallel) {
       for (std::size_t i = begin; i < end; ++i) {
         points.push_back(cloud.points[i].cast<double>() + scene.origin);
       }
-      std::vector<ClosestPoint> nearest(points.size());
+      std::vector<world::ClosestPoint> nearest(points.size());
       world.closest_points(points, kReach_m, nearest, Parallel(1));
       for (std::size_t i = begin; i < end; ++i) {
-        const ClosestPoint& there = nearest[i - begin];
+        const world::ClosestPoint& there = nearest[i - begin];
         cloud.distance[i] = there.valid() ? static_cast<float>(there.distance) : kNone;
       }
     });
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

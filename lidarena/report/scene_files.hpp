@@ -9,7 +9,7 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/report/scene.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// Which maps of a RUN folder are shown.
 enum class MapChoice {
@@ -18,12 +18,11 @@ enum class MapChoice {
   kBoth,
   kScored  ///< the sample of all returns that evaluation kept, with its distances
 };
-template <>
-struct EnumNames<MapChoice> {
-  static constexpr std::array names{
-      std::pair{"reprojected", MapChoice::kReprojected}, std::pair{"own", MapChoice::kOwn},
-      std::pair{"both", MapChoice::kBoth}, std::pair{"scored", MapChoice::kScored}};
-};
+constexpr auto enum_names(MapChoice) {
+  return std::array{std::pair{"reprojected", MapChoice::kReprojected},
+                    std::pair{"own", MapChoice::kOwn}, std::pair{"both", MapChoice::kBoth},
+                    std::pair{"scored", MapChoice::kScored}};
+}
 
 struct SceneOptions {
   std::size_t max_points = 5'000'000;  ///< per cloud; a larger one is thinned at random
@@ -40,7 +39,7 @@ void add_path_file(Scene& scene, const std::filesystem::path& file);
 /// Adds the points of all LiDARs of a dataset, each transformed to the world frame by the true pose
 /// at its own instant, the true path and the mesh. Without a truth, points stay in the sensor's
 /// frame and one scan is shown at a time. Throws InputError.
-void add_dataset(Scene& scene, Dataset dataset, const SceneOptions& options, LogSink& log);
+void add_dataset(Scene& scene, dataset::Dataset dataset, const SceneOptions& options, LogSink& log);
 
 /// Adds the maps and the path of a RUN folder, aligned to the truth by the alignment in its
 /// metrics.json if there is one, and the truth and the mesh of its dataset, if found. Throws
@@ -52,4 +51,4 @@ void add_run(Scene& scene, const std::filesystem::path& folder, const SceneOptio
 /// a mesh. Points farther than 2 m from the meshes get NaN.
 void measure_distances(Scene& scene, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

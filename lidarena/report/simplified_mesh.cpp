@@ -5,13 +5,13 @@
 #include <cmath>
 #include <map>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr double kFirstCells = 512.0;  // cells along the mesh's diagonal in the first try
 
-TriangleMesh clustered(const TriangleMesh& mesh, double cell) {
-  TriangleMesh coarse;
+world::TriangleMesh clustered(const world::TriangleMesh& mesh, double cell) {
+  world::TriangleMesh coarse;
   std::map<std::array<long, 3>, std::uint32_t> index_of;
   std::vector<std::uint32_t> moved;
   moved.reserve(mesh.vertices.size());
@@ -23,8 +23,8 @@ TriangleMesh clustered(const TriangleMesh& mesh, double cell) {
     if (is_new) coarse.vertices.push_back(v);
     moved.push_back(found->second);
   }
-  for (const Triangle& t : mesh.triangles) {
-    const Triangle corners{moved[t[0]], moved[t[1]], moved[t[2]]};
+  for (const world::Triangle& t : mesh.triangles) {
+    const world::Triangle corners{moved[t[0]], moved[t[1]], moved[t[2]]};
     if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0]) continue;
     coarse.triangles.push_back(corners);
   }
@@ -33,14 +33,14 @@ TriangleMesh clustered(const TriangleMesh& mesh, double cell) {
 
 }  // namespace
 
-TriangleMesh simplified(const TriangleMesh& mesh, std::size_t max_triangles) {
-  TriangleMesh coarse = mesh;
+world::TriangleMesh simplified(const world::TriangleMesh& mesh, std::size_t max_triangles) {
+  world::TriangleMesh coarse = mesh;
   double cell = mesh.triangles.empty() ? 1.0 : mesh.bounds().diagonal().norm() / kFirstCells;
   for (; coarse.triangles.size() > max_triangles; cell *= 2.0) coarse = clustered(mesh, cell);
   return coarse;
 }
 
-std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t count) {
+std::vector<Eigen::Vector3f> points_on(const world::TriangleMesh& mesh, std::size_t count) {
   // Within triangles by the sequence of M. Roberts (2018), "The unreasonable effectiveness of
   // quasirandom sequences", folded into the triangle.
   constexpr double kPlastic = 1.32471795724474602596;
@@ -49,7 +49,7 @@ std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t cou
   double area = 0.0, next = 0.5 * step;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     area += 0.5 * mesh.cross(t).norm();
-    const Triangle& corners = mesh.triangles[t];
+    const world::Triangle& corners = mesh.triangles[t];
     const Eigen::Vector3d& a = mesh.vertices[corners[0]];
     for (; next < area && points.size() < count; next += step) {
       const auto k = static_cast<double>(points.size() + 1);
@@ -66,4 +66,4 @@ std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t cou
   return points;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

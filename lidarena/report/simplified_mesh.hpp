@@ -3,14 +3,14 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A coarser mesh for pictures: vertices in the same cell of a grid are merged, with cells doubled
 /// until at most `max_triangles` are left (J. Rossignac, P. Borrel, "Multi-resolution 3D
 /// approximations for rendering complex scenes", 1993). A mesh that is small enough is unchanged.
-TriangleMesh simplified(const TriangleMesh& mesh, std::size_t max_triangles);
+world::TriangleMesh simplified(const world::TriangleMesh& mesh, std::size_t max_triangles);
 
 /// `count` points on the surface, evenly distributed by area; the same ones in each call.
-std::vector<Eigen::Vector3f> points_on(const TriangleMesh& mesh, std::size_t count);
+std::vector<Eigen::Vector3f> points_on(const world::TriangleMesh& mesh, std::size_t count);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

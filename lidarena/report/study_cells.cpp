@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <map>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 std::vector<std::string> distinct(const std::vector<const ResultRow*>& rows,
@@ -112,4 +112,4 @@ std::string paper_algorithm(const std::string& algorithm) {
   return found == names.end() ? "" : found->second;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -8,7 +8,7 @@
 
 #include "lidarena/report/result_table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// If more of a map's points than this lie beyond 20 cm, tracking counts as lost.
 constexpr double kLostMap_percent = 50.0;
@@ -54,4 +54,4 @@ std::string paper_world(const std::string& world);
 std::string paper_sensor(const std::string& sensor);
 std::string paper_algorithm(const std::string& algorithm);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

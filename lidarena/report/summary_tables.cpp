@@ -5,7 +5,7 @@
 
 #include "lidarena/report/study_cells.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 /// The smallest figure with its algorithm: "fast_lio2 (improved): 0.84"; empty if there is none.
@@ -147,4 +147,4 @@ ReportTable claims_table(const std::vector<Claim>& claims, const std::string& pr
   return table;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 #include "lidarena/report/result_table.hpp"
 #include "lidarena/report/table.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// The best algorithm for each world and sensor by drift, and by outliers of the map.
 ReportTable winners_table(const Results& results);
@@ -20,4 +20,4 @@ ReportTable commands_table(const Results& results);
 /// Claims with their figures and "holds", "does not hold", "cannot be judged" or "not measured".
 ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

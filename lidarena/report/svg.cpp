@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::report {
 
 std::string escaped(std::string_view text) {
   std::string out;
@@ -46,4 +46,4 @@ std::vector<double> nice_ticks(double low, double high, int count) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

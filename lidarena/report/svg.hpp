@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// `text` escaped for HTML and SVG.
 std::string escaped(std::string_view text);
@@ -14,4 +14,4 @@ std::string escaped(std::string_view text);
 /// steps.
 std::vector<double> nice_ticks(double low, double high, int count);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

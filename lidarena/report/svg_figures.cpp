@@ -12,7 +12,7 @@
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/report/web_bundle.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 /// Calls `node SCRIPT DATA FOLDER` and discards its output; true if its exit code is 0.
@@ -40,10 +40,10 @@ bool draw_svg_figures(const std::filesystem::path& data, const std::filesystem::
   if (bundled.empty()) return false;
   std::filesystem::create_directories(folder);
   const std::filesystem::path script = folder / "figures.cjs";
-  write_text_file(script, bundled);
+  dataset::write_text_file(script, bundled);
   const bool drawn = call_node(script.string(), data.string(), folder.string());
   std::filesystem::remove(script);
   return drawn;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

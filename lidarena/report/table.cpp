@@ -8,7 +8,7 @@
 
 #include "lidarena/report/svg.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 std::string shown(const TableCell& cell, const char* dash) {
@@ -214,4 +214,4 @@ Json table_json(const ReportTable& table) {
           {"rows", rows}};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/config_json.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// A cell of a table: a figure or a text.
 struct TableCell {
@@ -46,4 +46,4 @@ std::string table_markdown(const ReportTable& table);
 std::string table_latex(const ReportTable& table);
 Json table_json(const ReportTable& table);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

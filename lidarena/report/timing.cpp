@@ -7,7 +7,7 @@
 
 #include "lidarena/report/study_cells.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 struct Kind {
@@ -64,4 +64,4 @@ std::vector<ReportTable> timing_tables(const Results& results) {
   return tables;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -10,7 +10,7 @@
 #include "lidarena/report/image.hpp"
 #include "lidarena/report/svg.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr int kMaxHeight = 900;
@@ -76,7 +76,7 @@ View fit(const Eigen::AlignedBox2d& box, int width) {
 
 /// Counts the points and averages their distances per pixel; opacity grows with the log of the
 /// count.
-Image xray(const Cloud& map, const View& view) {
+Image xray(const dataset::Cloud& map, const View& view) {
   const auto cells = static_cast<std::size_t>(view.width) * static_cast<std::size_t>(view.height);
   std::vector<float> count(cells, 0.0F);
   std::vector<float> sum(cells, 0.0F);
@@ -180,4 +180,4 @@ std::string top_view_svg(const TopView& view) {
   return svg + scale_bar(pixels) + "</g></svg>";
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -10,7 +10,7 @@
 #include "lidarena/report/top_view.hpp"
 #include "lidarena/report/web_bundle.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 constexpr std::size_t kPicturePoints = 400'000;
@@ -44,7 +44,7 @@ std::string tail() {
                      escaped(web_bundle("licenses.txt")));
 }
 
-void append_sampled(Cloud& picture, const Scene& scene, const SceneCloud& cloud,
+void append_sampled(dataset::Cloud& picture, const Scene& scene, const SceneCloud& cloud,
                     std::size_t stride) {
   for (std::size_t i = 0; i < cloud.points.size(); i += stride) {
     picture.points.push_back(cloud.points[i] + scene.origin.cast<float>());
@@ -63,7 +63,7 @@ std::string script_json(const Json& json) {
 }
 
 std::string scene_picture(const Scene& scene) {
-  Cloud map;
+  dataset::Cloud map;
   for (const SceneCloud& cloud : scene.clouds) {
     if (cloud.visible) append_sampled(map, scene, cloud, cloud.points.size() / kPicturePoints + 1);
   }
@@ -91,7 +91,7 @@ std::string scene_picture(const Scene& scene) {
 void write_view_page(const std::filesystem::path& file, const PackedScene& scene,
                      const std::string& picture) {
   need_viewer();
-  PartFile out(file);
+  dataset::PartFile out(file);
   out.write(head(scene, picture, "page"));
   for (std::size_t i = 0; i < scene.blocks.size(); ++i) {
     out.write(fmt::format("<script type='text/plain' id='block-{}'>", i));
@@ -107,4 +107,4 @@ std::string served_view_page(const PackedScene& scene, const std::string& pictur
   return head(scene, picture, "server") + tail();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -7,7 +7,7 @@
 #include "lidarena/report/scene.hpp"
 #include "lidarena/report/scene_blocks.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 
 /// Whether this build contains the interactive view.
 bool has_viewer();
@@ -27,4 +27,4 @@ std::string served_view_page(const PackedScene& scene, const std::string& pictur
 /// The text of `json`, escaped so that it can be embedded in a <script> element.
 std::string script_json(const Json& json);
 
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -5,17 +5,17 @@
 #include "lidarena/scenes/cave_graph.hpp"
 #include "lidarena/scenes/surface_nets.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
-WorldModel make_cave(const CaveConfig& config, std::uint64_t seed) {
+world::WorldModel make_cave(const CaveConfig& config, std::uint64_t seed) {
   const CaveGraph graph = make_cave_graph(config, seed);
   const CaveField rock(graph, config, seed);
   SparseField samples = rock.sample();
   make_well_composed(samples);
-  WorldModel model{"cave", surface_net(samples), {cave_route(graph)}};
+  world::WorldModel model{"cave", surface_net(samples), {cave_route(graph)}};
   project_onto_surface(model.mesh, rock, config.resolution_m);
-  model.mesh.paint(materials::kRock);
+  model.mesh.paint(world::materials::kRock);
   return model;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -6,7 +6,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/world/world_model.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// A closed maze of winding tunnels, arranged as a ladder: each loop is one cell between two rungs.
 struct CaveConfig {
@@ -54,6 +54,6 @@ struct CaveConfig {
 /// route along the centerlines of all tunnels; its first and last points are equal. The same
 /// (config, seed) give bit-identical results. Throws InputError when `width_min_m` and
 /// `width_max_m` differ by too little for the roughness, or are in the wrong order.
-WorldModel make_cave(const CaveConfig& config, std::uint64_t seed);
+world::WorldModel make_cave(const CaveConfig& config, std::uint64_t seed);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

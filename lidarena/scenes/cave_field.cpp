@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 constexpr double kBlend = 1.0;        // m, distance over which tunnels are blended at a junction
@@ -132,7 +132,7 @@ SparseField CaveField::sample() const {
   return field;
 }
 
-void project_onto_surface(TriangleMesh& mesh, const CaveField& field, double step) {
+void project_onto_surface(world::TriangleMesh& mesh, const CaveField& field, double step) {
   const double h = 0.5 * step;
   for (Eigen::Vector3d& p : mesh.vertices) {
     double value = field(p);
@@ -149,4 +149,4 @@ void project_onto_surface(TriangleMesh& mesh, const CaveField& field, double ste
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

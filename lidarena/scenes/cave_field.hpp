@@ -12,7 +12,7 @@
 #include "lidarena/scenes/gradient_noise.hpp"
 #include "lidarena/scenes/sparse_field.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// Approximate signed distance to the rock surface (m; positive in rock, negative in free space):
 /// the distance to the tunnels, blended smoothly where they meet, plus noise of three scales.
@@ -54,6 +54,6 @@ class CaveField {
 /// Moves the vertices of a surface net onto the field's zero surface by two Newton steps along the
 /// gradient, each at most half a grid step. The vertices then also show the roughness that is finer
 /// than the grid.
-void project_onto_surface(TriangleMesh& mesh, const CaveField& field, double step);
+void project_onto_surface(world::TriangleMesh& mesh, const CaveField& field, double step);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

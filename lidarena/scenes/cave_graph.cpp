@@ -7,7 +7,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
@@ -163,4 +163,4 @@ std::vector<Eigen::Vector3d> cave_route(const CaveGraph& graph) {
   return route;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -8,7 +8,7 @@
 
 #include "lidarena/scenes/cave.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// A tunnel's centerline between two junctions, as a polyline with a radius at each point.
 struct Tunnel {
@@ -37,4 +37,4 @@ CaveGraph make_cave_graph(const CaveConfig& config, std::uint64_t seed);
 /// twice. Points are 1 to 2 m apart; the last equals the first.
 std::vector<Eigen::Vector3d> cave_route(const CaveGraph& graph);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

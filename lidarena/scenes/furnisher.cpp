@@ -6,7 +6,7 @@
 #include <limits>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -219,4 +219,4 @@ Furnisher::Handle Furnisher::at_window(const Opening& window, const Piece& piece
   return fixed(piece, quarter_turn(quarters, foot));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -7,7 +7,7 @@
 #include "lidarena/scenes/furniture.hpp"
 #include "lidarena/scenes/house_furnish.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// The walls of a room: a piece of furniture with its back to the wall kSouth faces +y.
 enum class Side { kSouth, kEast, kNorth, kWest };
@@ -55,4 +55,4 @@ class Furnisher {
 /// Minimum distance (m) between a box and a polyline, to within 2 cm.
 double distance_to_route(const Eigen::AlignedBox3d& box, const std::vector<Eigen::Vector3d>& route);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

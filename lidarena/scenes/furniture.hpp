@@ -9,7 +9,7 @@
 
 /// Meshes of furniture and other objects of a house. Sizes are in meters; each piece has its back
 /// at y = 0, its front towards +y, its center at x = 0, and stands on z = 0 (or hangs from z = 0).
-namespace lidarena::furniture {
+namespace lidarena::scenes::furniture {
 
 /// Settings for building a piece: the resolution of curved parts, and the random number generator
 /// for sizes and shapes.
@@ -23,7 +23,7 @@ struct Craft {
 
 struct Piece {
   std::string kind;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   double top = 0;  ///< height of its table top, on which small objects may stand; 0: none
 };
 
@@ -77,4 +77,4 @@ Piece stairs(Craft& craft, double width, double run, double rise, int steps);
 Piece gallery(Craft& craft, const Eigen::Vector3d& size, double gap);
 Piece column(Craft& craft, double height);
 
-}  // namespace lidarena::furniture
+}  // namespace lidarena::scenes::furniture

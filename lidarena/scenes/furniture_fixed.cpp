@@ -4,7 +4,7 @@
 #include "lidarena/scenes/furniture.hpp"
 #include "lidarena/scenes/mesh_builder.hpp"
 
-namespace lidarena::furniture {
+namespace lidarena::scenes::furniture {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,9 +17,9 @@ constexpr double kRail = 0.95;  // m, height of a handrail
 
 /// A handrail on posts `spacing` meters apart; `a` and `b` are the points on the floor below its
 /// ends.
-TriangleMesh railing(Craft& craft, const Vector3d& a, const Vector3d& b, double spacing) {
+world::TriangleMesh railing(Craft& craft, const Vector3d& a, const Vector3d& b, double spacing) {
   const Vector3d up(0, 0, kRail);
-  TriangleMesh mesh = shape::bar({a + up, b + up}, 0.025, craft.fine(18));
+  world::TriangleMesh mesh = shape::bar({a + up, b + up}, 0.025, craft.fine(18));
   const int posts = static_cast<int>(std::ceil((b - a).norm() / spacing));
   for (int i = 0; i <= posts; ++i) {
     const Vector3d foot = a + (b - a) * i / posts;
@@ -39,7 +39,7 @@ Piece bathtub(Craft& craft) {
            {0.35, 0.5}, {0.32, 0.25}, {0.27, 0.15}, {0.15, 0.12}, {0, 0.12}}) {
     profile.push_back(p);
   }
-  TriangleMesh mesh = moved(scaled(shape::lathe(profile, n), {2.1, 1, 1}), {0, 0.41, 0});
+  world::TriangleMesh mesh = moved(scaled(shape::lathe(profile, n), {2.1, 1, 1}), {0, 0.41, 0});
   mesh.append(
       shape::bar({{0.6, 0.04, 0.56}, {0.6, 0.04, 0.75}, {0.6, 0.12, 0.78}, {0.6, 0.16, 0.74}},
                  0.015, craft.fine(14)));
@@ -47,7 +47,7 @@ Piece bathtub(Craft& craft) {
 }
 
 Piece toilet(Craft& craft) {
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::rounded_box({0.38, 0.17, 0.36}, 0.03, craft.fine(14)), {0, 0.09, 0.42});
   const std::vector<Eigen::Vector2d> profile{{0, 0},       {0.12, 0},    {0.1, 0.15},  {0.17, 0.36},
                                              {0.19, 0.4},  {0.19, 0.44}, {0.13, 0.44}, {0.12, 0.4},
@@ -60,7 +60,7 @@ Piece toilet(Craft& craft) {
 Piece basin(Craft& craft) {
   const std::vector<Eigen::Vector2d> profile{{0, 0.68},     {0.1, 0.7},  {0.22, 0.78}, {0.25, 0.86},
                                              {0.235, 0.86}, {0.2, 0.78}, {0.08, 0.73}, {0, 0.725}};
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(scaled(shape::lathe(profile, craft.fine(52)), {1.15, 0.9, 1}), {0, 0.24, 0});
   mesh.append(
       moved(shape::lathe({{0, 0}, {0.11, 0}, {0.07, 0.3}, {0.08, 0.7}, {0, 0.7}}, craft.fine(32)),
@@ -71,7 +71,7 @@ Piece basin(Craft& craft) {
 }
 
 Piece towel_rail(Craft& craft) {
-  TriangleMesh mesh = shape::bar(
+  world::TriangleMesh mesh = shape::bar(
       {{-0.3, 0, 0.3}, {-0.3, 0.06, 0.3}, {0.3, 0.06, 0.3}, {0.3, 0, 0.3}}, 0.009, craft.fine(12));
   const double phase = craft.random.uniform(0, 2 * kPi);
   mesh.append(shape::grid(craft.fine(40), craft.fine(30), [&](double u, double v) {
@@ -84,7 +84,7 @@ Piece towel_rail(Craft& craft) {
 Piece stairs(Craft& craft, double width, double run, double rise, int steps) {
   constexpr double kTread = 0.045;
   const double half = 0.5 * width;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (int i = 0; i < steps; ++i) {
     const double y = run * (steps - 1 - i) / steps;
     const double z = rise * (i + 1) / steps;
@@ -109,7 +109,7 @@ Piece stairs(Craft& craft, double width, double run, double rise, int steps) {
 Piece gallery(Craft& craft, const Vector3d& size, double gap) {
   constexpr double kSlab = 0.18;
   const double half = 0.5 * size.x();
-  TriangleMesh mesh = box({-half, 0, size.z() - kSlab}, {half, size.y(), size.z()});
+  world::TriangleMesh mesh = box({-half, 0, size.z() - kSlab}, {half, size.y(), size.z()});
   const double y = size.y() - 0.05;
   mesh.append(railing(craft, {-half + gap, y, size.z()}, {half - 0.05, y, size.z()}, 0.14));
   return {"gallery", std::move(mesh)};
@@ -117,17 +117,17 @@ Piece gallery(Craft& craft, const Vector3d& size, double gap) {
 
 Piece column(Craft& craft, double height) {
   const double r = 0.07;
-  TriangleMesh mesh = shape::lathe({{0, 0},
-                                    {1.6 * r, 0},
-                                    {1.6 * r, 0.06},
-                                    {r, 0.1},
-                                    {0.9 * r, 0.5 * height},
-                                    {0.85 * r, height - 0.1},
-                                    {1.5 * r, height - 0.04},
-                                    {1.5 * r, height},
-                                    {0, height}},
-                                   craft.fine(40));
+  world::TriangleMesh mesh = shape::lathe({{0, 0},
+                                           {1.6 * r, 0},
+                                           {1.6 * r, 0.06},
+                                           {r, 0.1},
+                                           {0.9 * r, 0.5 * height},
+                                           {0.85 * r, height - 0.1},
+                                           {1.5 * r, height - 0.04},
+                                           {1.5 * r, height},
+                                           {0, height}},
+                                          craft.fine(40));
   return {"column", moved(std::move(mesh), {0, 1.6 * r, 0})};
 }
 
-}  // namespace lidarena::furniture
+}  // namespace lidarena::scenes::furniture

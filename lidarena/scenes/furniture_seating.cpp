@@ -4,7 +4,7 @@
 #include "lidarena/scenes/furniture.hpp"
 #include "lidarena/scenes/mesh_builder.hpp"
 
-namespace lidarena::furniture {
+namespace lidarena::scenes::furniture {
 namespace {
 
 using Eigen::Vector3d;
@@ -13,8 +13,8 @@ using shape::moved;
 constexpr double kPi = std::numbers::pi;
 
 /// Four round legs, inset from the corners of a width x depth footprint.
-TriangleMesh legs(Craft& craft, double width, double depth, double height, double radius) {
-  TriangleMesh mesh;
+world::TriangleMesh legs(Craft& craft, double width, double depth, double height, double radius) {
+  world::TriangleMesh mesh;
   const double inset = 2.5 * radius;
   for (const double x : {-0.5 * width + inset, 0.5 * width - inset}) {
     for (const double y : {inset, depth - inset}) {
@@ -25,13 +25,14 @@ TriangleMesh legs(Craft& craft, double width, double depth, double height, doubl
 }
 
 /// A rounded box centered at x, with its back at y and its base at z.
-TriangleMesh pad(Craft& craft, const Vector3d& size, double x, double y, double z, double bulge) {
+world::TriangleMesh pad(Craft& craft, const Vector3d& size, double x, double y, double z,
+                        double bulge) {
   const double radius = 0.35 * size.minCoeff();
   return moved(shape::rounded_box(size, radius, craft.fine(18), bulge), {x, y + 0.5 * size.y(), z});
 }
 
 /// A quilt over a mattress: hangs down at both sides and the foot end, with folds.
-TriangleMesh quilt(Craft& craft, double width, double length, double height) {
+world::TriangleMesh quilt(Craft& craft, double width, double length, double height) {
   const double phase = craft.random.uniform(0, 2 * kPi);
   const int n = craft.fine(90);
   return shape::grid(n, n, [&](double u, double v) {
@@ -53,7 +54,7 @@ Piece sofa(Craft& craft, int seats) {
   const double seat = craft.random.uniform(0.60, 0.68);
   const double width = seats * seat + 0.4;
   const double depth = 0.9;
-  TriangleMesh mesh = legs(craft, width, depth, 0.1, 0.025);
+  world::TriangleMesh mesh = legs(craft, width, depth, 0.1, 0.025);
   mesh.append(pad(craft, {width, depth, 0.24}, 0, 0, 0.1, 0));
   for (int i = 0; i < seats; ++i) {
     const double x = (i - 0.5 * (seats - 1)) * seat;
@@ -69,7 +70,7 @@ Piece sofa(Craft& craft, int seats) {
 
 Piece chair(Craft& craft) {
   constexpr double kSeat = 0.45;
-  TriangleMesh mesh = pad(craft, {0.42, 0.42, 0.05}, 0, 0.03, kSeat - 0.04, 0.008);
+  world::TriangleMesh mesh = pad(craft, {0.42, 0.42, 0.05}, 0, 0.03, kSeat - 0.04, 0.008);
   const int facets = craft.fine(14);
   for (const double side : {-1.0, 1.0}) {
     const double x = side * 0.18;
@@ -93,7 +94,7 @@ Piece chair(Craft& craft) {
 
 Piece stool(Craft& craft) {
   const double height = craft.random.uniform(0.45, 0.65);
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::cylinder(0.17, 0.04, craft.fine(36), 3), {0, 0.2, height - 0.04});
   for (int i = 0; i < 3; ++i) {
     const double angle = 2 * kPi * i / 3 + 0.5;
@@ -108,7 +109,7 @@ Piece stool(Craft& craft) {
 Piece beanbag(Craft& craft) {
   const double phase = craft.random.uniform(0, 2 * kPi);
   const int n = craft.fine(48);
-  TriangleMesh mesh = shape::grid(2 * n, n, [&](double u, double v) {
+  world::TriangleMesh mesh = shape::grid(2 * n, n, [&](double u, double v) {
     const double round = 2 * kPi * u;
     const double tilt = kPi * (v - 0.5);
     const double wrinkle = 1 + 0.03 * std::sin(5 * round + phase) * std::cos(tilt) +
@@ -122,7 +123,7 @@ Piece beanbag(Craft& craft) {
 }
 
 Piece table(Craft& craft, const std::string& kind, double width, double depth, double height) {
-  TriangleMesh mesh = legs(craft, width, depth, height - 0.03, 0.028);
+  world::TriangleMesh mesh = legs(craft, width, depth, height - 0.03, 0.028);
   mesh.append(pad(craft, {width, depth, 0.04}, 0, 0, height - 0.04, 0));
   const double z = height - 0.11;  // aprons
   mesh.append(shape::box({-0.5 * width + 0.07, 0.06, z}, {0.5 * width - 0.07, 0.08, z + 0.07}));
@@ -142,7 +143,7 @@ Piece desk(Craft& craft) {
 Piece bed(Craft& craft, double width) {
   constexpr double kLength = 2.05;
   constexpr double kMattress = 0.5;  // height of its upper side
-  TriangleMesh mesh = legs(craft, width, kLength, 0.18, 0.035);
+  world::TriangleMesh mesh = legs(craft, width, kLength, 0.18, 0.035);
   mesh.append(pad(craft, {width, kLength, 0.14}, 0, 0, 0.16, 0));
   mesh.append(pad(craft, {width - 0.06, kLength - 0.08, 0.22}, 0, 0.05, 0.28, 0.01));
   mesh.append(pad(craft, {width + 0.04, 0.07, craft.random.uniform(0.85, 1.1)}, 0, 0, 0, 0));
@@ -156,4 +157,4 @@ Piece bed(Craft& craft, double width) {
   return {"bed", std::move(mesh)};
 }
 
-}  // namespace lidarena::furniture
+}  // namespace lidarena::scenes::furniture

@@ -4,7 +4,7 @@
 #include "lidarena/scenes/furniture.hpp"
 #include "lidarena/scenes/mesh_builder.hpp"
 
-namespace lidarena::furniture {
+namespace lidarena::scenes::furniture {
 namespace {
 
 using Eigen::Vector2d;
@@ -14,7 +14,7 @@ using shape::moved;
 constexpr double kPi = std::numbers::pi;
 
 /// An open cone of cloth from radius r0 at z0 to r1 at z1, pleated.
-TriangleMesh shade(Craft& craft, double r0, double z0, double r1, double z1) {
+world::TriangleMesh shade(Craft& craft, double r0, double z0, double r1, double z1) {
   const int pleats = craft.random.integer(14, 26);
   return shape::grid(craft.fine(120), craft.fine(10), [&](double u, double v) {
     const double angle = 2 * kPi * u;
@@ -46,7 +46,7 @@ std::vector<Vector2d> smooth(const std::vector<Vector2d>& points, int steps) {
 
 /// A leaf of the given length and width that leaves the stem in direction `heading`, rising by
 /// `rise` rad and drooping towards its tip.
-TriangleMesh leaf(Craft& craft, double length, double width, double heading, double rise) {
+world::TriangleMesh leaf(Craft& craft, double length, double width, double heading, double rise) {
   const Vector3d out(std::cos(heading), std::sin(heading), 0);
   const Vector3d side(-out.y(), out.x(), 0);
   return shape::grid(craft.fine(10), 4, [&](double u, double v) -> Vector3d {
@@ -62,7 +62,7 @@ TriangleMesh leaf(Craft& craft, double length, double width, double heading, dou
 
 Piece floor_lamp(Craft& craft) {
   const double height = craft.random.uniform(1.4, 1.65);
-  TriangleMesh mesh = shape::cylinder(0.14, 0.025, craft.fine(40));
+  world::TriangleMesh mesh = shape::cylinder(0.14, 0.025, craft.fine(40));
   mesh.append(shape::bar({{0, 0, 0.02}, {0, 0, height - 0.1}}, 0.012, craft.fine(14)));
   mesh.append(shade(craft, 0.22, height - 0.28, 0.13, height));
   mesh.append(moved(shape::ball(0.04, craft.fine(20)), {0, 0, height - 0.1}));
@@ -71,7 +71,7 @@ Piece floor_lamp(Craft& craft) {
 
 Piece table_lamp(Craft& craft) {
   const double r = craft.random.uniform(0.06, 0.09);
-  TriangleMesh mesh = shape::lathe(
+  world::TriangleMesh mesh = shape::lathe(
       smooth({{0, 0}, {0.8 * r, 0}, {r, 0.1}, {0.35 * r, 0.2}, {0.01, 0.3}, {0, 0.32}}, 8),
       craft.fine(36));
   mesh.append(shade(craft, 0.15, 0.26, 0.09, 0.44));
@@ -80,7 +80,7 @@ Piece table_lamp(Craft& craft) {
 
 Piece pendant_lamp(Craft& craft, double drop) {
   const double r = craft.random.uniform(0.16, 0.24);
-  TriangleMesh mesh = moved(shape::cylinder(0.05, 0.03, craft.fine(24)), {0, 0, -0.03});
+  world::TriangleMesh mesh = moved(shape::cylinder(0.05, 0.03, craft.fine(24)), {0, 0, -0.03});
   mesh.append(shape::bar({{0, 0, -0.02}, {0, 0, -drop + 0.16}}, 0.004, 6));
   mesh.append(shape::lathe(
       smooth({{r, -drop}, {0.85 * r, -drop + 0.09}, {0.3 * r, -drop + 0.15}, {0, -drop + 0.17}}, 8),
@@ -92,14 +92,14 @@ Piece pendant_lamp(Craft& craft, double drop) {
 Piece plant(Craft& craft, double height) {
   const double pot_height = 0.28 * height;
   const double r = 0.14 * height + 0.05;
-  TriangleMesh mesh = shape::lathe({{0, 0},
-                                    {0.7 * r, 0},
-                                    {0.95 * r, 0.9 * pot_height},
-                                    {r, pot_height},
-                                    {0.92 * r, pot_height},
-                                    {0.88 * r, 0.85 * pot_height},
-                                    {0, 0.85 * pot_height}},
-                                   craft.fine(40));
+  world::TriangleMesh mesh = shape::lathe({{0, 0},
+                                           {0.7 * r, 0},
+                                           {0.95 * r, 0.9 * pot_height},
+                                           {r, pot_height},
+                                           {0.92 * r, pot_height},
+                                           {0.88 * r, 0.85 * pot_height},
+                                           {0, 0.85 * pot_height}},
+                                          craft.fine(40));
   const int stems = craft.random.integer(3, 5);
   for (int i = 0; i < stems; ++i) {
     const double lean = craft.random.uniform(0, 2 * kPi);
@@ -135,7 +135,7 @@ Piece vase(Craft& craft) {
 
 Piece bowl(Craft& craft) {
   const double r = craft.random.uniform(0.1, 0.16);
-  TriangleMesh mesh = shape::lathe(
+  world::TriangleMesh mesh = shape::lathe(
       smooth({{0, 0}, {0.5 * r, 0.01}, {r, 0.09}, {0.9 * r, 0.09}, {0.4 * r, 0.025}, {0, 0.02}}, 6),
       craft.fine(44));
   for (int i = 0; i < 4; ++i) {  // fruit
@@ -149,14 +149,14 @@ Piece bowl(Craft& craft) {
 Piece pot(Craft& craft) {
   const double r = craft.random.uniform(0.09, 0.13);
   const double h = craft.random.uniform(0.1, 0.16);
-  TriangleMesh mesh = shape::lathe({{0, 0},
-                                    {r, 0},
-                                    {r, h},
-                                    {0.7 * r, h + 0.02},
-                                    {0.02, h + 0.03},
-                                    {0.02, h + 0.05},
-                                    {0, h + 0.05}},
-                                   craft.fine(40));
+  world::TriangleMesh mesh = shape::lathe({{0, 0},
+                                           {r, 0},
+                                           {r, h},
+                                           {0.7 * r, h + 0.02},
+                                           {0.02, h + 0.03},
+                                           {0.02, h + 0.05},
+                                           {0, h + 0.05}},
+                                          craft.fine(40));
   for (const double side : {-1.0, 1.0}) {
     mesh.append(shape::bar({{side * r, -0.03, 0.8 * h},
                             {side * (r + 0.04), -0.02, 0.8 * h},
@@ -168,13 +168,13 @@ Piece pot(Craft& craft) {
 }
 
 Piece book_pile(Craft& craft) {
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   double z = 0;
   for (int i = craft.random.integer(2, 5); i > 0; --i) {
     const double thick = craft.random.uniform(0.015, 0.045);
     const double w = craft.random.uniform(0.07, 0.1);
     const double d = craft.random.uniform(0.1, 0.13);
-    const TriangleMesh book = shape::box({-w, -d, 0}, {w, d, thick});
+    const world::TriangleMesh book = shape::box({-w, -d, 0}, {w, d, thick});
     const double turn = craft.random.uniform(-0.3, 0.3);
     mesh.append(moved(shape::turned(book, turn, Vector3d::UnitZ()), {0, 0.16, z}));
     z += thick;
@@ -193,7 +193,7 @@ Piece basket(Craft& craft, const std::string& kind, double radius, double height
       return Vector3d(r * std::cos(angle), r * std::sin(angle), z0 + (z1 - z0) * v);
     });
   };
-  TriangleMesh mesh = shape::cylinder(0.85 * radius, 0.01, n);
+  world::TriangleMesh mesh = shape::cylinder(0.85 * radius, 0.01, n);
   mesh.append(weave(0.85 * radius, radius, 0.0, height));
   mesh.append(weave(0.92 * radius, 0.78 * radius, height, 0.01));
   return {kind, moved(std::move(mesh), {0, radius + 0.01, 0})};
@@ -206,7 +206,7 @@ Piece toy_ball(Craft& craft) {
 
 Piece rug(Craft& craft, double width, double depth) {
   const double phase = craft.random.uniform(0, 2 * kPi);
-  TriangleMesh mesh = shape::grid(craft.fine(70), craft.fine(50), [&](double u, double v) {
+  world::TriangleMesh mesh = shape::grid(craft.fine(70), craft.fine(50), [&](double u, double v) {
     const double edge = std::min({u, 1 - u, v, 1 - v}) * 40;  // the edge is flush with the floor
     const double pile = 0.012 + 0.003 * std::sin(31 * u + phase) * std::sin(27 * v + phase);
     return Vector3d((u - 0.5) * width, v * depth, std::min(1.0, edge) * pile);
@@ -218,7 +218,7 @@ Piece curtain(Craft& craft, double width, double height) {
   const double panel = 0.24 * width;
   const double folds = std::round(panel / 0.07);
   const double x = 0.5 * width;
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       shape::bar({{-x, 0, height}, {-x, 0.07, height}, {x, 0.07, height}, {x, 0, height}}, 0.012,
                  craft.fine(12));
   for (const double side : {-1.0, 1.0}) {
@@ -239,7 +239,7 @@ Piece picture(Craft& craft, const std::string& kind, double width, double height
   constexpr double kFrame = 0.035;
   const double x = 0.5 * width;
   const int facets = craft.fine(12);
-  TriangleMesh mesh = shape::box({-x, 0, 0}, {x, 0.012, height});
+  world::TriangleMesh mesh = shape::box({-x, 0, 0}, {x, 0.012, height});
   const Vector3d a(-x, 0.015, 0);
   const Vector3d b(x, 0.015, 0);
   const Vector3d up(0, 0, height);
@@ -252,7 +252,7 @@ Piece picture(Craft& craft, const std::string& kind, double width, double height
 }
 
 Piece television(Craft& craft) {
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::rounded_box({1.15, 0.05, 0.66}, 0.015, craft.fine(16)), {0, 0.14, 0.06});
   mesh.append(shape::box({-0.03, 0.12, 0.01}, {0.03, 0.15, 0.1}));
   mesh.append(moved(shape::scaled(shape::cylinder(0.14, 0.015, craft.fine(32)), {1.6, 1, 1}),
@@ -261,7 +261,7 @@ Piece television(Craft& craft) {
 }
 
 Piece coat_rack(Craft& craft) {
-  TriangleMesh mesh = shape::cylinder(0.2, 0.03, craft.fine(36));
+  world::TriangleMesh mesh = shape::cylinder(0.2, 0.03, craft.fine(36));
   mesh.append(shape::bar({{0, 0, 0.02}, {0, 0, 1.75}}, 0.018, craft.fine(16)));
   mesh.append(moved(shape::ball(0.03, craft.fine(18)), {0, 0, 1.76}));
   const double phase = craft.random.uniform(0, kPi);
@@ -283,4 +283,4 @@ Piece coat_rack(Craft& craft) {
   return {"coat rack", moved(std::move(mesh), {0, back, 0})};
 }
 
-}  // namespace lidarena::furniture
+}  // namespace lidarena::scenes::furniture

@@ -4,7 +4,7 @@
 #include "lidarena/scenes/furniture.hpp"
 #include "lidarena/scenes/mesh_builder.hpp"
 
-namespace lidarena::furniture {
+namespace lidarena::scenes::furniture {
 namespace {
 
 using Eigen::Vector3d;
@@ -15,8 +15,9 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kBoard = 0.02;  // m
 
 /// A row of books of random sizes on a board, from x0 towards x1; it may end before x1.
-TriangleMesh books(Craft& craft, double x0, double x1, double z, double depth, double space) {
-  TriangleMesh mesh;
+world::TriangleMesh books(Craft& craft, double x0, double x1, double z, double depth,
+                          double space) {
+  world::TriangleMesh mesh;
   const double end = x0 + (x1 - x0) * craft.random.uniform(0.5, 1.0);
   for (double x = x0; x < end - 0.06;) {
     const double width = craft.random.uniform(0.015, 0.055);
@@ -29,7 +30,7 @@ TriangleMesh books(Craft& craft, double x0, double x1, double z, double depth, d
 }
 
 /// A ring about the y axis, for example of a washing machine's door.
-TriangleMesh ring(Craft& craft, double radius, double thickness) {
+world::TriangleMesh ring(Craft& craft, double radius, double thickness) {
   std::vector<Vector3d> path;
   const int n = craft.fine(48);
   for (int i = 0; i <= n; ++i) {
@@ -39,7 +40,7 @@ TriangleMesh ring(Craft& craft, double radius, double thickness) {
   return shape::bar(path, thickness, craft.fine(14));
 }
 
-TriangleMesh handle(Craft& craft, const Vector3d& from, const Vector3d& to) {
+world::TriangleMesh handle(Craft& craft, const Vector3d& from, const Vector3d& to) {
   const Vector3d out(0, 0.035, 0);
   return shape::bar({from, from + out, to + out, to}, 0.007, craft.fine(10));
 }
@@ -49,7 +50,7 @@ TriangleMesh handle(Craft& craft, const Vector3d& from, const Vector3d& to) {
 Piece bookshelf(Craft& craft, double width, double height) {
   const double depth = craft.random.uniform(0.26, 0.34);
   const double half = 0.5 * width;
-  TriangleMesh mesh = box({-half, 0, 0}, {half, 0.01, height});
+  world::TriangleMesh mesh = box({-half, 0, 0}, {half, 0.01, height});
   for (const double x : {-half, half - kBoard}) {
     mesh.append(box({x, 0.01, 0}, {x + kBoard, depth, height}));
   }
@@ -69,7 +70,7 @@ Piece cabinet(Craft& craft, const std::string& kind, const Vector3d& size, int c
   constexpr double kGap = 0.006;
   const double half = 0.5 * size.x();
   const double front = size.y() - kBoard;
-  TriangleMesh mesh = box({-half, 0, kPlinth}, {half, front, size.z()});
+  world::TriangleMesh mesh = box({-half, 0, kPlinth}, {half, front, size.z()});
   mesh.append(box({-half + 0.03, 0.03, 0}, {half - 0.03, front - 0.03, kPlinth}));
   const double w = size.x() / columns;
   const double h = (size.z() - kPlinth) / rows;
@@ -100,7 +101,7 @@ Piece kitchen_row(Craft& craft, double width) {
 Piece sink(Craft& craft) {
   const std::vector<Eigen::Vector2d> profile{{0, 0.004},    {0.17, 0.006},  {0.2, 0.012},
                                              {0.205, 0.03}, {0.225, 0.035}, {0.23, 0.0}};
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::scaled(shape::lathe(profile, craft.fine(48)), {1.25, 1, 1}), {0, 0.31, 0});
   std::vector<Vector3d> tap{{0, 0.05, 0}, {0, 0.05, 0.2}};
   for (int i = 1; i <= 12; ++i) {
@@ -131,7 +132,7 @@ Piece stove(Craft& craft) {
 
 Piece fridge(Craft& craft) {
   const double height = craft.random.uniform(1.6, 1.9);
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::rounded_box({0.6, 0.6, height}, 0.02, craft.fine(10)), {0, 0.3, 0});
   const double split = 0.4 * height;
   for (const auto& [z0, z1] : {std::pair{0.06, split}, std::pair{split + 0.01, height}}) {
@@ -143,7 +144,7 @@ Piece fridge(Craft& craft) {
 }
 
 Piece washing_machine(Craft& craft) {
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       moved(shape::rounded_box({0.6, 0.58, 0.85}, 0.02, craft.fine(10)), {0, 0.29, 0});
   mesh.append(moved(ring(craft, 0.17, 0.025), {0, 0.58, 0.42}));
   mesh.append(
@@ -153,7 +154,7 @@ Piece washing_machine(Craft& craft) {
 }
 
 Piece front_door(Craft& craft) {
-  TriangleMesh mesh = box({-0.5, 0, 0}, {0.5, 0.04, 2.1});
+  world::TriangleMesh mesh = box({-0.5, 0, 0}, {0.5, 0.04, 2.1});
   for (const double x : {-0.23, 0.23}) {
     for (const auto& [z, h] : {std::pair{0.15, 0.75}, std::pair{1.05, 0.9}}) {
       mesh.append(moved(shape::rounded_box({0.34, 0.03, h}, 0.015, craft.fine(12)), {x, 0.04, z}));
@@ -163,4 +164,4 @@ Piece front_door(Craft& craft) {
   return {"front door", std::move(mesh)};
 }
 
-}  // namespace lidarena::furniture
+}  // namespace lidarena::scenes::furniture

@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 /// The output function of SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number
@@ -55,4 +55,4 @@ double GradientNoise::operator()(const Eigen::Vector3d& p) const {
   return sum;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// Gradient noise on the integer lattice (Perlin, "Improving noise", SIGGRAPH 2002) with gradients
 /// chosen by a hash of (seed, lattice point). Smooth, mean zero, |value| < 1.04, standard deviation
@@ -19,4 +19,4 @@ class GradientNoise {
   std::uint64_t seed_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -7,53 +7,54 @@
 #include "lidarena/scenes/house_plan.hpp"
 #include "lidarena/scenes/house_shell.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 /// Main material of a piece of furniture; wood for kinds that are not listed.
-const Material& material_of(const std::string& kind) {
-  using namespace materials;
-  static const std::map<std::string, const Material*> kMaterials{{"sofa", &kFabric},
-                                                                 {"armchair", &kFabric},
-                                                                 {"beanbag", &kFabric},
-                                                                 {"bed", &kFabric},
-                                                                 {"rug", &kFabric},
-                                                                 {"curtain", &kFabric},
-                                                                 {"laundry basket", &kFabric},
-                                                                 {"toy basket", &kFabric},
-                                                                 {"floor lamp", &kFabric},
-                                                                 {"table lamp", &kFabric},
-                                                                 {"pendant lamp", &kFabric},
-                                                                 {"towel rail", &kFabric},
-                                                                 {"coat rack", &kFabric},
-                                                                 {"books", &kPaper},
-                                                                 {"picture", &kPaper},
-                                                                 {"plant", &kLeaf},
-                                                                 {"vase", &kCeramic},
-                                                                 {"bowl", &kCeramic},
-                                                                 {"bathtub", &kCeramic},
-                                                                 {"toilet", &kCeramic},
-                                                                 {"basin", &kCeramic},
-                                                                 {"pot", &kMetal},
-                                                                 {"sink", &kMetal},
-                                                                 {"stove", &kMetal},
-                                                                 {"fridge", &kMetal},
-                                                                 {"washing machine", &kMetal},
-                                                                 {"bin", &kMetal},
-                                                                 {"umbrella stand", &kMetal},
-                                                                 {"column", &kPlaster},
-                                                                 {"gallery", &kPlaster},
-                                                                 {"television", &kDarkScreen},
-                                                                 {"mirror", &kMirror}};
+const world::Material& material_of(const std::string& kind) {
+  using namespace world::materials;
+  static const std::map<std::string, const world::Material*> kMaterials{
+      {"sofa", &kFabric},
+      {"armchair", &kFabric},
+      {"beanbag", &kFabric},
+      {"bed", &kFabric},
+      {"rug", &kFabric},
+      {"curtain", &kFabric},
+      {"laundry basket", &kFabric},
+      {"toy basket", &kFabric},
+      {"floor lamp", &kFabric},
+      {"table lamp", &kFabric},
+      {"pendant lamp", &kFabric},
+      {"towel rail", &kFabric},
+      {"coat rack", &kFabric},
+      {"books", &kPaper},
+      {"picture", &kPaper},
+      {"plant", &kLeaf},
+      {"vase", &kCeramic},
+      {"bowl", &kCeramic},
+      {"bathtub", &kCeramic},
+      {"toilet", &kCeramic},
+      {"basin", &kCeramic},
+      {"pot", &kMetal},
+      {"sink", &kMetal},
+      {"stove", &kMetal},
+      {"fridge", &kMetal},
+      {"washing machine", &kMetal},
+      {"bin", &kMetal},
+      {"umbrella stand", &kMetal},
+      {"column", &kPlaster},
+      {"gallery", &kPlaster},
+      {"television", &kDarkScreen},
+      {"mirror", &kMirror}};
   const auto found = kMaterials.find(kind);
   return found == kMaterials.end() ? kWood : *found->second;
 }
 
 }  // namespace
 
-WorldModel make_house(const HouseConfig& config, std::uint64_t seed) {
+world::WorldModel make_house(const HouseConfig& config, std::uint64_t seed) {
   const HousePlan plan = plan_house(config, seed);
-  WorldModel model{"house", build_shell(plan, config), {plan.route}};
+  world::WorldModel model{"house", build_shell(plan, config), {plan.route}};
   for (PlacedObject& object : furnish_house(plan, config, seed)) {
     object.mesh.paint(material_of(object.kind));
     model.mesh.append(object.mesh);
@@ -61,4 +62,4 @@ WorldModel make_house(const HouseConfig& config, std::uint64_t seed) {
   return model;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -6,7 +6,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/world/world_model.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// A furnished one-story house of seven rooms, two of them (living room and hall) open over two
 /// stories. The seed determines the positions of inner walls and doors and the shapes and positions
@@ -45,6 +45,6 @@ struct HouseConfig {
 /// door, straight from 0.8 m before the door to 0.8 m behind it. It keeps 0.5 m from furniture and
 /// 0.4 m from door posts. With panes, every ray from inside hits a surface. The same (config, seed)
 /// give bit-identical results.
-WorldModel make_house(const HouseConfig& config, std::uint64_t seed);
+world::WorldModel make_house(const HouseConfig& config, std::uint64_t seed);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -4,7 +4,7 @@
 #include "lidarena/scenes/furnisher.hpp"
 #include "lidarena/scenes/furniture.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using namespace furniture;
@@ -184,4 +184,4 @@ std::vector<PlacedObject> furnish_house(const HousePlan& plan, const HouseConfig
   return furnisher.take();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -6,12 +6,12 @@
 
 #include "lidarena/scenes/house_plan.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// A placed piece of furniture, in the world frame.
 struct PlacedObject {
   std::string kind;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   Eigen::AlignedBox3d box;
   double top = 0;  ///< height of its table top; 0: none
 };
@@ -22,4 +22,4 @@ struct PlacedObject {
 std::vector<PlacedObject> furnish_house(const HousePlan& plan, const HouseConfig& config,
                                         std::uint64_t seed);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

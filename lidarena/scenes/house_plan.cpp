@@ -3,7 +3,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 constexpr double kDoorApproach = 0.8;  // m before and behind a door where the route is straight
@@ -205,4 +205,4 @@ GalleryPlan plan_gallery(const HousePlan& plan, const HouseConfig& config) {
   return gallery;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -7,7 +7,7 @@
 
 #include "lidarena/scenes/house.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 enum class RoomUse { kLiving, kDining, kKitchen, kMainBedroom, kBathroom, kHall, kChildBedroom };
 
@@ -49,4 +49,4 @@ inline constexpr int kStairSteps = 16;
 HousePlan plan_house(const HouseConfig& config, std::uint64_t seed);
 GalleryPlan plan_gallery(const HousePlan& plan, const HouseConfig& config);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

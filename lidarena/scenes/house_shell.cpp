@@ -7,7 +7,7 @@
 
 #include "lidarena/scenes/mesh_builder.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 constexpr double kSlab = 0.2;    // m, thickness of floor and ceilings
@@ -41,7 +41,7 @@ double height_beside(const HousePlan& plan, int axis, double line, double a, dou
   return height;
 }
 
-void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
+void add_quad(world::TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3d& b,
               const Eigen::Vector3d& c, const Eigen::Vector3d& d) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   mesh.vertices.insert(mesh.vertices.end(), {a, b, c, d});
@@ -52,8 +52,8 @@ void add_quad(TriangleMesh& mesh, const Eigen::Vector3d& a, const Eigen::Vector3
 /// A plate of the given thickness in the xz plane with rectangular holes, as one closed surface.
 /// The holes' edges divide it into cells; each solid cell gets a front, a back, and a side towards
 /// each neighbor that is not solid.
-TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
-                   const std::vector<Eigen::AlignedBox2d>& holes) {
+world::TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
+                          const std::vector<Eigen::AlignedBox2d>& holes) {
   std::array<std::set<double>, 2> sets;
   for (int k = 0; k < 2; ++k) {
     auto& cuts = sets[static_cast<std::size_t>(k)];
@@ -72,7 +72,7 @@ TriangleMesh plate(const Eigen::AlignedBox2d& extent, double thickness,
     return std::ranges::none_of(holes, [&](const auto& hole) { return hole.contains(middle); });
   };
   const double h = 0.5 * thickness;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
     for (std::size_t j = 0; j + 1 < zs.size(); ++j) {
       if (!solid(i, j)) continue;
@@ -96,7 +96,7 @@ Eigen::AlignedBox2d hole_of(const Opening& opening) {
 }
 
 /// The wall's plate in its own frame, whose x is the world's x or y.
-TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const HouseConfig& config) {
+world::TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const HouseConfig& config) {
   std::vector<Eigen::AlignedBox2d> holes;
   for (const auto* openings : {&plan.doors, &plan.windows}) {
     for (const Opening& opening : *openings) {
@@ -113,7 +113,7 @@ TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const HouseConf
 
 /// The four bars of a frame of width `width` along the inner side of a hole's edge (outer side if
 /// negative); `foot`: with the lower bar.
-TriangleMesh frame(const Eigen::AlignedBox2d& hole, double width, double depth, bool foot) {
+world::TriangleMesh frame(const Eigen::AlignedBox2d& hole, double width, double depth, bool foot) {
   const Eigen::Vector2d w = Eigen::Vector2d::Constant(width);
   Eigen::AlignedBox2d inner(hole.min() + w.cwiseMax(0), hole.max() - w.cwiseMax(0));
   Eigen::AlignedBox2d outer(hole.min() + w.cwiseMin(0), hole.max() - w.cwiseMin(0));
@@ -121,31 +121,31 @@ TriangleMesh frame(const Eigen::AlignedBox2d& hole, double width, double depth, 
   return plate(outer, depth, {inner});
 }
 
-TriangleMesh build_window(const Opening& window, const HouseConfig& config) {
+world::TriangleMesh build_window(const Opening& window, const HouseConfig& config) {
   const Eigen::AlignedBox2d hole = hole_of(window);
-  TriangleMesh mesh = frame(hole, kFrame, kFrame, true);
+  world::TriangleMesh mesh = frame(hole, kFrame, kFrame, true);
   const double x = window.center;
   mesh.append(shape::box({x - 0.5 * kFrame, -0.5 * kFrame, window.sill},
                          {x + 0.5 * kFrame, 0.5 * kFrame, window.head}));
-  mesh.paint(materials::kWood);
+  mesh.paint(world::materials::kWood);
   if (config.panes) {
-    TriangleMesh pane = shape::box({hole.min().x(), -0.5 * kPane, hole.min().y()},
-                                   {hole.max().x(), 0.5 * kPane, hole.max().y()});
-    pane.paint(materials::kGlass);
+    world::TriangleMesh pane = shape::box({hole.min().x(), -0.5 * kPane, hole.min().y()},
+                                          {hole.max().x(), 0.5 * kPane, hole.max().y()});
+    pane.paint(world::materials::kGlass);
     mesh.append(pane);
   }
   return mesh;
 }
 
 /// Trims on both faces of the wall around a door; they do not narrow the opening.
-TriangleMesh build_trims(const Opening& door, const HouseConfig& config) {
+world::TriangleMesh build_trims(const Opening& door, const HouseConfig& config) {
   constexpr double kThick = 0.015;  // m
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (const double side : {-0.5, 0.5}) {
     mesh.append(shape::moved(frame(hole_of(door), -kTrim, kThick, false),
                              {0, side * (config.wall_m + kThick), 0}));
   }
-  mesh.paint(materials::kWood);
+  mesh.paint(world::materials::kWood);
   return mesh;
 }
 
@@ -177,9 +177,9 @@ std::vector<Wall> plan_walls(const HousePlan& plan) {
   return walls;
 }
 
-TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
+world::TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
   const double half = 0.5 * config.wall_m;
-  TriangleMesh mesh =
+  world::TriangleMesh mesh =
       shape::box({-half, -half, -kSlab}, {config.width_m + half, config.depth_m + half, 0});
   for (const Room& room : plan.rooms) {
     mesh.append(shape::box({room.floor.min().x(), room.floor.min().y(), room.height},
@@ -191,7 +191,7 @@ TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
     if (wall.axis == 0 && wall.to == end) wall.to += half;
     mesh.append(build_wall(wall, plan, config), world_from_wall(wall.axis, wall.line));
   }
-  mesh.paint(materials::kPlaster);
+  mesh.paint(world::materials::kPlaster);
   for (const Opening& window : plan.windows) {
     mesh.append(build_window(window, config), world_from_wall(window.axis, window.line));
   }
@@ -201,4 +201,4 @@ TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
   return mesh;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

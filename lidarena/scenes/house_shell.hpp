@@ -3,7 +3,7 @@
 
 #include "lidarena/scenes/house_plan.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// A straight wall along x (axis 0) or y (axis 1), from the floor to `top`.
 struct Wall {
@@ -18,6 +18,6 @@ struct Wall {
 std::vector<Wall> plan_walls(const HousePlan& plan);
 
 /// Floor, ceilings, walls with their openings, door trims, window frames and panes.
-TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config);
+world::TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

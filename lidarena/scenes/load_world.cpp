@@ -7,7 +7,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/scenes/world_config.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 namespace fs = std::filesystem;
 
@@ -51,9 +51,9 @@ WorldConfig read_world_config(const fs::path& file) {
   return config;
 }
 
-SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
-                       const WorldOptions& options) {
-  SdfOptions sdf{
+world::SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
+                              const WorldOptions& options) {
+  world::SdfOptions sdf{
       options.shapes.value_or(config.shapes), {}, options.allow_missing || config.allow_missing};
   for (const std::string& path : config.model_paths) sdf.model_paths.push_back(base / path);
   sdf.model_paths.insert(sdf.model_paths.end(), options.model_paths.begin(),
@@ -61,11 +61,11 @@ SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
   return sdf;
 }
 
-WorldModel load_configured(const fs::path& file, const WorldOptions& options, LogSink& log) {
+world::WorldModel load_configured(const fs::path& file, const WorldOptions& options, LogSink& log) {
   const WorldConfig config = read_world_config(file);
   const fs::path base = file.parent_path();
   const std::uint64_t seed = options.seed.value_or(config.seed);
-  WorldModel model;
+  world::WorldModel model;
   switch (config.kind) {
     case WorldKind::kHouse:
       model = make_house(config.house, seed);
@@ -74,10 +74,10 @@ WorldModel load_configured(const fs::path& file, const WorldOptions& options, Lo
       model = make_cave(config.cave, seed);
       break;
     case WorldKind::kMesh:
-      model.mesh = load_mesh(base / config.file, config.up_axis);
+      model.mesh = world::load_mesh(base / config.file, config.up_axis);
       break;
     case WorldKind::kSdf:
-      model.mesh = load_sdf(base / config.file, sdf_options(config, base, options), log);
+      model.mesh = world::load_sdf(base / config.file, sdf_options(config, base, options), log);
       break;
   }
   return model;
@@ -85,19 +85,19 @@ WorldModel load_configured(const fs::path& file, const WorldOptions& options, Lo
 
 }  // namespace
 
-WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink& log) {
+world::WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink& log) {
   const std::string ending = ending_of(file);
   std::error_code ignored;
   if (!fs::is_regular_file(file, ignored)) {
     throw InputError(file.string(), "there is no such file", "check the path");
   }
-  WorldModel model;
+  world::WorldModel model;
   if (ending == ".yaml" || ending == ".yml") {
     model = load_configured(file, options, log);
   } else if (ending == ".sdf" || ending == ".world") {
-    model.mesh = load_sdf(file, sdf_options({}, {}, options), log);
-  } else if (is_mesh_file(file)) {
-    model.mesh = load_mesh(file);
+    model.mesh = world::load_sdf(file, sdf_options({}, {}, options), log);
+  } else if (world::is_mesh_file(file)) {
+    model.mesh = world::load_mesh(file);
   } else {
     throw InputError(file.string(), "this file extension is not that of a world",
                      "use .yaml, .sdf, .world, .obj, .ply, .stl, .dae, .gltf or .glb");
@@ -106,4 +106,4 @@ WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink
   return model;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

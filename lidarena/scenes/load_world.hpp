@@ -10,11 +10,12 @@
 #include "lidarena/world/sdf_world.hpp"
 #include "lidarena/world/world_model.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// Options that override what the world's file says.
 struct WorldOptions {
-  std::optional<ShapeKind> shapes;    ///< of an SDF world; visual unless the file or this says so
+  std::optional<world::ShapeKind>
+      shapes;                         ///< of an SDF world; visual unless the file or this says so
   std::optional<std::uint64_t> seed;  ///< of a procedural world; 1 unless the file or this says so
   /// Additional folders to search for `model://NAME`, after those beside the world file.
   std::vector<std::filesystem::path> model_paths;
@@ -28,6 +29,7 @@ struct WorldOptions {
 ///   .obj .ply .stl .dae .gltf .glb   a mesh, z up unless its format specifies otherwise
 /// Throws InputError when the file is missing, has no faces, or refers to a model or mesh that does
 /// not exist.
-WorldModel load_world(const std::filesystem::path& file, const WorldOptions& options, LogSink& log);
+world::WorldModel load_world(const std::filesystem::path& file, const WorldOptions& options,
+                             LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

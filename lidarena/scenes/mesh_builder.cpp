@@ -5,13 +5,13 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena::shape {
+namespace lidarena::scenes::shape {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
 
 /// Adds a triangle unless two of its corners coincide (at the poles of a lathe).
-void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+void add_triangle(world::TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
   const auto same = [&](std::uint32_t i, std::uint32_t j) {
     return mesh.vertices[i] == mesh.vertices[j];
   };
@@ -19,7 +19,7 @@ void add_triangle(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uin
 }
 
 /// Adds quads between consecutive rings of `segments` vertices in `mesh`.
-void join_rings(TriangleMesh& mesh, std::uint32_t rings, std::uint32_t segments) {
+void join_rings(world::TriangleMesh& mesh, std::uint32_t rings, std::uint32_t segments) {
   for (std::uint32_t r = 0; r + 1 < rings; ++r) {
     for (std::uint32_t s = 0; s < segments; ++s) {
       const std::uint32_t a = r * segments + s;
@@ -32,8 +32,8 @@ void join_rings(TriangleMesh& mesh, std::uint32_t rings, std::uint32_t segments)
 
 }  // namespace
 
-TriangleMesh grid(int nu, int nv, const Surface& surface) {
-  TriangleMesh mesh;
+world::TriangleMesh grid(int nu, int nv, const Surface& surface) {
+  world::TriangleMesh mesh;
   for (int j = 0; j <= nv; ++j) {
     for (int i = 0; i <= nu; ++i) {
       mesh.vertices.push_back(surface(double(i) / nu, double(j) / nv));
@@ -50,8 +50,8 @@ TriangleMesh grid(int nu, int nv, const Surface& surface) {
   return mesh;
 }
 
-TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  TriangleMesh mesh;
+world::TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  world::TriangleMesh mesh;
   for (unsigned i = 0; i < 8; ++i) {
     mesh.vertices.emplace_back((i & 1U) != 0 ? high.x() : low.x(),
                                (i & 2U) != 0 ? high.y() : low.y(),
@@ -62,11 +62,12 @@ TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
   return mesh;
 }
 
-TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells, double bulge) {
+world::TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells,
+                                double bulge) {
   const Eigen::Vector3d half = 0.5 * size;
   const double r = std::min(radius, half.minCoeff());
   const Eigen::Vector3d core = half.array() - r;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (int axis = 0; axis < 3; ++axis) {
     for (const double sign : {-1.0, 1.0}) {
       const int a = sign > 0 ? (axis + 1) % 3 : (axis + 2) % 3;
@@ -87,8 +88,8 @@ TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int cells, 
   return mesh;
 }
 
-TriangleMesh lathe(const std::vector<Eigen::Vector2d>& profile, int segments) {
-  TriangleMesh mesh;
+world::TriangleMesh lathe(const std::vector<Eigen::Vector2d>& profile, int segments) {
+  world::TriangleMesh mesh;
   for (const Eigen::Vector2d& point : profile) {
     for (int s = 0; s < segments; ++s) {
       const double angle = 2 * kPi * s / segments;
@@ -103,21 +104,21 @@ TriangleMesh lathe(const std::vector<Eigen::Vector2d>& profile, int segments) {
   return mesh;
 }
 
-TriangleMesh cylinder(double radius, double height, int segments, int rings) {
+world::TriangleMesh cylinder(double radius, double height, int segments, int rings) {
   std::vector<Eigen::Vector2d> profile{{0, 0}};
   for (int i = 0; i <= rings; ++i) profile.emplace_back(radius, height * i / rings);
   profile.emplace_back(0, height);
   return lathe(profile, segments);
 }
 
-TriangleMesh ball(double radius, int segments) {
+world::TriangleMesh ball(double radius, int segments) {
   std::vector<Eigen::Vector2d> profile = arc({0, 0}, radius, -kPi / 2, kPi / 2, segments / 2);
   profile.front().x() = profile.back().x() = 0;
   return lathe(profile, segments);
 }
 
-TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int segments) {
-  TriangleMesh mesh;
+world::TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius, int segments) {
+  world::TriangleMesh mesh;
   Eigen::Vector3d side = (path[1] - path[0]).unitOrthogonal();
   for (std::size_t i = 0; i < path.size(); ++i) {
     const Eigen::Vector3d along =
@@ -151,20 +152,20 @@ std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, d
   return points;
 }
 
-TriangleMesh moved(TriangleMesh mesh, const Eigen::Vector3d& offset) {
+world::TriangleMesh moved(world::TriangleMesh mesh, const Eigen::Vector3d& offset) {
   for (Eigen::Vector3d& v : mesh.vertices) v += offset;
   return mesh;
 }
 
-TriangleMesh scaled(TriangleMesh mesh, const Eigen::Vector3d& scale) {
+world::TriangleMesh scaled(world::TriangleMesh mesh, const Eigen::Vector3d& scale) {
   for (Eigen::Vector3d& v : mesh.vertices) v = v.cwiseProduct(scale);
   return mesh;
 }
 
-TriangleMesh turned(TriangleMesh mesh, double angle, const Eigen::Vector3d& axis) {
+world::TriangleMesh turned(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis) {
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
   for (Eigen::Vector3d& v : mesh.vertices) v = rotation * v;
   return mesh;
 }
 
-}  // namespace lidarena::shape
+}  // namespace lidarena::scenes::shape

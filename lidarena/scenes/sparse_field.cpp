@@ -3,7 +3,7 @@
 
 #include <utility>
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 std::uint64_t SparseField::key(const Eigen::Vector3i& c) {
   constexpr std::uint64_t kMask = (1U << 21) - 1;
@@ -36,4 +36,4 @@ float* SparseField::find(const Eigen::Vector3i& sample) {
   return const_cast<float*>(std::as_const(*this).find(sample));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// Samples of a scalar field (negative in free space, positive in rock) on the grid
 /// step * (i, j, k), stored in blocks of 8^3 samples and only near the surface.
@@ -46,4 +46,4 @@ class SparseField {
   std::unordered_map<std::uint64_t, std::size_t> index_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -4,7 +4,7 @@
 #include <deque>
 #include <unordered_map>
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 /// Corner c of a cell has the offset (c & 1, c >> 1 & 1, c >> 2).
@@ -118,7 +118,7 @@ Eigen::Vector3d net_vertex(const SparseField& field, const Eigen::Vector3i& cell
 }
 
 /// Adds the quad a b c d as two triangles.
-void add_quad(TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
+void add_quad(world::TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c,
               std::uint32_t d) {
   const auto length = [&](std::uint32_t i, std::uint32_t j) {
     return (mesh.vertices[i] - mesh.vertices[j]).squaredNorm();
@@ -162,8 +162,8 @@ std::size_t make_well_composed(SparseField& field) {
   return changed;
 }
 
-TriangleMesh surface_net(const SparseField& field) {
-  TriangleMesh mesh;
+world::TriangleMesh surface_net(const SparseField& field) {
+  world::TriangleMesh mesh;
   std::unordered_map<std::uint64_t, std::uint32_t> vertex_of_cell;
   const std::vector<Eigen::Vector3i> cells = surface_cells(field);
   vertex_of_cell.reserve(cells.size());
@@ -200,4 +200,4 @@ TriangleMesh surface_net(const SparseField& field) {
   return mesh;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

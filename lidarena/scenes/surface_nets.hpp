@@ -4,7 +4,7 @@
 #include "lidarena/scenes/sparse_field.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 /// Changes single samples from rock to free space until the set of free samples is well composed
 /// (Latecki, "3D well-composed pictures", GMIP 1997): no face of a grid cell is a checkerboard and
@@ -17,6 +17,6 @@ std::size_t make_well_composed(SparseField& field);
 /// cell's edges, and one quad, split along its shorter diagonal, at each grid edge that it crosses.
 /// Normals (right-hand rule) point into free space. The field must be well composed, and its blocks
 /// must cover every cell that the surface passes through.
-TriangleMesh surface_net(const SparseField& field);
+world::TriangleMesh surface_net(const SparseField& field);
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -13,15 +13,13 @@
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/sdf_world.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 
 enum class WorldKind { kHouse, kCave, kMesh, kSdf };
-template <>
-struct EnumNames<WorldKind> {
-  static constexpr std::array names{
-      std::pair{"house", WorldKind::kHouse}, std::pair{"cave", WorldKind::kCave},
-      std::pair{"mesh", WorldKind::kMesh}, std::pair{"sdf", WorldKind::kSdf}};
-};
+constexpr auto enum_names(WorldKind) {
+  return std::array{std::pair{"house", WorldKind::kHouse}, std::pair{"cave", WorldKind::kCave},
+                    std::pair{"mesh", WorldKind::kMesh}, std::pair{"sdf", WorldKind::kSdf}};
+}
 
 /// A world file (see configs/worlds). Each kind has its own keys; keys of another kind are errors.
 struct WorldConfig {
@@ -30,8 +28,8 @@ struct WorldConfig {
   HouseConfig house;
   CaveConfig cave;
   std::string file;
-  UpAxis up_axis = UpAxis::kFile;
-  ShapeKind shapes = ShapeKind::kVisual;
+  world::UpAxis up_axis = world::UpAxis::kFile;
+  world::ShapeKind shapes = world::ShapeKind::kVisual;
   std::vector<std::string> model_paths;
   bool allow_missing = false;
 
@@ -51,4 +49,4 @@ struct WorldConfig {
   }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 BeamTable::BeamTable(const ScanPattern& pattern) : pattern_(pattern) {
   pattern.beams(0, first_);
@@ -44,4 +44,4 @@ std::span<const Beam> BeamTable::beams(std::uint64_t index, std::vector<Beam>& s
   return storage;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -8,7 +8,7 @@
 
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Cache of the beams of a repeating pattern. Each scan is computed on first use and stored with 12
 /// bytes per beam: only the directions differ between scans. Returns bit for bit what the pattern
@@ -39,4 +39,4 @@ class BeamTable {
   mutable std::vector<Slot> slots_;  ///< one per scan of a period; empty if scans are not stored
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

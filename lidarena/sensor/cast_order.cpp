@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/sensor/cast_order.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 CastOrder::CastOrder(std::span<const Beam> beams) {
   std::size_t lasers = 1;
@@ -15,4 +15,4 @@ CastOrder::CastOrder(std::span<const Beam> beams) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -7,7 +7,7 @@
 
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Order in which a block of shots is cast. The ray caster is fastest if the eight rays of a packet
 /// have similar directions (see RayOrder). Consecutive shots do not, since each comes from another
@@ -34,4 +34,4 @@ class CastOrder {
   std::vector<std::uint32_t> place_;  ///< position of each shot of a tile
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

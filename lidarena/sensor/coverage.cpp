@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -99,4 +99,4 @@ std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov,
   return shares;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

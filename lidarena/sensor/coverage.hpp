@@ -10,7 +10,7 @@
 #include "lidarena/sensor/field_of_view.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Grid over a field of view that records which cells were hit by a ray. Cells are squares in
 /// azimuth and elevation, in rows from the minimum azimuth and elevation on; a cell belongs to the
@@ -69,4 +69,4 @@ FieldOfView observed_field_of_view(const ScanPattern& pattern, Time end);
 std::vector<double> coverage(const ScanPattern& pattern, const FieldOfView& fov, double cell_deg,
                              std::span<const Time> instants);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

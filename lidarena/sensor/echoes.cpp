@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
   constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
@@ -64,4 +64,4 @@ void choose_echoes(const ReturnConfig& config, std::vector<Echo>& echoes) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

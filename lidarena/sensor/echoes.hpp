@@ -8,7 +8,7 @@
 
 #include "lidarena/sensor/return_config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Return of one sub-ray of a beam, or one pulse as the receiver sees it: the sum of the returns
 /// (parts) that it cannot separate.
@@ -37,4 +37,4 @@ void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>&
 /// config.count.
 void choose_echoes(const ReturnConfig& config, std::vector<Echo>& echoes);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

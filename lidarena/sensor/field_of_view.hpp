@@ -3,7 +3,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Field of view according to a data sheet, in the lidar frame: the directions within a box of
 /// azimuth (from x towards y) and elevation, and within a cone about x.
@@ -25,4 +25,4 @@ struct FieldOfView {
   }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 /// What random numbers are used for. Each purpose takes two counters, see normals(); constants of a
@@ -30,8 +30,8 @@ Eigen::Vector3d read_out(const Eigen::Vector3d& value, double range, double reso
 
 }  // namespace
 
-ImuSample perfect_imu(const Motion& motion, const Pose& body_from_imu) {
-  const Eigen::Vector3d gravity_world(0.0, 0.0, -kGravity);
+ImuSample perfect_imu(const flight::Motion& motion, const Pose& body_from_imu) {
+  const Eigen::Vector3d gravity_world(0.0, 0.0, -flight::kGravity);
   const Eigen::Vector3d& rate = motion.angular_rate_body;
   const Eigen::Vector3d arm = body_from_imu.translation();
   const Eigen::Vector3d from_turning =
@@ -82,10 +82,10 @@ Eigen::Matrix3d Imu::make_response(double scale_error, double misalignment,
   return response;
 }
 
-void Imu::vibrate(const Motion& motion, ImuSample& sample) const {
-  const Eigen::Vector3d up(0.0, 0.0, kGravity);
+void Imu::vibrate(const flight::Motion& motion, ImuSample& sample) const {
+  const Eigen::Vector3d up(0.0, 0.0, flight::kGravity);
   // The force of an unbalanced propeller grows with the square of its speed, as its thrust does.
-  const double thrust = (motion.acceleration_world + up).norm() / kGravity;
+  const double thrust = (motion.acceleration_world + up).norm() / flight::kGravity;
   for (std::size_t i = 0; i < config_.vibration.size(); ++i) {
     const VibrationTone& tone = config_.vibration[i];
     const double turns = tone.frequency_hz * to_seconds(sample.stamp);
@@ -110,8 +110,8 @@ void Imu::walk_biases() {
                  normals(next_, kAccelBias);
 }
 
-ImuSample Imu::measure(const Flight& flight) {
-  const Motion motion = flight.at(next_stamp());
+ImuSample Imu::measure(const flight::Flight& flight) {
+  const flight::Motion motion = flight.at(next_stamp());
   ImuSample sample = perfect_imu(motion, body_from_imu_);
   sample.stamp = next_stamp();
   if (noise_) {
@@ -131,4 +131,4 @@ ImuSample Imu::measure(const Flight& flight) {
   return sample;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

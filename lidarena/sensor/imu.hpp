@@ -8,12 +8,12 @@
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Error-free sample of an IMU mounted at `body_from_imu` on a body that moves with `motion`:
 /// angular rate, and specific force R^T (a - g) including the lever-arm terms. IMU frame; the stamp
 /// is not set.
-ImuSample perfect_imu(const Motion& motion, const Pose& body_from_imu);
+ImuSample perfect_imu(const flight::Motion& motion, const Pose& body_from_imu);
 
 /// Generates the samples of one IMU in order: sample k at k / rate_hz after the flight's start.
 /// Each is the instantaneous value (no averaging over the sample period) with the errors of
@@ -27,7 +27,7 @@ class Imu {
 
   /// Stamp of the sample that measure() returns next.
   Time next_stamp() const { return stamp(next_); }
-  ImuSample measure(const Flight& flight);
+  ImuSample measure(const flight::Flight& flight);
 
   /// Stamp of the first sample at or after `t`.
   Time first_stamp_from(Time t) const;
@@ -38,7 +38,7 @@ class Imu {
   Eigen::Vector3d normals(std::uint64_t sample, std::uint32_t draw) const;
   /// Identity plus scale errors on the diagonal and misalignment angles off the diagonal.
   Eigen::Matrix3d make_response(double scale_error, double misalignment, std::uint32_t draw) const;
-  void vibrate(const Motion& motion, ImuSample& sample) const;
+  void vibrate(const flight::Motion& motion, ImuSample& sample) const;
   void walk_biases();
 
   ImuConfig config_;
@@ -52,4 +52,4 @@ class Imu {
   Eigen::Vector3d accel_bias_ = Eigen::Vector3d::Zero();
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

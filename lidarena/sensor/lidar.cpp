@@ -12,7 +12,7 @@
 
 #include "lidarena/sensor/lidar_motion.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector2d;
@@ -74,14 +74,14 @@ void close_gaps(std::vector<T>& values, std::size_t stride,
 /// Working data of a block of shots of a scan.
 struct Lidar::Block {
   std::span<const Beam> shots;
-  std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
-  Point* points = nullptr;      ///< space for the maximum number of points
-  PointTruth* truth = nullptr;  ///< same size, or nullptr
-  std::size_t count = 0;        ///< number of points so far
+  std::uint64_t first_ray = 0;           ///< number of the first shot since the sensor's start
+  Point* points = nullptr;               ///< space for the maximum number of points
+  dataset::PointTruth* truth = nullptr;  ///< same size, or nullptr
+  std::size_t count = 0;                 ///< number of points so far
   // Reused from block to block to avoid reallocation.
   std::vector<std::uint32_t> places;  ///< index in `rays` of each shot's first sub-ray
-  std::vector<Ray> rays;              ///< in casting order
-  std::vector<Hit> hits;
+  std::vector<world::Ray> rays;       ///< in casting order
+  std::vector<world::Hit> hits;
   std::array<double, 2> normals{};  ///< of the current pair of shots
   std::uint64_t normals_of = std::numeric_limits<std::uint64_t>::max();  ///< the pair's number
   // Of the current shot.
@@ -161,21 +161,21 @@ void Lidar::aim(const PoseAt& pose_at, Block& block) const {
 }
 
 /// Return of sub-ray `k` of a shot, if there is one within the range limits.
-std::optional<Echo> Lidar::receive_ray(const Surfaces& world, std::size_t shot, std::size_t k,
-                                       const Block& block) const {
+std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t shot,
+                                       std::size_t k, const Block& block) const {
   const std::size_t place = block.places[shot] + k;
-  const Hit& hit = block.hits[place];
+  const world::Hit& hit = block.hits[place];
   if (!hit.valid()) return std::nullopt;
   const double range = block.axis_to_origin + static_cast<double>(hit.range);
   if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
   const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
-  const double energy = energy_of_ray_ * backscatter(world.material(hit.triangle), cosine);
+  const double energy = energy_of_ray_ * world::backscatter(world.material(hit.triangle), cosine);
   const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
   return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
 }
 
 /// Fills block.echoes with the shot's detected echoes, in reporting order.
-void Lidar::receive(const Surfaces& world, std::size_t shot, Block& block) const {
+void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block) const {
   block.echoes.clear();
   block.parts.clear();
   for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
@@ -241,7 +241,7 @@ void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block
   block.points[block.count++] = point;
   if (block.truth == nullptr) return;
   const std::size_t place = block.places[shot] + echo.sub_ray;
-  const Hit& hit = block.hits[place];
+  const world::Hit& hit = block.hits[place];
   const double way_to_surface = static_cast<double>(hit.range);
   const Vector3d to_surface = way_to_surface * block.rays[place].direction.cast<double>();
   block.truth[block.count - 1] = {
@@ -251,11 +251,12 @@ void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block
       .triangle = hit.triangle};
 }
 
-void Lidar::shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& block) const {
+void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
+                  Block& block) const {
   place_rays(block);
   aim(world_from_lidar, block);
   world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
-             RayOrder::kNeighbors);
+             world::RayOrder::kNeighbors);
   block.count = 0;
   const bool one_sure_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
@@ -271,10 +272,10 @@ void Lidar::shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& 
 }
 
 /// Replaces `points` (and `truth`) by the points of the shots.
-void Lidar::shoot_all(const Surfaces& world, const PoseAt& world_from_lidar,
+void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
                       std::span<const Beam> shots, std::uint64_t first_ray,
                       const Parallel& parallel, std::vector<Point>& points,
-                      std::vector<PointTruth>* truth) const {
+                      std::vector<dataset::PointTruth>* truth) const {
   const auto most = static_cast<std::size_t>(config_.returns.count);  // max. points per shot
   points.resize(shots.size() * most);
   if (truth != nullptr) truth->resize(points.size());
@@ -297,8 +298,8 @@ void Lidar::shoot_all(const Surfaces& world, const PoseAt& world_from_lidar,
   if (truth != nullptr) close_gaps(*truth, shots_per_block_ * most, counts);
 }
 
-Scan Lidar::measure(const Surfaces& world, const Flight& flight, std::uint64_t index,
-                    const Parallel& parallel, std::vector<PointTruth>* truth) const {
+Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
+                    const Parallel& parallel, std::vector<dataset::PointTruth>* truth) const {
   std::vector<Beam> storage;
   const std::span<const Beam> shots = beams(index, storage);
   const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
@@ -317,15 +318,16 @@ Scan Lidar::empty_scan(std::uint64_t index) const {
   return scan;
 }
 
-void Lidar::measure_part(const Surfaces& world, const PoseAt& world_from_lidar,
+void Lidar::measure_part(const world::Surfaces& world, const PoseAt& world_from_lidar,
                          std::span<const Beam> shots, std::uint64_t first_ray,
-                         std::vector<Point>& points, std::vector<PointTruth>* truth) const {
+                         std::vector<Point>& points,
+                         std::vector<dataset::PointTruth>* truth) const {
   std::vector<Point> more;
-  std::vector<PointTruth> more_truth;
+  std::vector<dataset::PointTruth> more_truth;
   shoot_all(world, world_from_lidar, shots, first_ray, Parallel(1), more,
             truth == nullptr ? nullptr : &more_truth);
   points.insert(points.end(), more.begin(), more.end());
   if (truth != nullptr) truth->insert(truth->end(), more_truth.begin(), more_truth.end());
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -22,7 +22,7 @@
 #include "lidarena/sensor/signal_model.hpp"
 #include "lidarena/world/surfaces.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// world_from_lidar at `dt_ns` after a scan's stamp.
 using PoseAt = std::function<Pose(std::int32_t dt_ns)>;
@@ -47,15 +47,16 @@ class Lidar {
   /// ReturnConfig. Then range noise is added, the range is rounded, and angular noise is added to
   /// the direction. `truth`, if given, receives what each point really hit, in point order; for a
   /// mixed echo, what the sub-ray with the strongest signal hit.
-  Scan measure(const Surfaces& world, const Flight& flight, std::uint64_t index,
-               const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
+  Scan measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
+               const Parallel& parallel, std::vector<dataset::PointTruth>* truth = nullptr) const;
 
   /// Appends the points of some shots of a scan to `points` (and `truth`). `first_ray` is the
   /// number of the first of `shots`, counted from the sensor's start. With this a scan can be
   /// simulated piece by piece while the world moves.
-  void measure_part(const Surfaces& world, const PoseAt& world_from_lidar,
+  void measure_part(const world::Surfaces& world, const PoseAt& world_from_lidar,
                     std::span<const Beam> shots, std::uint64_t first_ray,
-                    std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
+                    std::vector<Point>& points,
+                    std::vector<dataset::PointTruth>* truth = nullptr) const;
 
   /// Scan `index` with its stamp, without points.
   Scan empty_scan(std::uint64_t index) const;
@@ -74,14 +75,14 @@ class Lidar {
   struct Block;
   void place_rays(Block& block) const;
   void aim(const PoseAt& world_from_lidar, Block& block) const;
-  std::optional<Echo> receive_ray(const Surfaces& world, std::size_t shot, std::size_t k,
+  std::optional<Echo> receive_ray(const world::Surfaces& world, std::size_t shot, std::size_t k,
                                   const Block& block) const;
-  void receive(const Surfaces& world, std::size_t shot, Block& block) const;
+  void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
   void report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const;
-  void shoot(const Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
-  void shoot_all(const Surfaces& world, const PoseAt& world_from_lidar, std::span<const Beam> shots,
-                 std::uint64_t first_ray, const Parallel& parallel, std::vector<Point>& points,
-                 std::vector<PointTruth>* truth) const;
+  void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
+  void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
+                 std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
+                 std::vector<Point>& points, std::vector<dataset::PointTruth>* truth) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   double range_noise(std::uint64_t ray, std::size_t number, Block& block) const;
   double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,
@@ -102,4 +103,4 @@ class Lidar {
   std::int32_t last_dt_ns_ = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr std::int64_t kStep = 1'333'332;  // ns between samples; even, so that half is an integer
@@ -13,7 +13,7 @@ constexpr double kRotationTolerance = 1e-9;  // per matrix element; 1e-7 m at 10
 
 }  // namespace
 
-LidarMotion::LidarMotion(const Flight& flight, const Pose& body_from_lidar, Time stamp,
+LidarMotion::LidarMotion(const flight::Flight& flight, const Pose& body_from_lidar, Time stamp,
                          std::int32_t last_dt_ns, bool rolling)
     : flight_(flight), body_from_lidar_(body_from_lidar), stamp_(stamp) {
   samples_.push_back(exact(Time{0}).matrix().topRows<3>());
@@ -68,4 +68,4 @@ double LidarMotion::exact_share() const {
          static_cast<double>(smooth_.size());
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -7,7 +7,7 @@
 
 #include "lidarena/flight/flight.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Pose of a lidar during one scan, cheap enough to evaluate for every shot. The flight is sampled
 /// every 1.33 ms; position and rotation matrix are interpolated by a cubic through four consecutive
@@ -19,7 +19,7 @@ class LidarMotion {
  public:
   /// Poses from `stamp` until `last_dt_ns` later; if not `rolling`, only the pose at the stamp.
   /// Keeps a reference to `flight`.
-  LidarMotion(const Flight& flight, const Pose& body_from_lidar, Time stamp,
+  LidarMotion(const flight::Flight& flight, const Pose& body_from_lidar, Time stamp,
               std::int32_t last_dt_ns, bool rolling);
 
   /// world_from_lidar at `dt_ns` >= 0 after the stamp; after last_dt_ns the flight is evaluated.
@@ -35,11 +35,11 @@ class LidarMotion {
   Matrix34 cubic(std::size_t segment, double x) const;
   bool is_smooth(std::size_t segment) const;
 
-  const Flight& flight_;
+  const flight::Flight& flight_;
   Pose body_from_lidar_;
   Time stamp_;
   std::vector<Matrix34> samples_;  ///< three per segment, and the last; only one if not rolling
   std::vector<bool> smooth_;       ///< whether each segment is interpolated
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -9,7 +9,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr double kRadians = std::numbers::pi / 180.0;
@@ -93,4 +93,4 @@ void LivoxPattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -9,7 +9,7 @@
 #include "lidarena/sensor/optics.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Angle of a rotor at the firing of group k, with m = modulation_step_deg:
 ///   phase_deg + step_deg * (k + sample_offset)
@@ -74,4 +74,4 @@ class LivoxPattern : public ScanPattern {
   std::size_t rows_per_scan_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -14,7 +14,7 @@
 #include "lidarena/base/number.hpp"
 #include "lidarena/sensor/livox.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -104,4 +104,4 @@ void RayTablePattern::beams(std::uint64_t index, std::vector<Beam>& out) const {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

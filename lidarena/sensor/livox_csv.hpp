@@ -9,7 +9,7 @@
 
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Reads the unit directions of a table in Livox's format: rows of index or time, azimuth in deg
 /// (from x towards y), zenith angle in deg (from z); the first line may hold column names. Rows are
@@ -40,4 +40,4 @@ class RayTablePattern : public ScanPattern {
   std::size_t rows_per_scan_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

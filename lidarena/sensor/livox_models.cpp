@@ -7,7 +7,7 @@
 
 #include "lidarena/sensor/livox.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 /// Four emitters in a row along y whose tangents are equally spaced.
@@ -83,4 +83,4 @@ LivoxModel livox_avia() {
 
 LivoxModel livox_mid70() { return two_wedges(1.8144, 18.0, 0.0, 0.0, -18.0); }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -5,7 +5,7 @@
 #include "lidarena/sensor/ouster.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 /// Throws InputError if a key is set that the model of this sensor does not use.
@@ -70,4 +70,4 @@ std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor) {
   return make_pattern(sensor, sensor.name.empty() ? "sensor" : sensor.name);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

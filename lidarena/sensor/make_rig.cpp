@@ -7,7 +7,7 @@
 #include "lidarena/sensor/ouster.hpp"
 #include "lidarena/sensor/simulate.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 std::string unique_name(const std::string& name, std::set<std::string>& taken) {
@@ -17,7 +17,7 @@ std::string unique_name(const std::string& name, std::set<std::string>& taken) {
 }
 
 std::string model_name(LidarModel model) {
-  for (const auto& [name, value] : EnumNames<LidarModel>::names) {
+  for (const auto& [name, value] : enum_names(LidarModel{})) {
     if (value == model) return name;
   }
   return "unknown";
@@ -90,4 +90,4 @@ Rig make_rig(const std::vector<SensorConfig>& sensors) {
   return rig;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

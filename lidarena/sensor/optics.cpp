@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 Surface make_surface(SurfaceKind kind, int rotor, double tilt_deg) {
   const double tilt = tilt_deg * std::numbers::pi / 180.0;
@@ -34,4 +34,4 @@ Eigen::Vector3d trace(std::span<const Surface> surfaces, double glass_index,
   return ray;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

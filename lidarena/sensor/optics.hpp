@@ -4,7 +4,7 @@
 #include <Eigen/Core>
 #include <span>
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 enum class SurfaceKind { kIntoGlass, kIntoAir, kMirror };
 
@@ -27,4 +27,4 @@ Surface make_surface(SurfaceKind kind, int rotor, double tilt_deg);
 Eigen::Vector3d trace(std::span<const Surface> surfaces, double glass_index,
                       std::span<const Eigen::Vector2d> phases, Eigen::Vector3d ray);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr double kRowPitch = 0.012314;     // rad behind the lens, between neighboring rows
@@ -70,4 +70,4 @@ OusterOs0Pattern::OusterOs0Pattern(int columns, double rate_hz, const std::strin
 
 void OusterOs0Pattern::beams(std::uint64_t, std::vector<Beam>& out) const { out = beams_; }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -6,7 +6,7 @@
 
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Viewing direction of one row of an Ouster, relative to the head.
 struct OusterRow {
@@ -41,4 +41,4 @@ class OusterOs0Pattern : public ScanPattern {
   std::vector<Beam> beams_;  ///< column by column
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Data-sheet figures that determine the received signal, see SignalModel. A range of 0 means
 /// unknown: options that need it cannot be switched on.
@@ -84,19 +84,16 @@ struct NoiseConfig {
 };
 
 enum class EchoChoice { kStrongest, kFirst, kLast };
-template <>
-struct EnumNames<EchoChoice> {
-  static constexpr std::array names{std::pair{"strongest", EchoChoice::kStrongest},
-                                    std::pair{"first", EchoChoice::kFirst},
-                                    std::pair{"last", EchoChoice::kLast}};
-};
+constexpr auto enum_names(EchoChoice) {
+  return std::array{std::pair{"strongest", EchoChoice::kStrongest},
+                    std::pair{"first", EchoChoice::kFirst}, std::pair{"last", EchoChoice::kLast}};
+}
 
 enum class IntensityKind { kReflectivity, kSignal };
-template <>
-struct EnumNames<IntensityKind> {
-  static constexpr std::array names{std::pair{"reflectivity", IntensityKind::kReflectivity},
-                                    std::pair{"signal", IntensityKind::kSignal}};
-};
+constexpr auto enum_names(IntensityKind) {
+  return std::array{std::pair{"reflectivity", IntensityKind::kReflectivity},
+                    std::pair{"signal", IntensityKind::kSignal}};
+}
 
 /// Which of a shot's echoes are reported. More than one requires a beam of several sub-rays.
 struct ReturnConfig {
@@ -117,4 +114,4 @@ struct ReturnConfig {
 /// Throws InputError (place `place`) if the settings contradict each other.
 void check_returns(const NoiseConfig& noise, const ReturnConfig& returns, const std::string& place);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

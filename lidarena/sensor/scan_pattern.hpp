@@ -9,7 +9,7 @@
 
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// One shot of a LiDAR, in the lidar frame.
 struct Beam {
@@ -32,4 +32,4 @@ class ScanPattern {
   virtual std::uint64_t repeats_after() const { return 0; }
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -3,7 +3,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) {
@@ -55,4 +55,4 @@ SensorConfig load_sensor(const std::filesystem::path& file) {
   return sensor;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -14,7 +14,7 @@
 #include "lidarena/sensor/scan_pattern.hpp"
 #include "lidarena/sensor/spinning_head.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 enum class LidarModel {
   kLivoxMid360,
@@ -25,16 +25,15 @@ enum class LidarModel {
   kLivoxCsv,   ///< rays of a table in Livox's format
   kBeamTable,  ///< a spinning head with the beams of a table
 };
-template <>
-struct EnumNames<LidarModel> {
-  static constexpr std::array names{std::pair{"livox_mid360", LidarModel::kLivoxMid360},
-                                    std::pair{"livox_mid40", LidarModel::kLivoxMid40},
-                                    std::pair{"livox_mid70", LidarModel::kLivoxMid70},
-                                    std::pair{"livox_avia", LidarModel::kLivoxAvia},
-                                    std::pair{"ouster_os0_128", LidarModel::kOusterOs0128},
-                                    std::pair{"livox_csv", LidarModel::kLivoxCsv},
-                                    std::pair{"beam_table", LidarModel::kBeamTable}};
-};
+constexpr auto enum_names(LidarModel) {
+  return std::array{std::pair{"livox_mid360", LidarModel::kLivoxMid360},
+                    std::pair{"livox_mid40", LidarModel::kLivoxMid40},
+                    std::pair{"livox_mid70", LidarModel::kLivoxMid70},
+                    std::pair{"livox_avia", LidarModel::kLivoxAvia},
+                    std::pair{"ouster_os0_128", LidarModel::kOusterOs0128},
+                    std::pair{"livox_csv", LidarModel::kLivoxCsv},
+                    std::pair{"beam_table", LidarModel::kBeamTable}};
+}
 
 /// How a scan is affected by motion during it. All modes but the first reproduce faults of earlier
 /// simulators, for comparison.
@@ -44,13 +43,12 @@ enum class ScanMode {
   kFrozenUnstamped,  ///< all shots from the pose at the stamp, without per-point times
   kOfficial,         ///< as kFrozenUnstamped, and every range too short by the minimum range
 };
-template <>
-struct EnumNames<ScanMode> {
-  static constexpr std::array names{std::pair{"rolling", ScanMode::kRolling},
-                                    std::pair{"frozen", ScanMode::kFrozen},
-                                    std::pair{"frozen_unstamped", ScanMode::kFrozenUnstamped},
-                                    std::pair{"official", ScanMode::kOfficial}};
-};
+constexpr auto enum_names(ScanMode) {
+  return std::array{std::pair{"rolling", ScanMode::kRolling},
+                    std::pair{"frozen", ScanMode::kFrozen},
+                    std::pair{"frozen_unstamped", ScanMode::kFrozenUnstamped},
+                    std::pair{"official", ScanMode::kOfficial}};
+}
 
 /// A tone of the airframe's vibration, as measured by the IMU (the LiDAR is not affected): on each
 /// axis a sine with a phase of its own, drawn once per unit. The frequency is fixed, and there is
@@ -212,4 +210,4 @@ std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor);
 /// The same, with `place` as the place in error messages.
 std::unique_ptr<ScanPattern> make_pattern(const SensorConfig& sensor, const std::string& place);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

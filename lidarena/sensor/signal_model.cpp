@@ -7,7 +7,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
                    const std::string& place) {
@@ -85,4 +85,4 @@ double range_sigma(double range_noise_m, const NoiseConfig& noise, double range,
   return noise.weak_signal_noise && signal < 1.0 ? sigma / std::sqrt(signal) : sigma;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

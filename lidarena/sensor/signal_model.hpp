@@ -3,7 +3,7 @@
 
 #include "lidarena/sensor/return_config.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// Model of the received signal and of its detection.
 ///
@@ -44,4 +44,4 @@ double range_sigma(double range_noise_m, const NoiseConfig& noise, double range,
 double normal_cdf(double x);
 double normal_quantile(double p);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -6,7 +6,7 @@
 #include "lidarena/sensor/imu.hpp"
 #include "lidarena/sensor/lidar.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 struct ImuStream {
@@ -21,10 +21,11 @@ struct LidarStream {
   std::uint64_t scans = 0;  ///< number of complete scans in the flight
 };
 
-class Simulation final : public EventSource {
+class Simulation final : public dataset::EventSource {
  public:
-  Simulation(const World& world, const Flight& flight, const std::vector<SensorConfig>& sensors,
-             const SimulationOptions& options, const Parallel& parallel)
+  Simulation(const world::World& world, const flight::Flight& flight,
+             const std::vector<SensorConfig>& sensors, const SimulationOptions& options,
+             const Parallel& parallel)
       : world_(world),
         flight_(flight),
         parallel_(parallel),
@@ -46,21 +47,21 @@ class Simulation final : public EventSource {
     }
   }
 
-  std::optional<Event> next() override {
+  std::optional<dataset::Event> next() override {
     ImuStream* imu = next_imu();
     LidarStream* lidar = next_lidar();
     if (imu != nullptr && (lidar == nullptr || imu->imu.next_stamp() <= due(*lidar))) {
-      return Event{imu->id, imu->imu.measure(flight_)};
+      return dataset::Event{imu->id, imu->imu.measure(flight_)};
     }
     if (lidar == nullptr) return std::nullopt;
-    return Event{lidar->id, measure(*lidar)};
+    return dataset::Event{lidar->id, measure(*lidar)};
   }
 
  private:
   Scan measure(LidarStream& stream) {
     const std::uint64_t index = stream.next++;
     if (truth_ == nullptr) return stream.lidar.measure(world_, flight_, index, parallel_);
-    ScanTruth truth{stream.id, stream.lidar.stamp(index), {}};
+    dataset::ScanTruth truth{stream.id, stream.lidar.stamp(index), {}};
     Scan scan = stream.lidar.measure(world_, flight_, index, parallel_, &truth.points);
     truth_->write(truth);
     return scan;
@@ -95,10 +96,10 @@ class Simulation final : public EventSource {
     return covered;
   }
 
-  const World& world_;
-  const Flight& flight_;
+  const world::World& world_;
+  const flight::Flight& flight_;
   Parallel parallel_;
-  ScanTruthSink* truth_;
+  dataset::ScanTruthSink* truth_;
   Time end_;
   std::vector<ImuStream> imus_;
   std::vector<LidarStream> lidars_;
@@ -106,10 +107,12 @@ class Simulation final : public EventSource {
 
 }  // namespace
 
-std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
-                                      const std::vector<SensorConfig>& sensors,
-                                      const SimulationOptions& options, const Parallel& parallel) {
+std::unique_ptr<dataset::EventSource> simulate(const world::World& world,
+                                               const flight::Flight& flight,
+                                               const std::vector<SensorConfig>& sensors,
+                                               const SimulationOptions& options,
+                                               const Parallel& parallel) {
   return std::make_unique<Simulation>(world, flight, sensors, options, parallel);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -15,13 +15,14 @@
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 struct SimulationOptions {
   std::uint64_t seed = 1;
   Time duration{0};  ///< 0 = the whole flight
   bool noise = true;
-  ScanTruthSink* truth = nullptr;  ///< receives a scan's truth just before next() returns the scan
+  dataset::ScanTruthSink* truth =
+      nullptr;  ///< receives a scan's truth just before next() returns the scan
 };
 
 /// The rig of these sensors on one body (each LiDAR with its IMU, if it has one). Ids are the
@@ -34,8 +35,10 @@ Rig make_rig(const std::vector<SensorConfig>& sensors);
 /// `flight`. Times count from the flight's start: scan k begins at k * period, and only complete
 /// scans are simulated. A scan is delivered once every IMU has delivered a sample at or after the
 /// scan's last firing (or has ended).
-std::unique_ptr<EventSource> simulate(const World& world, const Flight& flight,
-                                      const std::vector<SensorConfig>& sensors,
-                                      const SimulationOptions& options, const Parallel& parallel);
+std::unique_ptr<dataset::EventSource> simulate(const world::World& world,
+                                               const flight::Flight& flight,
+                                               const std::vector<SensorConfig>& sensors,
+                                               const SimulationOptions& options,
+                                               const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -9,7 +9,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
@@ -84,4 +84,4 @@ SpinningHeadPattern::SpinningHeadPattern(const SpinningHead& table, int columns,
 
 void SpinningHeadPattern::beams(std::uint64_t, std::vector<Beam>& out) const { out = beams_; }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -11,7 +11,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// One laser of a spinning head. Angles and origin are given in the head's frame, which rotates
 /// with the head: x in its viewing direction, z up.
@@ -77,4 +77,4 @@ class SpinningHeadPattern : public ScanPattern {
   std::vector<Beam> beams_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

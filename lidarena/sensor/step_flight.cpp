@@ -3,7 +3,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 using Eigen::Vector3d;
 
@@ -39,9 +39,9 @@ StepFlight::StepFlight(const std::array<StampedPose, 3>& poses)
   angular_acceleration_ = turn.second;
 }
 
-Motion StepFlight::at(Time t) const {
+flight::Motion StepFlight::at(Time t) const {
   const double s = to_seconds(t - middle_time_);
-  Motion motion;
+  flight::Motion motion;
   motion.world_from_body = middle_;
   motion.world_from_body.translation() += s * velocity_ + 0.5 * s * s * acceleration_;
   motion.world_from_body.linear() *= so3::exp(s * rate_ + 0.5 * s * s * angular_acceleration_);
@@ -52,4 +52,4 @@ Motion StepFlight::at(Time t) const {
   return motion;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -5,7 +5,7 @@
 
 #include "lidarena/sensor/step_flight.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 Lidar make_lidar(const SensorConfig& config, const std::string& id, std::uint64_t seed,
@@ -41,8 +41,8 @@ void SteppedSensor::start_at(Time start) {
                noise_);
 }
 
-void SteppedSensor::step(const Surfaces& world, const StampedPose& pose,
-                         std::vector<Event>& events) {
+void SteppedSensor::step(const world::Surfaces& world, const StampedPose& pose,
+                         std::vector<dataset::Event>& events) {
   if (!poses_.empty() && pose.stamp <= poses_.back().stamp) {
     if (pose.stamp == poses_.back().stamp) return;
     start_at(pose.stamp);
@@ -54,7 +54,7 @@ void SteppedSensor::step(const Surfaces& world, const StampedPose& pose,
   deliver(events);
 }
 
-void SteppedSensor::cast(const Surfaces& world, const StampedPose& pose) {
+void SteppedSensor::cast(const world::Surfaces& world, const StampedPose& pose) {
   const StampedPose& last = *(poses_.end() - 2);
   const PoseAt world_from_lidar = [&](std::int32_t dt_ns) -> Pose {
     return between(last, pose, scan_.stamp + Time{dt_ns}) * lidar_.config().body_from_lidar;
@@ -79,7 +79,7 @@ void SteppedSensor::cast(const Surfaces& world, const StampedPose& pose) {
 }
 
 /// Casts all shots of the scan from the pose at the stamp.
-void SteppedSensor::cast_frozen(const Surfaces& world, const PoseAt& world_from_lidar) {
+void SteppedSensor::cast_frozen(const world::Surfaces& world, const PoseAt& world_from_lidar) {
   const Pose frozen = world_from_lidar(0);
   const PoseAt stands_still = [&](std::int32_t) { return frozen; };
   lidar_.measure_part(world, stands_still, shots_, index_ * shots_.size(), scan_.points);
@@ -95,7 +95,7 @@ void SteppedSensor::finish_scan() {
 }
 
 /// Appends the IMU samples up to the middle one of the three poses.
-void SteppedSensor::sample(std::vector<Event>& events) {
+void SteppedSensor::sample(std::vector<dataset::Event>& events) {
   const StepFlight flight({poses_[0], poses_[1], poses_[2]});
   while (imu_->next_stamp() <= poses_[1].stamp) {
     const bool is_old = imu_->next_stamp() < poses_[0].stamp;  // before the sensor's start
@@ -107,7 +107,7 @@ void SteppedSensor::sample(std::vector<Event>& events) {
 }
 
 /// Delivers a scan once an IMU sample at or after its last firing has been delivered.
-void SteppedSensor::deliver(std::vector<Event>& events) {
+void SteppedSensor::deliver(std::vector<dataset::Event>& events) {
   const auto is_covered = [&](const Scan& scan) {
     const auto index = static_cast<std::uint64_t>(scan.stamp / lidar_.pattern().period());
     return !imu_ || imu_->next_stamp() > imu_->first_stamp_from(lidar_.last_firing(index));
@@ -118,4 +118,4 @@ void SteppedSensor::deliver(std::vector<Event>& events) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -12,7 +12,7 @@
 #include "lidarena/sensor/imu.hpp"
 #include "lidarena/sensor/lidar.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 
 /// A LiDAR and the IMU inside it, in a world that advances in time steps, as in a physics engine.
 /// Each step casts the shots that fall into it, each from the body's pose at its own instant
@@ -31,18 +31,19 @@ class SteppedSensor {
   /// the measurements that are complete, in the order of EventSource: IMU samples one step late
   /// (see StepFlight), a scan after the samples that cover it. A step back in time restarts the
   /// sensor.
-  void step(const Surfaces& world, const StampedPose& pose, std::vector<Event>& events);
+  void step(const world::Surfaces& world, const StampedPose& pose,
+            std::vector<dataset::Event>& events);
 
   const Lidar& lidar() const { return lidar_; }
   std::uint64_t rays() const { return rays_; }  ///< cast so far
 
  private:
   void start_at(Time start);
-  void cast(const Surfaces& world, const StampedPose& pose);
-  void cast_frozen(const Surfaces& world, const PoseAt& world_from_lidar);
+  void cast(const world::Surfaces& world, const StampedPose& pose);
+  void cast_frozen(const world::Surfaces& world, const PoseAt& world_from_lidar);
   void finish_scan();
-  void sample(std::vector<Event>& events);
-  void deliver(std::vector<Event>& events);
+  void sample(std::vector<dataset::Event>& events);
+  void deliver(std::vector<dataset::Event>& events);
 
   std::string id_;
   std::uint64_t seed_;
@@ -59,4 +60,4 @@ class SteppedSensor {
   std::uint64_t rays_ = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::sensor

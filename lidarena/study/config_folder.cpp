@@ -6,7 +6,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 namespace fs = std::filesystem;
 
@@ -44,4 +44,4 @@ fs::path ConfigFolder::resolve(const std::string& kind, const std::string& name_
                    nearest.empty() ? "known: " + list : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

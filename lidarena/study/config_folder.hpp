@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// The folder `configs/` with one subfolder per kind: worlds, flights, sensors, odometry, studies.
 /// A NAME is the stem of a file in one of them.
@@ -28,4 +28,4 @@ class ConfigFolder {
   std::filesystem::path root_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::study

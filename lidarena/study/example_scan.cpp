@@ -10,7 +10,7 @@
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -24,11 +24,11 @@ double turn_within(const Scan& scan, const Trajectory& truth) {
   return so3::angle(begin->linear().transpose() * end->linear());
 }
 
-Scan fastest_turning_scan(EventSource& events, const std::string& lidar_id,
+Scan fastest_turning_scan(dataset::EventSource& events, const std::string& lidar_id,
                           const Trajectory& truth) {
   Scan fastest;
   double most = -1.0;
-  while (const std::optional<Event> event = events.next()) {
+  while (const std::optional<dataset::Event> event = events.next()) {
     const Scan* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar_id) continue;
     if (scan->stamp - truth.begin_time() > kLook) break;
@@ -42,8 +42,8 @@ Scan fastest_turning_scan(EventSource& events, const std::string& lidar_id,
 
 /// The scan in the world frame: each point by the pose at its own instant, or all points by the
 /// pose at the scan's stamp if `skewed`.
-Cloud laid(const Scan& scan, LidarPoses poses, bool skewed) {
-  Cloud cloud;
+dataset::Cloud laid(const Scan& scan, evaluation::LidarPoses poses, bool skewed) {
+  dataset::Cloud cloud;
   for (const Point& point : scan.points) {
     const Pose* world_from_lidar = poses.at(skewed ? scan.stamp : time_of(scan, point));
     if (world_from_lidar == nullptr || !point.position.allFinite()) continue;
@@ -55,22 +55,23 @@ Cloud laid(const Scan& scan, LidarPoses poses, bool skewed) {
 }  // namespace
 
 void write_example_scans(const fs::path& dataset, const Parallel& parallel) {
-  const auto truth = load_truth(dataset);
-  const auto mesh = find_world_mesh(dataset);
+  const auto truth = dataset::load_truth(dataset);
+  const auto mesh = dataset::find_world_mesh(dataset);
   if (!truth || !mesh) throw InputError(dataset.string(), "has no truth or no mesh");
-  const World world(load_mesh(*mesh), mesh->string());
+  const world::World world(world::load_mesh(*mesh), mesh->string());
   const Rig rig = open_scored_returns(dataset, {}, parallel).rig;
   for (const LidarInfo& lidar : rig.lidars) {
-    ReadOptions read;
+    dataset::ReadOptions read;
     read.sensor = lidar.id;
-    const Dataset scored = open_scored_returns(dataset, read, parallel);
+    const dataset::Dataset scored = open_scored_returns(dataset, read, parallel);
     const Scan scan = fastest_turning_scan(*scored.events, lidar.id, *truth);
     for (const bool skewed : {false, true}) {
-      Cloud cloud = laid(scan, LidarPoses(*truth, lidar.body_from_lidar), skewed);
-      map_error(cloud.points, Pose::Identity(), world, parallel, &cloud.distance);
-      write_ply(dataset / (lidar.id + (skewed ? "_scan_skewed.ply" : "_scan.ply")), cloud);
+      dataset::Cloud cloud =
+          laid(scan, evaluation::LidarPoses(*truth, lidar.body_from_lidar), skewed);
+      evaluation::map_error(cloud.points, Pose::Identity(), world, parallel, &cloud.distance);
+      dataset::write_ply(dataset / (lidar.id + (skewed ? "_scan_skewed.ply" : "_scan.ply")), cloud);
     }
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/parallel.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// Writes one scan per LiDAR for pictures: the scan of the first minute during which the body
 /// rotates most, in the mesh's frame, with each return's distance to the mesh. SENSOR_scan.ply
@@ -14,4 +14,4 @@ namespace lidarena {
 /// dataset's folder. Throws InputError if the dataset has no truth or no mesh.
 void write_example_scans(const std::filesystem::path& dataset, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

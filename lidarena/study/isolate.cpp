@@ -21,7 +21,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -222,4 +222,4 @@ std::vector<int> usable_cores() {
   return cores;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

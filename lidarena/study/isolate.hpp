@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// Limits of one piece of work; 0 = no limit.
 struct WorkLimits {
@@ -60,4 +60,4 @@ IsolatedOutcome run_isolated(const std::function<void()>& work, const WorkLimits
 /// The processors that this process may use.
 std::vector<int> usable_cores();
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -11,14 +11,14 @@
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr std::size_t kScoredPoints = 400'000;  // enough for a picture 2,000 pixels wide
 
-std::string chosen_lidar(const Dataset& dataset, const std::string& asked) {
+std::string chosen_lidar(const dataset::Dataset& dataset, const std::string& asked) {
   if (const LidarInfo* lidar = dataset.rig.find_lidar(asked)) return lidar->id;
   std::vector<std::string> ids;
   std::string list;
@@ -41,62 +41,67 @@ std::string relative_path(const fs::path& dataset, const fs::path& run) {
   return relative.generic_string();
 }
 
-Cloud reprojected_map(const RunRequest& request, const std::string& lidar_id,
-                      const Trajectory& trajectory, const Parallel& parallel) {
-  Dataset again = open_scored_returns(request.dataset, request.read, parallel);
+dataset::Cloud reprojected_map(const RunRequest& request, const std::string& lidar_id,
+                               const Trajectory& trajectory, const Parallel& parallel) {
+  dataset::Dataset again = open_scored_returns(request.dataset, request.read, parallel);
   const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
-  return reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
+  return evaluation::reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
 }
 
 /// Aligned by SE(3) over all positions where that is determined, else by the first pose.
 Pose mesh_from_map_of(const Trajectory& estimate, const Trajectory& truth) {
-  const Alignment best = align(estimate, truth, Gauge::kSe3);
+  const evaluation::Alignment best = evaluation::align(estimate, truth, evaluation::Gauge::kSe3);
   return best.determined() ? best.truth_from_estimate
-                           : align(estimate, truth, Gauge::kFirstPose).truth_from_estimate;
+                           : evaluation::align(estimate, truth, evaluation::Gauge::kFirstPose)
+                                 .truth_from_estimate;
 }
 
 /// At most kScoredPoints of the re-projected map, in the mesh's frame, each with its distance.
-Cloud scored_cloud(const RunFiles& run, const Pose& mesh_from_map, const World& world,
-                   const Parallel& parallel) {
+dataset::Cloud scored_cloud(const dataset::RunFiles& run, const Pose& mesh_from_map,
+                            const world::World& world, const Parallel& parallel) {
   const std::vector<Eigen::Vector3f>& all = run.reprojected.points;
   const std::size_t stride =
       std::max<std::size_t>(1, (all.size() + kScoredPoints - 1) / kScoredPoints);
-  Cloud cloud;
+  dataset::Cloud cloud;
   for (std::size_t i = 0; i < all.size(); i += stride) cloud.points.push_back(all[i]);
-  map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
+  evaluation::map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
   cloud.points = transformed(mesh_from_map, cloud.points);
   return cloud;
 }
 
 /// Computes the re-projected map again and finds what the ray of each point hit.
-IdentifiedMap identified_map(Dataset dataset, const LidarInfo& lidar, const Trajectory& trajectory,
-                             ScanTruthSource& hits) {
-  std::vector<ReturnOrigin> origins;
-  const Cloud map = reproject(*dataset.events, lidar.id, lidar.body_from_lidar, trajectory, 0.02,
-                              nullptr, &origins);
-  return identify(map.points, origins, hits);
+evaluation::IdentifiedMap identified_map(dataset::Dataset dataset, const LidarInfo& lidar,
+                                         const Trajectory& trajectory,
+                                         dataset::ScanTruthSource& hits) {
+  std::vector<evaluation::ReturnOrigin> origins;
+  const dataset::Cloud map = evaluation::reproject(*dataset.events, lidar.id, lidar.body_from_lidar,
+                                                   trajectory, 0.02, nullptr, &origins);
+  return evaluation::identify(map.points, origins, hits);
 }
 
 /// What the rays of the run's LiDAR hit; empty, with a warning, if the dataset cannot be read
 /// again.
-std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar_id,
-                                  const Trajectory& estimate, const Trajectory& truth,
-                                  const World& world, const Parallel& parallel, LogSink& log) {
+std::optional<evaluation::RayTruth> ray_truth(const fs::path& path, const std::string& lidar_id,
+                                              const Trajectory& estimate, const Trajectory& truth,
+                                              const world::World& world, const Parallel& parallel,
+                                              LogSink& log) {
   try {
-    ReadOptions read;
+    dataset::ReadOptions read;
     read.sensor = lidar_id;
-    Dataset again = open_scored_returns(path, read, parallel);
+    dataset::Dataset again = open_scored_returns(path, read, parallel);
     const LidarInfo* found = again.rig.find_lidar(lidar_id);
     if (found == nullptr) throw InputError(path.string(), "has no LiDAR named " + lidar_id);
     const LidarInfo lidar = *found;
     const auto hits = open_scored_truth(path, lidar.id, parallel);
     if (!hits) {
-      return RayTruth{
-          observe(*again.events, lidar.id, lidar.body_from_lidar, truth, world, parallel), {}};
+      return evaluation::RayTruth{
+          evaluation::observe(*again.events, lidar.id, lidar.body_from_lidar, truth, world,
+                              parallel),
+          {}};
     }
     const auto hits_again = open_scored_truth(path, lidar.id, parallel);
-    return RayTruth{observe(*hits, world, parallel),
-                    identified_map(std::move(again), lidar, estimate, *hits_again)};
+    return evaluation::RayTruth{evaluation::observe(*hits, world, parallel),
+                                identified_map(std::move(again), lidar, estimate, *hits_again)};
   } catch (const InputError& error) {
     log.warn(std::string("completeness and signed distance are left out: ") + error.what());
     return std::nullopt;
@@ -105,9 +110,10 @@ std::optional<RayTruth> ray_truth(const fs::path& path, const std::string& lidar
 
 }  // namespace
 
-Json to_json(const RunSummary& summary) {
+Json to_json(const odometry::RunSummary& summary) {
   Json statuses = Json::object();
-  for (const auto& [status, count] : summary.statuses) statuses[to_string(status)] = count;
+  for (const auto& [status, count] : summary.statuses)
+    statuses[odometry::to_string(status)] = count;
   return {{"scans", summary.scans},
           {"dropped", summary.dropped},
           {"longest_delay_s", summary.longest_delay_s},
@@ -125,20 +131,21 @@ Json made_on() {
           {"lidarena", LIDARENA_VERSION}};
 }
 
-RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const Parallel& parallel,
-                         LogSink& log) {
-  Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& out,
+                                   const Parallel& parallel, LogSink& log) {
+  dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
   for (const std::string& note : dataset.notes) log.info("note: " + note);
   const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
-  const MadeOdometry made = make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
-  RunOptions options;
+  const odometry::MadeOdometry made =
+      odometry::make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
+  odometry::RunOptions options;
   options.lidar_id = lidar_id;
   if (const ImuInfo* imu = dataset.rig.imu_beside(*dataset.rig.find_lidar(lidar_id))) {
     options.imu_id = imu->id;
   }
   options.scan_count = dataset.scan_count;
   options.paced = request.paced;
-  RunResult result = run(*made.odometry, *dataset.events, options, log);
+  odometry::RunResult result = odometry::run(*made.odometry, *dataset.events, options, log);
   if (!result.files.trajectory.empty()) {
     result.files.reprojected =
         reprojected_map(request, lidar_id, result.files.trajectory, parallel);
@@ -155,34 +162,34 @@ RunSummary run_algorithm(const RunRequest& request, const fs::path& out, const P
                            {"reason", result.summary.reason},
                            {"made_on", made_on()},
                            {"summary", to_json(result.summary)}};
-  write_run(out, result.files);
+  dataset::write_run(out, result.files);
   return result.summary;
 }
 
 Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
-  const RunFiles run = read_run(folder);
+  const dataset::RunFiles run = dataset::read_run(folder);
   const fs::path dataset = folder / run.manifest.at("dataset").get<std::string>();
-  const auto truth = load_truth(dataset);
+  const auto truth = dataset::load_truth(dataset);
   if (!truth) {
     throw InputError(dataset.string(), "contains no truth to score against",
                      "give one: evaluate --trajectory FILE --truth FILE");
   }
-  std::unique_ptr<World> world;
-  if (const auto mesh = find_world_mesh(dataset)) {
-    world = std::make_unique<World>(load_mesh(*mesh), mesh->string());
+  std::unique_ptr<world::World> world;
+  if (const auto mesh = dataset::find_world_mesh(dataset)) {
+    world = std::make_unique<world::World>(world::load_mesh(*mesh), mesh->string());
   }
-  const Json metrics = evaluate_run(run, *truth, world.get(), parallel, log, [&] {
+  const Json metrics = evaluation::evaluate_run(run, *truth, world.get(), parallel, log, [&] {
     return ray_truth(dataset, run.manifest.value("sensor", ""), run.trajectory, *truth, *world,
                      parallel, log);
   });
   if (world && metrics.value("status", "") == "ok" && !run.reprojected.points.empty()) {
     const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);
-    write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
+    dataset::write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
   }
   Json accuracy = metrics;
   accuracy.erase("resources");  // differs between repeated runs, so it goes to its own file
-  write_json(folder / "resources.json", metrics.at("resources"));
-  write_json(folder / "metrics.json", accuracy);
+  dataset::write_json(folder / "resources.json", metrics.at("resources"));
+  dataset::write_json(folder / "metrics.json", accuracy);
   return metrics;
 }
 
@@ -190,4 +197,4 @@ void remove_maps(const fs::path& run) {
   for (const char* map : {"map.ply", "reprojected.ply", "scored.ply"}) fs::remove(run / map);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -10,25 +10,25 @@
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/odometry/run.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// Input of `lidarena run`.
 struct RunRequest {
-  OdometryRequest odometry;
+  odometry::OdometryRequest odometry;
   std::filesystem::path dataset;
-  ReadOptions read;    ///< `read.sensor` names the LiDAR if the dataset has several
-  bool paced = false;  ///< drop scans when the algorithm is late, as on a live robot
+  dataset::ReadOptions read;  ///< `read.sensor` names the LiDAR if the dataset has several
+  bool paced = false;         ///< drop scans when the algorithm is late, as on a live robot
 };
 
 /// A run's summary as written to its manifest.
-Json to_json(const RunSummary& summary);
+Json to_json(const odometry::RunSummary& summary);
 /// Where a run's times were measured: processor, cores, memory, version of lidarena.
 Json made_on();
 
 /// Runs one algorithm over one dataset and writes the RUN folder `out`, with the re-projected map.
 /// Returns the summary; a diverged run is written too, with its reason in the manifest.
-RunSummary run_algorithm(const RunRequest& request, const std::filesystem::path& out,
-                         const Parallel& parallel, LogSink& log);
+odometry::RunSummary run_algorithm(const RunRequest& request, const std::filesystem::path& out,
+                                   const Parallel& parallel, LogSink& log);
 
 /// Scores the RUN folder against the truth and the mesh of the dataset that its manifest names.
 /// Writes metrics.json, resources.json (the entry "resources" of the returned metrics) and
@@ -39,4 +39,4 @@ Json score_run(const std::filesystem::path& run, const Parallel& parallel, LogSi
 /// Deletes the maps of a scored RUN folder; trajectories, metrics and manifest stay.
 void remove_maps(const std::filesystem::path& run);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

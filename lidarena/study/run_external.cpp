@@ -17,7 +17,7 @@
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -42,10 +42,10 @@ Rig rig_of_one(const Rig& rig, const std::string& lidar_id) {
 
 Recording record(const ExternalProgram& program, const RunRequest& request, const fs::path& folder,
                  const Parallel& parallel) {
-  Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
+  dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
   Recording recording;
   recording.rig = rig_of_one(dataset.rig, request.read.sensor);
-  DatasetWriter writer(folder, recording.rig, {program.input, program.dialect});
+  dataset::DatasetWriter writer(folder, recording.rig, {program.input, program.dialect});
   while (const auto event = dataset.events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       if (event->sensor_id != recording.rig.lidars[0].id) continue;
@@ -58,8 +58,8 @@ Recording record(const ExternalProgram& program, const RunRequest& request, cons
   }
   writer.close();
   recording.path = folder;
-  if (program.input == DatasetFormat::kMcap) recording.path = folder / "data.mcap";
-  if (program.input == DatasetFormat::kBag) recording.path = folder / "data.bag";
+  if (program.input == dataset::DatasetFormat::kMcap) recording.path = folder / "data.mcap";
+  if (program.input == dataset::DatasetFormat::kBag) recording.path = folder / "data.bag";
   return recording;
 }
 
@@ -134,17 +134,17 @@ Trajectory body_trajectory(const Trajectory& given, const Pose& sensor_from_body
   return Trajectory(std::move(poses));
 }
 
-Cloud map_of(const fs::path& output) {
+dataset::Cloud map_of(const fs::path& output) {
   for (const char* name : {"map.ply", "map.pcd"}) {
-    if (fs::exists(output / name)) return read_cloud(output / name);
+    if (fs::exists(output / name)) return dataset::read_cloud(output / name);
   }
   return {};
 }
 
 }  // namespace
 
-RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
-                        const fs::path& out, const Parallel& parallel, LogSink& log) {
+odometry::RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
+                                  const fs::path& out, const Parallel& parallel, LogSink& log) {
   const fs::path input = out / "input", output = out / "output";
   fs::remove_all(out);
   fs::create_directories(output);
@@ -164,16 +164,17 @@ RunSummary run_external(const ExternalProgram& program, const RunRequest& reques
     throw InputError(program.name, "left no trajectory.tum in {output}",
                      "see docs/external_slam.md; its output is in program.log");
   }
-  RunFiles files;
-  files.trajectory =
-      body_trajectory(read_trajectory(left), sensor_from_body(program.pose_of, recording.rig));
+  dataset::RunFiles files;
+  files.trajectory = body_trajectory(dataset::read_trajectory(left),
+                                     sensor_from_body(program.pose_of, recording.rig));
   files.live = files.trajectory;
   files.map = map_of(output);
   const LidarInfo& lidar = recording.rig.lidars[0];
-  Dataset again = open_scored_returns(request.dataset, request.read, parallel);
-  files.reprojected = reproject(*again.events, lidar.id, lidar.body_from_lidar, files.trajectory);
+  dataset::Dataset again = open_scored_returns(request.dataset, request.read, parallel);
+  files.reprojected =
+      evaluation::reproject(*again.events, lidar.id, lidar.body_from_lidar, files.trajectory);
 
-  RunSummary summary;
+  odometry::RunSummary summary;
   summary.scans = recording.scans;
   summary.sensor_seconds = recording.seconds;
   summary.compute_seconds = used.wall_s;
@@ -192,9 +193,9 @@ RunSummary run_external(const ExternalProgram& program, const RunRequest& reques
       {"peak_mb", used.peak_mb},
       {"made_on", made_on()},
       {"summary", to_json(summary)}};
-  write_run(out, files);
+  dataset::write_run(out, files);
   fs::remove_all(output);
   return summary;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -8,7 +8,7 @@
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/study_spec.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// File in a RUN folder that holds what the external program printed.
 inline constexpr const char* kProgramLog = "program.log";
@@ -21,7 +21,8 @@ inline constexpr const char* kProgramLog = "program.log";
 /// the frame `program.pose_of`, at the scans' stamps or any others. It may write map.ply or
 /// map.pcd. What it prints goes to program.log. Throws Error if its exit code is not 0, InputError
 /// if its files cannot be read.
-RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
-                        const std::filesystem::path& out, const Parallel& parallel, LogSink& log);
+odometry::RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
+                                  const std::filesystem::path& out, const Parallel& parallel,
+                                  LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

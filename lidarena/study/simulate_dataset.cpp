@@ -11,13 +11,13 @@
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
-#include "lidarena/sensor/simulate.hpp"
 #include "lidarena/scenes/load_world.hpp"
+#include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -26,11 +26,11 @@ constexpr Time kTruthStep = std::chrono::milliseconds(1);
 
 /// All objects that a simulation refers to, owned together.
 struct Scene {
-  WorldModel model;  ///< its mesh is moved into `world`
-  std::unique_ptr<World> world;
-  std::unique_ptr<Flight> flight;
-  std::vector<SensorConfig> sensors;
-  SimulationOptions options;
+  world::WorldModel model;  ///< its mesh is moved into `world`
+  std::unique_ptr<world::World> world;
+  std::unique_ptr<flight::Flight> flight;
+  std::vector<sensor::SensorConfig> sensors;
+  sensor::SimulationOptions options;
 
   Time duration() const {
     return options.duration > Time{0} ? std::min(options.duration, flight->duration())
@@ -41,30 +41,30 @@ struct Scene {
   }
 };
 
-std::unique_ptr<Scene> make_scene(WorldModel model, const fs::path& flight_file,
-                                  std::vector<SensorConfig> sensors,
-                                  const SimulationOptions& options, LogSink& log) {
+std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& flight_file,
+                                  std::vector<sensor::SensorConfig> sensors,
+                                  const sensor::SimulationOptions& options, LogSink& log) {
   auto scene = std::make_unique<Scene>();
-  scene->world = std::make_unique<World>(std::move(model.mesh), model.name);
+  scene->world = std::make_unique<world::World>(std::move(model.mesh), model.name);
   scene->model = std::move(model);
-  scene->flight = make_flight(flight_file, scene->model, *scene->world, log);
+  scene->flight = flight::make_flight(flight_file, scene->model, *scene->world, log);
   scene->sensors = std::move(sensors);
   scene->options = options;
   return scene;
 }
 
 /// An event source that owns the scene it simulates.
-class FlownSource : public EventSource {
+class FlownSource : public dataset::EventSource {
  public:
   FlownSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
       : scene_(std::move(scene)),
-        events_(simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
-                         parallel)) {}
-  std::optional<Event> next() override { return events_->next(); }
+        events_(sensor::simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
+                                 parallel)) {}
+  std::optional<dataset::Event> next() override { return events_->next(); }
 
  private:
   std::unique_ptr<Scene> scene_;
-  std::unique_ptr<EventSource> events_;
+  std::unique_ptr<dataset::EventSource> events_;
 };
 
 /// Name, in a dataset, of the ray table of its n-th sensor.
@@ -74,12 +74,12 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
   Json routes = Json::array();
   for (const auto& route : scene.model.routes) routes.push_back(value_to_json(route));
   Json sensors = Json::array();
-  for (SensorConfig sensor : scene.sensors) {
+  for (sensor::SensorConfig sensor : scene.sensors) {
     if (!sensor.pattern_file.empty()) sensor.pattern_file = pattern_name(sensors.size());
     sensors.push_back(to_json(sensor));
   }
   return {{"kind", "dataset"},
-          {"rig", to_json(make_rig(scene.sensors))},
+          {"rig", to_json(sensor::make_rig(scene.sensors))},
           {"simulation",
            {{"world", request.world.filename().string()},
             {"flight", "flight" + request.flight.extension().string()},
@@ -92,40 +92,42 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
 }
 
 /// Writes only the truth of the scored returns.
-class ScoredTruthWriter : public ScanTruthSink {
+class ScoredTruthWriter : public dataset::ScanTruthSink {
  public:
-  ScoredTruthWriter(ScanTruthSink& writer, std::size_t most) : writer_(writer), most_(most) {}
-  void write(const ScanTruth& truth) override {
-    ScanTruth scored = truth;
-    keep_scored(scored.points, most_);
+  ScoredTruthWriter(dataset::ScanTruthSink& writer, std::size_t most)
+      : writer_(writer), most_(most) {}
+  void write(const dataset::ScanTruth& truth) override {
+    dataset::ScanTruth scored = truth;
+    evaluation::keep_scored(scored.points, most_);
     writer_.write(scored);
   }
 
  private:
-  ScanTruthSink& writer_;
+  dataset::ScanTruthSink& writer_;
   std::size_t most_;
 };
 
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
                   const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
-  DatasetWriter writer(out, make_rig(scene.sensors), request.write);
+  dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), request.write);
   Time truth_time{0};
   const auto write_truth_until = [&](Time end) {
     for (; truth_time <= end; truth_time += kTruthStep) {
       writer.write_truth({truth_time, scene.flight->pose_at(truth_time)});
     }
   };
-  SimulationOptions options = scene.options;
+  sensor::SimulationOptions options = scene.options;
   std::size_t scans = 0;
-  for (const LidarInfo& lidar : make_rig(scene.sensors).lidars)
+  for (const LidarInfo& lidar : sensor::make_rig(scene.sensors).lidars)
     scans = std::max(scans, scene.scan_count(lidar));
-  const std::size_t most = scored_returns(scans);
+  const std::size_t most = evaluation::scored_returns(scans);
   ScoredTruthWriter scored_writer(writer, most);
-  ScanTruthSink* sink = &writer;
+  dataset::ScanTruthSink* sink = &writer;
   if (request.scored_only) sink = &scored_writer;
   options.truth = request.truth ? sink : nullptr;
-  auto events = simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
-  if (request.scored_only) events = std::make_unique<ScoredEvents>(std::move(events), most);
+  auto events = sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
+  if (request.scored_only)
+    events = std::make_unique<evaluation::ScoredEvents>(std::move(events), most);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -160,7 +162,7 @@ void copy_over(const fs::path& from, const fs::path& to) {
 /// relative path, so that the dataset can be simulated again after it was moved.
 void copy_flight(const fs::path& flight, const fs::path& out) {
   if (flight.extension() == ".yaml") {
-    const fs::path replay = load_config<FlightConfig>(flight).replay;
+    const fs::path replay = load_config<flight::FlightConfig>(flight).replay;
     if (replay.is_relative() && !replay.empty()) {
       if (*replay.lexically_normal().begin() == "..") {
         throw InputError(flight.string(), "replays a file above its own folder",
@@ -173,7 +175,7 @@ void copy_flight(const fs::path& flight, const fs::path& out) {
 }
 
 /// Copies the sensors' ray tables into the dataset, for the same reason.
-void copy_patterns(const std::vector<SensorConfig>& sensors, const fs::path& out) {
+void copy_patterns(const std::vector<sensor::SensorConfig>& sensors, const fs::path& out) {
   for (std::size_t i = 0; i < sensors.size(); ++i) {
     if (!sensors[i].pattern_file.empty()) {
       copy_over(sensors[i].pattern_file, out / pattern_name(i));
@@ -193,46 +195,46 @@ double path_length(const Scene& scene) {
 }
 
 /// What the LiDAR `sensor` hits, found by simulating the flight again.
-class FlownTruth : public ScanTruthSource, private ScanTruthSink {
+class FlownTruth : public dataset::ScanTruthSource, private dataset::ScanTruthSink {
  public:
   FlownTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
       : sensor_(std::move(sensor)) {
     scene->options.truth = this;
     events_ = std::make_unique<FlownSource>(std::move(scene), parallel);
   }
-  std::optional<ScanTruth> next() override {
+  std::optional<dataset::ScanTruth> next() override {
     while (waiting_.empty() && events_->next()) {
     }
     if (waiting_.empty()) return std::nullopt;
-    ScanTruth first = std::move(waiting_.front());
+    dataset::ScanTruth first = std::move(waiting_.front());
     waiting_.pop_front();
     return first;
   }
 
  private:
-  void write(const ScanTruth& truth) override {
+  void write(const dataset::ScanTruth& truth) override {
     if (truth.sensor_id == sensor_) waiting_.push_back(truth);
   }
 
   std::string sensor_;
-  std::unique_ptr<EventSource> events_;
-  std::deque<ScanTruth> waiting_;
+  std::unique_ptr<dataset::EventSource> events_;
+  std::deque<dataset::ScanTruth> waiting_;
 };
 
 std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& manifest) {
   LogSink silent;  // its messages were logged when the dataset was made
   const Json& simulation = manifest.at("simulation");
-  WorldModel model;
+  world::WorldModel model;
   model.name = (folder / "world.ply").string();
-  model.mesh = load_mesh(folder / "world.ply");
+  model.mesh = world::load_mesh(folder / "world.ply");
   const std::string place = (folder / "manifest.json").string();
   read_value(ConfigNode::parse(simulation.at("routes").dump(), place), model.routes, {});
-  std::vector<SensorConfig> sensors;
+  std::vector<sensor::SensorConfig> sensors;
   read_value(ConfigNode::parse(simulation.at("sensors").dump(), place), sensors, {});
-  for (SensorConfig& s : sensors) {
+  for (sensor::SensorConfig& s : sensors) {
     if (!s.pattern_file.empty()) s.pattern_file = (folder / s.pattern_file).string();
   }
-  SimulationOptions options;
+  sensor::SimulationOptions options;
   options.seed = simulation.at("seed").get<std::uint64_t>();
   options.duration = from_seconds(simulation.at("seconds").get<double>());
   options.noise = simulation.at("noise").get<bool>();
@@ -243,18 +245,18 @@ std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& man
 /// The manifest of a dataset without measurements, which has to be simulated; null for any other.
 Json manifest_to_fly(const fs::path& folder) {
   const fs::path file = folder / "manifest.json";
-  if (!fs::exists(file) || has_measurements(folder)) return nullptr;
-  Json manifest = read_json(file);
+  if (!fs::exists(file) || dataset::has_measurements(folder)) return nullptr;
+  Json manifest = dataset::read_json(file);
   return manifest.contains("simulation") ? manifest : nullptr;
 }
 
 /// Opens a dataset without measurements; its events are simulated.
-Dataset fly_manifest(const fs::path& folder, const Json& manifest, const std::string& sensor,
-                     const Parallel& parallel) {
+dataset::Dataset fly_manifest(const fs::path& folder, const Json& manifest,
+                              const std::string& sensor, const Parallel& parallel) {
   std::unique_ptr<Scene> scene = scene_of_manifest(folder, manifest);
-  Dataset dataset;
+  dataset::Dataset dataset;
   dataset.path = folder;
-  dataset.rig = make_rig(scene->sensors);
+  dataset.rig = sensor::make_rig(scene->sensors);
   dataset.manifest = manifest;
   if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor))
     dataset.scan_count = scene->scan_count(*lidar);
@@ -272,13 +274,13 @@ fs::path scored_place(const fs::path& dataset) {
 
 SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path& out,
                                  const Parallel& parallel, LogSink& log) {
-  std::vector<SensorConfig> sensors;
+  std::vector<sensor::SensorConfig> sensors;
   for (const fs::path& file : request.sensors) {
-    sensors.push_back(load_sensor(file));
+    sensors.push_back(sensor::load_sensor(file));
     if (request.mode) sensors.back().mode = *request.mode;
   }
-  WorldModel model = load_world(request.world, {}, log);
-  SimulationOptions options;
+  world::WorldModel model = scenes::load_world(request.world, {}, log);
+  sensor::SimulationOptions options;
   options.seed = request.seed;
   options.duration = from_seconds(request.seconds);
   options.noise = request.noise;
@@ -297,22 +299,22 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   fs::create_directories(out);
   // Files of an older dataset in this folder must not be taken for part of this one.
   for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
-  save_ply(out / "world.ply", scene->world->mesh());
+  world::save_ply(out / "world.ply", scene->world->mesh());
   copy_flight(request.flight, out);
   copy_patterns(scene->sensors, out);
   if (request.data) {
     write_events(request, *scene, out, parallel, log, summary);
   } else {
-    write_tum(out / "truth.tum", truth_of(*scene), kTruthHeader);
-    write_json(out / "manifest.json", manifest_of(request, *scene));
+    dataset::write_tum(out / "truth.tum", truth_of(*scene), dataset::kTruthHeader);
+    dataset::write_json(out / "manifest.json", manifest_of(request, *scene));
   }
   return summary;
 }
 
-Dataset open_any_dataset(const fs::path& path, const ReadOptions& options,
-                         const Parallel& parallel) {
+dataset::Dataset open_any_dataset(const fs::path& path, const dataset::ReadOptions& options,
+                                  const Parallel& parallel) {
   const Json manifest = manifest_to_fly(path);
-  return manifest.is_null() ? open_dataset(path, options)
+  return manifest.is_null() ? dataset::open_dataset(path, options)
                             : fly_manifest(path, manifest, options.sensor, parallel);
 }
 
@@ -324,31 +326,31 @@ void write_scored_returns(const SimulateRequest& request, const fs::path& datase
   simulate_dataset(scored, dataset / kScoredFolder, parallel, log);
 }
 
-Dataset open_scored_returns(const fs::path& dataset, const ReadOptions& options,
-                            const Parallel& parallel) {
+dataset::Dataset open_scored_returns(const fs::path& dataset, const dataset::ReadOptions& options,
+                                     const Parallel& parallel) {
   const fs::path place = scored_place(dataset);
-  Dataset scored = open_any_dataset(place, options, parallel);
+  dataset::Dataset scored = open_any_dataset(place, options, parallel);
   if (place != dataset) return scored;  // that folder holds scored returns only
-  const std::size_t most = scored_returns(scored.scan_count.value_or(0));
-  scored.events = std::make_unique<ScoredEvents>(std::move(scored.events), most);
+  const std::size_t most = evaluation::scored_returns(scored.scan_count.value_or(0));
+  scored.events = std::make_unique<evaluation::ScoredEvents>(std::move(scored.events), most);
   return scored;
 }
 
-std::unique_ptr<ScanTruthSource> open_scored_truth(const fs::path& dataset,
-                                                   const std::string& sensor,
-                                                   const Parallel& parallel) {
+std::unique_ptr<dataset::ScanTruthSource> open_scored_truth(const fs::path& dataset,
+                                                            const std::string& sensor,
+                                                            const Parallel& parallel) {
   const fs::path place = scored_place(dataset);
   const Json manifest = manifest_to_fly(place);
-  std::unique_ptr<ScanTruthSource> truth =
+  std::unique_ptr<dataset::ScanTruthSource> truth =
       manifest.is_null()
-          ? open_scan_truth(place, sensor)
+          ? dataset::open_scan_truth(place, sensor)
           : std::make_unique<FlownTruth>(sensor, scene_of_manifest(place, manifest), parallel);
   if (!truth || place != dataset) return truth;
-  ReadOptions options;
+  dataset::ReadOptions options;
   options.sensor = sensor;
-  const Dataset same = open_any_dataset(dataset, options, parallel);
-  return std::make_unique<ScoredTruth>(std::move(truth),
-                                       scored_returns(same.scan_count.value_or(0)));
+  const dataset::Dataset same = open_any_dataset(dataset, options, parallel);
+  return std::make_unique<evaluation::ScoredTruth>(
+      std::move(truth), evaluation::scored_returns(same.scan_count.value_or(0)));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

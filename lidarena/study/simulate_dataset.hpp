@@ -13,7 +13,7 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// Input of `lidarena simulate`, with names resolved to files.
 struct SimulateRequest {
@@ -23,11 +23,11 @@ struct SimulateRequest {
   std::uint64_t seed = 1;  ///< of all noise; the seed of a procedural world is in its own file
   double seconds = 0.0;    ///< 0 = the whole flight
   bool noise = true;
-  std::optional<ScanMode> mode;  ///< of all sensors; empty = as in their files
-  bool data = true;              ///< false: a manifest only; simulated whenever it is read
-  bool truth = false;            ///< also write what each point hit, as /truth/SENSOR/hits
-  bool scored_only = false;      ///< write only the returns that scoring uses
-  WriteOptions write;            ///< format and dialect of the measurements
+  std::optional<sensor::ScanMode> mode;  ///< of all sensors; empty = as in their files
+  bool data = true;                      ///< false: a manifest only; simulated whenever it is read
+  bool truth = false;                    ///< also write what each point hit, as /truth/SENSOR/hits
+  bool scored_only = false;              ///< write only the returns that scoring uses
+  dataset::WriteOptions write;           ///< format and dialect of the measurements
 };
 
 /// Counts and sizes of what was simulated.
@@ -47,8 +47,8 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const std::file
 
 /// Like open_dataset(), but also opens datasets without measurements: these are simulated while
 /// they are read, with the same points as if they had been written.
-Dataset open_any_dataset(const std::filesystem::path& path, const ReadOptions& options,
-                         const Parallel& parallel);
+dataset::Dataset open_any_dataset(const std::filesystem::path& path,
+                                  const dataset::ReadOptions& options, const Parallel& parallel);
 
 /// Folder in a dataset without measurements: its scored returns and what they hit, written once so
 /// that the flight is not simulated again for each scoring. May be deleted at any time.
@@ -58,11 +58,11 @@ void write_scored_returns(const SimulateRequest& request, const std::filesystem:
 
 /// The returns of the dataset that scoring uses (see scored_returns.hpp), read from the folder
 /// `scored` if it exists; the returns are the same either way.
-Dataset open_scored_returns(const std::filesystem::path& dataset, const ReadOptions& options,
-                            const Parallel& parallel);
+dataset::Dataset open_scored_returns(const std::filesystem::path& dataset,
+                                     const dataset::ReadOptions& options, const Parallel& parallel);
 /// What they hit; null if the dataset does not contain it and cannot be simulated.
-std::unique_ptr<ScanTruthSource> open_scored_truth(const std::filesystem::path& dataset,
-                                                   const std::string& sensor,
-                                                   const Parallel& parallel);
+std::unique_ptr<dataset::ScanTruthSource> open_scored_truth(const std::filesystem::path& dataset,
+                                                            const std::string& sensor,
+                                                            const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -27,7 +27,7 @@
 #include "lidarena/study/run_external.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -35,13 +35,13 @@ namespace fs = std::filesystem;
 constexpr const char* kRequest = "request.json";  ///< the request of a finished stage
 constexpr auto kPollPeriod = std::chrono::milliseconds(50);
 
-std::string digest_of(const fs::path& file) { return md5_of(read_bytes(file)); }
+std::string digest_of(const fs::path& file) { return dataset::md5_of(dataset::read_bytes(file)); }
 
 /// True if the stage in `folder` is complete and answers exactly this request.
 bool done_before(const fs::path& folder, const Json& request) {
   if (!fs::exists(folder / kRequest)) return false;
   try {
-    return read_json(folder / kRequest) == request;
+    return dataset::read_json(folder / kRequest) == request;
   } catch (const Error&) {
     return false;
   }
@@ -118,7 +118,7 @@ DatasetPlan dataset_plan(const PlannedRun& cell, const StudySpec& spec, const Co
 
 /// The sensor's id in the dataset, whose LiDARs are in the order of the study's sensors.
 std::string lidar_id_of(const fs::path& dataset, const StudySpec& spec, const std::string& sensor) {
-  const Json manifest = read_json(dataset / "manifest.json");
+  const Json manifest = dataset::read_json(dataset / "manifest.json");
   for (std::size_t i = 0; i < spec.sensors.size(); ++i) {
     if (spec.sensors[i] == sensor) return manifest.at("rig").at("lidars").at(i).at("id");
   }
@@ -130,10 +130,10 @@ void record_failure(const fs::path& run, const PlannedRun& cell, const std::stri
   for (const auto& entry : fs::directory_iterator(run)) {
     if (entry.path().filename() != kProgramLog) fs::remove_all(entry.path());
   }
-  write_json(run / "manifest.json", {{"kind", "run"},
-                                     {"algorithm", cell.algorithm},
-                                     {"preset", cell.preset},
-                                     {"failed", reason}});
+  dataset::write_json(run / "manifest.json", {{"kind", "run"},
+                                              {"algorithm", cell.algorithm},
+                                              {"preset", cell.preset},
+                                              {"failed", reason}});
 }
 
 /// One stage of the study: planning a flight, writing its returns for scoring, or running and
@@ -324,7 +324,7 @@ class Runner {
         [&stage, &log = log_, threads, alone] {
           MessagesOnly messages(log);
           stage.work(Parallel(threads), alone ? log : static_cast<LogSink&>(messages));
-          write_json(stage.folder / kRequest, stage.key);
+          dataset::write_json(stage.folder / kRequest, stage.key);
         },
         limits, slot.cores);
   }
@@ -367,7 +367,7 @@ class Runner {
       ++outcome_.failed;
       return;
     }
-    const Json manifest = read_json(stage.folder / "manifest.json");
+    const Json manifest = dataset::read_json(stage.folder / "manifest.json");
     outcome_.diverged += manifest.at("summary").at("diverged").get<bool>() ? 1 : 0;
   }
 
@@ -398,9 +398,9 @@ StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const
   const std::vector<PlannedRun> cells = cells_of(plan(spec, configs), options.shard, configs);
   fs::create_directories(out);
   const FolderLock lock(out);
-  write_json(out / "study.json",
-             {{"kind", "study"}, {"spec", to_json(spec)}, {"runs", value_to_json(cells)}});
+  dataset::write_json(out / "study.json",
+                      {{"kind", "study"}, {"spec", to_json(spec)}, {"runs", value_to_json(cells)}});
   return Runner(spec, configs, out, options, log).run(cells);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -7,7 +7,7 @@
 #include "lidarena/study/config_folder.hpp"
 #include "lidarena/study/study_spec.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 struct StudyOptions {
   int threads = 0;  ///< of all jobs together, 0 = one per processor core
@@ -31,4 +31,4 @@ struct StudyOutcome {
 StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs,
                        const std::filesystem::path& out, const StudyOptions& options, LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -12,7 +12,7 @@
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/lidar.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 std::string stem(const std::string& name_or_path) { return fs::path(name_or_path).stem().string(); }
 
 /// NAME:PRESET into its parts; the preset defaults to the algorithm's default.
-OdometryRequest parse_algorithm(const std::string& text) {
-  OdometryRequest request;
+odometry::OdometryRequest parse_algorithm(const std::string& text) {
+  odometry::OdometryRequest request;
   const std::size_t colon = text.find(':');
   request.algorithm = text.substr(0, colon);
   if (colon != std::string::npos) request.preset = text.substr(colon + 1);
@@ -31,9 +31,9 @@ OdometryRequest parse_algorithm(const std::string& text) {
 /// Throws InputError for an algorithm or preset that neither the factory nor the study lists.
 void check_algorithm(const StudySpec& spec, const std::string& text) {
   if (find_external(spec, text) != nullptr) return;
-  const OdometryRequest request = parse_algorithm(text);
+  const odometry::OdometryRequest request = parse_algorithm(text);
   std::vector<std::string> names;
-  for (const AlgorithmInfo& info : list_algorithms()) {
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
     names.push_back(info.name);
     if (info.name != request.algorithm) continue;
     const auto& presets = info.presets;
@@ -51,7 +51,7 @@ void check_external(const StudySpec& spec) {
     if (program.name.empty() || program.command.empty()) {
       throw InputError("study", "has an external program without a name or a command");
     }
-    for (const AlgorithmInfo& info : list_algorithms()) {
+    for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
       if (info.name == program.name) {
         throw InputError("study", "names an external program '" + program.name +
                                       "', which is a built-in algorithm");
@@ -65,10 +65,10 @@ void check_external(const StudySpec& spec) {
 }
 
 PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t seed,
-                   std::optional<ScanMode> mode, const std::string& sensor,
+                   std::optional<sensor::ScanMode> mode, const std::string& sensor,
                    const std::string& algorithm) {
   const bool external = find_external(spec, algorithm) != nullptr;
-  const OdometryRequest request = parse_algorithm(algorithm);
+  const odometry::OdometryRequest request = parse_algorithm(algorithm);
   PlannedRun cell;
   cell.dataset = fmt::format("{}-{}-s{}", stem(scene.world), stem(scene.flight), seed);
   if (mode)
@@ -111,18 +111,19 @@ std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs)
   need(!spec.sensors.empty(), "sensors");
   need(!spec.algorithms.empty(), "algorithms");
   need(!spec.seeds.empty(), "seeds");
-  for (const std::string& sensor : spec.sensors) load_sensor(configs.resolve("sensors", sensor));
+  for (const std::string& sensor : spec.sensors)
+    sensor::load_sensor(configs.resolve("sensors", sensor));
   check_external(spec);
   for (const std::string& algorithm : spec.algorithms) check_algorithm(spec, algorithm);
 
-  std::vector<std::optional<ScanMode>> modes(spec.modes.begin(), spec.modes.end());
+  std::vector<std::optional<sensor::ScanMode>> modes(spec.modes.begin(), spec.modes.end());
   if (modes.empty()) modes.emplace_back();
   std::vector<PlannedRun> cells;
   for (const StudyScene& scene : spec.scenes) {
     configs.resolve("worlds", scene.world);
     configs.resolve("flights", scene.flight);
     for (const std::uint64_t seed : spec.seeds) {
-      for (const std::optional<ScanMode> mode : modes) {
+      for (const std::optional<sensor::ScanMode> mode : modes) {
         for (const std::string& sensor : spec.sensors) {
           for (const std::string& algorithm : spec.algorithms) {
             cells.push_back(cell_of(spec, scene, seed, mode, sensor, algorithm));
@@ -156,11 +157,12 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
-  const auto pattern = make_pattern(load_sensor(configs.resolve("sensors", cell.sensor)));
+  const auto pattern =
+      sensor::make_pattern(sensor::load_sensor(configs.resolve("sensors", cell.sensor)));
   double seconds = cell.seconds;
   const fs::path flight = configs.resolve("flights", cell.flight);
   if (seconds == 0.0 && flight.extension() == ".yaml") {
-    seconds = load_config<FlightConfig>(flight).duration_s;
+    seconds = load_config<flight::FlightConfig>(flight).duration_s;
   }
   constexpr double kUnknown = 120.0;  // s, if the flight's file gives no duration
   if (seconds == 0.0) seconds = kUnknown;
@@ -186,4 +188,4 @@ std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Sha
   return part;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::study

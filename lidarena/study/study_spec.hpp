@@ -11,7 +11,7 @@
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/config_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 
 /// One world and the flight through it.
 struct StudyScene {
@@ -29,19 +29,17 @@ struct StudyScene {
 
 /// The frame whose poses a program gives.
 enum class PoseOf { kBody, kLidar, kImu };
-template <>
-struct EnumNames<PoseOf> {
-  static constexpr std::array names{std::pair{"body", PoseOf::kBody},
-                                    std::pair{"lidar", PoseOf::kLidar},
-                                    std::pair{"imu", PoseOf::kImu}};
-};
+constexpr auto enum_names(PoseOf) {
+  return std::array{std::pair{"body", PoseOf::kBody}, std::pair{"lidar", PoseOf::kLidar},
+                    std::pair{"imu", PoseOf::kImu}};
+}
 
 /// A SLAM program that is not part of lidarena, run by a command line. See docs/external_slam.md.
 struct ExternalProgram {
   std::string name;
   std::string command;
-  DatasetFormat input = DatasetFormat::kMcap;
-  Dialect dialect = Dialect::kSi;
+  dataset::DatasetFormat input = dataset::DatasetFormat::kMcap;
+  dataset::Dialect dialect = dataset::Dialect::kSi;
   PoseOf pose_of = PoseOf::kLidar;
 
   template <class Self, class V>
@@ -75,7 +73,7 @@ struct StudySpec {
   std::vector<std::string> sensors;
   std::vector<std::string> algorithms;  ///< NAME or NAME:PRESET, or the name of an external program
   std::vector<std::uint64_t> seeds = {1};
-  std::vector<ScanMode> modes;  ///< of all sensors; empty = as in their files
+  std::vector<sensor::ScanMode> modes;  ///< of all sensors; empty = as in their files
   std::vector<ExternalProgram> external;
   RunLimits limits;
   bool keep_maps = true;
@@ -100,8 +98,8 @@ struct PlannedRun {
   std::string dataset;  ///< folder below datasets/
   std::string world, flight, sensor, algorithm, preset;
   std::uint64_t seed = 1;
-  double seconds = 0.0;          ///< of flight, 0 = all of it
-  std::optional<ScanMode> mode;  ///< of the sensors; empty = as in their files
+  double seconds = 0.0;                  ///< of flight, 0 = all of it
+  std::optional<sensor::ScanMode> mode;  ///< of the sensors; empty = as in their files
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -145,4 +143,4 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
                                  const ConfigFolder& configs);
 
-}  // namespace lidarena
+}  // namespace lidarena::study

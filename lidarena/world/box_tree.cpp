@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::AlignedBox3f;
 using Eigen::Vector3f;
@@ -171,4 +171,4 @@ void BoxTree::refit(std::span<const AlignedBox3f> boxes) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Ray-box intersection test (slab method); what depends on the ray alone is precomputed.
 struct BoxTest {
@@ -131,4 +131,4 @@ class BoxTree {
   std::vector<std::uint32_t> members_;  ///< in the order of the leaves
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::AlignedBox3d;
 using Eigen::AlignedBox3f;
@@ -138,4 +138,4 @@ void Bvh::visit_near(const Vector3d& point, double radius, TriangleVisitor& visi
                    [&](std::uint32_t triangle) { return widened2(visitor.visit(triangle)); });
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -10,7 +10,7 @@
 #include "lidarena/world/mesh_tree.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A bounding volume hierarchy (see box_tree.hpp) that depends on Eigen only. Ray-triangle tests
 /// use double precision and are watertight: no ray passes between two triangles that share an edge
@@ -39,4 +39,4 @@ class Bvh : public MeshTree {
   BoxTree tree_;  ///< boxes relative to `center_`, enlarged by a margin that covers rounding
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

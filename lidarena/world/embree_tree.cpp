@@ -14,7 +14,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -248,4 +248,4 @@ std::unique_ptr<MeshTree> make_embree_tree(const TriangleMesh& mesh, const std::
   return std::make_unique<EmbreeTree>(mesh, name);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

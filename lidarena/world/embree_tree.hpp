@@ -7,10 +7,10 @@
 #include "lidarena/world/mesh_tree.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Embree's tree over a clean mesh. It holds a copy of the mesh in single precision, relative to
 /// the center of its bounds. Throws Error (which contains `name`) when Embree fails.
 std::unique_ptr<MeshTree> make_embree_tree(const TriangleMesh& mesh, const std::string& name);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -12,7 +12,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/ply.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 namespace fs = std::filesystem;
@@ -129,4 +129,4 @@ void save_world(const fs::path& file, const TriangleMesh& mesh) {
                    "use .ply, .obj, .sdf or .world");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -6,7 +6,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Writes Wavefront OBJ: one object, meters, z up, 9 significant digits, no normals or colors.
 /// The file appears under its name only once it is complete. Throws Error if it cannot be written.
@@ -23,4 +23,4 @@ void save_sdf(const std::filesystem::path& file, const TriangleMesh& mesh);
 /// .world). Throws InputError for other extensions.
 void save_world(const std::filesystem::path& file, const TriangleMesh& mesh);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector3d;
 
@@ -126,4 +126,4 @@ ClosestPoint GroupSearch::choose(const Vector3d& point, double offset, double ro
   return best;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

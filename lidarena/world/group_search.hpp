@@ -9,7 +9,7 @@
 #include "lidarena/world/triangle_frame.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A triangle and its distance (m) to the query point.
 struct NearTriangle {
@@ -59,4 +59,4 @@ class GroupSearch {
   std::vector<TriangleFrame> frames_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

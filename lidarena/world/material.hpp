@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Optical properties of a surface for a LiDAR's light (near infrared, about 905 nm).
 struct Material {
@@ -47,4 +47,4 @@ inline const Material kMirror{"mirror", 0.9, 0.999};
 inline const Material kRock{"rock", 0.25, 0.0};
 }  // namespace materials
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -6,7 +6,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector3d;
 
@@ -40,4 +40,4 @@ void merge_vertices(TriangleMesh& mesh) {
   mesh.vertices = std::move(vertices);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -14,7 +14,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/ply.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 namespace {
 
@@ -159,4 +159,4 @@ TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up) {
   return mesh;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

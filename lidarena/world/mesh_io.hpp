@@ -8,7 +8,7 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Up axis of a mesh file.
 enum class UpAxis {
@@ -16,11 +16,10 @@ enum class UpAxis {
   kY,     ///< y, regardless of the file; rotated to z up
   kZ,     ///< z, regardless of the file: coordinates are used unchanged, as in Gazebo
 };
-template <>
-struct EnumNames<UpAxis> {
-  static constexpr std::array names{std::pair{"file", UpAxis::kFile}, std::pair{"y", UpAxis::kY},
-                                    std::pair{"z", UpAxis::kZ}};
-};
+constexpr auto enum_names(UpAxis) {
+  return std::array{std::pair{"file", UpAxis::kFile}, std::pair{"y", UpAxis::kY},
+                    std::pair{"z", UpAxis::kZ}};
+}
 
 /// One surface of a mesh file, with the names by which an SDF <submesh> may refer to it.
 struct MeshPart {
@@ -42,4 +41,4 @@ std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis 
 /// All parts as one mesh.
 TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up = UpAxis::kFile);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -7,7 +7,7 @@
 
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Callback of MeshTree::visit_near.
 class TriangleVisitor {
@@ -33,4 +33,4 @@ class MeshTree {
                           TriangleVisitor& visitor) const = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

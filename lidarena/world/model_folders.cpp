@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <sstream>
 
-namespace lidarena {
+namespace lidarena::world {
 
 namespace fs = std::filesystem;
 
@@ -47,4 +47,4 @@ std::string ModelFolders::listed() const {
   return text;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

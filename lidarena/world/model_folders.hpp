@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// The folders in which `model://NAME/...` is searched, in order.
 class ModelFolders {
@@ -29,4 +29,4 @@ class ModelFolders {
   std::vector<std::filesystem::path> folders_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -97,4 +97,4 @@ void MovingWorld::cast(std::span<const Ray> rays, double max_range, std::span<Hi
 
 const Material& MovingWorld::material(std::uint32_t shape) const { return materials_[shape]; }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

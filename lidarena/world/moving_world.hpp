@@ -9,7 +9,7 @@
 #include "lidarena/world/box_tree.hpp"
 #include "lidarena/world/shape.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A shape with its pose and material in the world.
 struct PlacedShape {
@@ -56,4 +56,4 @@ class MovingWorld : public Surfaces {
   std::unique_ptr<BoxTree> tree_;  ///< null when there is no body
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -11,7 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/ply_reader.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 namespace {
 
@@ -159,4 +159,4 @@ void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -7,7 +7,7 @@
 
 /// Surfaces in the Polygon File Format (G. Turk, "The PLY Polygon File Format", 1994). Implemented
 /// here and not by the mesh importer, because coordinates must be kept in double precision.
-namespace lidarena {
+namespace lidarena::world {
 
 /// Reads vertices (x, y, z) and faces (vertex_indices or vertex_index) of an ASCII or binary PLY
 /// file and skips everything else. Polygons are split into triangle fans, so they must be convex.
@@ -22,4 +22,4 @@ TriangleMesh read_ply(const std::filesystem::path& file);
 /// The file appears under its name only once it is complete. Throws Error if it cannot be written.
 void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

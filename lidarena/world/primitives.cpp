@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
@@ -96,4 +96,4 @@ TriangleMesh plane_shape(const Vector3d& normal, const Vector2d& size) {
   return mesh;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

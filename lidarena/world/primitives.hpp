@@ -8,7 +8,7 @@
 /// SDF's primitive shapes as triangle meshes around their own origin, normals outward. Round shapes
 /// are inscribed: the vertices lie on the true surface, and between vertices the mesh is inside it
 /// by at most r (1 - cos(pi / 64)), 1.2 mm per meter of radius.
-namespace lidarena {
+namespace lidarena::world {
 
 constexpr int kSectors = 64;  ///< number of segments around the axis of a round shape
 constexpr int kStacks = 32;   ///< number of segments from pole to pole of a sphere
@@ -23,4 +23,4 @@ TriangleMesh capsule_shape(double radius, double length);
 /// A rectangle of the given size; SDF's unlimited planes are reduced to their `size`, too.
 TriangleMesh plane_shape(const Eigen::Vector3d& normal, const Eigen::Vector2d& size);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

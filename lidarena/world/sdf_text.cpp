@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-namespace lidarena {
+namespace lidarena::world {
 
 namespace {
 
@@ -81,4 +81,4 @@ std::string without_unseen_elements(std::string sdf_text) {
   return sdf_text;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

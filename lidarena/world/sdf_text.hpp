@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// The SDF text without elements that have no surface: <scene>, <physics>, <gui>, <plugin>,
 /// <material>, <state> and others are overwritten by blanks; line breaks are kept. Strict SDF
@@ -11,4 +11,4 @@ namespace lidarena {
 /// An element that is not closed is kept, so that the parser reports it.
 std::string without_unseen_elements(std::string sdf_text);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

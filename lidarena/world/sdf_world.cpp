@@ -19,7 +19,7 @@
 #include "lidarena/world/primitives.hpp"
 #include "lidarena/world/sdf_text.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 namespace fs = std::filesystem;
 
@@ -280,17 +280,17 @@ TriangleMesh load_sdf(const fs::path& file, const SdfOptions& options, LogSink& 
   return SdfLoader(file, options, log).load();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world
 
 #else
 
-namespace lidarena {
+namespace lidarena::world {
 
 TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions&, LogSink&) {
   throw InputError(file.string(), "this build cannot read SDF worlds",
                    "build with LIDARENA_WITH_SDF=ON where sdformat 12 is installed");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world
 
 #endif

@@ -10,15 +10,14 @@
 #include "lidarena/base/log.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Which shapes of an SDF model to load.
 enum class ShapeKind { kVisual, kCollision };
-template <>
-struct EnumNames<ShapeKind> {
-  static constexpr std::array names{std::pair{"visual", ShapeKind::kVisual},
-                                    std::pair{"collision", ShapeKind::kCollision}};
-};
+constexpr auto enum_names(ShapeKind) {
+  return std::array{std::pair{"visual", ShapeKind::kVisual},
+                    std::pair{"collision", ShapeKind::kCollision}};
+}
 
 struct SdfOptions {
   ShapeKind shapes = ShapeKind::kVisual;
@@ -39,4 +38,4 @@ struct SdfOptions {
 /// `allow_missing`), and when nothing with a surface is found or the file is not SDF.
 TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions& options, LogSink& log);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

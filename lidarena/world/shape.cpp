@@ -7,7 +7,7 @@
 
 #include "lidarena/world/bvh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::AlignedBox3d;
@@ -135,4 +135,4 @@ const TriangleMesh* mesh_of(const Shape& shape) {
   return mesh == nullptr ? nullptr : &mesh->mesh();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

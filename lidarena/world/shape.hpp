@@ -9,7 +9,7 @@
 #include "lidarena/world/surfaces.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A body in its own frame with exact ray intersections, from outside and from inside. Const,
 /// thread-safe.
@@ -43,4 +43,4 @@ ShapePtr make_mesh(TriangleMesh mesh);
 /// The mesh of a shape created by make_mesh(); nullptr for others.
 const TriangleMesh* mesh_of(const Shape& shape);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -8,7 +8,7 @@
 
 #include "lidarena/world/material.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A half-line; `direction` has unit length.
 struct Ray {
@@ -43,4 +43,4 @@ class Surfaces {
   virtual const Material& material(std::uint32_t triangle) const = 0;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

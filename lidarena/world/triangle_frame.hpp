@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A triangle abc in coordinates of its plane: a at the origin, b at (base, 0), c at (x, y) with
 /// y > 0. Holds the precomputed values for many distance queries against the same triangle.
@@ -60,4 +60,4 @@ class TriangleFrame {
   double base_, apex_x_, apex_y_, side_bc_, side_ca_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector3d;
 
@@ -167,4 +167,4 @@ Vector3d closest_point_on_triangle(const Vector3d& p, const Vector3d& a, const V
   return best;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -11,7 +11,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/world/material.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Indices of a triangle's corners.
 using Triangle = std::array<std::uint32_t, 3>;
@@ -57,4 +57,4 @@ void merge_vertices(TriangleMesh& mesh);
 Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
                                           const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -13,7 +13,7 @@
 #endif
 #include "lidarena/world/group_search.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -205,4 +205,4 @@ void World::closest_points(std::span<const Vector3d> points, double max_distance
   });
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::world

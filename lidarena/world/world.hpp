@@ -12,7 +12,7 @@
 #include "lidarena/world/surfaces.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// Implementation of the ray queries. Results are equal up to rounding: when a ray meets two
 /// triangles at the same range, or an edge, either triangle may be reported.
@@ -67,4 +67,4 @@ class World : public Surfaces {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

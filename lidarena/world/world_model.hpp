@@ -7,7 +7,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 
 /// A world without its ray caster: the mesh, and flight routes if its generator provides them.
 struct WorldModel {
@@ -17,4 +17,4 @@ struct WorldModel {
   std::vector<std::vector<Eigen::Vector3d>> routes;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::world

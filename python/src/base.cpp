@@ -106,10 +106,10 @@ void bind_trajectory(py::module_& m) {
       .def(
           "write",
           [](const Trajectory& t, const std::filesystem::path& file, const std::string& frames) {
-            write_tum(file, t, frames + "\ntime[s] x y z[m] qx qy qz qw");
+            dataset::write_tum(file, t, frames + "\ntime[s] x y z[m] qx qy qz qw");
           },
           py::arg("file"), py::arg("frames") = "world_from_body", "Writes a TUM file.");
-  m.def("read_trajectory", &read_trajectory, py::arg("file"), py::arg("rate_hz") = 10.0,
+  m.def("read_trajectory", &dataset::read_trajectory, py::arg("file"), py::arg("rate_hz") = 10.0,
         "Reads TUM, KITTI poses or EuRoC csv; the format is detected from the content.");
 }
 

@@ -18,14 +18,14 @@ std::variant<ImuSample, Scan> measurement_of(const py::handle& data) {
 }
 
 /// Any Python iterable of (sensor id, measurement).
-class IterableSource : public EventSource {
+class IterableSource : public dataset::EventSource {
  public:
   explicit IterableSource(const py::object& iterable) : rows_(py::iter(iterable)) {}
-  std::optional<Event> next() override {
+  std::optional<dataset::Event> next() override {
     const py::gil_scoped_acquire gil;
     if (rows_ == py::iterator::sentinel()) return std::nullopt;
     const auto row = rows_->cast<std::pair<std::string, py::object>>();
-    Event event{row.first, measurement_of(row.second)};
+    dataset::Event event{row.first, measurement_of(row.second)};
     ++rows_;
     return event;
   }
@@ -34,49 +34,50 @@ class IterableSource : public EventSource {
   py::iterator rows_;
 };
 
-WriteOptions write_options(const std::string& format, const std::string& dialect) {
-  WriteOptions options;
+dataset::WriteOptions write_options(const std::string& format, const std::string& dialect) {
+  dataset::WriteOptions options;
   read_value(ConfigNode::parse(format, "format"), options.format, {});
   read_value(ConfigNode::parse(dialect, "dialect"), options.dialect, {});
   return options;
 }
 
 void bind_writer(py::module_& m) {
-  py::class_<DatasetWriter>(
+  py::class_<dataset::DatasetWriter>(
       m, "DatasetWriter",
       "Writes a dataset folder, or a single .mcap or .bag; valid only after "
       "finish(). A context manager that calls finish() if nothing was raised.")
       .def(py::init([](const fs::path& path, const Rig& rig, const std::string& format,
                        const std::string& dialect) {
-             return std::make_unique<DatasetWriter>(path, rig, write_options(format, dialect));
+             return std::make_unique<dataset::DatasetWriter>(path, rig,
+                                                             write_options(format, dialect));
            }),
            py::arg("path"), py::arg("rig"), py::arg("format") = "mcap", py::arg("dialect") = "si")
       .def(
           "write",
-          [](DatasetWriter& w, const std::string& id, const py::object& data) {
-            w.write(Event{id, measurement_of(data)});
+          [](dataset::DatasetWriter& w, const std::string& id, const py::object& data) {
+            w.write(dataset::Event{id, measurement_of(data)});
           },
           py::arg("sensor_id"), py::arg("data"),
           "Writes a measurement, in order of time; a scan after its IMU samples.")
       .def(
           "write_truth",
-          [](DatasetWriter& w, std::int64_t stamp, const Eigen::Matrix4d& pose) {
+          [](dataset::DatasetWriter& w, std::int64_t stamp, const Eigen::Matrix4d& pose) {
             w.write_truth({Time{stamp}, pose_of(pose)});
           },
           py::arg("stamp"), py::arg("pose"), "Writes a true pose of the body, in order of time.")
-      .def("finish", &DatasetWriter::close)
+      .def("finish", &dataset::DatasetWriter::close)
       .def("__enter__", [](const py::object& self) { return self; })
-      .def("__exit__",
-           [](DatasetWriter& w, const py::object& type, const py::object&, const py::object&) {
-             if (type.is_none()) w.close();
-           });
+      .def("__exit__", [](dataset::DatasetWriter& w, const py::object& type, const py::object&,
+                          const py::object&) {
+        if (type.is_none()) w.close();
+      });
 }
 
 py::dict simulate_to(const fs::path& world, const fs::path& flight,
                      const std::vector<fs::path>& sensors, const fs::path& out, std::uint64_t seed,
                      double seconds, bool noise, const std::string& mode, bool truth, bool data,
                      const std::string& format, const std::string& dialect, int threads) {
-  SimulateRequest request;
+  study::SimulateRequest request;
   request.world = world;
   request.flight = flight;
   request.sensors = sensors;
@@ -87,15 +88,15 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
   request.truth = truth;
   request.write = write_options(format, dialect);
   if (!mode.empty()) {
-    ScanMode read{};
+    sensor::ScanMode read{};
     read_value(ConfigNode::parse(mode, "mode"), read, {});
     request.mode = read;
   }
-  SimulateSummary done;
+  study::SimulateSummary done;
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    done = simulate_dataset(request, out, Parallel(threads), log);
+    done = study::simulate_dataset(request, out, Parallel(threads), log);
   }
   using namespace py::literals;
   return py::dict("triangles"_a = done.triangles, "scans"_a = done.scans, "points"_a = done.points,
@@ -105,8 +106,8 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
 
 }  // namespace
 
-py::tuple next_event(EventSource& source) {
-  std::optional<Event> event;
+py::tuple next_event(dataset::EventSource& source) {
+  std::optional<dataset::Event> event;
   {
     const py::gil_scoped_release released;
     event = source.next();
@@ -122,10 +123,10 @@ py::tuple next_event(EventSource& source) {
 }
 
 Events::Events(const py::object& given) : source_(nullptr) {
-  if (py::isinstance<EventSource>(given)) {
-    source_ = &given.cast<EventSource&>();
-  } else if (py::isinstance<Dataset>(given)) {
-    source_ = given.cast<Dataset&>().events.get();
+  if (py::isinstance<dataset::EventSource>(given)) {
+    source_ = &given.cast<dataset::EventSource&>();
+  } else if (py::isinstance<dataset::Dataset>(given)) {
+    source_ = given.cast<dataset::Dataset&>().events.get();
   } else {
     adapter_ = std::make_unique<IterableSource>(given);
     source_ = adapter_.get();
@@ -133,32 +134,34 @@ Events::Events(const py::object& given) : source_(nullptr) {
 }
 
 void bind_dataset(py::module_& m) {
-  py::class_<EventSource>(m, "EventSource", "Measurements in order; can be iterated over once.")
+  py::class_<dataset::EventSource>(m, "EventSource",
+                                   "Measurements in order; can be iterated over once.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &next_event);
-  py::class_<Dataset>(m, "Dataset",
-                      "The data that an estimator gets; its events can be iterated over once.")
-      .def_property_readonly("path", [](const Dataset& d) { return d.path; })
-      .def_property_readonly("rig", [](const Dataset& d) { return d.rig; })
-      .def_property_readonly("scan_count", [](const Dataset& d) { return d.scan_count; })
-      .def_property_readonly("manifest", [](const Dataset& d) { return to_python(d.manifest); })
-      .def_property_readonly("notes", [](const Dataset& d) { return d.notes; })
+  py::class_<dataset::Dataset>(
+      m, "Dataset", "The data that an estimator gets; its events can be iterated over once.")
+      .def_property_readonly("path", [](const dataset::Dataset& d) { return d.path; })
+      .def_property_readonly("rig", [](const dataset::Dataset& d) { return d.rig; })
+      .def_property_readonly("scan_count", [](const dataset::Dataset& d) { return d.scan_count; })
+      .def_property_readonly("manifest",
+                             [](const dataset::Dataset& d) { return to_python(d.manifest); })
+      .def_property_readonly("notes", [](const dataset::Dataset& d) { return d.notes; })
       .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", [](Dataset& d) { return next_event(*d.events); });
+      .def("__next__", [](dataset::Dataset& d) { return next_event(*d.events); });
   m.def(
       "open_dataset",
       [](const fs::path& path, const std::string& sensor, const std::string& layout, double rate_hz,
          int threads) {
-        ReadOptions options;
+        dataset::ReadOptions options;
         options.sensor = sensor;
         options.layout = layout;
         options.rate_hz = rate_hz;
         const py::gil_scoped_release released;
-        return open_any_dataset(path, options, Parallel(threads));
+        return study::open_any_dataset(path, options, Parallel(threads));
       },
       py::arg("path"), py::arg("sensor") = "", py::arg("layout") = "", py::arg("rate_hz") = 10.0,
       py::arg("threads") = 0, "Opens a dataset folder, .mcap, .bag, or a folder of sweeps.");
-  m.def("load_truth", &load_truth, py::arg("dataset"),
+  m.def("load_truth", &dataset::load_truth, py::arg("dataset"),
         "True motion of the body, or None; for evaluation.");
   m.def("simulate_dataset_files", &simulate_to, py::arg("world"), py::arg("flight"),
         py::arg("sensors"), py::arg("out"), py::arg("seed") = 1, py::arg("seconds") = 0.0,
@@ -167,17 +170,18 @@ void bind_dataset(py::module_& m) {
         py::arg("threads") = 0);
   bind_writer(m);
   m.def(
-      "read_cloud", [](const fs::path& file) { return own_points(read_cloud(file).points); },
+      "read_cloud",
+      [](const fs::path& file) { return own_points(dataset::read_cloud(file).points); },
       py::arg("file"), "Positions (N, 3) float32 of a .ply or .pcd.");
   m.def(
       "write_cloud",
       [](const fs::path& file, const Array3f& points) {
         const auto rows = rows_of(points, "points");
-        const Cloud cloud{{rows.begin(), rows.end()}, {}, {}};
+        const dataset::Cloud cloud{{rows.begin(), rows.end()}, {}, {}};
         if (file.extension() == ".pcd") {
-          write_pcd(file, cloud);
+          dataset::write_pcd(file, cloud);
         } else if (file.extension() == ".ply") {
-          write_ply(file, cloud);
+          dataset::write_ply(file, cloud);
         } else {
           throw InputError(file.string(), "has an unknown file extension", "use .ply or .pcd");
         }

@@ -17,7 +17,7 @@ py::object evaluate(const Trajectory& estimate, const Trajectory& truth,
                     const std::optional<Array3f>& map, const SimulatedWorld* world, int threads) {
   if (map.has_value() != (world != nullptr))
     throw InputError("map, world", "only one is given; give both or neither");
-  RunFiles run;
+  dataset::RunFiles run;
   run.trajectory = run.live = estimate;
   if (map) {
     const auto rows = rows_of(*map, "map");
@@ -27,8 +27,8 @@ py::object evaluate(const Trajectory& estimate, const Trajectory& truth,
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    metrics = evaluate_run(run, truth, world == nullptr ? nullptr : &world->world,
-                           Parallel(threads), log);
+    metrics = evaluation::evaluate_run(run, truth, world == nullptr ? nullptr : &world->world,
+                                       Parallel(threads), log);
   }
   return to_python(metrics);
 }
@@ -38,20 +38,21 @@ py::tuple map_error_of(const Array3f& map, const SimulatedWorld& world,
   const auto rows = rows_of(map, "map");
   const Pose pose = mesh_from_map ? pose_of(*mesh_from_map) : Pose::Identity();
   std::vector<float> distances;
-  MapError error;
+  evaluation::MapError error;
   {
     const py::gil_scoped_release released;
-    error = map_error(rows, pose, world.world, Parallel(threads), &distances);
+    error = evaluation::map_error(rows, pose, world.world, Parallel(threads), &distances);
   }
   const auto [kept, owner] = keep(std::move(distances));
-  return py::make_tuple(to_python(to_json(error)), view_rows(*kept, py::dtype::of<float>(), owner));
+  return py::make_tuple(to_python(evaluation::to_json(error)),
+                        view_rows(*kept, py::dtype::of<float>(), owner));
 }
 
 py::object run_algorithm_on(const std::string& algorithm, const fs::path& dataset,
                             const fs::path& out, const std::string& preset,
                             const std::string& sensor, const std::string& config_file,
                             const std::vector<std::string>& overrides, int threads) {
-  RunRequest request;
+  study::RunRequest request;
   request.odometry = {algorithm, preset, config_file, overrides};
   request.dataset = dataset;
   request.read.sensor = sensor;
@@ -59,7 +60,7 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    summary = to_json(run_algorithm(request, out, Parallel(threads), log));
+    summary = study::to_json(study::run_algorithm(request, out, Parallel(threads), log));
   }
   return to_python(summary);
 }
@@ -67,11 +68,11 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
 }  // namespace
 
 void bind_evaluation(py::module_& m) {
-  py::class_<ConfigFolder>(m, "ConfigFolder", "Named worlds, flights, sensors, studies.")
+  py::class_<study::ConfigFolder>(m, "ConfigFolder", "Named worlds, flights, sensors, studies.")
       .def(py::init<fs::path>(), py::arg("root"))
-      .def_property_readonly("root", [](const ConfigFolder& c) { return c.root(); })
-      .def("names", &ConfigFolder::names, py::arg("kind"))
-      .def("resolve", &ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
+      .def_property_readonly("root", [](const study::ConfigFolder& c) { return c.root(); })
+      .def("names", &study::ConfigFolder::names, py::arg("kind"))
+      .def("resolve", &study::ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
   m.def("evaluate", &evaluate, py::arg("estimate"), py::arg("truth"), py::arg("map") = py::none(),
         py::arg("world") = nullptr, py::arg("threads") = 0,
         "All metrics of a trajectory, and of its map against a world, as in metrics.json.");
@@ -89,7 +90,7 @@ void bind_evaluation(py::module_& m) {
         {
           const py::gil_scoped_release released;
           PythonLog log;
-          metrics = score_run(run, Parallel(threads), log);
+          metrics = study::score_run(run, Parallel(threads), log);
         }
         return to_python(metrics);
       },

@@ -13,22 +13,22 @@ namespace {
 using Stamps = py::array_t<std::int64_t, py::array::c_style | py::array::forcecast>;
 
 py::dtype beam_type() {
-  return structured({{"direction", "3f4", offsetof(Beam, direction)},
-                     {"dt_ns", "i4", offsetof(Beam, dt_ns)},
-                     {"ring", "u2", offsetof(Beam, ring)},
-                     {"origin", "3f4", offsetof(Beam, origin)}},
-                    sizeof(Beam));
+  return structured({{"direction", "3f4", offsetof(sensor::Beam, direction)},
+                     {"dt_ns", "i4", offsetof(sensor::Beam, dt_ns)},
+                     {"ring", "u2", offsetof(sensor::Beam, ring)},
+                     {"origin", "3f4", offsetof(sensor::Beam, origin)}},
+                    sizeof(sensor::Beam));
 }
 
 py::dtype truth_type() {
-  return structured({{"position", "3f4", offsetof(PointTruth, position)},
-                     {"range", "f4", offsetof(PointTruth, range)},
-                     {"normal", "3f4", offsetof(PointTruth, normal)},
-                     {"triangle", "u4", offsetof(PointTruth, triangle)}},
-                    sizeof(PointTruth));
+  return structured({{"position", "3f4", offsetof(dataset::PointTruth, position)},
+                     {"range", "f4", offsetof(dataset::PointTruth, range)},
+                     {"normal", "3f4", offsetof(dataset::PointTruth, normal)},
+                     {"triangle", "u4", offsetof(dataset::PointTruth, triangle)}},
+                    sizeof(dataset::PointTruth));
 }
 
-Trajectory sampled(const Flight& flight, const Stamps& stamps) {
+Trajectory sampled(const flight::Flight& flight, const Stamps& stamps) {
   std::vector<StampedPose> poses;
   for (py::ssize_t i = 0; i < stamps.size(); ++i) {
     const Time t{stamps.at(i)};
@@ -37,17 +37,17 @@ Trajectory sampled(const Flight& flight, const Stamps& stamps) {
   return Trajectory(std::move(poses), "stamps");
 }
 
-py::array beams(const Lidar& lidar, std::uint64_t index) {
-  std::vector<Beam> list;
+py::array beams(const sensor::Lidar& lidar, std::uint64_t index) {
+  std::vector<sensor::Beam> list;
   lidar.pattern().beams(index, list);
   const auto [kept, owner] = keep(std::move(list));
   return view_rows(*kept, beam_type(), owner);
 }
 
-py::object measure(const Lidar& lidar, const SimulatedWorld& world, const Flight& flight,
-                   std::uint64_t index, bool truth, int threads) {
+py::object measure(const sensor::Lidar& lidar, const SimulatedWorld& world,
+                   const flight::Flight& flight, std::uint64_t index, bool truth, int threads) {
   auto scan = std::make_unique<Scan>();
-  std::vector<PointTruth> hits;
+  std::vector<dataset::PointTruth> hits;
   {
     const py::gil_scoped_release released;
     *scan = lidar.measure(world.world, flight, index, Parallel(threads), truth ? &hits : nullptr);
@@ -60,22 +60,23 @@ py::object measure(const Lidar& lidar, const SimulatedWorld& world, const Flight
 }  // namespace
 
 void bind_flight(py::module_& m) {
-  py::class_<Motion>(m, "Motion", "State of the flying body at one instant.")
+  py::class_<flight::Motion>(m, "Motion", "State of the flying body at one instant.")
       .def_property_readonly(
-          "pose", [](const Motion& s) { return matrix_of(s.world_from_body); },
+          "pose", [](const flight::Motion& s) { return matrix_of(s.world_from_body); },
           "4x4 world_from_body")
       .def_property_readonly(
-          "velocity", [](const Motion& s) { return s.velocity_world; }, "m/s, world")
+          "velocity", [](const flight::Motion& s) { return s.velocity_world; }, "m/s, world")
       .def_property_readonly(
-          "acceleration", [](const Motion& s) { return s.acceleration_world; },
+          "acceleration", [](const flight::Motion& s) { return s.acceleration_world; },
           "m/s^2, world, without gravity")
       .def_property_readonly(
-          "angular_rate", [](const Motion& s) { return s.angular_rate_body; }, "rad/s, body");
-  py::class_<Flight>(m, "Flight", "Motion of the body as a function of time.")
+          "angular_rate", [](const flight::Motion& s) { return s.angular_rate_body; },
+          "rad/s, body");
+  py::class_<flight::Flight>(m, "Flight", "Motion of the body as a function of time.")
       .def_property_readonly(
-          "duration", [](const Flight& f) { return f.duration().count(); }, "ns")
+          "duration", [](const flight::Flight& f) { return f.duration().count(); }, "ns")
       .def(
-          "at", [](const Flight& f, std::int64_t t) { return f.at(Time{t}); }, py::arg("t"),
+          "at", [](const flight::Flight& f, std::int64_t t) { return f.at(Time{t}); }, py::arg("t"),
           "Motion at t nanoseconds since the flight's start.")
       .def("sample", &sampled, py::arg("stamps"), "Poses at increasing instants (ns).");
   m.def(
@@ -83,28 +84,29 @@ void bind_flight(py::module_& m) {
       [](const std::filesystem::path& file, const SimulatedWorld& world) {
         const py::gil_scoped_release released;
         PythonLog log;
-        return make_flight(file, world.model, world.world, log);
+        return flight::make_flight(file, world.model, world.world, log);
       },
       py::arg("file"), py::arg("world"));
   m.def(
       "replay",
-      [](const Trajectory& t) -> std::unique_ptr<Flight> {
-        return std::make_unique<ReplayFlight>(t);
+      [](const Trajectory& t) -> std::unique_ptr<flight::Flight> {
+        return std::make_unique<flight::ReplayFlight>(t);
       },
       py::arg("trajectory"), "A flight through every pose; time 0 is the first pose.");
 }
 
 void bind_sensor(py::module_& m) {
-  bind_config<SensorConfig>(m, "Sensor", "A LiDAR, its mounting, its noise and its IMU.");
-  m.def("load_sensor_file", &load_sensor, py::arg("file"));
-  m.def("make_rig", &make_rig, py::arg("sensors"), "The rig of these sensors on one body.");
-  py::class_<Lidar>(m, "Lidar", "A simulated LiDAR that moves through a world.")
-      .def(py::init([](const SensorConfig& sensor, std::uint64_t seed, bool noise) {
-             return std::make_unique<Lidar>(sensor, make_pattern(sensor), sensor.name, seed, noise);
+  bind_config<sensor::SensorConfig>(m, "Sensor", "A LiDAR, its mounting, its noise and its IMU.");
+  m.def("load_sensor_file", &sensor::load_sensor, py::arg("file"));
+  m.def("make_rig", &sensor::make_rig, py::arg("sensors"), "The rig of these sensors on one body.");
+  py::class_<sensor::Lidar>(m, "Lidar", "A simulated LiDAR that moves through a world.")
+      .def(py::init([](const sensor::SensorConfig& sensor, std::uint64_t seed, bool noise) {
+             return std::make_unique<sensor::Lidar>(sensor, sensor::make_pattern(sensor),
+                                                    sensor.name, seed, noise);
            }),
            py::arg("sensor"), py::arg("seed") = 1, py::arg("noise") = true)
       .def_property_readonly(
-          "period", [](const Lidar& l) { return l.pattern().period().count(); },
+          "period", [](const sensor::Lidar& l) { return l.pattern().period().count(); },
           "ns from one scan's stamp to the next")
       .def("beams", &beams, py::arg("index"),
            "Shots of a scan in firing order: structured direction, dt_ns, ring, origin.")
@@ -113,14 +115,14 @@ void bind_sensor(py::module_& m) {
            "Scan `index`; with truth: (Scan, structured array of what each point hit).");
   m.def(
       "simulate",
-      [](const SimulatedWorld& world, const Flight& flight,
-         const std::vector<SensorConfig>& sensors, std::uint64_t seed, double seconds, bool noise,
-         int threads) {
-        SimulationOptions options;
+      [](const SimulatedWorld& world, const flight::Flight& flight,
+         const std::vector<sensor::SensorConfig>& sensors, std::uint64_t seed, double seconds,
+         bool noise, int threads) {
+        sensor::SimulationOptions options;
         options.seed = seed;
         options.duration = from_seconds(seconds);
         options.noise = noise;
-        return simulate(world.world, flight, sensors, options, Parallel(threads));
+        return sensor::simulate(world.world, flight, sensors, options, Parallel(threads));
       },
       py::arg("world"), py::arg("flight"), py::arg("sensors"), py::arg("seed") = 1,
       py::arg("seconds") = 0.0, py::arg("noise") = true, py::arg("threads") = 0,

@@ -8,10 +8,10 @@ namespace lidarena::python {
 
 /// A world with its model's routes (the model's mesh is moved into `world`).
 struct SimulatedWorld {
-  explicit SimulatedWorld(WorldModel m)
+  explicit SimulatedWorld(world::WorldModel m)
       : model(std::move(m)), world(std::move(model.mesh), model.name) {}
-  WorldModel model;
-  World world;
+  world::WorldModel model;
+  world::World world;
 };
 
 }  // namespace lidarena::python

@@ -2,8 +2,8 @@
 #include "lidarena/world/world.hpp"
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/world/export_world.hpp"
 #include "lidarena/scenes/load_world.hpp"
+#include "lidarena/world/export_world.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/simulated_world.hpp"
 
@@ -14,29 +14,29 @@ using Indices = py::array_t<std::uint32_t, py::array::c_style | py::array::force
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 py::dtype hit_type() {
-  return structured({{"range", "f4", offsetof(Hit, range)},
-                     {"triangle", "u4", offsetof(Hit, triangle)},
-                     {"normal", "3f4", offsetof(Hit, normal)}},
-                    sizeof(Hit));
+  return structured({{"range", "f4", offsetof(world::Hit, range)},
+                     {"triangle", "u4", offsetof(world::Hit, triangle)},
+                     {"normal", "3f4", offsetof(world::Hit, normal)}},
+                    sizeof(world::Hit));
 }
 
 py::dtype closest_type() {
-  return structured({{"point", "3f8", offsetof(ClosestPoint, point)},
-                     {"distance", "f8", offsetof(ClosestPoint, distance)},
-                     {"triangle", "u4", offsetof(ClosestPoint, triangle)}},
-                    sizeof(ClosestPoint));
+  return structured({{"point", "3f8", offsetof(world::ClosestPoint, point)},
+                     {"distance", "f8", offsetof(world::ClosestPoint, distance)},
+                     {"triangle", "u4", offsetof(world::ClosestPoint, triangle)}},
+                    sizeof(world::ClosestPoint));
 }
 
 SimulatedWorld make_world(const Array3d& vertices, const Indices& triangles,
                           const std::string& name) {
-  WorldModel model;
+  world::WorldModel model;
   model.name = name;
   const auto corners = rows_of(vertices, "vertices");
   model.mesh.vertices.assign(corners.begin(), corners.end());
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
     throw InputError("triangles", "are not of shape (M, 3)");
   }
-  const auto* begin = reinterpret_cast<const Triangle*>(triangles.data());
+  const auto* begin = reinterpret_cast<const world::Triangle*>(triangles.data());
   model.mesh.triangles.assign(begin, begin + triangles.shape(0));
   return SimulatedWorld(std::move(model));
 }
@@ -48,12 +48,12 @@ py::array cast(const SimulatedWorld& self, const Array3d& origins, const Array3f
   if (from.size() != to.size() && from.size() != 1) {
     throw InputError("origins", "must be one, or as many as the directions");
   }
-  std::vector<Hit> hits(to.size());
+  std::vector<world::Hit> hits(to.size());
   {
     const py::gil_scoped_release released;
     constexpr std::size_t kRaysPerBlock = 4096;
     Parallel(threads).for_blocks(to.size(), kRaysPerBlock, [&](std::size_t a, std::size_t b) {
-      std::vector<Ray> rays;
+      std::vector<world::Ray> rays;
       for (std::size_t i = a; i < b; ++i) {
         rays.push_back({from[from.size() == 1 ? 0 : i], to[i].normalized()});
       }
@@ -67,7 +67,7 @@ py::array cast(const SimulatedWorld& self, const Array3d& origins, const Array3f
 py::array closest_points(const SimulatedWorld& self, const Array3d& points, double max_distance,
                          int threads) {
   const auto from = rows_of(points, "points");
-  std::vector<ClosestPoint> found(from.size());
+  std::vector<world::ClosestPoint> found(from.size());
   {
     const py::gil_scoped_release released;
     self.world.closest_points(from, max_distance, found, Parallel(threads));
@@ -97,7 +97,7 @@ void bind_world(py::module_& m) {
           [](const py::object& self) {
             const auto& rows = self.cast<const SimulatedWorld&>().world.mesh().triangles;
             return view(py::dtype::of<std::uint32_t>(), {static_cast<py::ssize_t>(rows.size()), 3},
-                        {sizeof(Triangle), sizeof(std::uint32_t)}, rows.data(), self);
+                        {sizeof(world::Triangle), sizeof(std::uint32_t)}, rows.data(), self);
           },
           "(M, 3) uint32, indices of vertices; a view")
       .def("cast", &cast, py::arg("origins"), py::arg("directions"),
@@ -109,7 +109,7 @@ void bind_world(py::module_& m) {
       .def(
           "save",
           [](const SimulatedWorld& w, const std::filesystem::path& file) {
-            save_world(file, w.world.mesh());
+            world::save_world(file, w.world.mesh());
           },
           py::arg("file"), "Writes .ply, .obj or .sdf, by the file extension.");
   m.def(
@@ -117,9 +117,9 @@ void bind_world(py::module_& m) {
       [](const std::filesystem::path& file, std::optional<std::uint64_t> seed) {
         const py::gil_scoped_release released;
         PythonLog log;
-        WorldOptions options;
+        scenes::WorldOptions options;
         options.seed = seed;
-        return std::make_unique<SimulatedWorld>(load_world(file, options, log));
+        return std::make_unique<SimulatedWorld>(scenes::load_world(file, options, log));
       },
       py::arg("file"), py::arg("seed") = py::none());
 }

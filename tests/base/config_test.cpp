@@ -10,10 +10,9 @@
 namespace lidarena {
 
 enum class Color { kRed, kBlue };
-template <>
-struct EnumNames<Color> {
-  static constexpr std::array names{std::pair{"red", Color::kRed}, std::pair{"blue", Color::kBlue}};
-};
+constexpr auto enum_names(Color) {
+  return std::array{std::pair{"red", Color::kRed}, std::pair{"blue", Color::kBlue}};
+}
 
 namespace {
 

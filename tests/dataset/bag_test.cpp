@@ -6,18 +6,18 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
-#include "lidarena/dataset/ros1/bag_reader.hpp"
-#include "lidarena/dataset/ros1/bag_records.hpp"
-#include "lidarena/dataset/ros1/bag_writer.hpp"
 #include "lidarena/dataset/compression.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/ros1/bag_reader.hpp"
+#include "lidarena/dataset/ros1/bag_records.hpp"
+#include "lidarena/dataset/ros1/bag_writer.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -297,4 +297,4 @@ TEST(Lz4, FramesComeBackAndDamageIsFound) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

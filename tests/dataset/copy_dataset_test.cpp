@@ -5,15 +5,15 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/points/sweeps.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -270,4 +270,4 @@ TEST(KittiPoses, ComeBackToNineDigits) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -14,7 +14,7 @@
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -341,4 +341,4 @@ TEST(ForeignMcap, WithoutScansTheErrorListsWhatThereIs) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -16,7 +16,7 @@
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -87,9 +87,8 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(DatasetFormat::kMcap, DatasetFormat::kBag, DatasetFormat::kPcd,
                     DatasetFormat::kPly, DatasetFormat::kKitti),
     [](const auto& param) {
-      return std::string(
-          EnumNames<DatasetFormat>::names[static_cast<std::size_t>(param.param)].first);
+      return std::string(enum_names(DatasetFormat{})[static_cast<std::size_t>(param.param)].first);
     });
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -11,15 +11,15 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/messages/livox_message.hpp"
 #include "lidarena/dataset/messages/point_cloud2.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/recording_source.hpp"
-#include "lidarena/dataset/messages/ros_messages.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::HasSubstr;
@@ -334,4 +334,4 @@ INSTANTIATE_TEST_SUITE_P(Formats, DriverDialect,
                          });
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -9,7 +9,7 @@
 
 #include "lidarena/dataset/event.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 inline void expect_same(const ImuSample& a, const ImuSample& b) {
   EXPECT_EQ(a.stamp, b.stamp);
@@ -54,4 +54,4 @@ inline std::vector<Event> drain(EventSource& source) {
   return events;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -11,7 +11,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Writes `bytes` to `file` and returns `file`.
 inline std::filesystem::path write_file(const std::filesystem::path& file, std::string_view bytes) {
@@ -51,7 +51,7 @@ inline std::filesystem::path shared_data(const std::string& name) {
   return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset
 
 /// Skips the test when the real data file or folder `path` is not there.
 #define LIDARENA_NEEDS(path)                                      \

@@ -12,7 +12,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::HasSubstr;
@@ -396,4 +396,4 @@ TEST_P(McapFiles, AMessageLargerThanAChunkSharesOneWithThoseBeforeIt) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 // RFC 1321, A.5
@@ -43,4 +43,4 @@ TEST(Ros1Types, AreNamedWithoutTheMiddlePart) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

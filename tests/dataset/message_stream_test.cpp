@@ -6,7 +6,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 std::vector<int> numbers(Bytes bytes) {
@@ -101,4 +101,4 @@ TEST(Cdr, OtherEncodingsAreRefused) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

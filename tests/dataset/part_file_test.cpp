@@ -7,7 +7,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 TEST(PartFile, HasItsNameOnlyOnceCommitted) {
@@ -71,4 +71,4 @@ TEST(PartFile, AMissingFolderIsBadInput) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

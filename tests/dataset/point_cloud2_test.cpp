@@ -10,7 +10,7 @@
 #include "lidarena/dataset/messages/livox_message.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 namespace {
 
 constexpr Time kStamp{1'700'000'000'123'456'789};  // November 2023
@@ -277,4 +277,4 @@ TEST(LivoxMessage, ReadsACustomMsg) {
 }
 
 }  // namespace
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -15,7 +15,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::AllOf;
@@ -121,10 +121,10 @@ TEST_F(Ply, AsciiReadsAnyPropertiesInAnyOrderAndIgnoresFaces) {
 }
 
 TEST_F(Ply, BigEndianVerticesAreTheSame) {
-  std::string little = ply_header("binary_little_endian", std::string("element vertex 2\n") + kXyz +
-                                                              "property ushort ring\n");
-  std::string big = ply_header("binary_big_endian", std::string("element vertex 2\n") + kXyz +
-                                                        "property ushort ring\n");
+  std::string little = ply_header(
+      "binary_little_endian", std::string("element vertex 2\n") + kXyz + "property ushort ring\n");
+  std::string big = ply_header("binary_big_endian",
+                               std::string("element vertex 2\n") + kXyz + "property ushort ring\n");
   const auto add = [&](auto value) {
     std::string bytes = packed(value);
     little += bytes;
@@ -412,4 +412,4 @@ TEST(RealClouds, ACompressedSweepHasItsValues) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

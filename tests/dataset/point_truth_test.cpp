@@ -15,7 +15,7 @@
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -163,4 +163,4 @@ TEST_F(PointTruthFiles, PosesOutOfOrderAreRefused) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -5,11 +5,11 @@
 #include <gtest/gtest.h>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/recording.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -155,4 +155,4 @@ TEST_F(FramesOfText, StampsInOtherUnitsAreRecognized) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,7 +7,7 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/sample_events.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 namespace {
 
 TEST(Ros2Messages, AScanComesBackBitByBit) {
@@ -119,4 +119,4 @@ TEST(Ros2Messages, DefinitionsBringAlongWhatTheyUse) {
 }
 
 }  // namespace
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -6,7 +6,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::HasSubstr;
@@ -110,4 +110,4 @@ TEST_F(Run, BrokenFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

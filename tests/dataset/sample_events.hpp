@@ -11,7 +11,7 @@
 /// A small synthetic flight with a LiDAR of 10 Hz and an IMU of 200 Hz that share the id "mid360":
 /// every value is a smooth function of its index, so that tests and the scripts for the official
 /// readers can compute it.
-namespace lidarena::sample {
+namespace lidarena::dataset::sample {
 
 inline constexpr Time kStart = std::chrono::seconds(100);
 inline constexpr Time kScanPeriod = std::chrono::milliseconds(100);
@@ -79,4 +79,4 @@ inline std::vector<Event> events(int scans, int points) {
   return events;
 }
 
-}  // namespace lidarena::sample
+}  // namespace lidarena::dataset::sample

@@ -8,7 +8,7 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/sample_events.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using std::chrono::milliseconds;
@@ -139,4 +139,4 @@ TEST(StreamMerge, AnImuThatFallsSilentIsNamedBeforeMemoryFills) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -11,7 +11,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::AllOf;
@@ -378,4 +378,4 @@ TEST(RealSweeps, ReturnsAtTheOriginAreNone) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

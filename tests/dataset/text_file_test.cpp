@@ -6,7 +6,7 @@
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::ElementsAre;
@@ -88,4 +88,4 @@ TEST(ReadBytes, NamesWhatCannotBeRead) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,14 +7,14 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/text_file.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "tests/dataset/file_helpers.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using testing::AllOf;
@@ -295,4 +295,4 @@ TEST(RealTrajectoryTimes, ASpreadsheetIsRefusedWithAReason) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset

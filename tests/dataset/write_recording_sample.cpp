@@ -12,7 +12,7 @@
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/sample_events.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr int kScans = 20;
@@ -53,7 +53,7 @@ void check_sample(const char* file) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::dataset
 
 int main(int argc, char** argv) try {
   if (argc == 3 && std::string_view(argv[1]) == "check") {

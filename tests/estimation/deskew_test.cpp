@@ -7,7 +7,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using se3::Vector6;
@@ -99,4 +99,4 @@ TEST(ConstantTwist, IsTheExponentialOfTheTwist) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

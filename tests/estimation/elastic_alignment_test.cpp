@@ -9,7 +9,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Vector12 = Eigen::Matrix<double, 12, 1>;
@@ -243,4 +243,4 @@ TEST(ElasticAlignment, WhatNothingTellsStaysAsItWas) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
@@ -98,4 +98,4 @@ TEST(ImuAtRest, WhatMovesOrIsTooShortDoesNotStand) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 Time ms(double t) { return from_seconds(1e-3 * t); }
@@ -118,4 +118,4 @@ TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

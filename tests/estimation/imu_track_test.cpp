@@ -8,7 +8,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 const Eigen::Vector3d kRate(0.3, -0.5, 1.2);
@@ -71,4 +71,4 @@ TEST(ImuTrack, UntimedScansStayAndBadPointsStayBad) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

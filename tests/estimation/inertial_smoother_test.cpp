@@ -10,7 +10,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
@@ -191,4 +191,4 @@ TEST(InertialSmoother, AMeasurementWithoutInformationIsAPrediction) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

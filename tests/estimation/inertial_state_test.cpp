@@ -8,7 +8,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = InertialState;
@@ -147,4 +147,4 @@ TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

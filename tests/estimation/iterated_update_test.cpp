@@ -13,7 +13,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using State = InertialState;
@@ -279,4 +279,4 @@ TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

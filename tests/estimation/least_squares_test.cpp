@@ -7,7 +7,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Row = Eigen::Matrix<double, 1, 6>;
@@ -65,4 +65,4 @@ TEST(NormalEquations, WithoutResidualsTheStepIsZero) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -12,7 +12,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Covariance = PoseGraph::Covariance;
@@ -213,4 +213,4 @@ TEST(PoseGraph, WhatCannotBeSolvedIsRefused) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

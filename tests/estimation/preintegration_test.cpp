@@ -10,7 +10,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
@@ -201,4 +201,4 @@ TEST(Preintegration, TheCovarianceIsThatOfManyNoisyRuns) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

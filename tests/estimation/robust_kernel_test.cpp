@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace lidarena {
+namespace lidarena::estimation {
 namespace {
 
 constexpr double kScale = 0.7;
@@ -14,7 +14,7 @@ constexpr double kResiduals[] = {0.01, 0.1, 0.3, 0.69, 0.71, 1.0, 3.0, 20.0};
 
 template <class Check>
 void for_each_kernel(Check&& check) {
-  for (const auto& [name, kernel] : EnumNames<RobustKernel>::names) {
+  for (const auto& [name, kernel] : enum_names(RobustKernel{})) {
     SCOPED_TRACE(name);
     check(kernel);
   }
@@ -62,4 +62,4 @@ TEST(RobustKernel, CeresHasTheSameCostsAndWeights) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::estimation

@@ -9,7 +9,7 @@
 
 #include "flights.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -133,4 +133,4 @@ TEST(Alignment, HoverFewPosesAndNoOverlapAreRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

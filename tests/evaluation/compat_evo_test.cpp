@@ -16,7 +16,7 @@
 #include "lidarena/base/error.hpp"
 #include "tum_text.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -28,7 +28,7 @@ using ::testing::Pair;
 
 template <class E>
 E named(const std::string& text) {
-  for (const auto& [name, value] : EnumNames<E>::names) {
+  for (const auto& [name, value] : enum_names(E{})) {
     if (text == name) return value;
   }
   throw std::runtime_error("no such name: " + text);
@@ -319,4 +319,4 @@ TEST(CompatEvo, RefusesInWords) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

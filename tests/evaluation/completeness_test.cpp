@@ -11,7 +11,7 @@
 #include "flights.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -24,7 +24,7 @@ const Parallel kTwo(2);
 /// Hits on the floor z = 0 for x in [0, length], |y| < 1, one per centimeter, from above.
 Truths hits_on_floor(double length) {
   Truths truths;
-  ScanTruth scan{"front", Time(0), {}};
+  dataset::ScanTruth scan{"front", Time(0), {}};
   for (double x = 0.005; x < length; x += 0.01) {
     for (double y = -0.995; y < 1.0; y += 0.01) {
       scan.points.push_back({Vector3d(x, y, 0).cast<float>(), 1.0F, Vector3f(0, 0, 1), 0});
@@ -64,11 +64,11 @@ TEST(PointGrid, FindsTheNearestWithinReachAsALookAtAllPointsDoes) {
 
 TEST(ObservedSurface, FreeSpaceIsWhereTheRaysCameFromHoweverTrianglesAreWound) {
   for (const bool turned : {false, true}) {
-    TriangleMesh mesh = meshes::plane(10.0);
+    world::TriangleMesh mesh = meshes::plane(10.0);
     if (turned) {
-      for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
+      for (world::Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
     }
-    const World world(mesh);
+    const world::World world(mesh);
     Truths truths = hits_on_floor(2.0);
     truths.scans[0].points.push_back({Vector3f(0, 0, 0.5F), 1.0F, Vector3f(0, 0, 1), 0});
     const ObservedSurface seen = observe(truths, world, kTwo);
@@ -82,11 +82,11 @@ TEST(ObservedSurface, FreeSpaceIsWhereTheRaysCameFromHoweverTrianglesAreWound) {
 }
 
 TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
   // the second triangle is that with y > x: flip the side of half of its hits
   std::size_t turned = 0;
-  for (PointTruth& hit : truths.scans[0].points) {
+  for (dataset::PointTruth& hit : truths.scans[0].points) {
     if (hit.position.y() > hit.position.x() && turned++ % 2 == 0) hit.normal = -hit.normal;
   }
   const ObservedSurface both = observe(truths, world, kTwo);
@@ -96,19 +96,19 @@ TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
   EXPECT_EQ(observe(none, world, kTwo).free_side[0], FreeSide::kUnknown);
 }
 
-class Events : public EventSource {
+class Events : public dataset::EventSource {
  public:
-  std::optional<Event> next() override {
+  std::optional<dataset::Event> next() override {
     if (events.empty()) return std::nullopt;
-    Event event = std::move(events.front());
+    dataset::Event event = std::move(events.front());
     events.pop_front();
     return event;
   }
-  std::deque<Event> events;
+  std::deque<dataset::Event> events;
 };
 
 TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
-  const World world(meshes::box(Vector3d(7, 8, 4)));
+  const world::World world(meshes::box(Vector3d(7, 8, 4)));
   const Trajectory truth = flights::sample(flights::tour, 50ms, 5s);
   const Pose body_from_lidar = make_pose(so3::exp({0.3, -0.2, 1.1}), Vector3d(0.1, -0.05, 0.2));
   SequentialRandom random(82);
@@ -120,8 +120,8 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
       const Pose lidar = *truth.at(t) * body_from_lidar;
       const Vector3d direction =
           Vector3d(random.normal(), random.normal(), random.normal()).normalized();
-      const Ray ray{lidar.translation(), direction.cast<float>()};
-      Hit hit;
+      const world::Ray ray{lidar.translation(), direction.cast<float>()};
+      world::Hit hit;
       world.cast(std::span(&ray, 1), 100.0, std::span(&hit, 1));
       const double range = double{hit.range} + 0.03 * random.normal();
       const Vector3d position = lidar.inverse() * (ray.origin + range * direction);
@@ -145,7 +145,7 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
 
 TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles) {
   // 2 m of floor as two triangles, and 2 m more as two thousand triangles
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   mesh.vertices = {{0, -1, 0}, {2, -1, 0}, {2, 1, 0}, {0, 1, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   for (std::uint32_t i = 0; i < 1000; ++i) {
@@ -158,7 +158,7 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
     mesh.triangles.push_back({v, v + 2, v + 3});
     mesh.triangles.push_back({v, v + 3, v + 1});
   }
-  const World world(mesh);
+  const world::World world(mesh);
   Truths truths = hits_on_floor(4.0);
   const ObservedSurface seen = observe(truths, world, kTwo);
   const SurfaceSamples samples = seen_samples(world, seen, kTwo);
@@ -177,7 +177,7 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
 }
 
 TEST(SeenSamples, AreOfWhatWasSeenAndNotOfTheWholeMesh) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(3.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
   // 3 x 2 m, and a margin of up to 2 cm around it
@@ -187,7 +187,7 @@ TEST(SeenSamples, AreOfWhatWasSeenAndNotOfTheWholeMesh) {
 
 struct Scored {
   std::vector<Vector3f> map;
-  const World& world;
+  const world::World& world;
   MortonOrder order = morton_order(map, kTwo);
   Pose mesh_from_map = Pose::Identity();
   std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwo);
@@ -197,11 +197,12 @@ struct Scored {
 };
 
 TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(4.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
   std::vector<Vector3f> map;
-  for (const PointTruth& hit : hits_on_floor(2.0).scans[0].points) map.push_back(hit.position);
+  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points)
+    map.push_back(hit.position);
   const Completeness c = Scored{map, world}.rate(samples);
   for (std::size_t row = 0; row < c.rows.size(); ++row) {
     // half, plus what lies within the distance beyond the border at x = 2 m
@@ -215,11 +216,11 @@ TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
 
 TEST(Completeness, FollowsTheLimits) {
   // A full map 7 cm above the floor: nothing within 5 cm, everything within 10.
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
   std::vector<Vector3f> map;
-  for (const PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
+  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
     map.push_back(hit.position + Vector3f(0, 0, 0.07F));
   }
   const Completeness c = Scored{map, world}.rate(samples);
@@ -232,13 +233,13 @@ TEST(Completeness, FollowsTheLimits) {
 }
 
 TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
   SequentialRandom random(83);
   const Pose mesh_from_map = flights::random_pose(random, 3.0);
   std::vector<Vector3f> map;
-  for (const PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
+  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
     map.push_back((mesh_from_map.inverse() * hit.position.cast<double>()).cast<float>());
   }
   const Scored scored{map, world, morton_order(map, kTwo), mesh_from_map};
@@ -246,7 +247,7 @@ TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
 }
 
 TEST(Completeness, WithoutAMapOrWithoutSamplesIsZeroNotNaN) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(1.0);
   const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
   EXPECT_EQ((Scored{{}, world}.rate(samples).rows[3].recall_percent), 0.0);
@@ -254,4 +255,4 @@ TEST(Completeness, WithoutAMapOrWithoutSamplesIsZeroNotNaN) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -12,7 +12,7 @@
 #include "flights.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -27,9 +27,9 @@ const Parallel kTwo(2);
 const Vector3d kHalf(1.6, 1.2, 0.8);
 
 /// Hits on all walls of the room except within 5 cm of the corners, from inside.
-ScanTruth hits_of_room(std::size_t count) {
+dataset::ScanTruth hits_of_room(std::size_t count) {
   SequentialRandom random(91);
-  ScanTruth scan{"front", Time(0), {}};
+  dataset::ScanTruth scan{"front", Time(0), {}};
   for (std::size_t i = 0; i < count; ++i) {
     const auto axis = static_cast<Eigen::Index>(i % 3);
     const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
@@ -46,9 +46,9 @@ ScanTruth hits_of_room(std::size_t count) {
 }
 
 struct Room {
-  World world{meshes::box(kHalf)};
+  world::World world{meshes::box(kHalf)};
   Trajectory truth = flights::sample(flights::tour, 10ms, 20s);
-  ScanTruth hits = hits_of_room(60000);
+  dataset::ScanTruth hits = hits_of_room(60000);
   SeenSurface seen = [this] {
     Truths truths;
     truths.scans.push_back(hits);
@@ -58,7 +58,7 @@ struct Room {
   /// The hits, each `before` meters in front of the wall, in a frame that differs by `offset`.
   std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
     std::vector<Vector3f> points;
-    for (const PointTruth& hit : hits.points) {
+    for (const dataset::PointTruth& hit : hits.points) {
       const Vector3d at = (hit.position + static_cast<float>(before) * hit.normal).cast<double>();
       points.push_back((offset * at).cast<float>());
     }
@@ -137,9 +137,9 @@ TEST(EvaluateMap, IsTheSameTextOnAnyNumberOfThreads) {
 }
 
 TEST(MapWarnings, AMeshOrAMapInMillimetersIsSuspected) {
-  TriangleMesh millimeters = meshes::box(1000.0 * kHalf);
+  world::TriangleMesh millimeters = meshes::box(1000.0 * kHalf);
   const Room room;
-  EXPECT_THAT(map_warnings(room.map(0.0), World(millimeters)),
+  EXPECT_THAT(map_warnings(room.map(0.0), world::World(millimeters)),
               ElementsAre(HasSubstr("times as large as the map: is it in millimeters?")));
   std::vector<Vector3f> map = room.map(0.0);
   EXPECT_THAT(map_warnings(map, room.world), IsEmpty());
@@ -160,4 +160,4 @@ TEST(MapWarnings, CoordinatesTooLargeForSinglePrecisionAndPointsThatAreNotFinite
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

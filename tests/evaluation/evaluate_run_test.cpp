@@ -8,7 +8,7 @@
 #include "lidarena/evaluation/metrics_json.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -21,9 +21,9 @@ using ::testing::HasSubstr;
 
 /// A run whose world frame differs from the truth's by `truth_from_estimate` and whose live
 /// trajectory drifts, in a room of 16 x 12 x 8 m whose walls its map has without error.
-RunFiles perfect_run(const Pose& truth_from_estimate) {
+dataset::RunFiles perfect_run(const Pose& truth_from_estimate) {
   const Pose back = truth_from_estimate.inverse();
-  RunFiles run;
+  dataset::RunFiles run;
   const Trajectory truth = sample(tour, 100ms, 30s);
   run.trajectory =
       mapped(truth, [&](const StampedPose& pose) { return back * pose.world_from_body; });
@@ -49,10 +49,10 @@ class EvaluateRun : public ::testing::Test {
   }
   Json evaluate() { return evaluate_run(run_, truth_, &world_, Parallel(1), log_); }
 
-  World world_;
+  world::World world_;
   LogSink log_;
   Pose truth_from_estimate_;
-  RunFiles run_;
+  dataset::RunFiles run_;
   Trajectory truth_ = sample(tour, 5ms, 30s);
 };
 
@@ -202,7 +202,7 @@ TEST_F(EvaluateRun, WhatTheRunnerSaysOfTheRunCounts) {
 }
 
 TEST_F(EvaluateRun, NoPosesAndNoCommonTimeAreSaid) {
-  const RunFiles whole = run_;
+  const dataset::RunFiles whole = run_;
   run_.trajectory = Trajectory();
   EXPECT_EQ(evaluate()["status"], "no_output");
   run_.trajectory = flights::shifted(whole.trajectory, 100s);
@@ -251,4 +251,4 @@ TEST(ErrorsOverTime, KeepsThePeakOfEveryRunOfNeighbors) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

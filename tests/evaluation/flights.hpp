@@ -12,7 +12,7 @@
 #include "lidarena/base/trajectory.hpp"
 
 /// Small flights whose errors have a closed form.
-namespace lidarena::flights {
+namespace lidarena::evaluation::flights {
 
 using Eigen::Vector3d;
 
@@ -65,4 +65,4 @@ inline Trajectory shifted(const Trajectory& trajectory, Time shift) {
   return Trajectory(std::move(poses));
 }
 
-}  // namespace lidarena::flights
+}  // namespace lidarena::evaluation::flights

@@ -8,7 +8,7 @@
 
 #include "flights.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -68,4 +68,4 @@ TEST(HoverJitter, AJumpAcrossATrackingLossIsNotJitter) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

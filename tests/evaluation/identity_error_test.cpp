@@ -9,7 +9,7 @@
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -31,10 +31,10 @@ class Queue : public Base {
 /// A thin wall of 4 cm whose faces are x = 5 and x = 5.04; every return is of the near face, and
 /// displaced by `moved` from its true hit. The sensor stands still at the origin.
 struct Wall {
-  Queue<EventSource, Event> events;
-  Queue<ScanTruthSource, ScanTruth> truth;
-  World world{[] {
-    TriangleMesh mesh;
+  Queue<dataset::EventSource, dataset::Event> events;
+  Queue<dataset::ScanTruthSource, dataset::ScanTruth> truth;
+  world::World world{[] {
+    world::TriangleMesh mesh;
     mesh.append(meshes::box(Vector3d(0.02, 3, 3)), flights::level({5.02, 0, 0}));
     return mesh;
   }()};
@@ -44,7 +44,7 @@ struct Wall {
     for (int s = 0; s < 10; ++s) {
       const Time stamp = 100ms * s;
       Scan scan{stamp, {}, true};
-      ScanTruth hits{"front", stamp, {}};
+      dataset::ScanTruth hits{"front", stamp, {}};
       for (int i = 0; i < 200; ++i) {
         const double y = random.uniform(-2, 2);
         const Vector3d at(5.0, y, random.uniform(-2, 2));
@@ -59,7 +59,7 @@ struct Wall {
 
   IdentifiedMap identified(const Trajectory& estimate) {
     std::vector<ReturnOrigin> origins;
-    const Cloud map =
+    const dataset::Cloud map =
         reproject(events, "front", Pose::Identity(), estimate, 0.02, nullptr, &origins);
     EXPECT_EQ(origins.size(), map.points.size());
     return identify(map.points, origins, truth);
@@ -108,4 +108,4 @@ TEST(IdentityError, WithoutTruthThereIsNone) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

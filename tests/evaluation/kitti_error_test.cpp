@@ -10,7 +10,7 @@
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "tum_text.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -103,8 +103,8 @@ TEST_P(KittiSequence09, GivesWhatAnIndependentScriptGave) {
     GTEST_SKIP() << "trajectories of KITTI's sequence 09 not found";
   }
   const Sequence09& known = GetParam();
-  const KittiError error = kitti_error(read_trajectory(folder / known.file),
-                                       read_trajectory(folder / "09_groundtruth.txt"));
+  const KittiError error = kitti_error(dataset::read_trajectory(folder / known.file),
+                                       dataset::read_trajectory(folder / "09_groundtruth.txt"));
   EXPECT_EQ(error.pieces, known.pieces);
   EXPECT_EQ(error.lengths[0].pieces, known.pieces_100);
   EXPECT_EQ(error.lengths[7].pieces, known.pieces_800);
@@ -123,4 +123,4 @@ INSTANTIATE_TEST_SUITE_P(
                                  2.110271000, 0.287702745}));
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

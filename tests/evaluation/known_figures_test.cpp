@@ -16,7 +16,7 @@
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "tum_text.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -190,7 +190,7 @@ class RealTrajectories : public ::testing::Test {
     }
   }
   static Trajectory read(const std::string& name) {
-    return read_trajectory(shared("trajectories/" + name));
+    return dataset::read_trajectory(shared("trajectories/" + name));
   }
 };
 
@@ -234,4 +234,4 @@ TEST_F(RealTrajectories, ATableOfAnotherLayoutIsRefusedInWords) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

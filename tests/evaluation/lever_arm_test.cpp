@@ -11,7 +11,7 @@
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "tum_text.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -136,4 +136,4 @@ TEST(LeverArm, OfTheFixtureIsTheOneItWasMadeWith) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

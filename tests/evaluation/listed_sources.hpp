@@ -9,7 +9,7 @@
 #include "lidarena/dataset/point_truth.hpp"
 
 /// Sources that return the items that a test has put into a list.
-namespace lidarena::listed {
+namespace lidarena::evaluation::listed {
 
 /// Removes and returns the first of `items`; empty when there is none.
 template <class Item>
@@ -20,16 +20,16 @@ std::optional<Item> take_first(std::deque<Item>& items) {
   return item;
 }
 
-class Truths : public ScanTruthSource {
+class Truths : public dataset::ScanTruthSource {
  public:
-  std::optional<ScanTruth> next() override { return take_first(scans); }
-  std::deque<ScanTruth> scans;
+  std::optional<dataset::ScanTruth> next() override { return take_first(scans); }
+  std::deque<dataset::ScanTruth> scans;
 };
 
-class Events : public EventSource {
+class Events : public dataset::EventSource {
  public:
-  std::optional<Event> next() override { return take_first(events); }
-  std::deque<Event> events;
+  std::optional<dataset::Event> next() override { return take_first(events); }
+  std::deque<dataset::Event> events;
 };
 
-}  // namespace lidarena::listed
+}  // namespace lidarena::evaluation::listed

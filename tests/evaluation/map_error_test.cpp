@@ -10,7 +10,7 @@
 #include "flights.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -33,7 +33,7 @@ std::vector<Vector3f> noisy_plane(std::size_t count, double sigma) {
 TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
   const double sigma = 0.02;
   const std::size_t n = 100000;
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   const MapError e = map_error(noisy_plane(n, sigma), Pose::Identity(), world, Parallel(1));
   EXPECT_EQ(e.points, n);
   // standard error of the RMSE of n normals is sigma / sqrt(2 n); of quantiles of |normal|, sqrt(p
@@ -53,17 +53,17 @@ TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
 
 TEST(MapError, MeasuresToTheSurfaceNotToItsCorners) {
   // Noise-free points on a plane of two triangles: vertices are meters away, the surface is not.
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   const MapError e = map_error(noisy_plane(1000, 0.0), Pose::Identity(), world, Parallel(1));
   EXPECT_LT(e.distance_m.max, kSingle);
 }
 
 TEST(MapError, OfPointsAroundABoxIsTheDistanceToFaceEdgeAndCorner) {
-  const World world(meshes::box(Vector3d(1, 2, 3)));       // half sizes
-  const std::vector<Vector3f> points{{0, 0, 3.1F},         // face
-                                     {1.03F, 2.04F, 0},    // edge: 3-4-5
-                                     {1.1F, 2.2F, 3.2F},   // corner: 1-2-2
-                                     {0.5F, 0.0F, 0.0F}};  // inside: nearest face x = 1
+  const world::World world(meshes::box(Vector3d(1, 2, 3)));  // half sizes
+  const std::vector<Vector3f> points{{0, 0, 3.1F},           // face
+                                     {1.03F, 2.04F, 0},      // edge: 3-4-5
+                                     {1.1F, 2.2F, 3.2F},     // corner: 1-2-2
+                                     {0.5F, 0.0F, 0.0F}};    // inside: nearest face x = 1
   std::vector<float> distances;
   map_error(points, Pose::Identity(), world, Parallel(1), &distances);
   const std::vector<double> expected{0.1, 0.05, 0.3, 0.5};
@@ -73,7 +73,7 @@ TEST(MapError, OfPointsAroundABoxIsTheDistanceToFaceEdgeAndCorner) {
 }
 
 TEST(MapError, PointsTwentyFiveCentimetersOffAreAllOutliers) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   const Pose lifted = flights::level({0, 0, 0.25});
   const MapError e = map_error(noisy_plane(1000, 0.0), lifted, world, Parallel(1));
   EXPECT_EQ(e.outliers_percent, 100.0);
@@ -85,7 +85,7 @@ TEST(MapError, PointsTwentyFiveCentimetersOffAreAllOutliers) {
 
 TEST(MapError, AMapInAnotherFrameIsBroughtBackByItsGauge) {
   SequentialRandom random(22);
-  const World world(meshes::box(Vector3d(3, 4, 2)));
+  const world::World world(meshes::box(Vector3d(3, 4, 2)));
   const Pose mesh_from_map = flights::random_pose(random, 3.0);
   std::vector<Vector3f> map;
   for (int i = 0; i < 2000; ++i) {
@@ -99,7 +99,7 @@ TEST(MapError, AMapInAnotherFrameIsBroughtBackByItsGauge) {
 TEST(MapError, PointsThatAreNotFiniteAreCountedAndLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float inf = std::numeric_limits<float>::infinity();
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   const std::vector<Vector3f> map{{0, 0, 0.1F}, {nan, 0, 0}, {0, 0, 0.1F}, {0, -inf, 0}};
   std::vector<float> distances;
   const MapError e = map_error(map, Pose::Identity(), world, Parallel(1), &distances);
@@ -113,7 +113,7 @@ TEST(MapError, PointsThatAreNotFiniteAreCountedAndLeftOut) {
 }
 
 TEST(MapError, OfAnEmptyMapHasNoPoints) {
-  const World world(meshes::plane(10.0));
+  const world::World world(meshes::plane(10.0));
   const MapError e = map_error({}, Pose::Identity(), world, Parallel(1));
   EXPECT_EQ(e.points, 0U);
   EXPECT_EQ(e.distance_m.count, 0U);
@@ -121,7 +121,7 @@ TEST(MapError, OfAnEmptyMapHasNoPoints) {
 }
 
 TEST(MapError, IsTheSameBitsOnOneTwoAndFiveThreads) {
-  const World world(meshes::box(Vector3d(4, 4, 0.1)));
+  const world::World world(meshes::box(Vector3d(4, 4, 0.1)));
   const std::vector<Vector3f> map = noisy_plane(300000, 0.15);  // more than a chunk
   const MapError one = map_error(map, Pose::Identity(), world, Parallel(1));
   for (const int threads : {2, 5}) {
@@ -145,4 +145,4 @@ TEST(MapError, BinsAreCentimetersAndTwentyCentimetersAreStillIn) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -12,7 +12,7 @@
 #include "lidarena/evaluation/map/voxel_error.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -22,7 +22,7 @@ const Parallel kTwo(2);
 
 struct Scored {
   std::vector<Vector3f> map;
-  World world;
+  world::World world;
   MortonOrder order = morton_order(map, kTwo);
   std::vector<PointScore> scores = score_points(map, order, Pose::Identity(), world, kTwo);
   MapError error = map_error(order, scores, map.size());
@@ -67,7 +67,7 @@ TEST(VoxelError, CountsAPlaceOnceHoweverManyPointsLieThere) {
   // one cube with 999 points on the floor, one with a single point 10 cm above it
   std::vector<Vector3f> map(999, Vector3f(0.01F, 0.01F, 0.0F));
   map.emplace_back(1.01F, 0.01F, 0.10F);
-  const Scored s{map, World(meshes::plane(10.0))};
+  const Scored s{map, world::World(meshes::plane(10.0))};
   const VoxelError e = voxel_error(s.order, s.scores);
   EXPECT_EQ(e.voxels, 2U);
   EXPECT_NEAR(e.rms_m.rmse, 0.10 / std::sqrt(2.0), 1e-6);
@@ -83,7 +83,7 @@ TEST(VoxelError, IsTheRmseWhereEachCubeHoldsOnePoint) {
                        0.3F * static_cast<float>(random.uniform()));
     }
   }
-  const Scored s{map, World(meshes::plane(10.0))};
+  const Scored s{map, world::World(meshes::plane(10.0))};
   const VoxelError e = voxel_error(s.order, s.scores);
   EXPECT_EQ(e.voxels, map.size());
   EXPECT_NEAR(e.rms_m.rmse, s.error.distance_m.rmse, 1e-12);
@@ -95,7 +95,7 @@ TEST(SignedDistance, OfABiasedMapIsTheBias) {
   const std::size_t n = 50000;
   const Scored s{
       points_off_floor(n, 4.0, [&](SequentialRandom& r) { return bias + sigma * r.normal(); }),
-      World(meshes::plane(10.0))};
+      world::World(meshes::plane(10.0))};
   for (const FreeSide side : {FreeSide::kFront, FreeSide::kBack}) {
     const double sign = side == FreeSide::kFront ? 1.0 : -1.0;
     const SignedDistance d = signed_distance(s.scores, std::vector(2, side));
@@ -115,7 +115,7 @@ TEST(SignedDistance, OfABiasedMapIsTheBias) {
 TEST(SignedDistance, BinsStartAtMinusTwentyCentimetersAndTheRestIsCountedApart) {
   const std::vector<Vector3f> map{{0, 0, -0.195F}, {0, 0, 0.005F}, {0, 0, 0.195F},
                                   {0, 0, -0.5F},   {0, 0, 0.3F},   {0, 0, 0.4F}};
-  const Scored s{map, World(meshes::plane(10.0))};
+  const Scored s{map, world::World(meshes::plane(10.0))};
   const SignedDistance d = signed_distance(s.scores, std::vector(2, FreeSide::kFront));
   EXPECT_EQ(d.histogram[0], 1U);
   EXPECT_EQ(d.histogram[20], 1U);
@@ -127,7 +127,7 @@ TEST(SignedDistance, BinsStartAtMinusTwentyCentimetersAndTheRestIsCountedApart) 
 TEST(SignedDistance, BesideAnEdgeOrWhereNoRayFellThereIsNoSign) {
   // beyond the floor's border, 45 degrees and 80 degrees off the normal; one point over the floor
   const std::vector<Vector3f> map{{5.1F, 0, 0.1F}, {5.567F, 0, 0.1F}, {0, 0, 0.1F}};
-  const Scored s{map, World(meshes::plane(10.0))};
+  const Scored s{map, world::World(meshes::plane(10.0))};
   EXPECT_EQ(signed_distance(s.scores, std::vector(2, FreeSide::kFront)).points, 2U);
   const SignedDistance unknown = signed_distance(s.scores, std::vector(2, FreeSide::kUnknown));
   EXPECT_EQ(unknown.points, 0U);
@@ -138,7 +138,7 @@ TEST(Ghosting, ThicknessOfANoisyFloorIsItsQuantileRange) {
   const double sigma = 0.02;
   const Scored s{
       points_off_floor(200000, 2.0, [&](SequentialRandom& r) { return sigma * r.normal(); }),
-      World(meshes::plane(10.0))};
+      world::World(meshes::plane(10.0))};
   const Ghosting g = ghosting(s.scores, s.world, kTwo);
   EXPECT_EQ(g.patches, 400U);  // 4 x 4 m in squares of 20 cm, 500 points each
   // 2 x 1.645 sigma. A quantile of 500 values has a standard error of 2.11 sigma / sqrt(500), hence
@@ -156,7 +156,7 @@ TEST(Ghosting,
                                     const double second = r.uniform() < 0.1 ? 0.15 : 0.0;
                                     return second + sigma * r.normal();
                                   }),
-                 World(meshes::plane(10.0))};
+                 world::World(meshes::plane(10.0))};
   // 10 % of P(z > 2.5) are beyond 20 cm: 0.06 %
   EXPECT_NEAR(s.error.outliers_percent, 0.062, 0.03);
   // sqrt(sigma^2 + 0.1 x 15^2): not more than for a bad sensor
@@ -171,12 +171,12 @@ TEST(Ghosting,
 }
 
 TEST(Ghosting, WindingDoesNotMatter) {
-  TriangleMesh mixed = meshes::plane(10.0);
+  world::TriangleMesh mixed = meshes::plane(10.0);
   std::swap(mixed.triangles[1][1], mixed.triangles[1][2]);
   const auto map =
       points_off_floor(100000, 4.0, [](SequentialRandom& r) { return 0.1 + 0.01 * r.normal(); });
-  const Scored straight{map, World(meshes::plane(10.0))};
-  const Scored wound{map, World(mixed)};
+  const Scored straight{map, world::World(meshes::plane(10.0))};
+  const Scored wound{map, world::World(mixed)};
   const Ghosting expected = ghosting(straight.scores, straight.world, kTwo);
   const Ghosting found = ghosting(wound.scores, wound.world, kTwo);
   EXPECT_EQ(expected.double_patches, 0U);
@@ -223,7 +223,7 @@ TEST(Ghosting, IsTheSameOnAnyNumberOfThreads) {
                                   [](SequentialRandom& r) {
                                     return (r.uniform() < 0.2 ? 0.1 : 0.0) + 0.02 * r.normal();
                                   }),
-                 World(meshes::plane(10.0))};
+                 world::World(meshes::plane(10.0))};
   const Ghosting one = ghosting(s.scores, s.world, Parallel(1));
   const Ghosting five = ghosting(s.scores, s.world, Parallel(5));
   EXPECT_EQ(one.thickness_m.rmse, five.thickness_m.rmse);
@@ -232,4 +232,4 @@ TEST(Ghosting, IsTheSameOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

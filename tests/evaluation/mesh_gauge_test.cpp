@@ -11,7 +11,7 @@
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -24,15 +24,15 @@ const Parallel kTwo(2);
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A furnished room of 8 x 6 x 3 m.
-TriangleMesh room() {
-  TriangleMesh mesh = meshes::box(Vector3d(4, 3, 1.5));
+world::TriangleMesh room() {
+  world::TriangleMesh mesh = meshes::box(Vector3d(4, 3, 1.5));
   mesh.append(meshes::box(Vector3d(0.6, 0.4, 0.5)), flights::level({1.5, 1.0, -1.0}));
   mesh.append(meshes::box(Vector3d(0.3, 0.9, 0.8)), flights::level({-2.0, -1.2, -0.7}));
   return mesh;
 }
 
 /// Points on `mesh` with uniform density and normal noise along the surface normal.
-std::vector<Vector3d> points_on(const TriangleMesh& mesh, std::size_t count, double sigma) {
+std::vector<Vector3d> points_on(const world::TriangleMesh& mesh, std::size_t count, double sigma) {
   SequentialRandom random(71);
   std::vector<double> until;
   double area = 0.0;
@@ -64,12 +64,13 @@ std::vector<Vector3f> as_map(const std::vector<Vector3d>& points, const Pose& ma
   return map;
 }
 
-double rmse(const std::vector<Vector3f>& map, const Pose& mesh_from_map, const World& world) {
+double rmse(const std::vector<Vector3f>& map, const Pose& mesh_from_map,
+            const world::World& world) {
   return map_error(map, mesh_from_map, world, kTwo).distance_m.rmse;
 }
 
 TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
-  const World world(room());
+  const world::World world(room());
   const double sigma = 0.02;
   const std::vector<Vector3d> points = points_on(world.mesh(), 20000, sigma);
   for (const double size : {0.5, 1.0}) {
@@ -92,7 +93,7 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
 
 TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
   // A hall of 40 m whose map is bent by 20 cm to either side: no rigid motion can undo that.
-  const World world(meshes::box(Vector3d(20, 2, 1.5)));
+  const world::World world(meshes::box(Vector3d(20, 2, 1.5)));
   std::vector<Vector3d> points = points_on(world.mesh(), 30000, 0.01);
   for (Vector3d& p : points) p.y() += 0.2 * std::cos(2.0 * std::numbers::pi * p.x() / 40.0);
   const std::vector<Vector3f> map = as_map(points, Pose::Identity());
@@ -108,7 +109,7 @@ TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
 }
 
 TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
-  const World world(meshes::box(Vector3d(50, 1.2, 1.4)));
+  const world::World world(meshes::box(Vector3d(50, 1.2, 1.4)));
   std::vector<Vector3d> points;
   for (const Vector3d& p : points_on(world.mesh(), 30000, 0.01)) {
     if (std::abs(p.x()) < 15.0) points.push_back(p);  // no end wall is seen
@@ -127,7 +128,7 @@ TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
 }
 
 TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
-  const World world(meshes::plane(40.0));
+  const world::World world(meshes::plane(40.0));
   std::vector<Vector3d> points;
   for (const Vector3d& p : points_on(world.mesh(), 20000, 0.01)) {
     if (p.head<2>().norm() < 10.0) points.push_back(p);
@@ -145,7 +146,7 @@ TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
 }
 
 TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
-  const World world(meshes::box(Vector3d(4, 3, 1.5)));
+  const world::World world(meshes::box(Vector3d(4, 3, 1.5)));
   const std::vector<Vector3d> elsewhere = points_on(meshes::box(Vector3d(15, 11, 6)), 20000, 0.01);
   const MeshAlignment a =
       align_to_mesh(as_map(elsewhere, Pose::Identity()), Pose::Identity(), world, kTwo);
@@ -154,14 +155,14 @@ TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
 }
 
 TEST(MeshGauge, AHandfulOfPointsAndAnEmptyMapAreRefused) {
-  const World world(room());
+  const world::World world(room());
   EXPECT_THAT(align_to_mesh({}, Pose::Identity(), world, kTwo).refusal, HasSubstr("only 0 voxels"));
   const std::vector<Vector3f> few(50, Vector3f(4, 0, 0));
   EXPECT_FALSE(align_to_mesh(few, Pose::Identity(), world, kTwo).determined());
 }
 
 TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
-  const World world(room());
+  const world::World world(room());
   std::vector<Vector3d> points = points_on(world.mesh(), 20000, 0.01);
   for (std::size_t i = 0; i < points.size(); i += 5) points[i] += Vector3d(0.3, 0.3, 0.2);
   const std::vector<Vector3f> map = as_map(points, flights::level({0.1, 0.05, -0.1}));
@@ -172,7 +173,7 @@ TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
 }
 
 TEST(MeshGauge, IsTheSameBitsOnAnyNumberOfThreads) {
-  const World world(room());
+  const world::World world(room());
   const std::vector<Vector3f> map =
       as_map(points_on(world.mesh(), 10000, 0.02), flights::level({0.1, 0.05, -0.1}));
   const MeshAlignment one = align_to_mesh(map, Pose::Identity(), world, Parallel(1));
@@ -182,4 +183,4 @@ TEST(MeshGauge, IsTheSameBitsOnAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -4,20 +4,20 @@
 #include "lidarena/world/triangle_mesh.hpp"
 
 /// Surfaces to which distances have a closed form.
-namespace lidarena::meshes {
+namespace lidarena::evaluation::meshes {
 
 /// Square in z = 0, centered, as two triangles.
-inline TriangleMesh plane(double edge) {
+inline world::TriangleMesh plane(double edge) {
   const double h = 0.5 * edge;
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   mesh.vertices = {{-h, -h, 0}, {h, -h, 0}, {h, h, 0}, {-h, h, 0}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
   return mesh;
 }
 
 /// Box around the origin, two triangles per face.
-inline TriangleMesh box(const Eigen::Vector3d& half) {
-  TriangleMesh mesh;
+inline world::TriangleMesh box(const Eigen::Vector3d& half) {
+  world::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
     mesh.vertices.emplace_back((i & 1) != 0 ? half.x() : -half.x(),
                                (i & 2) != 0 ? half.y() : -half.y(),
@@ -28,4 +28,4 @@ inline TriangleMesh box(const Eigen::Vector3d& half) {
   return mesh;
 }
 
-}  // namespace lidarena::meshes
+}  // namespace lidarena::evaluation::meshes

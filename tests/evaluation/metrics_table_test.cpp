@@ -9,7 +9,7 @@
 #include "lidarena/evaluation/map/map_json.hpp"
 #include "lidarena/evaluation/run_statistics.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using ::testing::AllOf;
@@ -288,4 +288,4 @@ TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeGauge
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -3,15 +3,15 @@
 
 #include <gtest/gtest.h>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 /// 100 scans at 10 Hz that take 20 ms, every twentieth 150 ms; the map grows by 1 kB per scan, the
 /// buffer is constant, the backlog has one peak.
-std::vector<ResourceRow> rows_of_a_run() {
-  std::vector<ResourceRow> rows;
+std::vector<dataset::ResourceRow> rows_of_a_run() {
+  std::vector<dataset::ResourceRow> rows;
   for (int i = 0; i < 100; ++i) {
-    ResourceRow row;
+    dataset::ResourceRow row;
     row.t_sensor_s = 0.1 * (i + 1);
     row.latency_s = i % 20 == 7 ? 0.15 : 0.02;
     row.map_bytes = 1000U * static_cast<std::uint64_t>(i + 1);
@@ -61,7 +61,7 @@ TEST(Resources, OverTimeKeepsEveryPeak) {
 
 TEST(Resources, OfARunWithoutScansAreNullAndOfOneScanKnown) {
   EXPECT_TRUE(resources_json({}).is_null());
-  ResourceRow row;
+  dataset::ResourceRow row;
   row.t_sensor_s = 0.1;
   row.latency_s = 0.05;
   const ResourceFigures figures = *resource_figures(std::vector{row});
@@ -71,4 +71,4 @@ TEST(Resources, OfARunWithoutScansAreNullAndOfOneScanKnown) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,7 +7,7 @@
 
 #include "tests/evaluation/listed_sources.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 Scan scan_of(std::size_t points) {
@@ -57,9 +57,9 @@ TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
   events->events.push_back({"os0", ImuSample{}});
   events->events.push_back({"os0", scan_of(kPoints)});
   auto truths = std::make_unique<listed::Truths>();
-  ScanTruth truth;
+  dataset::ScanTruth truth;
   for (std::size_t i = 0; i < kPoints; ++i) {
-    PointTruth& point = truth.points.emplace_back();
+    dataset::PointTruth& point = truth.points.emplace_back();
     point.triangle = static_cast<std::uint32_t>(i);
   }
   truths->scans.push_back(truth);
@@ -69,7 +69,7 @@ TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
   ScoredTruth hits(std::make_unique<ScoredTruth>(std::move(truths), kMost), kMost);
   EXPECT_TRUE(std::holds_alternative<ImuSample>(scored.next()->data));
   const Scan scan = std::get<Scan>(scored.next()->data);
-  const ScanTruth hit = *hits.next();
+  const dataset::ScanTruth hit = *hits.next();
   ASSERT_EQ(scan.points.size(), hit.points.size());
   EXPECT_EQ(scan.points.size(), 18'725U);  // every 7th
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -81,4 +81,4 @@ TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 TEST(Summary, NoErrorsGiveCountZeroAndNoNaN) {
@@ -47,4 +47,4 @@ TEST(Summary, QuantilesAreThoseOfTheSortedValues) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

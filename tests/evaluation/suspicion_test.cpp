@@ -6,7 +6,7 @@
 
 #include "flights.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -89,4 +89,4 @@ TEST(SuspectQuaternionOrder, IsNotMisledByDriftNoiseOrAMounting) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -5,7 +5,7 @@
 
 #include "flights.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -54,4 +54,4 @@ TEST(TimeOffset, SteadyFlightAndHoverDoNotShowIt) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -9,7 +9,7 @@
 #include "flights.hpp"
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
@@ -358,4 +358,4 @@ TEST(AbsoluteTrajectoryError, OfARefusedAlignmentIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

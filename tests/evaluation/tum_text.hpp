@@ -10,7 +10,7 @@
 #include "lidarena/base/trajectory.hpp"
 
 /// A reader of TUM files that is independent of the library.
-namespace lidarena::tum_text {
+namespace lidarena::evaluation::tum_text {
 
 /// "1305031102.160407" to nanoseconds without passing through a double.
 inline Time parse_time(const std::string& text) {
@@ -45,4 +45,4 @@ inline std::filesystem::path shared(const std::string& name) {
   return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
 }
 
-}  // namespace lidarena::tum_text
+}  // namespace lidarena::evaluation::tum_text

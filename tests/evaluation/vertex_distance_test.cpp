@@ -12,7 +12,7 @@
 #include "lidarena/evaluation/map/map_json.hpp"
 #include "meshes.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using Eigen::Vector3d;
@@ -21,7 +21,7 @@ using ::testing::HasSubstr;
 
 const Parallel kTwo(2);
 
-VertexDistance distance_of(const std::vector<Vector3f>& map, const World& world,
+VertexDistance distance_of(const std::vector<Vector3f>& map, const world::World& world,
                            const Pose& mesh_from_map, double edge) {
   const MortonOrder order = morton_order(map, kTwo);
   const std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwo);
@@ -34,9 +34,9 @@ Vector3d random_point(SequentialRandom& random, double half) {
 }
 
 /// Unconnected triangles of various sizes and shapes, far from the origin.
-TriangleMesh soup(std::uint64_t seed, const Vector3d& far) {
+world::TriangleMesh soup(std::uint64_t seed, const Vector3d& far) {
   SequentialRandom random(seed);
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   for (std::uint32_t t = 0; t < 30; ++t) {
     const Vector3d at = far + random_point(random, 2.0);
     for (int k = 0; k < 3; ++k) {
@@ -49,9 +49,9 @@ TriangleMesh soup(std::uint64_t seed, const Vector3d& far) {
 
 /// Brute-force distance to the nearest of the points (i a + j b + k c) / n of all triangles, n the
 /// smallest number for which all sides are at most `edge`.
-double slow_distance(const TriangleMesh& mesh, const Vector3d& point, double edge) {
+double slow_distance(const world::TriangleMesh& mesh, const Vector3d& point, double edge) {
   double best = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : mesh.triangles) {
+  for (const world::Triangle& t : mesh.triangles) {
     const Vector3d a = mesh.vertices[t[0]], b = mesh.vertices[t[1]], c = mesh.vertices[t[2]];
     int n = 1;
     while (std::max({(b - a).norm(), (c - b).norm(), (a - c).norm()}) > n * edge) ++n;
@@ -66,7 +66,7 @@ double slow_distance(const TriangleMesh& mesh, const Vector3d& point, double edg
 
 TEST(VertexDistance, IsWhatALookAtAllVerticesFindsOrFarOffWhatTheSurfaceTellsOfThem) {
   const Vector3d far(5000.0, -3000.0, 100.0);
-  const World world(soup(11, far));
+  const world::World world(soup(11, far));
   const Pose mesh_from_map = make_pose(Eigen::Quaterniond(0.8, 0.0, 0.6, 0.0), far);
   SequentialRandom random(12);
   for (const double edge : {0.05, 0.3, 10.0}) {
@@ -96,7 +96,7 @@ TEST(VertexDistance, OfAPlaneIsThatOfASquareLattice) {
   // Legs of 0.9 m, diagonal 1.273 m: 26 pieces, a lattice of h = 3.46 cm. Points at height z over
   // the midpoints of the m x m parts of each cell have the mean square z^2 + h^2 / 6 (1 - 1 / m^2),
   // m even: twice the mean of squares of m / 2 midpoints of [0, h / 2].
-  const World world(meshes::plane(0.9));
+  const world::World world(meshes::plane(0.9));
   constexpr int kPieces = 26, kParts = 4;
   const double h = 0.9 / kPieces;
   for (const double z : {0.0, 0.02, 0.05}) {
@@ -116,27 +116,27 @@ TEST(VertexDistance, OfAPlaneIsThatOfASquareLattice) {
 }
 
 TEST(SubdividedVertices, AreAsManyAsCountedWithCornersOnceAndNoEdgeLongerThanAsked) {
-  const TriangleMesh plane = meshes::plane(0.9);
+  const world::TriangleMesh plane = meshes::plane(0.9);
   // 27 x 28 / 2 in each of two triangles, less the two corners that they share
   EXPECT_EQ(count_subdivided(plane, 0.05), 2U * 378U - 2U);
   EXPECT_EQ(subdivided_vertices(plane, 0.05, Vector3d::Zero()).size(), 2U * 378U - 2U);
   EXPECT_EQ(subdivided_vertices(plane, 2.0, Vector3d::Zero()).size(), 4U);
   // a right triangle with sides 3, 4 and 5 m: 100 pieces of 5 cm, and one more if 5 cm is not
   // allowed
-  TriangleMesh triangle;
+  world::TriangleMesh triangle;
   triangle.vertices = {{0, 0, 0}, {3, 0, 0}, {0, 4, 0}, {9, 9, 9}};  // the last is unused
   triangle.triangles = {{0, 1, 2}};
   EXPECT_EQ(count_subdivided(triangle, 0.05), 101U * 102U / 2U);
   EXPECT_EQ(count_subdivided(triangle, 0.0499), 102U * 103U / 2U);
   for (const double edge : {0.07, 0.3}) {
-    const TriangleMesh mesh = soup(13, Vector3d(1, 2, 3));
+    const world::TriangleMesh mesh = soup(13, Vector3d(1, 2, 3));
     EXPECT_EQ(subdivided_vertices(mesh, edge, Vector3d(1, 2, 3)).size(),
               count_subdivided(mesh, edge));
   }
 }
 
 TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
-  const World large(meshes::plane(100'000.0));  // some 8e12 vertices
+  const world::World large(meshes::plane(100'000.0));  // some 8e12 vertices
   const std::vector<Vector3f> map(10, Vector3f(1, 1, 0));
   const VertexDistance found = distance_of(map, large, Pose::Identity(), 0.05);
   EXPECT_GT(found.vertices, 1'000'000'000'000U);
@@ -145,7 +145,7 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
   EXPECT_EQ(json["refused"], found.refusal);
   EXPECT_FALSE(json.contains("rmse_m"));
   // the limit itself is allowed
-  const World small(meshes::plane(0.9));
+  const world::World small(meshes::plane(0.9));
   const MortonOrder order = morton_order(map, kTwo);
   const auto with = [&](std::uint64_t most) {
     const auto scores = score_points(map, order, Pose::Identity(), small, kTwo);
@@ -157,7 +157,7 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
 }
 
 TEST(VertexDistance, OfPointsThatAreNotFiniteIsLeftOutAndOfNoneIsNull) {
-  const World world(meshes::plane(0.9));
+  const world::World world(meshes::plane(0.9));
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const VertexDistance found = distance_of({Vector3f(nan, 0, 0), Vector3f(0.45F, 0.45F, 0.1F)},
                                            world, Pose::Identity(), 0.05);
@@ -168,4 +168,4 @@ TEST(VertexDistance, OfPointsThatAreNotFiniteIsLeftOutAndOfNoneIsNull) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 #include "lidarena/flight/spline_flight.hpp"
 #include "tests/flight/flight_scenes.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,8 +17,8 @@ SplineFlight straight(const Vector3d& from, const Vector3d& to) {
   return SplineFlight(std::vector<Vector3d>{from, to}, {}, "test");
 }
 
-const World& walls() {
-  static const World world(scenes::wall_with_door());
+const world::World& walls() {
+  static const world::World world(test_scenes::wall_with_door());
   return world;
 }
 
@@ -41,10 +41,10 @@ TEST(Clearance, ReportsTimePlaceAndDistanceOfTheFirstBreach) {
 }
 
 TEST(Clearance, AThinSheetIsNotSlippedThroughBetweenTwoSamples) {
-  TriangleMesh sheet;
+  world::TriangleMesh sheet;
   sheet.vertices = {{0, -1, 0}, {0, 1, 0}, {0, 0, 2}};
   sheet.triangles = {{0, 1, 2}};
-  const World world(std::move(sheet));
+  const world::World world(std::move(sheet));
   FlightConfig config;
   config.limits.max_speed = 50.0;
   config.limits.max_acceleration = 8.0;
@@ -70,4 +70,4 @@ TEST(Clearance, AgreesWithAskingTheWorldAtEverySample) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

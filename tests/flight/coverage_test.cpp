@@ -7,7 +7,7 @@
 
 #include "tests/flight/tour_scenes.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -17,7 +17,7 @@ double share(const Seen& seen) {
 }
 
 TEST(Coverage, SamplesAreSpreadByArea) {
-  const TriangleMesh mesh = scenes::box({0, 0, 0}, {1, 2, 10});
+  const world::TriangleMesh mesh = test_scenes::box({0, 0, 0}, {1, 2, 10});
   const auto samples = sample_surface(mesh, 6400);  // 64 m^2: one per square decimeter
   std::vector<int> count(mesh.triangles.size(), 0);
   Vector3d mean = Vector3d::Zero();
@@ -25,8 +25,8 @@ TEST(Coverage, SamplesAreSpreadByArea) {
     ++count[s.triangle];
     mean += s.point / 6400.0;
     const auto& [a, b, c] = mesh.triangles[s.triangle];
-    const Vector3d on =
-        closest_point_on_triangle(s.point, mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]);
+    const Vector3d on = world::closest_point_on_triangle(s.point, mesh.vertices[a],
+                                                         mesh.vertices[b], mesh.vertices[c]);
     ASSERT_NEAR((on - s.point).norm(), 0.0, 1e-12);
   }
   for (std::size_t i = 0; i < count.size(); ++i) {
@@ -36,7 +36,7 @@ TEST(Coverage, SamplesAreSpreadByArea) {
 }
 
 TEST(Coverage, FromInsideABoxAllIsSeenAndFromOutsideTheFacesTurnedThere) {
-  const World world(scenes::box({0, 0, 0}, {2, 2, 2}));
+  const world::World world(test_scenes::box({0, 0, 0}, {2, 2, 2}));
   const auto samples = sample_surface(world.mesh(), 1200);
   EXPECT_EQ(share(seen_from(world, {0.7, 1.1, 1.6}, samples, 10)), 1.0);
   EXPECT_NEAR(share(seen_from(world, {1, 1, 5}, samples, 10)), 1.0 / 6.0, 0.005);
@@ -44,7 +44,7 @@ TEST(Coverage, FromInsideABoxAllIsSeenAndFromOutsideTheFacesTurnedThere) {
 }
 
 TEST(Coverage, BeyondTheRangeNothingIsSeen) {
-  const World world(scenes::box({0, 0, 0}, {2, 2, 2}));
+  const world::World world(test_scenes::box({0, 0, 0}, {2, 2, 2}));
   const auto samples = sample_surface(world.mesh(), 6000);
   // from the center, each face is seen within a circle of radius sqrt(1.2^2 - 1)
   const double expected = std::acos(-1.0) * (1.44 - 1.0) / 4.0;
@@ -53,14 +53,14 @@ TEST(Coverage, BeyondTheRangeNothingIsSeen) {
 }
 
 TEST(Coverage, EveryInnerFaceOfTwoRoomsIsSeenFromBothAndNothingElse) {
-  const World world(scenes::two_rooms());
+  const world::World world(test_scenes::two_rooms());
   const auto samples = sample_surface(world.mesh(), 8000);
   const std::vector<Vector3d> places{{1, 1, 1}, {3, 3.5, 2}, {7, 1, 1}, {5, 3.5, 2}, {4.05, 1, 1}};
   Seen seen(samples.size(), 0);
   for (const Seen& view : seen_from_each(world, places, samples, 20, Parallel(2))) {
     add_seen(seen, view);
   }
-  const double inner = scenes::two_rooms_inner_area() / world.mesh().area();
+  const double inner = test_scenes::two_rooms_inner_area() / world.mesh().area();
   // 8000 stratified samples; those up to 2 mm behind 84 m of edges may also count as seen
   EXPECT_NEAR(share(seen), inner, 0.005);
 }
@@ -74,4 +74,4 @@ TEST(Coverage, ViewsAreChosenGreedilyUntilTheShareIsReached) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 /// 10 s: 3 m/s in the first two seconds, rotation at 2 rad/s in the third, slow motion afterwards.
@@ -32,4 +32,4 @@ TEST(Figures, LivelyIsTheShareOfTimeThatIsFastOrTurnsQuickly) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -56,4 +56,4 @@ TEST(Flatness, BodyRateAndAngularAccelerationAreTheAttitudesDerivatives) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

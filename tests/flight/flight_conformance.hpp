@@ -9,7 +9,7 @@
 #include "lidarena/flight/flight.hpp"
 
 /// Properties that every Flight must have.
-namespace lidarena::conformance {
+namespace lidarena::flight::conformance {
 
 /// Maximum differences between the derivatives that a flight returns and central differences (step
 /// h) of the next lower derivatives.
@@ -95,4 +95,4 @@ inline void expect_lawful(const Flight& flight, int order) {
   expect_derivatives_converge(flight, order, spacing);
 }
 
-}  // namespace lidarena::conformance
+}  // namespace lidarena::flight::conformance

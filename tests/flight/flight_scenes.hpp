@@ -5,11 +5,11 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena::scenes {
+namespace lidarena::flight::test_scenes {
 
 /// A closed box of twelve triangles.
-inline TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  TriangleMesh mesh;
+inline world::TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+  world::TriangleMesh mesh;
   for (int i = 0; i < 8; ++i) {
     mesh.vertices.emplace_back((i & 1) != 0 ? high.x() : low.x(), (i & 2) != 0 ? high.y() : low.y(),
                                (i & 4) != 0 ? high.z() : low.z());
@@ -24,10 +24,10 @@ inline TriangleMesh box(const Eigen::Vector3d& low, const Eigen::Vector3d& high)
 }
 
 /// Two walls in the plane x = 0 with a door of 0.9 m width between them: |y| < 0.45.
-inline TriangleMesh wall_with_door() {
-  TriangleMesh mesh = box({-0.05, 0.45, 0.0}, {0.05, 3.0, 2.5});
+inline world::TriangleMesh wall_with_door() {
+  world::TriangleMesh mesh = box({-0.05, 0.45, 0.0}, {0.05, 3.0, 2.5});
   mesh.append(box({-0.05, -3.0, 0.0}, {0.05, -0.45, 2.5}));
   return mesh;
 }
 
-}  // namespace lidarena::scenes
+}  // namespace lidarena::flight::test_scenes

@@ -17,7 +17,7 @@
 #include "lidarena/flight/spline_flight.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -206,4 +206,4 @@ TEST(FlyQuadrotor, SaysWhenItCannotLiftItselfOrIsBlownAway) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -8,13 +8,13 @@
 
 #include "tests/flight/tour_scenes.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
 
-const World& rooms() {
-  static const World world(scenes::two_rooms());
+const world::World& rooms() {
+  static const world::World world(test_scenes::two_rooms());
   return world;
 }
 
@@ -141,4 +141,4 @@ TEST(FreeSpace, AStraightWayIsClearUpToItsNearestSurface) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

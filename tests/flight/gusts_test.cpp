@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -57,4 +57,4 @@ TEST(Gusts, DependOnTheSeedAlone) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

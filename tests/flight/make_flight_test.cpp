@@ -14,7 +14,7 @@
 #include "tests/flight/tour_scenes.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using testing::AllOf;
@@ -24,13 +24,13 @@ class MakeFlight : public testing::Test {
  protected:
   void SetUp() override {
     model_.name = "walls";
-    model_.mesh = scenes::wall_with_door();
+    model_.mesh = test_scenes::wall_with_door();
     model_.routes = {{{-2, 0, 1}, {2, 0, 1}}, {{-2, 0, 1}, {-2, 2, 1}, {2, 2, 1}}};
   }
 
   std::unique_ptr<Flight> make(const std::filesystem::path& file) const {
     LogSink log;
-    return make_flight(file, model_, World(TriangleMesh(model_.mesh)), log);
+    return make_flight(file, model_, world::World(world::TriangleMesh(model_.mesh)), log);
   }
   std::string error_of(const std::string& name, const std::string& text) const {
     try {
@@ -42,7 +42,7 @@ class MakeFlight : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  WorldModel model_;
+  world::WorldModel model_;
 };
 
 TEST_F(MakeFlight, WaypointsAndStyleComeFromTheFile) {
@@ -157,7 +157,7 @@ TEST_F(MakeFlight, AnAutomaticTourIsPlannedInTheWorldAndTold) {
     void message(LogLevel, std::string_view text) override { all += std::string(text) + "\n"; }
     std::string all;
   } told;
-  model_.mesh = scenes::two_rooms();
+  model_.mesh = test_scenes::two_rooms();
   const auto flight = make_flight(folder_.write("a.yaml", R"(
 kind: auto
 clearance_m: 0.4
@@ -165,7 +165,7 @@ corner_m: 0.1
 duration_s: 40
 tour: {cell_m: 0.2, samples: 500, max_views: 50, start: [1, 2, 1.2]}
 )"),
-                                  model_, World(TriangleMesh(model_.mesh)), told);
+                                  model_, world::World(world::TriangleMesh(model_.mesh)), told);
   EXPECT_EQ(flight->duration(), std::chrono::seconds(40));
   EXPECT_NEAR((flight->pose_at(Time{0}).translation() - Eigen::Vector3d(1, 2, 1.2)).norm(), 0.0,
               1e-12);
@@ -185,13 +185,13 @@ TEST(Recordings, ARealFlightIsReplayedThroughItsPoses) {
   const std::filesystem::path file = std::filesystem::path(LIDARENA_SHARED_DATA) /
                                      "trajectories/euroc_V1_02/stamped_groundtruth.txt";
   if (!std::filesystem::exists(file)) GTEST_SKIP() << "the EuRoC data is missing";
-  WorldModel model;
-  model.mesh = scenes::box({100, 100, 100}, {101, 101, 101});
+  world::WorldModel model;
+  model.mesh = test_scenes::box({100, 100, 100}, {101, 101, 101});
   LogSink log;
-  const auto flight = make_flight(file, model, World(TriangleMesh(model.mesh)), log);
+  const auto flight = make_flight(file, model, world::World(world::TriangleMesh(model.mesh)), log);
   EXPECT_NEAR(to_seconds(flight->duration()), 83.5, 1.0);
   conformance::expect_lawful(*flight, 1);
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -5,7 +5,7 @@
 
 #include "lidarena/flight/quadrotor.hpp"
 
-namespace lidarena::scenes {
+namespace lidarena::flight::test_scenes {
 
 /// The state after `seconds`, integrated with steps of `h` (s).
 template <class Derivative>
@@ -18,4 +18,4 @@ QuadrotorState integrated(QuadrotorState state, double seconds, double h,
   return state;
 }
 
-}  // namespace lidarena::scenes
+}  // namespace lidarena::flight::test_scenes

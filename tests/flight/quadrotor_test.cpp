@@ -9,12 +9,12 @@
 #include "lidarena/flight/gusts.hpp"
 #include "tests/flight/quadrotor_scenes.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Array4d;
 using Eigen::Vector3d;
-using scenes::integrated;
+using test_scenes::integrated;
 
 const Vector3d kStill = Vector3d::Zero();
 
@@ -151,4 +151,4 @@ TEST(Quadrotor, TheIntegratorsErrorFallsWithTheFourthPowerOfItsStep) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

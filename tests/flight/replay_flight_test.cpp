@@ -13,7 +13,7 @@
 #include "lidarena/flight/spline_flight.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -201,4 +201,4 @@ TEST(RotationRates, AgreeWithNumericDerivativesForSmallAndLargeRotations) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -17,15 +17,15 @@
 #include "lidarena/scenes/load_world.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 const std::filesystem::path kConfigs = std::filesystem::path(LIDARENA_SOURCE_DIR) / "configs";
 const std::filesystem::path kMeshes = std::filesystem::path(LIDARENA_SHARED_DATA) / "meshes";
 
 struct Scene {
-  WorldModel model;
-  World world;
+  world::WorldModel model;
+  world::World world;
 };
 
 /// Cached between tests: generating the cave takes longer than the flight.
@@ -34,15 +34,15 @@ const Scene& scene_of(const std::filesystem::path& world_file) {
   auto found = scenes.find(world_file);
   if (found == scenes.end()) {
     LogSink log;
-    WorldModel model = load_world(world_file, {}, log);
-    World world{TriangleMesh(model.mesh)};
+    world::WorldModel model = scenes::load_world(world_file, {}, log);
+    world::World world{world::TriangleMesh(model.mesh)};
     found = scenes.emplace(world_file, Scene{std::move(model), std::move(world)}).first;
   }
   return found->second;
 }
 
 /// Conforming (see flight_conformance.hpp) and clear of the mesh at samples 20 ms apart.
-void expect_lawful_and_clear(const Flight& flight, const World& world, double clearance) {
+void expect_lawful_and_clear(const Flight& flight, const world::World& world, double clearance) {
   conformance::expect_lawful(flight, 2);
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
     const Eigen::Vector3d p = flight.pose_at(t).translation();
@@ -105,7 +105,7 @@ TEST(ShippedFlights, TheSmallHouseIsFlownThroughItsRooms) {
 }
 
 /// The shipped tour, planned coarsely, is clear of the mesh and sees 80 % of the visible surface.
-void expect_tour(const WorldModel& model, const World& world, double cell_m) {
+void expect_tour(const world::WorldModel& model, const world::World& world, double cell_m) {
   auto config = load_config<FlightConfig>(kConfigs / "flights/auto.yaml");
   config.tour.cell_m = cell_m;
   config.tour.max_views = 150;
@@ -141,8 +141,8 @@ TEST(ShippedTour, ShowsTheHouse) {
 }
 
 TEST(ShippedTour, ShowsACaveOfOneLoop) {
-  const WorldModel model = make_cave({.loops = 1}, 1);
-  expect_tour(model, World(TriangleMesh(model.mesh)), 0.4);
+  const world::WorldModel model = scenes::make_cave({.loops = 1}, 1);
+  expect_tour(model, world::World(world::TriangleMesh(model.mesh)), 0.4);
 }
 
 TEST(ShippedTour, ShowsTheLavaTube) {
@@ -160,4 +160,4 @@ TEST(ShippedTour, ShowsTheSmallHouseThatHasNoCeiling) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -11,7 +11,7 @@
 #include "lidarena/flight/figures.hpp"
 #include "tests/flight/flight_conformance.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -315,4 +315,4 @@ TEST(SplineFlight, RefusesASweepThatTheYawRateForbidsAndADurationThatIsAllHover)
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

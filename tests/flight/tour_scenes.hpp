@@ -3,14 +3,14 @@
 
 #include "tests/flight/flight_scenes.hpp"
 
-namespace lidarena::scenes {
+namespace lidarena::flight::test_scenes {
 
 /// Two rooms of 4 x 4 x 2.5 m, x in [0, 4] and [4.1, 8.1], y in [0, 4], z in [0, 2.5]. Walls, floor
 /// and ceiling are 0.1 m thick; a door between the rooms is 0.9 m wide, 2 m high and centered at
 /// y = 1.03. Built of adjoining solid boxes: the faces between two boxes are not visible.
-inline TriangleMesh two_rooms() {
-  TriangleMesh mesh = box({-0.1, -0.1, -0.1}, {8.2, 4.1, 0});  // floor
-  mesh.append(box({-0.1, -0.1, 2.5}, {8.2, 4.1, 2.6}));        // ceiling
+inline world::TriangleMesh two_rooms() {
+  world::TriangleMesh mesh = box({-0.1, -0.1, -0.1}, {8.2, 4.1, 0});  // floor
+  mesh.append(box({-0.1, -0.1, 2.5}, {8.2, 4.1, 2.6}));               // ceiling
   mesh.append(box({-0.1, -0.1, 0}, {0, 4.1, 2.5}));
   mesh.append(box({8.1, -0.1, 0}, {8.2, 4.1, 2.5}));
   mesh.append(box({0, -0.1, 0}, {8.1, 0, 2.5}));
@@ -31,4 +31,4 @@ inline double two_rooms_inner_area() {
   return floors + long_walls + end_walls + middle_wall + door;
 }
 
-}  // namespace lidarena::scenes
+}  // namespace lidarena::flight::test_scenes

@@ -18,7 +18,7 @@
 #include "lidarena/flight/tour_start.hpp"
 #include "tests/flight/tour_scenes.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Eigen::Vector3d;
@@ -75,9 +75,9 @@ TEST(TourOrder, VisitsAllAndIsNearTheBestOfAllOrders) {
 }
 
 TEST(TourStart, LiesInTheRoomAndNotBesideIt) {
-  TriangleMesh mesh = scenes::two_rooms();
-  mesh.append(scenes::box({-20, -20, -0.3}, {20, 20, -0.2}));  // ground around the house
-  const World world(std::move(mesh));
+  world::TriangleMesh mesh = test_scenes::two_rooms();
+  mesh.append(test_scenes::box({-20, -20, -0.3}, {20, 20, -0.2}));  // ground around the house
+  const world::World world(std::move(mesh));
   const auto place = most_enclosed_place(world, 0.4, Parallel(2));
   ASSERT_TRUE(place.has_value());
   EXPECT_TRUE(Eigen::AlignedBox3d(Vector3d(0, 0, 0), Vector3d(8.1, 4, 2.5)).contains(*place));
@@ -86,8 +86,8 @@ TEST(TourStart, LiesInTheRoomAndNotBesideIt) {
 }
 
 struct Rooms {
-  WorldModel model;
-  World world{scenes::two_rooms()};
+  world::WorldModel model;
+  world::World world{test_scenes::two_rooms()};
 };
 
 const Rooms& rooms() {
@@ -114,7 +114,7 @@ TEST(Tour, ShowsBothRoomsAndKnowsHowMuchOfTheMeshCanBeSeen) {
   FlightConfig config = quick();
   config.tour.coverage = 0.95;
   const Tour tour = planned(config);
-  const double inner = scenes::two_rooms_inner_area() / rooms().world.mesh().area();
+  const double inner = test_scenes::two_rooms_inner_area() / rooms().world.mesh().area();
   EXPECT_NEAR(tour.seeable, inner, 0.02);  // 2000 samples: at most sqrt(0.25 / 2000) = 0.011
   // the viewpoints see 95 %; the flight passes them within corner_m and is sampled every 0.2 m
   EXPECT_GE(tour.seen, 0.9 * tour.seeable);
@@ -149,7 +149,7 @@ TEST(Tour, BeginsAtTheGivenStartOrOnTheWorldsRoute) {
   FlightConfig config = quick();
   config.tour.start = Vector3d(6.0, 2.0, 1.2);
   EXPECT_NEAR((planned(config).waypoints.front() - *config.tour.start).norm(), 0.0, 1e-12);
-  WorldModel model = rooms().model;
+  world::WorldModel model = rooms().model;
   model.routes = {{{1.0, 2.0, 1.3}, {2.0, 2.0, 1.3}}};
   const Tour tour = plan_tour(model, rooms().world, quick(), "auto.yaml", Parallel(2));
   EXPECT_NEAR((tour.waypoints.front() - Vector3d(1.0, 2.0, 1.3)).norm(), 0.0, 1e-12);
@@ -191,4 +191,4 @@ TEST(Tour, SaysWhenItsStartIsInAWallOrThereIsNone) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

@@ -8,7 +8,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/flight/spline_fit.hpp"
 
-namespace lidarena {
+namespace lidarena::flight {
 namespace {
 
 using Spline = UniformSpline<6, 1>;
@@ -118,4 +118,4 @@ TEST(UniformSpline, HoldsItsEnds) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::flight

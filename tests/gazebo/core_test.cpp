@@ -12,25 +12,25 @@ namespace {
 TEST(GazeboCore, ASensorSeesABallFallAsPhysicsHasIt) {
   constexpr double kRadius = 1.5, kHeight = 10.0, kGravityHere = 9.80665;
   constexpr Time kStep{1'000'000};
-  SensorConfig config;
+  sensor::SensorConfig config;
   config.name = "mid360";
-  config.imu = ImuConfig{};
-  SteppedSensor sensor(config, config.name, 1, true, Time{0});
-  MovingWorld world(
-      {{make_sphere(kRadius), Pose::Identity(), {}, true},
-       {make_plane(), make_pose(Eigen::Quaterniond::Identity(), {0, 0, -1}), {}, false}});
+  config.imu = sensor::ImuConfig{};
+  sensor::SteppedSensor sensor(config, config.name, 1, true, Time{0});
+  world::MovingWorld world(
+      {{world::make_sphere(kRadius), Pose::Identity(), {}, true},
+       {world::make_plane(), make_pose(Eigen::Quaterniond::Identity(), {0, 0, -1}), {}, false}});
   const auto height_at = [&](Time t) {
     const double s = to_seconds(t);
     return kHeight - 0.5 * kGravityHere * s * s;
   };
-  std::vector<Event> events;
+  std::vector<dataset::Event> events;
   for (Time t{0}; t <= 1000 * kStep; t += kStep) {
     const Pose pose = make_pose(Eigen::Quaterniond::Identity(), {12, 0, height_at(t)});
     world.move({&pose, 1});
     sensor.step(world, {t, Pose::Identity()}, events);
   }
   std::size_t on_ball = 0, scans = 0, samples = 0;
-  for (const Event& event : events) {
+  for (const dataset::Event& event : events) {
     const auto* scan = std::get_if<Scan>(&event.data);
     samples += scan == nullptr;
     if (scan == nullptr) continue;

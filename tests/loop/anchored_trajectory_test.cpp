@@ -5,7 +5,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
 Pose at_x(double meters) { return make_pose(Eigen::Matrix3d::Identity(), {meters, 0.0, 0.0}); }
@@ -56,4 +56,4 @@ TEST(AnchoredTrajectory, BeforeTheFirstKeyframePosesStandInTheWorldAndTimeGoesOn
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::loop

@@ -5,12 +5,12 @@
 
 #include "tests/loop/places.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
 struct Pair {
   Pose truth = Pose::Identity();
-  KdTree target;
+  map::KdTree target;
   places::Points source;
 };
 
@@ -73,7 +73,7 @@ TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
                    {{x, 2.0F, h}, {x, -2.0F, h}, {x, h - 1.5F, 0.0F}, {x, h - 1.5F, 3.0F}});
     }
   }
-  KdTree target;
+  map::KdTree target;
   target.build(walls);
   const places::Points source = places::seen_from(Pose::Identity(), walls, 8.0, 3);
   const IcpResult result =
@@ -82,4 +82,4 @@ TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::loop

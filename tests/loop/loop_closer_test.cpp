@@ -8,7 +8,7 @@
 #include "lidarena/base/se3.hpp"
 #include "tests/loop/places.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
 using places::Points;
@@ -193,4 +193,4 @@ TEST(LoopCloser, AFewPointsAreNoPlace) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::loop

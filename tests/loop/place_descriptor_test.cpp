@@ -5,7 +5,7 @@
 
 #include "tests/loop/places.hpp"
 
-namespace lidarena {
+namespace lidarena::loop {
 namespace {
 
 PlaceDescriptor at(double meters, double turn, std::uint64_t seed) {
@@ -44,4 +44,4 @@ TEST(PlaceDescriptor, NothingLooksLikeNothing) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::loop

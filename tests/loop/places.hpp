@@ -10,7 +10,7 @@
 #include "lidarena/base/so3.hpp"
 
 /// Simulated places made of points on walls, and paths through them, for tests of loop closure.
-namespace lidarena::places {
+namespace lidarena::loop::places {
 
 using Points = std::vector<Eigen::Vector3f>;
 
@@ -98,4 +98,4 @@ inline Pose around_the_block(double meters) {
   return corner * standing(along - 20.0 * side - 10.0, -10.0, 0.0);
 }
 
-}  // namespace lidarena::places
+}  // namespace lidarena::loop::places

@@ -8,7 +8,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 /// A wall of 8 m x 8 m, 1 cm away from a border of cells of 0.2 m, with 2 cm of noise across it.
@@ -50,4 +50,4 @@ TEST(GridAxes, AreARotationFarFromTheFramesAxes) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -10,7 +10,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 /// Reference: the same operations on a list, implemented in the simplest way.
@@ -197,4 +197,4 @@ TEST(KdTree, RemovedPointsGiveTheirMemoryBack) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::map

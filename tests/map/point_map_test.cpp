@@ -14,7 +14,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -168,4 +168,4 @@ TEST(VoxelFilter, ASecondPassTakesItsPointsFromTheWholeScan) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -13,7 +13,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -275,4 +275,4 @@ TEST(VoxelHashMap, NearestFewAreThoseOfTheWholeMapWithinTheRadius) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -10,7 +10,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::map {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -82,4 +82,4 @@ TEST(VoxelSums, PointsThatAreNotFiniteAreLeftOut) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::map

@@ -11,7 +11,7 @@
 #include "lidarena/odometry/factory.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 namespace {
 
 using synthetic::Recording;
@@ -29,8 +29,8 @@ std::vector<Candidate> candidates() {
   return all;
 }
 
-const std::vector<Event>& usual_events() {
-  static const std::vector<Event> events = synthetic::record({});
+const std::vector<dataset::Event>& usual_events() {
+  static const std::vector<dataset::Event> events = synthetic::record({});
   return events;
 }
 
@@ -40,7 +40,7 @@ struct Outcome {
 };
 
 /// Feeds one event; appends the result of a scan.
-void feed(Odometry& odometry, const Event& event, std::vector<ScanResult>& results) {
+void feed(Odometry& odometry, const dataset::Event& event, std::vector<ScanResult>& results) {
   if (const auto* scan = std::get_if<Scan>(&event.data)) {
     results.push_back(odometry.register_scan(*scan));
   } else {
@@ -56,9 +56,9 @@ class OdometryConformance : public testing::TestWithParam<Candidate> {
                          Parallel(threads))
         .odometry;
   }
-  static Outcome play(Odometry& odometry, const std::vector<Event>& events) {
+  static Outcome play(Odometry& odometry, const std::vector<dataset::Event>& events) {
     Outcome outcome;
-    for (const Event& event : events) feed(odometry, event, outcome.results);
+    for (const dataset::Event& event : events) feed(odometry, event, outcome.results);
     odometry.finish();
     outcome.trajectory = odometry.trajectory();
     return outcome;
@@ -114,7 +114,7 @@ TEST_P(OdometryConformance, PosesAreFiniteInOrderOfTimeAndFollowTheFlight) {
 
 TEST_P(OdometryConformance, TwoInstancesInterleavedDoAsEachAlone) {
   const Recording other{.range_noise_m = 0.02, .epoch = Time{77}};
-  const std::vector<Event> other_events = synthetic::record(other);
+  const std::vector<dataset::Event> other_events = synthetic::record(other);
   const Outcome alone = play(*make(), usual_events());
   const Outcome other_alone = play(*make(other), other_events);
 
@@ -137,9 +137,9 @@ TEST_P(OdometryConformance, IsTheSameBitsOnOneAndThreeThreads) {
 }
 
 TEST_P(OdometryConformance, EmptyScansAndPointsThatAreNotFiniteAreSurvivedAndTold) {
-  std::vector<Event> events = usual_events();
+  std::vector<dataset::Event> events = usual_events();
   std::size_t index = 0;
-  for (Event& event : events) {
+  for (dataset::Event& event : events) {
     auto* scan = std::get_if<Scan>(&event.data);
     if (scan == nullptr) continue;
     const std::size_t every = index == 12 ? 10 : index == 20 ? 1 : 0;
@@ -160,8 +160,8 @@ TEST_P(OdometryConformance, EmptyScansAndPointsThatAreNotFiniteAreSurvivedAndTol
 }
 
 TEST_P(OdometryConformance, AFirstScanWithoutPointsIsSurvived) {
-  std::vector<Event> events = usual_events();
-  for (Event& event : events) {
+  std::vector<dataset::Event> events = usual_events();
+  for (dataset::Event& event : events) {
     auto* scan = std::get_if<Scan>(&event.data);
     if (scan == nullptr) continue;
     scan->points.clear();
@@ -271,4 +271,4 @@ std::string name_of(const testing::TestParamInfo<Candidate>& candidate) {
 INSTANTIATE_TEST_SUITE_P(All, OdometryConformance, testing::ValuesIn(candidates()), name_of);
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::odometry

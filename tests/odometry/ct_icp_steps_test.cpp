@@ -11,7 +11,7 @@
 #include "lidarena/odometry/ct_icp/neighborhood.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 namespace {
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
@@ -20,7 +20,7 @@ Pose turned(double yaw, const Eigen::Vector3d& position = Eigen::Vector3d::Zero(
   return make_pose(so3::exp({0.0, 0.0, yaw}), position);
 }
 
-ElasticMotion motion_of(const Pose& begin, const Pose& end) { return {{begin, end}}; }
+estimation::ElasticMotion motion_of(const Pose& begin, const Pose& end) { return {{begin, end}}; }
 
 Scan scan_of(std::vector<Point> points, bool timed = true) {
   return {Time{1'000'000'000}, std::move(points), timed};
@@ -33,7 +33,7 @@ TEST(CtIcpSampling, AlphaRunsFromTheEarliestPointToTheLatestAndBadPointsAreDropp
                              {{kNan, 0, 0}, 0, 300},
                              {{0.1F, 0, 0}, 0, 300},
                              {{60, 0, 0}, 0, 300}});
-  const ScanTimes times = times_of(scan, Time{77});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{77});
   EXPECT_EQ(times.first - scan.stamp, Time{100});
   EXPECT_EQ(times.last - scan.stamp, Time{500});
   EXPECT_TRUE(times.timed);
@@ -50,11 +50,13 @@ TEST(CtIcpSampling, AlphaRunsFromTheEarliestPointToTheLatestAndBadPointsAreDropp
 }
 
 TEST(CtIcpSampling, AnEmptyScanLastsAsUsualAndOneWithoutTimesIsNotTimed) {
-  const ScanTimes empty = times_of(scan_of({}), Time{77});
+  const estimation::ScanTimes empty = estimation::times_of(scan_of({}), Time{77});
   EXPECT_EQ(empty.last - empty.first, Time{77});
   EXPECT_FALSE(empty.timed);
-  EXPECT_FALSE(times_of(scan_of({{{1, 0, 0}, 0, 0}, {{2, 0, 0}, 0, 0}}), Time{77}).timed);
-  EXPECT_FALSE(times_of(scan_of({{{1, 0, 0}, 0, 0}, {{2, 0, 0}, 0, 9}}, false), Time{77}).timed);
+  EXPECT_FALSE(
+      estimation::times_of(scan_of({{{1, 0, 0}, 0, 0}, {{2, 0, 0}, 0, 0}}), Time{77}).timed);
+  EXPECT_FALSE(
+      estimation::times_of(scan_of({{{1, 0, 0}, 0, 0}, {{2, 0, 0}, 0, 9}}, false), Time{77}).timed);
 }
 
 TEST(CtIcpSampling, ThinningKeepsOnePointOfEachCellFromAllOverTheScan) {
@@ -64,7 +66,7 @@ TEST(CtIcpSampling, ThinningKeepsOnePointOfEachCellFromAllOverTheScan) {
       points.push_back(
           {{static_cast<float>(cell) + 0.5F, 0.5F, 0.5F}, 0.001F * static_cast<float>(i)});
   }
-  const auto kept = thin(points, 1.0, VoxelRounding::kFloor);
+  const auto kept = thin(points, 1.0, map::VoxelRounding::kFloor);
   std::set<float> cells;
   double mean = 0.0;
   for (const TimedPoint& point : kept) {
@@ -80,8 +82,8 @@ TEST(CtIcpSampling, ThinningKeepsOnePointOfEachCellFromAllOverTheScan) {
 TEST(CtIcpSampling, TruncatedCellsAboutZeroAreTwiceAsWide) {
   const std::vector<TimedPoint> points{
       {{-0.9F, 0.1F, 0.1F}, 0}, {{0.9F, 0.1F, 0.1F}, 0}, {{1.1F, 0.1F, 0.1F}, 0}};
-  EXPECT_EQ(thin(points, 1.0, VoxelRounding::kFloor).size(), 3U);
-  EXPECT_EQ(thin(points, 1.0, VoxelRounding::kTruncate).size(), 2U);
+  EXPECT_EQ(thin(points, 1.0, map::VoxelRounding::kFloor).size(), 3U);
+  EXPECT_EQ(thin(points, 1.0, map::VoxelRounding::kTruncate).size(), 2U);
 }
 
 TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
@@ -93,7 +95,7 @@ TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
   }
   for (auto& point : points) point.position.z() -= point.position.x() < 2.0F ? 1.6F : 0.0F;
   const auto all =
-      sample_keypoints(points, KeypointSampling::kAdaptive, 1.0, 0, VoxelRounding::kFloor);
+      sample_keypoints(points, KeypointSampling::kAdaptive, 1.0, 0, map::VoxelRounding::kFloor);
   std::map<float, int> counts;
   for (const TimedPoint& point : all) ++counts[point.position.x()];
   EXPECT_EQ(counts.count(0.3F), 0U) << "nearer than 0.5 m";
@@ -104,7 +106,8 @@ TEST(CtIcpSampling, AdaptiveCellsGrowWithTheRangeAndTheLimitHolds) {
   EXPECT_EQ(counts[12.0F], 1) << "cells of 0.8 m";
   EXPECT_EQ(counts[100.0F], 1) << "cells of 1.6 m";
   EXPECT_EQ(
-      sample_keypoints(points, KeypointSampling::kAdaptive, 1.0, 5, VoxelRounding::kFloor).size(),
+      sample_keypoints(points, KeypointSampling::kAdaptive, 1.0, 5, map::VoxelRounding::kFloor)
+          .size(),
       5U);
 }
 
@@ -118,9 +121,9 @@ std::vector<Eigen::Vector3f> plane_points() {
   return points;
 }
 
-std::vector<Neighbor> neighbors_of(const std::vector<Eigen::Vector3f>& points,
-                                   const Eigen::Vector3f& query) {
-  std::vector<Neighbor> all;
+std::vector<map::Neighbor> neighbors_of(const std::vector<Eigen::Vector3f>& points,
+                                        const Eigen::Vector3f& query) {
+  std::vector<map::Neighbor> all;
   for (const auto& point : points) all.push_back({point, (point - query).squaredNorm()});
   return all;
 }
@@ -153,7 +156,7 @@ TEST(CtIcpNeighborhood, WeighsAPlaneAsThePublicProgramDoes) {
   Neighborhood near{{0, 0, 2}, {0, 0, 1}, {1, 0, 0}, {0, 1, 4}, 0.5, 0.5};
   RegistrationConfig config;
   config.min_neighbors = 20;
-  const ElasticMatch match = plane_match(near, {0, 0, 2.3}, config);
+  const estimation::ElasticMatch match = plane_match(near, {0, 0, 2.3}, config);
   EXPECT_NEAR(match.weight, 0.9 * 0.25 + 0.1 * std::exp(-0.3 / (0.3 * 20)), 1e-12);
   EXPECT_EQ(match.rows, 1);
 }
@@ -168,7 +171,7 @@ TEST(CtIcpNeighborhood, IsALineAPlaneOrADistribution) {
   EXPECT_NEAR(shape_match(line).weight, 0.81, 1e-12);
   // deviations 0.1, 0.2, 0.4 along z, y, x: distances are scaled by the smallest
   const Neighborhood cloud{{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {0.01, 0.04, 0.16}, 0.25, 0.5};
-  const ElasticMatch match = shape_match(cloud);
+  const estimation::ElasticMatch match = shape_match(cloud);
   EXPECT_NEAR((match.shape * gap).squaredNorm(), 0.01 * (0.09 / 0.16 + 0.04 / 0.04 + 0.01 / 0.01),
               1e-12);
   EXPECT_EQ(match.weight, 0.1);
@@ -177,7 +180,7 @@ TEST(CtIcpNeighborhood, IsALineAPlaneOrADistribution) {
 TEST(CtIcpPrediction, EachWayGoesOnFromTheMotionSoFar) {
   const Pose step = turned(0.1, {1.0, 0.0, 0.0});
   MotionHistory history;
-  ScanTimes times{Time{0}, Time{100'000'000}, true};
+  estimation::ScanTimes times{Time{0}, Time{100'000'000}, true};
   const auto next = [&] {
     times.first += Time{100'000'000};
     times.last += Time{100'000'000};
@@ -195,16 +198,16 @@ TEST(CtIcpPrediction, EachWayGoesOnFromTheMotionSoFar) {
   EXPECT_LT((history.predict(times, config).end().matrix() - end.matrix()).norm(), 1e-12);
   for (const auto way : {InitialMotion::kConstantMotion, InitialMotion::kConstantTwist}) {
     config.initial_motion = way;
-    const ElasticMotion motion = history.predict(times, config);
+    const estimation::ElasticMotion motion = history.predict(times, config);
     EXPECT_LT((motion.begin().matrix() - end.matrix()).norm(), 1e-12);
     EXPECT_LT((motion.end().matrix() - (end * step).matrix()).norm(), 1e-12);
   }
   next();  // a scan was dropped: by real time the end is two steps away
   config.segments = 2;
-  const ElasticMotion motion = history.predict(times, config);
+  const estimation::ElasticMotion motion = history.predict(times, config);
   EXPECT_LT((motion.begin().matrix() - (end * step).matrix()).norm(), 1e-12);
   EXPECT_LT((motion.end().matrix() - (end * step * step).matrix()).norm(), 1e-12);
-  const MotionPrior prior = history.prior(motion, config, PriorConfig{});
+  const estimation::MotionPrior prior = history.prior(motion, config, PriorConfig{});
   EXPECT_LT((prior.turn - Eigen::Vector3d(0, 0, 0.1)).norm(), 1e-12);
   EXPECT_EQ(prior.location, 0.001);
 }
@@ -217,7 +220,7 @@ Registration registration_of(double yaw, double meters, std::size_t matches) {
 }
 
 TEST(CtIcpRobust, VerdictsFollowMotionAndMatches) {
-  const ElasticMotion guess = ElasticMotion::still(Pose::Identity(), 1);
+  const estimation::ElasticMotion guess = estimation::ElasticMotion::still(Pose::Identity(), 1);
   RobustConfig config;  // trusted up to 3 deg, lost beyond 30 deg or 5 m
   config.min_matched_share = 0.5;
   const auto verdict = [&](const Registration& r) { return verdict_on(r, guess, config); };
@@ -246,8 +249,8 @@ TEST(CtIcpRobust, EachLevelIsFinerLongerAndWider) {
 
 TEST(CtIcpInsertion, ScansThatTurnAreKeptOutUntilSixWere) {
   InsertionGate gate{InsertionConfig{}};
-  const ElasticMotion slow = motion_of(Pose::Identity(), turned(0.05));
-  const ElasticMotion fast = motion_of(Pose::Identity(), turned(0.06));
+  const estimation::ElasticMotion slow = motion_of(Pose::Identity(), turned(0.05));
+  const estimation::ElasticMotion fast = motion_of(Pose::Identity(), turned(0.06));
   EXPECT_TRUE(gate.admits(slow, Verdict::kSuspect));
   for (int round = 0; round < 2; ++round) {
     for (int i = 0; i < 6; ++i) EXPECT_FALSE(gate.admits(fast, Verdict::kTrusted));
@@ -308,4 +311,4 @@ TEST(CtIcp, AFloorAloneIsDegenerate) {
 }
 
 }  // namespace
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -10,7 +10,7 @@
 #include "tests/odometry/synthetic_room.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 namespace {
 
 using testing::AllOf;
@@ -96,4 +96,4 @@ TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsN
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::odometry

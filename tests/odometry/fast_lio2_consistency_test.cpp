@@ -15,7 +15,7 @@
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 using synthetic::Recording;
@@ -77,7 +77,7 @@ std::vector<Errors> errors_over(const Recording& recording, bool plane_uncertain
   std::optional<Time> first;
   std::vector<Errors> errors;
   int scans = 0;
-  for (const Event& event : synthetic::record(recording)) {
+  for (const dataset::Event& event : synthetic::record(recording)) {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
       odometry.register_imu(*sample);
       continue;
@@ -152,4 +152,4 @@ TEST(FastLio2Consistency, TheQuantilesAreThoseOfTheTables) {
 }
 
 }  // namespace
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

@@ -12,7 +12,7 @@
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
@@ -76,11 +76,13 @@ TEST(FastLio2Start, AnAccelerometersBiasIsNotTakenForMotion) {
     const Eigen::Matrix3d tilt = so3::exp({0.1, -0.2, 0.0});
     const Eigen::Vector3d up = tilt.transpose() * Eigen::Vector3d::UnitZ();
     const std::vector<ImuSample> samples = standing_with(bias * up);
-    const InertialState state = start_from(samples, Pose::Identity(), config).belief.state;
+    const estimation::InertialState state =
+        start_from(samples, Pose::Identity(), config).belief.state;
     // The mean of 20 samples with 0.01 m/s^2 of noise: 4.5 sigma.
     EXPECT_LT((state.nav.bias.accel - bias * up).norm(), 0.01);
     StillDetector detector;
-    EXPECT_TRUE(detector.observe(statistics(samples), state, state.position(), config, 1.0));
+    EXPECT_TRUE(
+        detector.observe(estimation::statistics(samples), state, state.position(), config, 1.0));
   }
 }
 
@@ -88,14 +90,16 @@ TEST(FastLio2Start, ShakingIsNotStanding) {
   const Start start = start_from(standing(1.0, 0.1), Pose::Identity(), improved_config());
   EXPECT_FALSE(start.still);
   EXPECT_EQ(start.belief.state.nav.bias.gyro, Eigen::Vector3d::Zero().eval());
-  EXPECT_GT(start.belief.covariance(InertialState::kVelocity, InertialState::kVelocity), 1.0);
+  EXPECT_GT(start.belief.covariance(estimation::InertialState::kVelocity,
+                                    estimation::InertialState::kVelocity),
+            1.0);
 }
 
 TEST(FastLio2Start, SlowMotionEndsTheStanding) {
   StillDetector detector;
   const Config config = improved_config();
-  const ImuStatistics imu = statistics(standing(1.0, 1e-3));
-  InertialState state;
+  const estimation::ImuStatistics imu = estimation::statistics(standing(1.0, 1e-3));
+  estimation::InertialState state;
   state.nav.bias.gyro = {0.01, 0.0, 0.0};
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   int stood = 0;
@@ -110,14 +114,16 @@ TEST(FastLio2Start, SlowMotionEndsTheStanding) {
 
 TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
   const Config config = improved_config();
-  InertialState state;
+  estimation::InertialState state;
   state.nav.bias.gyro = {0.01, 0.0, 0.0};
   state.gravity = so3::exp({0.1, -0.2, 0.0}).transpose() * state.gravity;
   std::vector<ImuSample> samples = standing(1.0, 1e-3);
   StillDetector detector;
-  EXPECT_TRUE(detector.observe(statistics(samples), state, state.position(), config, 1.0));
+  EXPECT_TRUE(
+      detector.observe(estimation::statistics(samples), state, state.position(), config, 1.0));
   for (ImuSample& sample : samples) sample.accel.x() += 0.1;
-  EXPECT_FALSE(detector.observe(statistics(samples), state, state.position(), config, 1.0))
+  EXPECT_FALSE(
+      detector.observe(estimation::statistics(samples), state, state.position(), config, 1.0))
       << "acceleration of 0.1 m/s^2";
 }
 
@@ -125,9 +131,9 @@ TEST(FastLio2Start, TheFirstPushEndsTheStanding) {
 
 Neighbors points_on(const Eigen::Vector3d& normal, double offset, double thickness,
                     SequentialRandom& random) {
-  const auto basis = tangent_basis(normal);
+  const auto basis = estimation::tangent_basis(normal);
   Neighbors points;
-  for (Neighbor& point : points) {
+  for (map::Neighbor& point : points) {
     const Eigen::Vector2d along(random.uniform(-0.3, 0.3), random.uniform(-0.3, 0.3));
     point.point = (normal * (-offset + thickness * (2.0 * random.uniform() - 1.0)) + basis * along)
                       .cast<float>();
@@ -140,8 +146,9 @@ TEST(FastLio2Planes, AreFoundByBothFits) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
     const Neighbors points = points_on(normal, -3.0, 0.0, random);
-    for (const PlaneFit fit : {PlaneFit::kUnitOffset, PlaneFit::kPrincipal}) {
-      const auto plane = fit_plane(columns_of(points), fit, 0.1);
+    for (const estimation::PlaneFit fit :
+         {estimation::PlaneFit::kUnitOffset, estimation::PlaneFit::kPrincipal}) {
+      const auto plane = estimation::fit_plane(map::columns_of(points), fit, 0.1);
       ASSERT_TRUE(plane.has_value());
       EXPECT_NEAR(std::abs(plane->normal.dot(normal)), 1.0, 1e-4);
       EXPECT_NEAR(std::abs(plane->offset), 3.0, 1e-2);
@@ -155,10 +162,12 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d normal = random_vector(random, 1.0).normalized();
     const Neighbors points = points_on(normal, 0.0, 0.0, random);
-    const auto plane = fit_plane(columns_of(points), PlaneFit::kPrincipal, 0.1);
+    const auto plane =
+        estimation::fit_plane(map::columns_of(points), estimation::PlaneFit::kPrincipal, 0.1);
     ASSERT_TRUE(plane.has_value());
     EXPECT_GT(std::abs(plane->normal.dot(normal)), 0.999);
-    const auto other = fit_plane(columns_of(points), PlaneFit::kUnitOffset, 0.1);
+    const auto other =
+        estimation::fit_plane(map::columns_of(points), estimation::PlaneFit::kUnitOffset, 0.1);
     found += other && std::abs(other->normal.dot(normal)) > 0.9 ? 1 : 0;
   }
   EXPECT_LT(found, 25) << "a fault that `principal` does not have; noise of 1 cm hides it";
@@ -167,10 +176,14 @@ TEST(FastLio2Planes, ThroughTheOriginTheOriginalFindsNone) {
 TEST(FastLio2Planes, ThickOnesAreRefused) {
   SequentialRandom random(5, 1);
   const Neighbors points = points_on({0.0, 0.0, 1.0}, -2.0, 0.5, random);
-  EXPECT_FALSE(fit_plane(columns_of(points), PlaneFit::kPrincipal, 0.01).has_value());
+  EXPECT_FALSE(
+      estimation::fit_plane(map::columns_of(points), estimation::PlaneFit::kPrincipal, 0.01)
+          .has_value());
   Neighbors same;
-  for (Neighbor& point : same) point.point.setZero();
-  EXPECT_FALSE(fit_plane(columns_of(same), PlaneFit::kUnitOffset, 0.1).has_value()) << "not finite";
+  for (map::Neighbor& point : same) point.point.setZero();
+  EXPECT_FALSE(estimation::fit_plane(map::columns_of(same), estimation::PlaneFit::kUnitOffset, 0.1)
+                   .has_value())
+      << "not finite";
 }
 
 /// A cross with arms `length` and `width` (m) in a tilted plane, with noise `sigma` across it.
@@ -197,12 +210,14 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
     double squares = 0.0;
     for (int i = 0; i < kFits; ++i) {
       const auto plane =
-          fit_plane(columns_of(cross(kLength, width, kSigma, random)), PlaneFit::kPrincipal, 0.1);
+          estimation::fit_plane(map::columns_of(cross(kLength, width, kSigma, random)),
+                                estimation::PlaneFit::kPrincipal, 0.1);
       ASSERT_TRUE(plane.has_value());
       squares += std::pow(plane->normal.dot(end) + plane->offset, 2);
     }
     const Neighbors exact = cross(kLength, width, 0.0, random);
-    const auto plane = fit_plane(columns_of(exact), PlaneFit::kPrincipal, 0.1);
+    const auto plane =
+        estimation::fit_plane(map::columns_of(exact), estimation::PlaneFit::kPrincipal, 0.1);
     const double told = plane_variance(exact, *plane, kSigma * kSigma);
     const double tilt = kSigma * kSigma / (2.0 * width * width);
     EXPECT_NEAR(told, kSigma * kSigma / 5.0 + tilt * kLength * kLength, 1e-3 * told);
@@ -214,7 +229,8 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
 TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
   SequentialRandom random(13, 1);
   const Neighbors line = cross(0.3, 0.0, 0.0, random);
-  const auto plane = fit_plane(columns_of(line), PlaneFit::kPrincipal, 0.1);
+  const auto plane =
+      estimation::fit_plane(map::columns_of(line), estimation::PlaneFit::kPrincipal, 0.1);
   ASSERT_TRUE(plane.has_value());
   EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2; large but finite";
   EXPECT_LT(plane_variance(line, *plane, 1e-3), 1e3);
@@ -223,21 +239,23 @@ TEST(FastLio2Planes, OfPointsOnALineNothingIsKnown) {
 TEST(FastLio2Planes, TheJacobianIsTheNumericOne) {
   SequentialRandom random(6, 1);
   for (int i = 0; i < 50; ++i) {
-    InertialState state;
+    estimation::InertialState state;
     state.position() = random_vector(random, 3.0);
     state.rotation() = so3::exp(random_vector(random, 1.0));
     state.imu_from_lidar.linear() = so3::exp(random_vector(random, 1.0));
     state.imu_from_lidar.translation() = random_vector(random, 0.2);
     const Eigen::Vector3d point = random_vector(random, 5.0);
-    const Plane plane{random_vector(random, 1.0).normalized(), random.normal()};
+    const estimation::Plane plane{random_vector(random, 1.0).normalized(), random.normal()};
     const PointResidual residual = point_residual(point, plane, state, true);
     EXPECT_NEAR(residual.distance,
                 plane.normal.dot(state.world_from_lidar() * point) + plane.offset, 1e-12);
-    for (Eigen::Index k = 0; k < kPointDof; ++k) {
-      const InertialState::Vector step = 1e-6 * InertialState::Vector::Unit(k);
-      const double slope = (point_residual(point, plane, plus(state, step), true).distance -
-                            point_residual(point, plane, plus(state, -step), true).distance) /
-                           2e-6;
+    for (Eigen::Index k = 0; k < estimation::kPointDof; ++k) {
+      const estimation::InertialState::Vector step =
+          1e-6 * estimation::InertialState::Vector::Unit(k);
+      const double slope =
+          (point_residual(point, plane, estimation::plus(state, step), true).distance -
+           point_residual(point, plane, estimation::plus(state, -step), true).distance) /
+          2e-6;
       EXPECT_NEAR(residual.row[k], slope, 1e-8);
     }
     EXPECT_EQ(point_residual(point, plane, state, false).row.tail<6>().norm(), 0.0);
@@ -245,7 +263,7 @@ TEST(FastLio2Planes, TheJacobianIsTheNumericOne) {
 }
 
 TEST(FastLio2Planes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
-  KdTree map;
+  map::KdTree map;
   for (int x = -20; x <= 20; ++x) {
     for (int y = -20; y <= 20; ++y) {
       map.insert({0.2F * static_cast<float>(x), 0.2F * static_cast<float>(y), 0.0F});
@@ -253,10 +271,10 @@ TEST(FastLio2Planes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
   }
   const std::vector<Eigen::Vector3f> points{{0.05F, 0.03F, 1.0F}};  // 1 m below: gate 0.111 m
   Config config;
-  config.plane_fit = PlaneFit::kPrincipal;
+  config.plane_fit = estimation::PlaneFit::kPrincipal;
   const Parallel parallel(1);
   PlaneResiduals residuals(points, map, config, parallel);
-  InertialState state;
+  estimation::InertialState state;
   state.position().z() = -0.9;
   const auto near = residuals(state, true);
   ASSERT_EQ(near.count, 1U);
@@ -272,8 +290,8 @@ TEST(FastLio2Planes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
 
 TEST(FastLio2Map, ShortcutsOfInsertionDoNotChangeWhatACellKeeps) {
   SequentialRandom random(8, 1);
-  KdTree with_shortcuts;
-  KdTree without;
+  map::KdTree with_shortcuts;
+  map::KdTree without;
   const auto random_point = [&] {
     return Eigen::Vector3f(random_vector(random, 0.7).cast<float>());
   };
@@ -295,7 +313,7 @@ TEST(FastLio2Map, ShortcutsOfInsertionDoNotChangeWhatACellKeeps) {
 }
 
 TEST(FastLio2Map, FollowsTheSensor) {
-  KdTree map;
+  map::KdTree map;
   for (int i = -100; i <= 100; ++i) map.insert({static_cast<float>(i), 0.0F, 0.0F});
   MapWindow window(40.0);
   window.follow({5.0F, 0.0F, 0.0F}, map);
@@ -309,4 +327,4 @@ TEST(FastLio2Map, FollowsTheSensor) {
 }
 
 }  // namespace
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

@@ -14,7 +14,7 @@
 #include "lidarena/base/time.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 using synthetic::Recording;
@@ -48,11 +48,12 @@ Config improved(const Recording& recording) {
   return preset("improved", synthetic::rig_of(recording).lidars.front());
 }
 
-Outcome play(const std::vector<Event>& events, const Recording& recording, const Config& config) {
+Outcome play(const std::vector<dataset::Event>& events, const Recording& recording,
+             const Config& config) {
   const Rig rig = synthetic::rig_of(recording);
   FastLio2 odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
   Outcome outcome;
-  for (const Event& event : events) {
+  for (const dataset::Event& event : events) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       outcome.results.push_back(odometry.register_scan(*scan));
     } else {
@@ -62,12 +63,12 @@ Outcome play(const std::vector<Event>& events, const Recording& recording, const
   return outcome;
 }
 
-Outcome play(const std::vector<Event>& events, const Recording& recording = {}) {
+Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   return play(events, recording, improved(recording));
 }
 
-const std::vector<Event>& usual_events() {
-  static const std::vector<Event> events = synthetic::record({});
+const std::vector<dataset::Event>& usual_events() {
+  static const std::vector<dataset::Event> events = synthetic::record({});
   return events;
 }
 
@@ -75,9 +76,9 @@ double seconds_of(const ImuSample& sample) { return to_seconds(sample.stamp - Re
 
 /// The usual events with `change` applied to each IMU sample; removes the samples for which it
 /// returns false.
-std::vector<Event> with_imu(const std::function<bool(ImuSample&)>& change) {
-  std::vector<Event> events;
-  for (Event event : usual_events()) {
+std::vector<dataset::Event> with_imu(const std::function<bool(ImuSample&)>& change) {
+  std::vector<dataset::Event> events;
+  for (dataset::Event event : usual_events()) {
     auto* sample = std::get_if<ImuSample>(&event.data);
     if (sample == nullptr || change(*sample)) events.push_back(std::move(event));
   }
@@ -93,7 +94,7 @@ Outcome with_silence(double begin, double end) {
 
 TEST(FastLio2Standing, BeforeItFirstMovesTheBodyIsWhereItBegan) {
   const Recording standing{.motion = [](double) { return Pose::Identity(); }};
-  const std::vector<Event> events = synthetic::record(standing);
+  const std::vector<dataset::Event> events = synthetic::record(standing);
   const auto farthest = [&](bool hold) {
     Config config = improved(standing);
     config.hold_first_pose = hold;
@@ -126,10 +127,10 @@ TEST(FastLio2Standing, BeamsThatHitTheSamePlacesDoNotHoldTheStart) {
   // With 160 columns the neighbors of a point lie on one line. A plane through them may be
   // perpendicular to the wall and then moves with the sensor.
   const Recording sparse{.motion = slow_start, .seconds = 6.0};
-  const std::vector<Event> events = synthetic::record(sparse);
+  const std::vector<dataset::Event> events = synthetic::record(sparse);
   Config config = improved(sparse);
   EXPECT_LT(play(events, sparse, config).final_error(sparse), 0.05) << "of 47.5 cm";
-  config.grid_axes = GridAxes::kParallel;  // a rotated grid alone would prevent the error
+  config.grid_axes = map::GridAxes::kParallel;  // a rotated grid alone would prevent the error
   EXPECT_LT(play(events, sparse, config).final_error(sparse), 0.05);
   config.plane_uncertainty = false;
   EXPECT_GT(play(events, sparse, config).final_error(sparse), 0.3);
@@ -173,8 +174,8 @@ TEST(FastLio2Data, ALostTrackIsNotSilentAndDoesNotSpoilTheMap) {
                                   return pose;
                                 },
                             .seconds = 5.0};
-  std::vector<Event> events;
-  for (Event& event : synthetic::record(recording)) {
+  std::vector<dataset::Event> events;
+  for (dataset::Event& event : synthetic::record(recording)) {
     const Time stamp = std::visit([](const auto& data) { return data.stamp; }, event.data);
     const double t = to_seconds(stamp - recording.epoch);
     if (t < 2.0 || t > 2.5) events.push_back(std::move(event));
@@ -191,9 +192,9 @@ TEST(FastLio2Data, ALostTrackIsNotSilentAndDoesNotSpoilTheMap) {
 }
 
 TEST(FastLio2Data, SamplesFromThePastAndFromFarAheadAreRefusedAndCounted) {
-  std::vector<Event> events;
+  std::vector<dataset::Event> events;
   int bad = 0;
-  for (const Event& event : usual_events()) {
+  for (const dataset::Event& event : usual_events()) {
     events.push_back(event);
     const auto* sample = std::get_if<ImuSample>(&event.data);
     if (sample == nullptr || ++bad % 50 != 0) continue;
@@ -210,10 +211,10 @@ TEST(FastLio2Data, SamplesFromThePastAndFromFarAheadAreRefusedAndCounted) {
 }
 
 TEST(FastLio2Data, AScanFromThePastChangesNothing) {
-  std::vector<Event> events;
-  std::optional<Event> old;
+  std::vector<dataset::Event> events;
+  std::optional<dataset::Event> old;
   int index = 0;
-  for (const Event& event : usual_events()) {
+  for (const dataset::Event& event : usual_events()) {
     events.push_back(event);
     if (!std::holds_alternative<Scan>(event.data)) continue;
     if (index == 10) old = event;
@@ -230,9 +231,9 @@ TEST(FastLio2Data, AScanFromThePastChangesNothing) {
 }
 
 TEST(FastLio2Data, DroppedScansAreBridgedByTheImu) {
-  std::vector<Event> events;
+  std::vector<dataset::Event> events;
   int index = 0;
-  for (const Event& event : usual_events()) {
+  for (const dataset::Event& event : usual_events()) {
     const bool dropped = std::holds_alternative<Scan>(event.data) && ++index > 20 && index <= 23;
     if (!dropped) events.push_back(event);
   }
@@ -277,10 +278,10 @@ Pose fast_turning(double t) {
 
 TEST(FastLio2Data, ASaturatedGyroIsToldAndNotBelieved) {
   const Recording recording{.motion = fast_turning};
-  std::vector<Event> events = synthetic::record(recording);
+  std::vector<dataset::Event> events = synthetic::record(recording);
   SequentialRandom random(1, 1);
   int clipped = 0;
-  for (Event& event : events) {
+  for (dataset::Event& event : events) {
     auto* sample = std::get_if<ImuSample>(&event.data);
     if (sample == nullptr) continue;
     for (double& rate : sample->gyro) rate += 1e-3 * random.normal();
@@ -307,10 +308,10 @@ Pose shaking(double t) {
 TEST(FastLio2Data, ASaturatedAccelerometerIsToldAndNotBelieved) {
   constexpr double kRange = 2.0 * 9.80665;
   const Recording recording{.motion = shaking};
-  std::vector<Event> events = synthetic::record(recording);
+  std::vector<dataset::Event> events = synthetic::record(recording);
   SequentialRandom random(2, 1);
   int clipped = 0;
-  for (Event& event : events) {
+  for (dataset::Event& event : events) {
     auto* sample = std::get_if<ImuSample>(&event.data);
     if (sample == nullptr) continue;
     for (double& force : sample->accel) force += 1e-2 * random.normal();
@@ -325,9 +326,9 @@ TEST(FastLio2Data, ASaturatedAccelerometerIsToldAndNotBelieved) {
 }
 
 TEST(FastLio2Data, AClockThatIsSetBackForGoodChangesNothingAndIsToldAtEachScan) {
-  std::vector<Event> events = usual_events();
+  std::vector<dataset::Event> events = usual_events();
   const Time from = Recording{}.epoch + from_seconds(2.0);
-  for (Event& event : events) {
+  for (dataset::Event& event : events) {
     std::visit(
         [from](auto& data) {
           if (data.stamp >= from) data.stamp -= from_seconds(1.5);
@@ -349,4 +350,4 @@ TEST(FastLio2Data, AClockThatIsSetBackForGoodChangesNothingAndIsToldAtEachScan) 
 }
 
 }  // namespace
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

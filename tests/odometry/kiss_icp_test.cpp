@@ -6,7 +6,7 @@
 #include "lidarena/base/so3.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 namespace {
 
 using synthetic::Motion;
@@ -196,4 +196,4 @@ TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {
 }
 
 }  // namespace
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -17,7 +17,7 @@
 #include "lidarena/odometry/lio_sam/registration.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
@@ -166,7 +166,7 @@ TEST(LioSamRegistration, JacobiansAreTheNumericOnes) {
     const Vector3d seen = pose * point;
     const Line line{seen + random_vector(random, 0.2), random_vector(random, 1.0).normalized()};
     const Vector3d normal = random_vector(random, 1.0).normalized();
-    const Plane plane{normal, -normal.dot(seen) + 0.1 * random.normal()};
+    const estimation::Plane plane{normal, -normal.dot(seen) + 0.1 * random.normal()};
     const auto moved = [&](Eigen::Index k, double h) {
       const Eigen::Matrix<double, 6, 1> step = h * Eigen::Matrix<double, 6, 1>::Unit(k);
       Pose p = pose;
@@ -207,17 +207,19 @@ TEST(LioSamRegistration, LinesAndPlanesAreFoundWhereThereAreSome) {
   EXPECT_FALSE(fit_line(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 0}})));
 
   const std::vector<Vector3d> wall{{2, 0, 0}, {2, 1, 0}, {2, 0, 1}, {2, 1, 1}, {2.01, 0.5, 0.5}};
-  for (const PlaneFit fit : {PlaneFit::kPrincipal, PlaneFit::kUnitOffset}) {
-    const auto plane = fit_plane(columns_of(five(wall)), fit, 0.2);
+  for (const estimation::PlaneFit fit :
+       {estimation::PlaneFit::kPrincipal, estimation::PlaneFit::kUnitOffset}) {
+    const auto plane = estimation::fit_plane(map::columns_of(five(wall)), fit, 0.2);
     ASSERT_TRUE(plane.has_value());
     EXPECT_NEAR(std::abs(plane->normal.x()), 1.0, 1e-2);
     EXPECT_NEAR(std::abs(plane->offset), 2.0, 2e-2);
   }
-  EXPECT_FALSE(fit_plane(columns_of(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}})),
-                         PlaneFit::kPrincipal, 0.2, 0.05));
-  EXPECT_FALSE(
-      fit_plane(columns_of(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}})),
-                PlaneFit::kPrincipal, 0.2, 0.05))
+  EXPECT_FALSE(estimation::fit_plane(
+      map::columns_of(five({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}})),
+      estimation::PlaneFit::kPrincipal, 0.2, 0.05));
+  EXPECT_FALSE(estimation::fit_plane(
+      map::columns_of(five({{0, 0, 0}, {1, 0, 0}, {2, 0.1, 0}, {3, 0, 0.01}, {4, 0, 0}})),
+      estimation::PlaneFit::kPrincipal, 0.2, 0.05))
       << "points on a line, as from a single sweep";
 }
 
@@ -433,7 +435,7 @@ TEST(LioSam, StandingStillNothingGrowsUnlessTheProgramsLivoxModeIsAskedFor) {
     config.keyframe_age_s = age;
     LioSam odometry(config, rig.lidars[0], rig.imus[0], Parallel(1));
     double keyframes = 0.0;
-    for (const Event& event : events) {
+    for (const dataset::Event& event : events) {
       if (const auto* scan = std::get_if<Scan>(&event.data)) {
         keyframes = odometry.register_scan(*scan).counters.at("keyframes");
       } else {
@@ -451,7 +453,7 @@ double step_error(const synthetic::Recording& recording, const Config& config) {
   const Rig rig = synthetic::rig_of(recording);
   LioSam odometry(config, rig.lidars[0], rig.imus[0], Parallel(1));
   std::vector<StampedPose> poses;
-  for (const Event& event : synthetic::record(recording)) {
+  for (const dataset::Event& event : synthetic::record(recording)) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       poses.push_back(odometry.register_scan(*scan).estimate);
     } else {
@@ -489,4 +491,4 @@ TEST(LioSam, WithoutImuEveryScanSaysSo) {
 }
 
 }  // namespace
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -6,11 +6,11 @@
 #include <fstream>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/odometry/factory.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 namespace {
 
 const std::filesystem::path kLidarData = std::filesystem::path(LIDARENA_SHARED_DATA) / "lidar";
@@ -54,7 +54,7 @@ TEST_P(OnRealData, FollowsACarAlongAStreet) {
   const auto folder = kLidarData / "kitti_drive";
   if (!std::filesystem::exists(folder))
     GTEST_SKIP() << "skipped: the 15 sweeps of kitti_drive are missing";
-  Dataset dataset = open_dataset(folder);
+  dataset::Dataset dataset = dataset::open_dataset(folder);
   const auto odometry = make();
   while (const auto event = dataset.events->next())
     odometry->register_scan(std::get<Scan>(event->data));
@@ -83,8 +83,8 @@ TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
     for (int column = 0; column < 4; ++column) in >> target_from_source.matrix()(row, column);
   }
   ASSERT_TRUE(in);
-  const Pose found = motion_between(read_cloud(folder / "target.ply").points,
-                                    read_cloud(folder / "source.ply").points);
+  const Pose found = motion_between(dataset::read_cloud(folder / "target.ply").points,
+                                    dataset::read_cloud(folder / "source.ply").points);
   const Pose error = target_from_source.inverse() * found;
   // the published motion agrees with another ICP to 0.02 m and 0.3 degrees; keypoints are 1.5 m
   // apart: 0.25 m of matching noise divided by the square root of about 1000 keypoints
@@ -95,9 +95,9 @@ TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
 TEST_P(OnRealData, ThereAndBackAgainIsNoMotion) {
   const auto folder = kLidarData / "gtsam_points" / "kitti_00";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "skipped: the pair of kitti_00 is missing";
-  ReadOptions options;
+  dataset::ReadOptions options;
   options.layout = "xyz";
-  Dataset dataset = open_dataset(folder, options);
+  dataset::Dataset dataset = dataset::open_dataset(folder, options);
   std::vector<std::vector<Eigen::Vector3f>> clouds;
   while (const auto event = dataset.events->next()) {
     auto& cloud = clouds.emplace_back();
@@ -119,4 +119,4 @@ INSTANTIATE_TEST_SUITE_P(LidarOnly, OnRealData,
                          });
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -12,19 +12,19 @@
 #include "lidarena/odometry/process_memory.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 namespace {
 
-class ListSource : public EventSource {
+class ListSource : public dataset::EventSource {
  public:
-  explicit ListSource(std::vector<Event> events) : events_(std::move(events)) {}
-  std::optional<Event> next() override {
+  explicit ListSource(std::vector<dataset::Event> events) : events_(std::move(events)) {}
+  std::optional<dataset::Event> next() override {
     if (next_ == events_.size()) return std::nullopt;
     return events_[next_++];
   }
 
  private:
-  std::vector<Event> events_;
+  std::vector<dataset::Event> events_;
   std::size_t next_ = 0;
 };
 
@@ -81,7 +81,7 @@ class Walker : public Odometry {
   std::vector<StampedPose> poses;
 };
 
-Event scan_event(const std::string& sensor, int tenth) {
+dataset::Event scan_event(const std::string& sensor, int tenth) {
   Scan scan;
   scan.stamp = Time{5} + tenth * from_seconds(0.1);
   Point point;
@@ -90,8 +90,8 @@ Event scan_event(const std::string& sensor, int tenth) {
   return {sensor, scan};
 }
 
-std::vector<Event> ten_scans() {
-  std::vector<Event> events;
+std::vector<dataset::Event> ten_scans() {
+  std::vector<dataset::Event> events;
   for (int i = 0; i < 10; ++i) events.push_back(scan_event("a", i));
   return events;
 }
@@ -112,7 +112,7 @@ TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
   EXPECT_EQ(result.summary.statuses.at(ScanStatus::kTracked), 10U);
   EXPECT_FALSE(result.summary.diverged);
   ASSERT_EQ(result.files.resources.size(), 10U);
-  const ResourceRow& row = result.files.resources[4];
+  const dataset::ResourceRow& row = result.files.resources[4];
   EXPECT_DOUBLE_EQ(row.t_sensor_s, 0.49);
   EXPECT_EQ(row.map_bytes, 500U);
   EXPECT_EQ(row.backlog_bytes, 3U);
@@ -166,7 +166,7 @@ TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
 }
 
 TEST(Run, OtherSensorsAreLeftOutAndTheFirstImuIsTaken) {
-  std::vector<Event> events;
+  std::vector<dataset::Event> events;
   for (int i = 0; i < 5; ++i) {
     events.push_back({"imu1", ImuSample{}});
     events.push_back({"imu2", ImuSample{}});
@@ -186,7 +186,7 @@ TEST(Run, OtherSensorsAreLeftOutAndTheFirstImuIsTaken) {
 }
 
 TEST(Run, ScansOutOfOrderAreSkippedWithAWarning) {
-  std::vector<Event> events = ten_scans();
+  std::vector<dataset::Event> events = ten_scans();
   events.insert(events.begin() + 5, events[2]);
   events.insert(events.begin() + 5, events[4]);
   Walker walker;
@@ -197,7 +197,7 @@ TEST(Run, ScansOutOfOrderAreSkippedWithAWarning) {
 }
 
 TEST(Run, APacedMethodThatIsLateLosesScansButNoImuSample) {
-  std::vector<Event> events;
+  std::vector<dataset::Event> events;
   for (int i = 0; i < 20; ++i) {
     events.push_back({"imu", ImuSample{}});
     Scan scan;
@@ -257,4 +257,4 @@ TEST(ProcessMemory, GrowsWithWhatIsAllocatedAndTouched) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena::synthetic {
+namespace lidarena::odometry::synthetic {
 
 namespace {
 
@@ -127,8 +127,8 @@ Rig rig_of(const Recording& recording) {
   return rig;
 }
 
-std::vector<Event> record(const Recording& recording) {
-  std::vector<Event> events;
+std::vector<dataset::Event> record(const Recording& recording) {
+  std::vector<dataset::Event> events;
   const auto scan_count = static_cast<std::size_t>(std::lround(recording.seconds / kScanSeconds));
   std::size_t imu_index = 0;
   for (std::size_t i = 0; i < scan_count; ++i) {
@@ -146,7 +146,7 @@ std::vector<Event> record(const Recording& recording) {
 
 std::vector<Scan> scans_of(const Recording& recording) {
   std::vector<Scan> scans;
-  for (Event& event : record(recording)) {
+  for (dataset::Event& event : record(recording)) {
     if (auto* scan = std::get_if<Scan>(&event.data)) scans.push_back(std::move(*scan));
   }
   return scans;
@@ -157,4 +157,4 @@ Pose truth(const Recording& recording, Time start, Time stamp) {
          recording.motion(to_seconds(stamp - recording.epoch));
 }
 
-}  // namespace lidarena::synthetic
+}  // namespace lidarena::odometry::synthetic

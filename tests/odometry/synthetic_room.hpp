@@ -12,7 +12,7 @@
 
 /// Simulated LiDAR and IMU in a small room, both computed in closed form. Independent of the
 /// library's simulator, so that an odometry is tested on its own.
-namespace lidarena::synthetic {
+namespace lidarena::odometry::synthetic {
 
 /// Pose of the body in the room (z up, m) as a function of time (s).
 using Motion = std::function<Pose(double seconds)>;
@@ -42,7 +42,7 @@ struct Recording {
 Rig rig_of(const Recording& recording);
 
 /// All events in the order of EventSource.
-std::vector<Event> record(const Recording& recording);
+std::vector<dataset::Event> record(const Recording& recording);
 
 /// The scans only.
 std::vector<Scan> scans_of(const Recording& recording);
@@ -50,4 +50,4 @@ std::vector<Scan> scans_of(const Recording& recording);
 /// The true pose at `stamp`, in the body's frame at `start`.
 Pose truth(const Recording& recording, Time start, Time stamp);
 
-}  // namespace lidarena::synthetic
+}  // namespace lidarena::odometry::synthetic

@@ -8,7 +8,7 @@
 #include "lidarena/base/so3.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena {
+namespace lidarena::odometry {
 namespace {
 
 /// Moves on an ellipse in the room with an estimate that drifts upwards; publishes the room as seen
@@ -107,4 +107,4 @@ TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::odometry

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 using ::testing::HasSubstr;
@@ -47,4 +47,4 @@ TEST(CellChart, IsASelfContainedDocumentWithTitlesAxesAndTheOutline) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::report

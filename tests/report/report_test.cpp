@@ -10,7 +10,7 @@
 #include "lidarena/report/svg.hpp"
 #include "lidarena/report/top_view.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 using ::testing::ElementsAre;
@@ -83,7 +83,7 @@ TEST(Svg, TextCannotBreakThePage) {
 TEST(TopView, APointFallsWhereItsCoordinatesSay) {
   // A 10 m square outline at 1 cm spacing and one far outlier, which must not shrink the picture
   // (it is well below one point in a thousand).
-  Cloud cloud;
+  dataset::Cloud cloud;
   for (int i = 0; i < 1000; ++i) {
     const float s = 0.01F * static_cast<float>(i);
     for (const Eigen::Vector3f& p : {Eigen::Vector3f(s, 0, 0), Eigen::Vector3f(s, 10, 0),
@@ -120,4 +120,4 @@ TEST(TopView, APointFallsWhereItsCoordinatesSay) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::report

@@ -6,14 +6,14 @@
 #include <cstring>
 #include <limits>
 
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/part_file.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/report/scene_blocks.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 using ::testing::HasSubstr;
@@ -173,10 +173,11 @@ TEST(SceneFiles, ACloudFarFromTheOriginKeepsItsCentimeters) {
   const TemporaryFolder folder;
   std::string rows;
   for (int i = 0; i < 10; ++i) rows += "4321000." + std::to_string(i) + "1 500000.5 12.25\n";
-  write_text_file(folder.path() / "far.ply",
-                  "ply\nformat ascii 1.0\nelement vertex 10\nproperty double x\nproperty double y\n"
-                  "property double z\nend_header\n" +
-                      rows);
+  dataset::write_text_file(
+      folder.path() / "far.ply",
+      "ply\nformat ascii 1.0\nelement vertex 10\nproperty double x\nproperty double y\n"
+      "property double z\nend_header\n" +
+          rows);
   Scene scene;
   add_cloud_file(scene, folder.path() / "far.ply", {});
   ASSERT_THAT(scene.clouds[0].points, SizeIs(10));
@@ -186,9 +187,9 @@ TEST(SceneFiles, ACloudFarFromTheOriginKeepsItsCentimeters) {
 
 TEST(SceneFiles, ALargeCloudIsThinnedToAboutTheLimitAndTheRestIsCounted) {
   const TemporaryFolder folder;
-  Cloud cloud;
+  dataset::Cloud cloud;
   for (int i = 0; i < 20'000; ++i) cloud.points.emplace_back(static_cast<float>(i), 0.0F, 0.0F);
-  write_ply(folder.path() / "map.ply", cloud);
+  dataset::write_ply(folder.path() / "map.ply", cloud);
   Scene scene;
   SceneOptions options;
   options.max_points = 5000;
@@ -205,4 +206,4 @@ TEST(ViewPage, TextOfAFileCannotBreakOutOfThePage) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::report

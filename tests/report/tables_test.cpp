@@ -13,7 +13,7 @@
 #include "lidarena/report/timing.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::report {
 namespace {
 
 using ::testing::HasSubstr;
@@ -150,7 +150,7 @@ TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
       rows += std::to_string(s) + ",0.01,1,1," +
               std::to_string(static_cast<long>(1e6 * megabytes(s))) + ",0,0\n";
     }
-    write_text_file(folder.path() / "resources.csv", rows);
+    dataset::write_text_file(folder.path() / "resources.csv", rows);
     Results results;
     results.rows.push_back(row("cave", "livox_mid360", "fast_lio2", 1, 1));
     results.rows[0].folder = folder.path();
@@ -233,7 +233,7 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
 
 TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
   // Two triangles in the plane z = 2, one of nine times the other's area.
-  TriangleMesh mesh;
+  world::TriangleMesh mesh;
   mesh.vertices = {{0, 0, 2}, {3, 0, 2}, {0, 3, 2}, {10, 0, 2}, {11, 0, 2}, {10, 1, 2}};
   mesh.triangles = {{0, 1, 2}, {3, 4, 5}};
   const std::vector<Eigen::Vector3f> points = points_on(mesh, 10'000);
@@ -358,7 +358,7 @@ TEST(Page, NeedsNoNetworkAndStaysSmallWhateverTheTitle) {
 }
 
 TEST(SimplifiedMesh, AFinePlaneBecomesCoarseAndStaysWhereItIs) {
-  TriangleMesh plane;
+  world::TriangleMesh plane;
   constexpr std::uint32_t kSide = 200;
   for (std::uint32_t j = 0; j <= kSide; ++j) {
     for (std::uint32_t i = 0; i <= kSide; ++i) plane.vertices.emplace_back(0.05 * i, 0.05 * j, 1.0);
@@ -370,7 +370,7 @@ TEST(SimplifiedMesh, AFinePlaneBecomesCoarseAndStaysWhereItIs) {
       plane.triangles.push_back({a, a + kSide + 2, a + kSide + 1});
     }
   }
-  const TriangleMesh coarse = simplified(plane, 3000);
+  const world::TriangleMesh coarse = simplified(plane, 3000);
   EXPECT_LE(coarse.triangles.size(), 3000U);
   EXPECT_GT(coarse.triangles.size(), 300U) << "doubling the cell size leaves about a quarter";
   // vertices move by less than a cell; 3000 triangles of a 10 m square are 0.26 m wide or less than
@@ -381,4 +381,4 @@ TEST(SimplifiedMesh, AFinePlaneBecomesCoarseAndStaysWhereItIs) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::report

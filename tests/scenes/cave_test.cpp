@@ -16,7 +16,7 @@
 #include "tests/world/mesh_topology.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 /// One loop of about 40 m with coarse triangles: generated in a fraction of a second.
@@ -38,9 +38,9 @@ double route_length(const std::vector<Eigen::Vector3d>& route) {
 }
 
 TEST(Cave, SameSeedGivesTheSameCaveAndAnotherSeedAnother) {
-  const WorldModel a = make_cave(small_cave(), 5);
-  const WorldModel b = make_cave(small_cave(), 5);
-  const WorldModel c = make_cave(small_cave(), 6);
+  const world::WorldModel a = make_cave(small_cave(), 5);
+  const world::WorldModel b = make_cave(small_cave(), 5);
+  const world::WorldModel c = make_cave(small_cave(), 6);
   EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
   EXPECT_EQ(a.routes, b.routes);
@@ -82,7 +82,7 @@ TEST(Cave, TunnelsMeetAtJunctionsAlone) {
 
 TEST(Cave, IsOneClosedManifoldWithAHandleForEachLoop) {
   const CaveConfig config;
-  const WorldModel cave = make_cave(config, 1);
+  const world::WorldModel cave = make_cave(config, 1);
   EXPECT_GE(cave.mesh.triangles.size(), 500000U);
   const testing::Topology found = testing::topology(cave.mesh);
   EXPECT_EQ(found.open_edges, 0U);
@@ -92,7 +92,7 @@ TEST(Cave, IsOneClosedManifoldWithAHandleForEachLoop) {
 }
 
 TEST(Cave, EnclosesTheVolumeOfItsTunnelsWithNormalsInward) {
-  const WorldModel cave = make_cave(small_cave(), 2);
+  const world::WorldModel cave = make_cave(small_cave(), 2);
   const CaveGraph graph = make_cave_graph(small_cave(), 2);
   double tubes = 0;
   for (const Tunnel& tunnel : graph.tunnels) {
@@ -106,7 +106,7 @@ TEST(Cave, EnclosesTheVolumeOfItsTunnelsWithNormalsInward) {
 }
 
 TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
-  const WorldModel cave = make_cave(small_cave(), 3);
+  const world::WorldModel cave = make_cave(small_cave(), 3);
   const double step = small_cave().resolution_m;
   for (const Triangle& t : cave.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -121,7 +121,7 @@ TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
 }
 
 TEST(Cave, RouteFliesEveryTunnelClosedAndClearOfTheRock) {
-  const WorldModel cave = make_cave(CaveConfig{}, 1);
+  const world::WorldModel cave = make_cave(CaveConfig{}, 1);
   const CaveGraph graph = make_cave_graph(CaveConfig{}, 1);
   ASSERT_EQ(cave.routes.size(), 1U);
   const std::vector<Eigen::Vector3d>& route = cave.routes[0];
@@ -136,7 +136,7 @@ TEST(Cave, RouteFliesEveryTunnelClosedAndClearOfTheRock) {
     }
   }
   EXPECT_GT(route_length(route), 0.97 * tunnels);
-  const World world(cave.mesh, "cave");
+  const world::World world(cave.mesh, "cave");
   for (std::size_t i = 1; i < route.size(); ++i) {
     const double length = (route[i] - route[i - 1]).norm();
     EXPECT_GE(length, 0.7);
@@ -149,8 +149,8 @@ TEST(Cave, RouteFliesEveryTunnelClosedAndClearOfTheRock) {
 }
 
 TEST(Cave, EveryRayFromTheRouteHitsRock) {
-  const WorldModel cave = make_cave(small_cave(), 4);
-  const World world(cave.mesh, "cave");
+  const world::WorldModel cave = make_cave(small_cave(), 4);
+  const world::World world(cave.mesh, "cave");
   SequentialRandom random(1);
   std::vector<Ray> rays;
   for (const Eigen::Vector3d& p : cave.routes[0]) {
@@ -163,9 +163,9 @@ TEST(Cave, EveryRayFromTheRouteHitsRock) {
 }
 
 TEST(Cave, TunnelsAreTwoToFourMetersWide) {
-  const WorldModel cave = make_cave(CaveConfig{}, 1);
+  const world::WorldModel cave = make_cave(CaveConfig{}, 1);
   const CaveGraph graph = make_cave_graph(CaveConfig{}, 1);
-  const World world(cave.mesh, "cave");
+  const world::World world(cave.mesh, "cave");
   for (const Tunnel& tunnel : graph.tunnels) {
     for (std::size_t i = 10; i + 10 < tunnel.points.size(); ++i) {  // 5 m from the junctions
       const Eigen::Vector3d along = tunnel.points[i + 1] - tunnel.points[i - 1];
@@ -182,7 +182,7 @@ TEST(Cave, TunnelsAreTwoToFourMetersWide) {
 
 /// Minimum over all vertices of the maximum deviation (m) of the vertices within `radius` from
 /// their best-fit plane: the relief of the flattest patch of that size.
-double flattest_place(const TriangleMesh& mesh, double radius) {
+double flattest_place(const world::TriangleMesh& mesh, double radius) {
   std::unordered_map<std::uint64_t, std::vector<Eigen::Vector3d>> cells;
   const auto cell = [&](const Eigen::Vector3d& p) -> Eigen::Vector3i {
     return (p / radius).array().floor().cast<int>();
@@ -310,7 +310,7 @@ TEST(Cave, WallsAreRoughAtAllThreeScales) {
 TEST(Cave, VerticesLieOnTheRoughSurfaceItself) {
   const CaveConfig config = small_cave();
   const CaveField rock(make_cave_graph(config, 5), config, 5);
-  const WorldModel cave = make_cave(config, 5);
+  const world::WorldModel cave = make_cave(config, 5);
   std::vector<double> off;
   for (const Eigen::Vector3d& v : cave.mesh.vertices) off.push_back(std::abs(rock(v)));
   std::ranges::sort(off);
@@ -328,4 +328,4 @@ TEST(Cave, WidthsThatLeaveNoRoomForTheRoughnessAreRefused) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

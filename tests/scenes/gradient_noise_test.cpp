@@ -5,7 +5,7 @@
 
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using testing::random_point;
@@ -66,4 +66,4 @@ TEST(GradientNoise, DependsOnTheSeedAlone) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

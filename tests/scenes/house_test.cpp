@@ -16,7 +16,7 @@
 #include "lidarena/world/world.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using Eigen::Vector2d;
@@ -66,9 +66,9 @@ const Room* room_at(const HousePlan& plan, const Vector3d& p) {
 }
 
 TEST(House, SameSeedGivesTheSameHouseAndAnotherSeedAnother) {
-  const WorldModel a = make_house(coarse_house(), 5);
-  const WorldModel b = make_house(coarse_house(), 5);
-  const WorldModel c = make_house(coarse_house(), 6);
+  const world::WorldModel a = make_house(coarse_house(), 5);
+  const world::WorldModel b = make_house(coarse_house(), 5);
+  const world::WorldModel c = make_house(coarse_house(), 6);
   EXPECT_EQ(a.mesh.vertices, b.mesh.vertices);
   EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
   EXPECT_EQ(a.routes, b.routes);
@@ -97,7 +97,7 @@ TEST(House, IsRichEnough) {
 }
 
 TEST(House, HasPlasterWoodClothGlassMirrorsAndADarkScreen) {
-  const WorldModel house = make_house(HouseConfig{}, 1);
+  const world::WorldModel house = make_house(HouseConfig{}, 1);
   ASSERT_EQ(house.mesh.material_ids.size(), house.mesh.triangles.size());
   std::map<std::string, double> area;
   for (std::size_t i = 0; i < house.mesh.triangles.size(); ++i) {
@@ -115,8 +115,8 @@ TEST(House, TheShippedFileIsTheDefaultHouseWithTheCallersSeed) {
   WorldOptions options;
   options.seed = 3;
   const std::filesystem::path configs = LIDARENA_SOURCE_DIR "/configs";
-  const WorldModel loaded = load_world(configs / "worlds/house.yaml", options, log);
-  const WorldModel made = make_house(HouseConfig{}, 3);
+  const world::WorldModel loaded = load_world(configs / "worlds/house.yaml", options, log);
+  const world::WorldModel made = make_house(HouseConfig{}, 3);
   EXPECT_EQ(loaded.name, "house");
   EXPECT_EQ(loaded.mesh.vertices, made.mesh.vertices);
   EXPECT_EQ(loaded.routes, made.routes);
@@ -141,7 +141,7 @@ TEST(House, RoomsFillTheHouseWithoutOverlap) {
 TEST(House, CeilingsAreOneOrTwoStoriesUp) {
   const HouseConfig config = coarse_house();
   const HousePlan plan = plan_house(config, 1);
-  const World shell(build_shell(plan, config), "shell");
+  const world::World shell(build_shell(plan, config), "shell");
   for (const Room& room : plan.rooms) {
     const Vector2d middle = room.floor.center();
     const std::array<Ray, 2> rays{Ray{{middle.x(), middle.y(), 1.0}, Eigen::Vector3f::UnitZ()},
@@ -155,8 +155,8 @@ TEST(House, CeilingsAreOneOrTwoStoriesUp) {
 
 TEST(House, DoorsAreAsWideAsAskedAndPassWallsOfRealThickness) {
   const HouseConfig config = coarse_house();
-  const WorldModel house = make_house(config, 3);
-  const World world(house.mesh, "house");
+  const world::WorldModel house = make_house(config, 3);
+  const world::World world(house.mesh, "house");
   const HousePlan plan = plan_house(config, 3);
   EXPECT_GE(plan.doors.size(), 7U);
   for (const Opening& door : plan.doors) {
@@ -210,9 +210,9 @@ TEST(House, RouteIsAClosedTourOfAllRoomsAndDoors) {
 }
 
 void expect_clear_route(const HouseConfig& config, std::uint64_t seed) {
-  const WorldModel house = make_house(config, seed);
+  const world::WorldModel house = make_house(config, seed);
   ASSERT_EQ(house.routes.size(), 1U);
-  const World world(house.mesh, "house");
+  const world::World world(house.mesh, "house");
   for (const Vector3d& p : along(house.routes[0])) {
     const ClosestPoint nearest = world.closest_point(p);
     ASSERT_GE(nearest.distance, 0.4)
@@ -232,8 +232,8 @@ TEST(House, RouteKeepsClearInTheSmallestAndTheLargestHouse) {
 
 /// Share of rays from the route, uniformly distributed over all directions, that hit nothing.
 double lost_rays(const HouseConfig& config, std::uint64_t seed) {
-  const WorldModel house = make_house(config, seed);
-  const World world(house.mesh, "house");
+  const world::WorldModel house = make_house(config, seed);
+  const world::World world(house.mesh, "house");
   SequentialRandom random(1);
   std::vector<Ray> rays;
   for (const Vector3d& p : along(house.routes[0])) {
@@ -323,4 +323,4 @@ TEST(House, TheDistanceOfABoxToARouteIsThatOfItsNearestPoint) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

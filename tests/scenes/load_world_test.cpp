@@ -10,7 +10,7 @@
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using Eigen::Vector3d;
@@ -21,26 +21,28 @@ class LoadWorld : public ::testing::Test {
  protected:
   std::string error_of(const std::string& name, const std::string& text) {
     const auto file = folder_.write(name, text);
-    return testing::input_error_of([&] { load_world(file, {}, log_); });
+    return world::testing::input_error_of([&] { load_world(file, {}, log_); });
   }
   TemporaryFolder folder_;
   LogSink log_;
 };
 
 TEST_F(LoadWorld, TheEndingSaysWhatItIs) {
-  const WorldModel model = load_world(folder_.write("room.obj", testing::box_obj()), {}, log_);
+  const world::WorldModel model =
+      load_world(folder_.write("room.obj", world::testing::box_obj()), {}, log_);
   EXPECT_EQ(model.name, "room");
   EXPECT_EQ(model.mesh.triangles.size(), 12U);
   EXPECT_TRUE(model.routes.empty());
   EXPECT_THAT(error_of("room.blend", "x"), AllOf(HasSubstr("room.blend"), HasSubstr(".yaml")));
-  EXPECT_THAT(testing::input_error_of([&] { load_world(folder_.path() / "none.yaml", {}, log_); }),
-              HasSubstr("no such file"));
+  EXPECT_THAT(
+      world::testing::input_error_of([&] { load_world(folder_.path() / "none.yaml", {}, log_); }),
+      HasSubstr("no such file"));
 }
 
 TEST_F(LoadWorld, AMeshNamedInYamlLiesBesideTheYaml) {
-  folder_.write("meshes/room.obj", testing::box_obj());
+  folder_.write("meshes/room.obj", world::testing::box_obj());
   const auto file = folder_.write("hall.yaml", "kind: mesh\nfile: meshes/room.obj\nup_axis: y\n");
-  const WorldModel model = load_world(file, {}, log_);
+  const world::WorldModel model = load_world(file, {}, log_);
   EXPECT_EQ(model.name, "hall");
   EXPECT_TRUE(model.mesh.bounds().max().isApprox(Vector3d(1, 0, 2), 1e-6));
 }
@@ -57,7 +59,7 @@ TEST_F(LoadWorld, TheCallerOverridesTheFile) {
   const auto file = folder_.write("a.yaml", "kind: sdf\nfile: a.world\nshapes: collision\n");
   EXPECT_DOUBLE_EQ(load_world(file, {}, log_).mesh.area(), 24.0);
   WorldOptions options;
-  options.shapes = ShapeKind::kVisual;
+  options.shapes = world::ShapeKind::kVisual;
   EXPECT_DOUBLE_EQ(load_world(file, options, log_).mesh.area(), 6.0);
 }
 
@@ -65,7 +67,7 @@ TEST_F(LoadWorld, ModelFoldersInYamlAreRelativeToTheYaml) {
 #if !LIDARENA_TEST_SDF
   GTEST_SKIP() << "this build cannot read SDF worlds";
 #endif
-  folder_.write("things/box/box.obj", testing::box_obj());
+  folder_.write("things/box/box.obj", world::testing::box_obj());
   folder_.write("sdf/worlds/a.world",
                 "<sdf version='1.6'><world name='w'><model name='m'><link name='l'>"
                 "<visual name='v'><geometry><mesh><uri>model://box/box.obj</uri></mesh></geometry>"
@@ -77,7 +79,7 @@ TEST_F(LoadWorld, ModelFoldersInYamlAreRelativeToTheYaml) {
 }
 
 TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
-  folder_.write("room.obj", testing::box_obj());
+  folder_.write("room.obj", world::testing::box_obj());
   EXPECT_THAT(error_of("a.yaml", "kind: mesh\nfile: room.obj\nseed: 3\n"),
               AllOf(HasSubstr("a.yaml:3"), HasSubstr("seed")));
   EXPECT_THAT(error_of("a.yaml", "kind: cave\nfile: room.obj\n"), HasSubstr("a.yaml:2"));
@@ -91,11 +93,11 @@ TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
 TEST_F(LoadWorld, AHouseHasItsParametersAndItsRoute) {
   const auto file =
       folder_.write("home.yaml", "kind: house\nseed: 9\nhouse: {width_m: 20, detail: 0.5}\n");
-  const WorldModel home = load_world(file, {}, log_);
+  const world::WorldModel home = load_world(file, {}, log_);
   HouseConfig config;
   config.width_m = 20;
   config.detail = 0.5;
-  const WorldModel expected = make_house(config, 9);
+  const world::WorldModel expected = make_house(config, 9);
   EXPECT_EQ(home.name, "home");
   EXPECT_EQ(home.mesh.vertices, expected.mesh.vertices);
   EXPECT_EQ(home.routes, expected.routes);
@@ -107,7 +109,7 @@ TEST_F(LoadWorld, TheFilesOfConfigsWorldsAreValid) {
   for (const auto& entry : std::filesystem::directory_iterator(
            std::filesystem::path(LIDARENA_SOURCE_DIR) / "configs" / "worlds")) {
     ++files;
-    const WorldModel model = load_world(entry.path(), {}, log_);
+    const world::WorldModel model = load_world(entry.path(), {}, log_);
     EXPECT_EQ(model.name, entry.path().stem());
     EXPECT_GT(model.mesh.area(), 0.0) << entry.path();
   }
@@ -117,10 +119,10 @@ TEST_F(LoadWorld, TheFilesOfConfigsWorldsAreValid) {
 TEST_F(LoadWorld, ACaveHasItsParametersAndTheCallersSeed) {
   const std::string yaml = "kind: cave\nseed: 5\ncave: {loops: 1, resolution_m: 0.3}\n";
   const auto file = folder_.write("small.yaml", yaml);
-  const WorldModel five = load_world(file, {}, log_);
+  const world::WorldModel five = load_world(file, {}, log_);
   WorldOptions options;
   options.seed = 6;
-  const WorldModel six = load_world(file, options, log_);
+  const world::WorldModel six = load_world(file, options, log_);
   CaveConfig config;
   config.loops = 1;
   config.resolution_m = 0.3;
@@ -131,4 +133,4 @@ TEST_F(LoadWorld, ACaveHasItsParametersAndTheCallersSeed) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

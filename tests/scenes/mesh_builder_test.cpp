@@ -7,7 +7,7 @@
 
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using testing::signed_volume;
@@ -26,7 +26,7 @@ TEST(MeshBuilder, ClosedShapesHaveTheirVolumeWithNormalsOutward) {
 }
 
 TEST(MeshBuilder, ABoxKeepsItsSizeWhenItsEdgesAreRounded) {
-  const TriangleMesh mesh = shape::rounded_box({2, 1, 0.5}, 0.1, 16);
+  const world::TriangleMesh mesh = shape::rounded_box({2, 1, 0.5}, 0.1, 16);
   EXPECT_TRUE(mesh.bounds().min().isApprox(Eigen::Vector3d(-1, -0.5, 0), 1e-12));
   EXPECT_TRUE(mesh.bounds().max().isApprox(Eigen::Vector3d(1, 0.5, 0.5), 1e-12));
   // Minkowski sum of the core box with a ball: Steiner's formula.
@@ -48,7 +48,7 @@ TEST(MeshBuilder, APuffedBoxIsLargerByTheMeanOfItsBulge) {
 }
 
 TEST(MeshBuilder, ALathedSphereHasNoDegenerateTriangles) {
-  const TriangleMesh mesh = shape::ball(1, 24);
+  const world::TriangleMesh mesh = shape::ball(1, 24);
   for (const auto& [a, b, c] : mesh.triangles) {
     const Eigen::Vector3d u = mesh.vertices[b] - mesh.vertices[a];
     EXPECT_GT(u.cross(mesh.vertices[c] - mesh.vertices[a]).norm(), 1e-6);
@@ -56,4 +56,4 @@ TEST(MeshBuilder, ALathedSphereHasNoDegenerateTriangles) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -9,7 +9,7 @@
 #include "tests/world/mesh_topology.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::scenes {
 namespace {
 
 using testing::Topology;
@@ -46,7 +46,7 @@ TEST(SurfaceNets, NetOfABallIsAClosedSphereOfItsRadius) {
     return (kStep * p.cast<double>()).norm() - kRadius;
   });
   EXPECT_EQ(make_well_composed(field), 0U);
-  const TriangleMesh mesh = surface_net(field);
+  const world::TriangleMesh mesh = surface_net(field);
   const Topology found = topology(mesh);
   EXPECT_EQ(found.open_edges, 0U);
   EXPECT_EQ(found.pinched_vertices, 0U);
@@ -82,4 +82,4 @@ TEST(SurfaceNets, WellComposedNoiseGivesAManifold) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::scenes

@@ -9,7 +9,7 @@
 #include "lidarena/sensor/imu.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 const std::filesystem::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
@@ -103,4 +103,4 @@ TEST(Allan, WhiteNoiseFallsAndABiasWalkRisesWithTheRootOfTheTime) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

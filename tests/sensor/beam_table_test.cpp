@@ -6,10 +6,10 @@
 #include "lidarena/base/parallel.hpp"
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
-using namespace testing;
+using namespace world::testing;
 
 bool same_beams(std::span<const Beam> a, std::span<const Beam> b) {
   return std::ranges::equal(a, b, [](const Beam& p, const Beam& q) {
@@ -80,4 +80,4 @@ TEST(BeamTable, KeepsNothingOfPatternsThatDoNotRepeatAndAsksAgainWhereTimesDiffe
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

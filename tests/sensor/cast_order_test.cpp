@@ -7,10 +7,10 @@
 
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
-using namespace testing;
+using namespace world::testing;
 
 std::vector<Beam> beams_of(const SensorConfig& config) {
   std::vector<Beam> beams;
@@ -45,4 +45,4 @@ TEST(CastOrder, EightAtATimeAreNeighborsOfOneRow) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -10,7 +10,7 @@
 #include "lidarena/sensor/livox.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 std::vector<Time> seconds(std::initializer_list<double> instants) {
@@ -141,4 +141,4 @@ TEST(Shots, FollowEachOtherThroughTheScans) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector2d;
@@ -93,4 +93,4 @@ TEST(SubRays, AreTurnedAsideByTheAnglesAsked) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -8,10 +8,10 @@
 #include "lidarena/flight/flight.hpp"
 
 /// Flights in closed form.
-namespace lidarena::testing {
+namespace lidarena::sensor::testing {
 
 /// Constant velocity and constant body rate from `start`.
-class UniformFlight : public Flight {
+class UniformFlight : public flight::Flight {
  public:
   UniformFlight(Pose start, Eigen::Vector3d velocity_world, Eigen::Vector3d rate_body,
                 double seconds)
@@ -20,11 +20,11 @@ class UniformFlight : public Flight {
         rate_(std::move(rate_body)),
         duration_(from_seconds(seconds)) {}
 
-  Motion at(Time t) const override {
+  flight::Motion at(Time t) const override {
     const double s = to_seconds(t);
     const double angle = rate_.norm() * s;
     const Eigen::Vector3d axis = angle == 0.0 ? Eigen::Vector3d::UnitZ() : rate_.normalized();
-    Motion motion;
+    flight::Motion motion;
     motion.world_from_body = start_;
     motion.world_from_body.translation() += s * velocity_;
     motion.world_from_body.linear() =
@@ -58,13 +58,13 @@ struct Wave {
 };
 
 /// Position and yaw, pitch, roll (R = Rz Ry Rx) are sinusoids of time.
-class SwingingFlight : public Flight {
+class SwingingFlight : public flight::Flight {
  public:
   explicit SwingingFlight(double seconds) : duration_(from_seconds(seconds)) {}
 
-  Motion at(Time time) const override {
+  flight::Motion at(Time time) const override {
     const double t = to_seconds(time);
-    Motion motion;
+    flight::Motion motion;
     for (int i = 0; i < 3; ++i) {
       motion.world_from_body.translation()[i] = position_[i].value(t);
       motion.velocity_world[i] = position_[i].first(t);
@@ -108,4 +108,4 @@ inline Pose tilted_pose(const Eigen::Vector3d& position, double roll, double pit
 inline double degrees(double radians) { return radians * 180.0 / std::numbers::pi; }
 inline double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::sensor::testing

@@ -17,7 +17,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector3d;
@@ -27,8 +27,8 @@ constexpr double kTolerance = 1e-4;  // m: single precision leaves 1e-5 m at 40 
 const Parallel kOneThread(1);
 
 /// A vertical cylinder of `facets` around the z axis, 200 m high.
-TriangleMesh cylinder_mesh(double radius, int facets) {
-  TriangleMesh mesh;
+world::TriangleMesh cylinder_mesh(double radius, int facets) {
+  world::TriangleMesh mesh;
   for (int i = 0; i < facets; ++i) {
     const double angle = 2.0 * std::numbers::pi * i / facets;
     for (const double z : {-100.0, 100.0}) {
@@ -45,7 +45,7 @@ TriangleMesh cylinder_mesh(double radius, int facets) {
 }
 
 /// The points of a scan in world coordinates, each transformed by the pose at its own instant.
-std::vector<Vector3d> in_world(const Scan& scan, const Flight& flight, const Pose& mount) {
+std::vector<Vector3d> in_world(const Scan& scan, const flight::Flight& flight, const Pose& mount) {
   std::vector<Vector3d> points;
   points.reserve(scan.points.size());
   for (const Point& point : scan.points) {
@@ -57,7 +57,7 @@ std::vector<Vector3d> in_world(const Scan& scan, const Flight& flight, const Pos
 TEST(Geometry, AFinelyFacetedCylinderIsRoundToATenthOfAMillimeter) {
   const double radius = 40.0;
   // Facets lie within R (1 - cos(pi / n)) of the circle: 3e-5 m.
-  const World world(cylinder_mesh(radius, 2560));
+  const world::World world(cylinder_mesh(radius, 2560));
   const auto flight = rest(tilted_pose({5, -3, 2}, 0.4, -0.3, 1.0));
   for (const SensorConfig& base : {mid360(), ouster()}) {
     SensorConfig config = base;
@@ -76,13 +76,14 @@ TEST(Geometry, AFinelyFacetedCylinderIsRoundToATenthOfAMillimeter) {
 
 TEST(Geometry, AFinelyFacetedSphereIsRoundToItsFacets) {
   const double radius = 20.0;
-  const TriangleMesh mesh = sphere_mesh(radius, 7);  // 131,072 facets with edges of about 0.3 m
+  const world::TriangleMesh mesh =
+      sphere_mesh(radius, 7);  // 131,072 facets with edges of about 0.3 m
   double deepest = radius;
-  for (const Triangle& t : mesh.triangles) {
+  for (const world::Triangle& t : mesh.triangles) {
     const Vector3d middle = (mesh.vertices[t[0]] + mesh.vertices[t[1]] + mesh.vertices[t[2]]) / 3;
     deepest = std::min(deepest, middle.norm());
   }
-  const World world(mesh);
+  const world::World world(mesh);
   const auto flight = rest(tilted_pose({3, -4, 2}, -0.6, 0.5, 0.3));
   const Lidar lidar = make_lidar(mid360());
   const Scan scan = lidar.measure(world, flight, 2, kOneThread);
@@ -98,7 +99,7 @@ TEST(Geometry, AFinelyFacetedSphereIsRoundToItsFacets) {
 // Every range is too short by the minimum range m, so along its beam each point is m too near.
 TEST(Geometry, TheOfficialFaultNarrowsACylinderByTheCosineOfElevation) {
   const double radius = 2.0, m = 0.1;
-  const World world(cylinder_mesh(radius, 1440));
+  const world::World world(cylinder_mesh(radius, 1440));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   config.min_range_m = m;
@@ -125,7 +126,7 @@ TEST(Geometry, TheOfficialFaultNarrowsACylinderByTheCosineOfElevation) {
 
 TEST(Geometry, TheOfficialFaultBowsAFlatWallTowardsTheSensor) {
   const double distance = 5.0, m = 0.1;
-  const World world(wall_mesh(distance));
+  const world::World world(wall_mesh(distance));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   config.min_range_m = m;
@@ -144,10 +145,10 @@ struct Agility {
   double angular_acceleration = 0.0;  ///< rad/s^2
 };
 
-Agility agility_of(const Flight& flight, Time end) {
+Agility agility_of(const flight::Flight& flight, Time end) {
   Agility agility;
   for (Time t{0}; t < end; t += std::chrono::milliseconds(5)) {
-    const Motion motion = flight.at(t);
+    const flight::Motion motion = flight.at(t);
     agility.acceleration = std::max(agility.acceleration, motion.acceleration_world.norm());
     agility.angular_acceleration =
         std::max(agility.angular_acceleration, motion.angular_acceleration_body.norm());
@@ -155,7 +156,7 @@ Agility agility_of(const Flight& flight, Time end) {
   return agility;
 }
 
-Trajectory sampled(const Flight& flight, Time end) {
+Trajectory sampled(const flight::Flight& flight, Time end) {
   std::vector<StampedPose> poses;
   for (Time t{0}; t <= end; t += std::chrono::milliseconds(1)) {
     poses.push_back({t, flight.pose_at(t)});
@@ -167,7 +168,8 @@ Trajectory sampled(const Flight& flight, Time end) {
 /// transformed once with the pose of the flight and once with the truth sampled at 1 kHz and
 /// interpolated. The interpolation error is at most h^2 / 8 times (acceleration + angular
 /// acceleration * range).
-void expect_on_surface(const World& world, const Flight& flight, const std::string& name) {
+void expect_on_surface(const world::World& world, const flight::Flight& flight,
+                       const std::string& name) {
   constexpr std::size_t kStride = 7;
   const Time last = std::min<Time>(flight.duration(), std::chrono::seconds(8));
   const Trajectory truth = sampled(flight, last);
@@ -208,25 +210,26 @@ void expect_on_surface(const World& world, const Flight& flight, const std::stri
   }
 }
 
-SplineFlight tour_of(const std::vector<Vector3d>& route, FlightStyle style) {
-  FlightConfig config;
+flight::SplineFlight tour_of(const std::vector<Vector3d>& route, flight::FlightStyle style) {
+  flight::FlightConfig config;
   config.style = style;
-  return SplineFlight(route, config, "test");
+  return flight::SplineFlight(route, config, "test");
 }
 
 TEST(Geometry, EveryDeskewedPointOfAHouseLiesOnItsSurface) {
-  WorldModel house = make_house(HouseConfig{}, 3);
-  const SplineFlight flight = tour_of(house.routes.front(), FlightStyle::kAggressive);
-  expect_on_surface(World(std::move(house.mesh)), flight, "house");
+  world::WorldModel house = scenes::make_house(scenes::HouseConfig{}, 3);
+  const flight::SplineFlight flight =
+      tour_of(house.routes.front(), flight::FlightStyle::kAggressive);
+  expect_on_surface(world::World(std::move(house.mesh)), flight, "house");
 }
 
 TEST(Geometry, EveryDeskewedPointOfACaveLiesOnItsSurface) {
-  CaveConfig config;
+  scenes::CaveConfig config;
   config.loops = 1;
   config.cell_length_m = config.cell_width_m = 12;
-  WorldModel cave = make_cave(config, 3);
-  const SplineFlight flight = tour_of(cave.routes.front(), FlightStyle::kBrisk);
-  expect_on_surface(World(std::move(cave.mesh)), flight, "cave");
+  world::WorldModel cave = scenes::make_cave(config, 3);
+  const flight::SplineFlight flight = tour_of(cave.routes.front(), flight::FlightStyle::kBrisk);
+  expect_on_surface(world::World(std::move(cave.mesh)), flight, "cave");
 }
 
 TEST(Geometry, EveryDeskewedPointOfTheLavaTubeLiesOnItsSurface) {
@@ -235,17 +238,17 @@ TEST(Geometry, EveryDeskewedPointOfTheLavaTubeLiesOnItsSurface) {
   if (!std::filesystem::exists(file)) {
     GTEST_SKIP() << "the shared test data is missing: the lava tube is not scanned";
   }
-  WorldOptions options;
+  scenes::WorldOptions options;
   options.allow_missing = true;
   LogSink log;
-  const World world(load_world(file, options, log).mesh);
+  const world::World world(scenes::load_world(file, options, log).mesh);
   // Up and down over the center of the tube's bounding box, where rays hit rock in any case.
   const Vector3d middle = world.closest_point(world.mesh().bounds().center()).point;
   const std::vector<Vector3d> tour{middle + Vector3d(-3, -3, 1), middle + Vector3d(3, -3, 2),
                                    middle + Vector3d(3, 3, 1), middle + Vector3d(-3, 3, 2),
                                    middle + Vector3d(-3, -3, 1)};
-  expect_on_surface(world, tour_of(tour, FlightStyle::kAggressive), "lava_tube");
+  expect_on_surface(world, tour_of(tour, flight::FlightStyle::kAggressive), "lava_tube");
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -13,7 +13,7 @@
 #include "lidarena/sensor/imu.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Quaterniond;
@@ -34,7 +34,7 @@ struct Rate {
 Rate rate_of(const State& s, const ImuSample& imu) {
   const Quaterniond turning(0.0, imu.gyro.x(), imu.gyro.y(), imu.gyro.z());
   return {0.5 * (s.attitude * turning).coeffs(),
-          s.attitude.normalized() * imu.accel - Vector3d(0, 0, kGravity), s.velocity};
+          s.attitude.normalized() * imu.accel - Vector3d(0, 0, flight::kGravity), s.velocity};
 }
 
 State advanced(const State& s, const Rate& rate, double h) {
@@ -66,8 +66,8 @@ State midpoint(State s, const ImuSample* imu, double h) {
     const double dt = h / 2;
     const Vector3d turn = dt / 2 * (imu[i].gyro + imu[i + 1].gyro);
     const Quaterniond next = s.attitude * Quaterniond(so3::exp(turn));
-    const Vector3d acceleration =
-        (s.attitude * imu[i].accel + next * imu[i + 1].accel) / 2 - Vector3d(0, 0, kGravity);
+    const Vector3d acceleration = (s.attitude * imu[i].accel + next * imu[i + 1].accel) / 2 -
+                                  Vector3d(0, 0, flight::kGravity);
     s.position += dt * s.velocity + dt * dt / 2 * acceleration;
     s.velocity += dt * acceleration;
     s.attitude = next.normalized();
@@ -83,7 +83,8 @@ struct Miss {
   double angle_deg;
 };
 
-Miss integrate(const Flight& flight, const Pose& body_from_imu, double rate_hz, Method method) {
+Miss integrate(const flight::Flight& flight, const Pose& body_from_imu, double rate_hz,
+               Method method) {
   ImuConfig config;
   config.rate_hz = rate_hz;
   Imu imu(config, body_from_imu, "test", 1, false);
@@ -92,7 +93,7 @@ Miss integrate(const Flight& flight, const Pose& body_from_imu, double rate_hz, 
   EXPECT_EQ(samples.size() % 2, 1U);
   EXPECT_EQ(samples.back().stamp, flight.duration());
 
-  const Motion start = flight.at(Time{0});
+  const flight::Motion start = flight.at(Time{0});
   const Pose first = start.world_from_body * body_from_imu;
   const Vector3d arm = body_from_imu.translation();
   State state{
@@ -119,13 +120,13 @@ TEST(ImuIntegration, GivesBackAFlightInClosedForm) {
 }
 
 /// One minute of aggressive flight through a hall.
-std::unique_ptr<Flight> aggressive_minute() {
-  FlightConfig config;
-  config.style = FlightStyle::kAggressive;
+std::unique_ptr<flight::Flight> aggressive_minute() {
+  flight::FlightConfig config;
+  config.style = flight::FlightStyle::kAggressive;
   config.duration_s = 60.0;
   const std::vector<Vector3d> waypoints{{0, 0, 1}, {8, 1, 2},  {9, 6, 1.2}, {3, 7, 3},
                                         {4, 3, 1}, {-3, 5, 2}, {-4, -2, 1}, {0, 0, 1}};
-  return std::make_unique<SplineFlight>(waypoints, config, "test");
+  return std::make_unique<flight::SplineFlight>(waypoints, config, "test");
 }
 
 TEST(ImuIntegration, GivesBackAMinuteOfAggressiveFlight) {
@@ -154,4 +155,4 @@ TEST(ImuIntegration, ConvergesAtTheMethodsOrder) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -8,7 +8,7 @@
 
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Quaterniond;
@@ -23,16 +23,16 @@ Imu perfect(double rate_hz, const Pose& body_from_imu) {
 TEST(Imu, AtRestFeelsGravityUpwardsInItsOwnFrame) {
   const Pose level = Pose::Identity();
   ImuSample sample = perfect(200, level).measure(testing::rest(level));
-  EXPECT_LT((sample.accel - Vector3d(0, 0, kGravity)).norm(), 1e-14);
+  EXPECT_LT((sample.accel - Vector3d(0, 0, flight::kGravity)).norm(), 1e-14);
   EXPECT_TRUE(sample.gyro.isZero());
 
   // Lying on its left side, up is -y of the body; for an IMU rotated by 180 deg about x it is +y.
   const Pose on_side = testing::tilted_pose({1, 2, 3}, testing::radians(-90), 0, 0.4);
   sample = perfect(200, level).measure(testing::rest(on_side));
-  EXPECT_LT((sample.accel - Vector3d(0, -kGravity, 0)).norm(), 1e-12);
+  EXPECT_LT((sample.accel - Vector3d(0, -flight::kGravity, 0)).norm(), 1e-12);
   const Pose flipped = testing::tilted_pose({0.1, 0.2, 0.3}, testing::radians(180), 0, 0);
   sample = perfect(200, flipped).measure(testing::rest(on_side));
-  EXPECT_LT((sample.accel - Vector3d(0, kGravity, 0)).norm(), 1e-12);
+  EXPECT_LT((sample.accel - Vector3d(0, flight::kGravity, 0)).norm(), 1e-12);
 }
 
 TEST(Imu, OnALeverArmFeelsTheCentripetalForceOfASteadySpin) {
@@ -42,7 +42,7 @@ TEST(Imu, OnALeverArmFeelsTheCentripetalForceOfASteadySpin) {
   Imu imu = perfect(100, on_arm);
   for (int k = 0; k < 50; ++k) {
     const ImuSample sample = imu.measure(spin);
-    EXPECT_LT((sample.accel - Vector3d(-rate * rate * 0.5, 0, kGravity)).norm(), 1e-12);
+    EXPECT_LT((sample.accel - Vector3d(-rate * rate * 0.5, 0, flight::kGravity)).norm(), 1e-12);
     EXPECT_LT((sample.gyro - Vector3d(0, 0, rate)).norm(), 1e-14);
   }
 }
@@ -64,7 +64,7 @@ TEST(Imu, WhiteNoiseHasTheDensityTimesTheRootOfTheRate) {
   for (int k = 0; k < count; ++k) {
     const ImuSample sample = imu.measure(flight);
     gyro_squares += sample.gyro.cwiseAbs2();
-    accel_squares += (sample.accel - Vector3d(0, 0, kGravity)).cwiseAbs2();
+    accel_squares += (sample.accel - Vector3d(0, 0, flight::kGravity)).cwiseAbs2();
   }
   const double gyro_sigma = 7.85e-5 * std::sqrt(200.0);
   const double accel_sigma = 9.81e-4 * std::sqrt(200.0);
@@ -156,7 +156,7 @@ TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
       const ImuSample sample = imu.measure(spin);
       response.col(axis) = sample.gyro;
       EXPECT_EQ(imu.measure(spin).gyro, sample.gyro);  // constant for a unit
-      if (axis == 0) accel_scale += std::pow(sample.accel.z() / kGravity - 1.0, 2);
+      if (axis == 0) accel_scale += std::pow(sample.accel.z() / flight::kGravity - 1.0, 2);
       EXPECT_EQ(sample.accel.x(), 0.0);  // the accelerometer has no misalignment
     }
     response -= Eigen::Matrix3d::Identity();
@@ -186,11 +186,11 @@ TEST(Imu, ReadsInStepsOfItsResolutionAndNoFartherThanItsRange) {
 }
 
 /// Hovers for one second, then climbs with half of gravity.
-class Climb : public Flight {
+class Climb : public flight::Flight {
  public:
-  Motion at(Time t) const override {
-    Motion motion;
-    if (t >= from_seconds(1.0)) motion.acceleration_world.z() = kGravity / 2;
+  flight::Motion at(Time t) const override {
+    flight::Motion motion;
+    if (t >= from_seconds(1.0)) motion.acceleration_world.z() = flight::kGravity / 2;
     return motion;
   }
   Time duration() const override { return from_seconds(2.0); }
@@ -211,7 +211,7 @@ TEST(Imu, VibratesWithItsTonesAndHarderUnderMoreThrust) {
     Vector3d accel_squares[2] = {Vector3d::Zero(), Vector3d::Zero()};
     Vector3d gyro_squares[2] = {Vector3d::Zero(), Vector3d::Zero()};
     for (int k = 0; k < 2000; ++k) {
-      const Vector3d quiet(0, 0, k < 1000 ? kGravity : 1.5 * kGravity);
+      const Vector3d quiet(0, 0, k < 1000 ? flight::kGravity : 1.5 * flight::kGravity);
       const ImuSample sample = imu.measure(climb);
       accel_squares[k / 1000] += (sample.accel - quiet).cwiseAbs2();
       gyro_squares[k / 1000] += sample.gyro.cwiseAbs2();
@@ -243,4 +243,4 @@ TEST(Imu, WithoutNoiseIsPerfectWhateverItsErrors) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

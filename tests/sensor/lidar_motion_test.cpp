@@ -9,7 +9,7 @@
 #include "lidarena/flight/spline_flight.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector3d;
@@ -25,7 +25,7 @@ struct Worst {
 
 /// Largest difference between the motion of scans 0, 1, ... and the flight itself at 777 instants
 /// of each.
-Worst worst_error(const Flight& flight, int scans) {
+Worst worst_error(const flight::Flight& flight, int scans) {
   Worst worst;
   for (int scan = 0; scan < scans; ++scan) {
     const Time stamp = scan * std::chrono::milliseconds(100);
@@ -44,12 +44,12 @@ Worst worst_error(const Flight& flight, int scans) {
 }
 
 /// At rest until `start`, then constant velocity and rotation rate: a jump in velocity.
-class JoltedFlight : public Flight {
+class JoltedFlight : public flight::Flight {
  public:
   explicit JoltedFlight(double start) : start_(start) {}
-  Motion at(Time t) const override {
+  flight::Motion at(Time t) const override {
     const double s = std::max(0.0, to_seconds(t) - start_);
-    Motion motion;
+    flight::Motion motion;
     motion.world_from_body = tilted_pose({3.0 * s, 0, -s}, 0.5 * s, 0, 2.0 * s);
     return motion;
   }
@@ -68,10 +68,10 @@ TEST(LidarMotion, FollowsASmoothFlightWithoutAskingItForEveryShot) {
 }
 
 TEST(LidarMotion, FollowsAFastQuadrotor) {
-  FlightConfig config;
-  config.style = FlightStyle::kAggressive;
+  flight::FlightConfig config;
+  config.style = flight::FlightStyle::kAggressive;
   const std::vector<Vector3d> tour{{0, 0, 1}, {4, 0, 2}, {4, 3, 1}, {0, 3, 2}, {0, 0, 1}};
-  const SplineFlight flight(tour, config, "test");
+  const flight::SplineFlight flight(tour, config, "test");
   const int scans = static_cast<int>(to_seconds(flight.duration()) * 10.0) - 1;
   const Worst worst = worst_error(flight, std::min(scans, 60));
   RecordProperty("worst_at_100_m", std::to_string(worst.at_100_m));
@@ -106,4 +106,4 @@ TEST(LidarMotion, AFrozenScanStaysWhereItBegan) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

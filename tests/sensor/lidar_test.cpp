@@ -9,7 +9,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector3d;
@@ -42,7 +42,7 @@ double range_of(const Point& point, const Beam& beam) {
 /// Largest difference between the ranges of a scan and expected(origin, direction), both in the
 /// world frame, with the lidar at its pose of each instant.
 template <class Expected>
-double worst_range_error(const Lidar& lidar, const Scan& scan, const Flight& flight,
+double worst_range_error(const Lidar& lidar, const Scan& scan, const flight::Flight& flight,
                          const Pose& body_from_lidar, std::uint64_t index, Expected&& expected) {
   const auto shots = shots_of(lidar, scan, index);
   EXPECT_EQ(shots.size(), scan.points.size());
@@ -58,7 +58,7 @@ double worst_range_error(const Lidar& lidar, const Scan& scan, const Flight& fli
 }
 
 TEST(Lidar, ATiltedSensorMeasuresAWallWherePlaneGeometryPutsIt) {
-  const World world(wall_mesh(30.0));
+  const world::World world(wall_mesh(30.0));
   const auto flight = rest(tilted_pose({2, 1, -3}, 0.4, -0.3, 0.2));
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const Lidar lidar = make_lidar(config);
@@ -74,7 +74,7 @@ TEST(Lidar, ATiltedSensorMeasuresAWallWherePlaneGeometryPutsIt) {
 TEST(Lidar, InABoxEveryShotReturnsAndEveryRangeIsRight) {
   const Vector3d low(-40, -15, -4);
   const Vector3d high(38, 12, 5);
-  const World world(box_mesh(low, high));
+  const world::World world(box_mesh(low, high));
   const auto flight = rest(tilted_pose({-2, 3, 1}, -0.5, 0.6, 2.0));
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const Lidar lidar = make_lidar(config);
@@ -91,7 +91,7 @@ TEST(Lidar, AWorldFarFromTheOriginLosesNothing) {
   const Vector3d far(500'000, -300'000, 800);
   const Vector3d low = far + Vector3d(-20, -15, -4);
   const Vector3d high = far + Vector3d(18, 12, 5);
-  const World world(box_mesh(low, high));
+  const world::World world(box_mesh(low, high));
   const auto flight = rest(tilted_pose(far + Vector3d(-2, 3, 1), -0.5, 0.6, 2.0));
   const Lidar lidar = make_lidar(mid360());
   const Scan scan = lidar.measure(world, flight, 0, kOneThread);
@@ -103,8 +103,8 @@ TEST(Lidar, AWorldFarFromTheOriginLosesNothing) {
 }
 
 TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
-  const TriangleMesh mesh = sphere_mesh(35.0, 3);
-  const World world(mesh);
+  const world::TriangleMesh mesh = sphere_mesh(35.0, 3);
+  const world::World world(mesh);
   const auto flight = rest(tilted_pose({3, -4, 2}, 0.3, 0.2, -1.0));
   SensorConfig config = mid360();
   config.rate_hz = 100.0;  // 2000 rows
@@ -126,7 +126,7 @@ struct Offsets {
 Offsets offsets_in_box(const SensorConfig& config) {
   const Vector3d low(-12, -10, -6);
   const Vector3d high(11, 9, 7);
-  const World world(box_mesh(low, high));
+  const world::World world(box_mesh(low, high));
   const SwingingFlight flight(10.0);
   const Lidar lidar = make_lidar(config);
   const Scan scan = lidar.measure(world, flight, 5, kOneThread);
@@ -166,7 +166,7 @@ TEST(Lidar, AFrozenScanLiesOnTheMeshOnlyWithThePoseAtTheStamp) {
 }
 
 TEST(Lidar, OnlyRollingAndFrozenScansCarryTimes) {
-  const World world(box_mesh({-5, -5, -5}, {5, 5, 5}));
+  const world::World world(box_mesh({-5, -5, -5}, {5, 5, 5}));
   const SwingingFlight flight(1.0);
   for (const ScanMode mode :
        {ScanMode::kRolling, ScanMode::kFrozen, ScanMode::kFrozenUnstamped, ScanMode::kOfficial}) {
@@ -183,7 +183,7 @@ TEST(Lidar, OnlyRollingAndFrozenScansCarryTimes) {
 TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
   const double distance = 8.0;
   const double rate = 2.5;
-  const World world(wall_mesh(distance));
+  const world::World world(wall_mesh(distance));
   const UniformFlight flight(Pose::Identity(), Vector3d::Zero(), {0, 0, rate}, 5.0);
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
@@ -203,7 +203,7 @@ TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
 
 TEST(Lidar, RangeLimitsFilterTheTrueRangeAndMoveNothing) {
   const double distance = 0.08;
-  const World world(wall_mesh(distance));
+  const world::World world(wall_mesh(distance));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   config.min_range_m = 0.1;
@@ -224,9 +224,9 @@ TEST(Lidar, RangeLimitsFilterTheTrueRangeAndMoveNothing) {
 }
 
 TEST(Lidar, SomethingTooNearHidesWhatIsBehindIt) {
-  TriangleMesh mesh = wall_mesh(0.05);
+  world::TriangleMesh mesh = wall_mesh(0.05);
   mesh.append(wall_mesh(20.0));
-  const World world(std::move(mesh));
+  const world::World world(std::move(mesh));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   const auto flight = rest(Pose::Identity());
@@ -243,7 +243,7 @@ TEST(Lidar, SomethingTooNearHidesWhatIsBehindIt) {
 }
 
 TEST(Lidar, TheOfficialFaultShortensEveryRangeByTheMinimumRange) {
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const auto flight = rest(Pose::Identity());
   SensorConfig config = mid360();
   const Scan right = make_lidar(config).measure(world, flight, 0, kOneThread);
@@ -256,11 +256,11 @@ TEST(Lidar, TheOfficialFaultShortensEveryRangeByTheMinimumRange) {
 }
 
 TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
-  const World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
+  const world::World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
   const SwingingFlight flight(10.0);
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const Lidar lidar = make_lidar(config);
-    std::vector<PointTruth> truth;
+    std::vector<dataset::PointTruth> truth;
     const Scan scan = lidar.measure(world, flight, 5, Parallel(2), &truth);
     ASSERT_EQ(truth.size(), scan.points.size());
     const auto shots = shots_of(lidar, scan, 5);
@@ -269,7 +269,7 @@ TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
       const Pose pose = flight.pose_at(time_of(scan, scan.points[i])) * config.body_from_lidar;
       const Vector3d position = truth[i].position.cast<double>();
       worst = std::max(worst, (pose * scan.points[i].position.cast<double>() - position).norm());
-      const Triangle& corners = world.mesh().triangles[truth[i].triangle];
+      const world::Triangle& corners = world.mesh().triangles[truth[i].triangle];
       const Vector3d normal = world.mesh().cross(truth[i].triangle).normalized();
       ASSERT_NEAR(normal.dot(position - world.mesh().vertices[corners[0]]), 0.0, kTolerance);
       ASSERT_NEAR(std::abs(normal.dot(truth[i].normal.cast<double>())), 1.0, 1e-6);
@@ -283,10 +283,10 @@ TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
 }
 
 TEST(Lidar, NoiseMovesThePointsAndNotTheirTruth) {
-  const World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
+  const world::World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
   const SwingingFlight flight(10.0);
   SensorConfig config = mid360();
-  std::vector<PointTruth> exact, noisy;
+  std::vector<dataset::PointTruth> exact, noisy;
   const Scan right = make_lidar(config).measure(world, flight, 2, kOneThread, &exact);
   config.range_noise_m = 0.05;
   const Scan moved = make_lidar(config).measure(world, flight, 2, kOneThread, &noisy);
@@ -300,7 +300,7 @@ TEST(Lidar, NoiseMovesThePointsAndNotTheirTruth) {
 }
 
 TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const auto flight = rest(tilted_pose({1, 1, 1}, 0.1, 0.2, 0.3));
   SensorConfig config = mid360();
   config.range_noise_m = 0.02;
@@ -308,7 +308,7 @@ TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
   double sum = 0.0, squares = 0.0;
   std::size_t count = 0, beyond_two_sigma = 0;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    std::vector<PointTruth> truth;
+    std::vector<dataset::PointTruth> truth;
     const Scan scan = lidar.measure(world, flight, index, kOneThread, &truth);
     const auto shots = shots_of(lidar, scan, index);
     ASSERT_EQ(truth.size(), scan.points.size());
@@ -331,7 +331,7 @@ TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
 }
 
 TEST(Lidar, ScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const SwingingFlight flight(2.0);
   for (SensorConfig config : {mid360(), ouster()}) {
     config.range_noise_m = 0.02;
@@ -354,9 +354,9 @@ TEST(Lidar, ScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
 }
 
 TEST(Lidar, IntensityIsTheReflectivityTimesTheCosineOfIncidence) {
-  TriangleMesh wall = wall_mesh(10.0);
+  world::TriangleMesh wall = wall_mesh(10.0);
   wall.paint({"gray", 0.4, 0.0});
-  const World world(std::move(wall));
+  const world::World world(std::move(wall));
   SensorConfig config = mid360();
   config.body_from_lidar.setIdentity();
   const Scan scan = make_lidar(config).measure(world, rest(Pose::Identity()), 0, kOneThread);
@@ -367,4 +367,4 @@ TEST(Lidar, IntensityIsTheReflectivityTimesTheCosineOfIncidence) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

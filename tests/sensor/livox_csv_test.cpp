@@ -15,7 +15,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using testing::degrees;
@@ -137,4 +137,4 @@ TEST(LivoxCsv, IsASensorsPatternOnceItsRowRateIsTold) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -14,7 +14,7 @@
 #include "lidarena/base/error.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using testing::degrees;
@@ -163,4 +163,4 @@ TEST(Livox, RejectsARateThatCutsALaserGroup) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -10,7 +10,7 @@
 #include "lidarena/base/error.hpp"
 #include "tests/sensor/flights.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using testing::degrees;
@@ -93,4 +93,4 @@ TEST(Ouster, HasTheFiveModesOfTheMakerAndNoOthers) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -9,7 +9,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector3d;
@@ -49,7 +49,7 @@ SensorConfig level_mid360() {
   return config;
 }
 
-TriangleMesh painted(TriangleMesh mesh, double reflectivity) {
+world::TriangleMesh painted(world::TriangleMesh mesh, double reflectivity) {
   mesh.paint({"paint", reflectivity, 0.0});
   return mesh;
 }
@@ -64,7 +64,7 @@ double mid360_signal(double reflectivity, double cosine, double range) {
 
 struct Measured {
   Scan scan;
-  std::vector<PointTruth> truth;
+  std::vector<dataset::PointTruth> truth;
   double error(std::size_t i) const {
     return scan.points[i].position.cast<double>().norm() - static_cast<double>(truth[i].range);
   }
@@ -73,7 +73,7 @@ struct Measured {
   }
 };
 
-Measured measure(const Lidar& lidar, const World& world, std::uint64_t index = 0) {
+Measured measure(const Lidar& lidar, const world::World& world, std::uint64_t index = 0) {
   Measured measured;
   measured.scan = lidar.measure(world, rest(Pose::Identity()), index, kOneThread, &measured.truth);
   return measured;
@@ -98,7 +98,7 @@ TEST(Returns, NearRangesAreAsNoisyAsTheSheetSays) {
   config.noise.near_range_noise_m = 0.03;
   const std::map<double, double> sigmas{{0.2, 0.03}, {0.6, 0.025}, {1.0, 0.02}, {10.0, 0.02}};
   for (const auto& [distance, sigma] : sigmas) {
-    const World world(wall_mesh(distance));
+    const world::World world(wall_mesh(distance));
     std::vector<double> errors;
     for (std::uint64_t index = 0; index < 4; ++index) {
       const Measured measured = measure(make_lidar(config), world, index);
@@ -119,7 +119,7 @@ TEST(Returns, WeakSignalsAreNoisierByTheRootOfTheSignalAtEveryRangeAndIncidence)
   config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
   // A dark wall: the signal is 1 at normal incidence at 24 m, and falls off in all directions.
   const double reflectivity = 1.0 / mid360_signal(1.0, 1.0, 24.0);
-  const World world(painted(wall_mesh(24.0), reflectivity));
+  const world::World world(painted(wall_mesh(24.0), reflectivity));
   std::map<int, std::vector<double>> by_incidence;  // in steps of 15 deg
   for (std::uint64_t index = 0; index < 3; ++index) {
     const Measured measured = measure(make_lidar(config), world, index);
@@ -145,7 +145,7 @@ TEST(Returns, EchoesDropOutAsOftenAsTheReceiverMissesThem) {
   const double rated = threshold + 1.2815515655446004;  // and with this offset in nine of ten cases
   for (const auto& [distance, reflectivity] :
        {std::pair{40.0, 0.1}, {60.0, 0.8}, {30.0, 0.04}, {10.0, 0.5}}) {
-    const World world(painted(wall_mesh(distance), reflectivity));
+    const world::World world(painted(wall_mesh(distance), reflectivity));
     SensorConfig keen = config;
     keen.noise.dropouts = false;
     const Measured all = measure(make_lidar(keen), world);
@@ -170,7 +170,7 @@ TEST(Returns, HeadOnAtTheRatedRangeNineOfTenComeBack) {
   config.noise.dropouts = true;
   config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
   for (const auto& [distance, reflectivity] : {std::pair{40.0, 0.1}, {70.0, 0.8}}) {
-    const World world(painted(wall_mesh(distance), reflectivity));
+    const world::World world(painted(wall_mesh(distance), reflectivity));
     const Lidar lidar(config, std::make_unique<FixedPattern>(std::vector{0.0}, 20'000), "x", 1,
                       true);
     const auto seen = static_cast<double>(measure(lidar, world).scan.points.size());
@@ -179,9 +179,9 @@ TEST(Returns, HeadOnAtTheRatedRangeNineOfTenComeBack) {
 }
 
 TEST(Returns, AMirrorIsSeenHeadOnAlone) {
-  TriangleMesh mesh = wall_mesh(20.0);
-  mesh.paint(materials::kMirror);
-  const World world(std::move(mesh));
+  world::TriangleMesh mesh = wall_mesh(20.0);
+  mesh.paint(world::materials::kMirror);
+  const world::World world(std::move(mesh));
   SensorConfig config = level_mid360();
   config.noise.dropouts = true;
   config.noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 70.0};
@@ -197,10 +197,10 @@ TEST(Returns, AMirrorIsSeenHeadOnAlone) {
 TEST(Returns, RangesAreRoundedToTheStepAndNotMoved) {
   SensorConfig config = level_mid360();
   config.noise.range_step_m = 0.05;
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   for (SensorConfig sensor : {config, ouster()}) {
     sensor.noise.range_step_m = 0.05;
-    std::vector<PointTruth> truth;
+    std::vector<dataset::PointTruth> truth;
     const Lidar lidar = make_lidar(sensor);
     const Scan scan = lidar.measure(world, rest(Pose::Identity()), 0, kOneThread, &truth);
     std::vector<Beam> beams;
@@ -224,7 +224,7 @@ TEST(Returns, RangesAreRoundedToTheStepAndNotMoved) {
 TEST(Returns, DirectionsAreReportedWithTheAngularNoiseOfTheSheet) {
   SensorConfig config = level_mid360();
   config.noise.angle_noise_deg = 0.15;
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const Lidar lidar = make_lidar(config);
   const Measured noisy = measure(lidar, world);
   std::vector<Beam> beams;
@@ -244,13 +244,13 @@ TEST(Returns, DirectionsAreReportedWithTheAngularNoiseOfTheSheet) {
 }
 
 /// A plate at x = 5 m for y > 0 (to the left), behind it a wall at `far`.
-World edge_world(double far) {
-  TriangleMesh mesh = wall_mesh(far);
-  TriangleMesh plate;
+world::World edge_world(double far) {
+  world::TriangleMesh mesh = wall_mesh(far);
+  world::TriangleMesh plate;
   plate.vertices = {{5, 0, -60}, {5, 60, -60}, {5, 60, 60}, {5, 0, 60}};
   plate.triangles = {{0, 1, 2}, {0, 2, 3}};
   mesh.append(plate);
-  return World(std::move(mesh));
+  return world::World(std::move(mesh));
 }
 
 SensorConfig wide_beam(int sub_rays) {
@@ -266,7 +266,7 @@ const std::vector<double> kAside{-2.5 * kSigma, -kSigma, -0.3 * kSigma, 0.0,
 
 TEST(Returns, ABeamOnAnEdgeMixesTheTwoRangesByTheShareThatFallsOnEach) {
   const double far = 5.3;  // within a pulse of the plate
-  const World world = edge_world(far);
+  const world::World world = edge_world(far);
   const Lidar lidar(wide_beam(64), std::make_unique<FixedPattern>(kAside, 400), "x", 1, true);
   const Measured measured = measure(lidar, world);
   ASSERT_EQ(measured.scan.points.size(), 400 * kAside.size());
@@ -285,7 +285,7 @@ TEST(Returns, ABeamOnAnEdgeMixesTheTwoRangesByTheShareThatFallsOnEach) {
 }
 
 TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
-  const World world = edge_world(9.0);
+  const world::World world = edge_world(9.0);
   SensorConfig config = wide_beam(64);
   config.returns.count = 2;
   const Lidar lidar(config, std::make_unique<FixedPattern>(kAside, 400), "x", 1, true);
@@ -306,7 +306,7 @@ TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
 }
 
 TEST(Returns, TheChoiceOfEchoesIsTheSensors) {
-  const World world = edge_world(9.0);
+  const world::World world = edge_world(9.0);
   // Most of the beam misses the plate, but the wall is farther: with the square law the signals of
   // plate and wall are as 0.31 / 25 to 0.69 / 81, so the plate is stronger.
   const std::vector<double> aside{-0.5 * kSigma};
@@ -331,7 +331,7 @@ TEST(Returns, TheChoiceOfEchoesIsTheSensors) {
 }
 
 TEST(Returns, ASplitBeamOnAPlainWallMeasuresTheWall) {
-  const World world(wall_mesh(10.0));
+  const world::World world(wall_mesh(10.0));
   const Lidar lidar(wide_beam(19), std::make_unique<FixedPattern>(std::vector{0.0, 0.3}, 100), "x",
                     1, true);
   const Measured measured = measure(lidar, world);
@@ -347,7 +347,7 @@ TEST(Returns, ASplitBeamOnAPlainWallMeasuresTheWall) {
 TEST(Returns, SignalIntensityIsTheLidarEquation) {
   SensorConfig config = level_mid360();
   config.returns.intensity = IntensityKind::kSignal;
-  const World world(painted(wall_mesh(10.0), 0.3));
+  const world::World world(painted(wall_mesh(10.0), 0.3));
   const Measured measured = measure(make_lidar(config), world);
   ASSERT_GT(measured.scan.points.size(), 1000U);
   for (std::size_t i = 0; i < measured.scan.points.size(); ++i) {
@@ -371,10 +371,10 @@ SensorConfig with_everything(SensorConfig config) {
 }
 
 TEST(Returns, WithAllPartsOnScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
-  TriangleMesh mesh = box_mesh({-9, -8, -3}, {7, 6, 5});
+  world::TriangleMesh mesh = box_mesh({-9, -8, -3}, {7, 6, 5});
   mesh.append(box_mesh({2, 1, -3}, {3, 2, 1}));
   mesh.append(box_mesh({-3, -2, -1}, {-2.5, -1, 1}));
-  const World world(std::move(mesh));
+  const world::World world(std::move(mesh));
   const SwingingFlight flight(2.0);
   for (const SensorConfig& config : {with_everything(mid360()), with_everything(ouster())}) {
     const Lidar lidar = make_lidar(config);
@@ -396,7 +396,7 @@ TEST(Returns, WithAllPartsOnScansAreTheSameOnAnyNumberOfThreadsAndInAnyOrder) {
 }
 
 TEST(Returns, WithoutNoiseAllPartsTogetherAreTheGeometry) {
-  const World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
+  const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   const SwingingFlight flight(2.0);
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const SensorConfig noisy = with_everything(config);
@@ -407,4 +407,4 @@ TEST(Returns, WithoutNoiseAllPartsTogetherAreTheGeometry) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -10,7 +10,7 @@
 #include "lidarena/base/error.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using ::testing::HasSubstr;
@@ -99,4 +99,4 @@ TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

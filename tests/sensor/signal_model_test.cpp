@@ -8,7 +8,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using ::testing::HasSubstr;
@@ -123,4 +123,4 @@ TEST(ReturnConfig, PartsThatDoNotFitTogetherAreRefusedWithTheRemedy) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

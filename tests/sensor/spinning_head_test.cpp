@@ -13,7 +13,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using testing::degrees;
@@ -139,4 +139,4 @@ TEST(SpinningHead, TravelsWithTheSensorsConfiguration) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

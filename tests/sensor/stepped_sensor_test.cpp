@@ -12,7 +12,7 @@
 #include "tests/sensor/flights.hpp"
 #include "tests/sensor/worlds.hpp"
 
-namespace lidarena {
+namespace lidarena::sensor {
 namespace {
 
 using Eigen::Vector3d;
@@ -20,7 +20,9 @@ using namespace testing;
 
 constexpr Time kStep{1'000'000};
 
-World small_room() { return World(box_mesh({-9, -7, -4}, {8, 6, 3}), "room", RayCaster::kBvh); }
+world::World small_room() {
+  return world::World(box_mesh({-9, -7, -4}, {8, 6, 3}), "room", world::RayCaster::kBvh);
+}
 
 ImuConfig noisy_imu() {
   ImuConfig imu;
@@ -33,15 +35,15 @@ ImuConfig noisy_imu() {
 }
 
 /// Steps the sensor like a physics engine that moves the body along `flight`.
-std::vector<Event> fly_by_steps(SteppedSensor& sensor, const Surfaces& world, const Flight& flight,
-                                Time from, Time to) {
-  std::vector<Event> events;
+std::vector<dataset::Event> fly_by_steps(SteppedSensor& sensor, const world::Surfaces& world,
+                                         const flight::Flight& flight, Time from, Time to) {
+  std::vector<dataset::Event> events;
   for (Time t = from; t <= to; t += kStep) sensor.step(world, {t, flight.pose_at(t)}, events);
   return events;
 }
 
-std::vector<Event> all_of(EventSource& source) {
-  std::vector<Event> events;
+std::vector<dataset::Event> all_of(dataset::EventSource& source) {
+  std::vector<dataset::Event> events;
   while (auto event = source.next()) events.push_back(std::move(*event));
   return events;
 }
@@ -62,16 +64,16 @@ void expect_same_scan(const Scan& a, const Scan& b, double most) {
 }
 
 TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
-  const World world = small_room();
+  const world::World world = small_room();
   const SwingingFlight flight(0.6);
   for (SensorConfig config : {mid360(), ouster()}) {
     config.range_noise_m = 0.02;
     config.imu = noisy_imu();
     const auto source = simulate(world, flight, {config}, {.seed = 7}, Parallel(1));
-    const std::vector<Event> expected = all_of(*source);
+    const std::vector<dataset::Event> expected = all_of(*source);
     SteppedSensor sensor(config, config.name, 7, true, Time{0});
     // one step more, since IMU samples come one step late
-    const std::vector<Event> events =
+    const std::vector<dataset::Event> events =
         fly_by_steps(sensor, world, flight, Time{0}, flight.duration() + kStep);
     ASSERT_EQ(events.size(), expected.size());
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -95,7 +97,7 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
 }
 
 TEST(SteppedSensor, FrozenScansAreThoseOfTheSimulation) {
-  const World world = small_room();
+  const world::World world = small_room();
   const SwingingFlight flight(0.4);
   for (const ScanMode mode : {ScanMode::kFrozen, ScanMode::kFrozenUnstamped, ScanMode::kOfficial}) {
     SensorConfig config = mid360();
@@ -117,8 +119,9 @@ TEST(SteppedSensor, EachShotSeesAMovingWallWhereItsStepPutsIt) {
   SteppedSensor sensor(config, "lidar", 1, true, Time{0});
   constexpr double kSpeed = 20.0;
   const auto wall_at = [](Time t) { return 10.0 + kSpeed * to_seconds(t); };
-  MovingWorld world({{make_mesh(box_shape({2.0, 100.0, 100.0})), Pose::Identity(), {}, true}});
-  std::vector<Event> events;
+  world::MovingWorld world(
+      {{world::make_mesh(world::box_shape({2.0, 100.0, 100.0})), Pose::Identity(), {}, true}});
+  std::vector<dataset::Event> events;
   for (Time t{0}; t <= 100 * kStep; t += kStep) {
     const Pose pose = make_pose(Eigen::Quaterniond::Identity(), {wall_at(t) + 1.0, 0, 0});
     world.move({&pose, 1});
@@ -135,7 +138,7 @@ TEST(SteppedSensor, EachShotSeesAMovingWallWhereItsStepPutsIt) {
 }
 
 TEST(SteppedSensor, BegunLateItsScansAreThoseOfOneThatWasThereAllTheTime) {
-  const World world = small_room();
+  const world::World world = small_room();
   const SwingingFlight flight(1.0);
   SensorConfig config = mid360();
   config.range_noise_m = 0.02;
@@ -144,7 +147,7 @@ TEST(SteppedSensor, BegunLateItsScansAreThoseOfOneThatWasThereAllTheTime) {
   const auto events = fly_by_steps(sensor, world, flight, 333 * kStep, 620 * kStep);
   const Lidar lidar(config, make_pattern(config), config.name, 3, true);
   std::vector<Scan> scans;
-  for (const Event& event : events) {
+  for (const dataset::Event& event : events) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) scans.push_back(*scan);
   }
   ASSERT_EQ(scans.size(), 2U);  // from 0.4 s and from 0.5 s
@@ -154,7 +157,7 @@ TEST(SteppedSensor, BegunLateItsScansAreThoseOfOneThatWasThereAllTheTime) {
 }
 
 TEST(SteppedSensor, WhenTimeGoesBackItStartsAnew) {
-  const World world = small_room();
+  const world::World world = small_room();
   const SwingingFlight flight(1.0);
   SteppedSensor sensor(mid360(), "a", 1, true, Time{0});
   const auto first = fly_by_steps(sensor, world, flight, Time{0}, 250 * kStep);
@@ -176,7 +179,7 @@ TEST(StepFlight, IsExactForConstantAccelerationAndRate) {
   const StepFlight flight(
       {StampedPose{Time{0}, at(0.0)}, {Time{1'000'000}, at(0.001)}, {Time{3'000'000}, at(0.003)}});
   for (const double t : {0.0, 0.001, 0.0022, 0.003}) {
-    const Motion motion = flight.at(from_seconds(t));
+    const flight::Motion motion = flight.at(from_seconds(t));
     EXPECT_LT((motion.world_from_body.matrix() - at(t).matrix()).norm(), 1e-12);
     EXPECT_LT((motion.velocity_world - (v + t * a)).norm(), 1e-9);
     EXPECT_LT((motion.acceleration_world - a).norm(), 1e-6);
@@ -186,4 +189,4 @@ TEST(StepFlight, IsExactForConstantAccelerationAndRate) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::sensor

@@ -13,11 +13,11 @@
 #include "tests/world/shapes.hpp"
 
 /// Worlds with closed-form answers, and small sensors for them.
-namespace lidarena::testing {
+namespace lidarena::sensor::testing {
 
 /// The wall x = `distance`, 120 m wide and high.
-inline TriangleMesh wall_mesh(double distance) {
-  TriangleMesh mesh;
+inline world::TriangleMesh wall_mesh(double distance) {
+  world::TriangleMesh mesh;
   mesh.vertices = {
       {distance, -60, -60}, {distance, 60, -60}, {distance, 60, 60}, {distance, -60, 60}};
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
@@ -25,8 +25,8 @@ inline TriangleMesh wall_mesh(double distance) {
 }
 
 /// A sphere of facets: an octahedron whose faces are divided into four `levels` times.
-inline TriangleMesh sphere_mesh(double radius, int levels) {
-  TriangleMesh mesh;
+inline world::TriangleMesh sphere_mesh(double radius, int levels) {
+  world::TriangleMesh mesh;
   mesh.vertices = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
   mesh.triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
                     {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
@@ -38,7 +38,7 @@ inline TriangleMesh sphere_mesh(double radius, int levels) {
       if (added) mesh.vertices.push_back((mesh.vertices[a] + mesh.vertices[b]).normalized());
       return place->second;
     };
-    std::vector<Triangle> finer;
+    std::vector<world::Triangle> finer;
     for (const auto& [a, b, c] : mesh.triangles) {
       const std::uint32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
       finer.insert(finer.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
@@ -50,7 +50,7 @@ inline TriangleMesh sphere_mesh(double radius, int levels) {
 }
 
 /// First hit by trying every triangle in double precision; infinity when there is none.
-inline double slow_cast(const TriangleMesh& mesh, const Eigen::Vector3d& origin,
+inline double slow_cast(const world::TriangleMesh& mesh, const Eigen::Vector3d& origin,
                         const Eigen::Vector3d& direction) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
@@ -112,4 +112,4 @@ inline bool same(const Scan& a, const Scan& b) {
                     });
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::sensor::testing

@@ -8,7 +8,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
@@ -32,12 +32,12 @@ TEST(SimulateDataset, TakesASensorsOwnTableAlongSoThatItCanBeFlownElsewhere) {
   request.data = false;
   LogSink log;
   simulate_dataset(request, folder / "made", Parallel(1), log);
-  const Json manifest = read_json(folder / "made/manifest.json");
+  const Json manifest = dataset::read_json(folder / "made/manifest.json");
   EXPECT_EQ(manifest["simulation"]["sensors"][0]["pattern_file"], "pattern_0.csv");
 
   fs::rename(folder / "made", folder / "moved");
   fs::remove(folder / "table.csv");
-  const Dataset dataset = open_any_dataset(folder / "moved", {}, Parallel(1));
+  const dataset::Dataset dataset = open_any_dataset(folder / "moved", {}, Parallel(1));
   std::size_t points = 0;
   while (const auto event = dataset.events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) points += scan->points.size();
@@ -46,4 +46,4 @@ TEST(SimulateDataset, TakesASensorsOwnTableAlongSoThatItCanBeFlownElsewhere) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::study

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/isolate.hpp"
@@ -28,7 +28,7 @@
 #include "lidarena/study/simulate_dataset.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::study {
 namespace {
 
 using ::testing::HasSubstr;
@@ -222,7 +222,7 @@ TEST(Plan, ModesMakeDatasetsOfTheirOwnAndExternalProgramsAreCells) {
   StudySpec spec = small_spec();
   spec.seeds = {1};
   spec.sensors = {"livox_mid360"};
-  spec.modes = {ScanMode::kRolling, ScanMode::kFrozen};
+  spec.modes = {sensor::ScanMode::kRolling, sensor::ScanMode::kFrozen};
   spec.external = {{.name = "theirs", .command = "true"}};
   spec.algorithms = {"kiss_icp", "theirs"};
   const std::vector<PlannedRun> cells = plan(spec, configs());
@@ -310,20 +310,20 @@ TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAft
   };
   EXPECT_FALSE(std::filesystem::exists(only_in(scratch.path() / "datasets") / kScoredFolder));
   for (const char* picture : {"livox_mid360_scan.ply", "livox_mid360_scan_skewed.ply"}) {
-    const Cloud scan = read_cloud(only_in(scratch.path() / "datasets") / picture);
+    const dataset::Cloud scan = dataset::read_cloud(only_in(scratch.path() / "datasets") / picture);
     ASSERT_GT(scan.points.size(), 10'000U) << picture;
     EXPECT_LT(std::accumulate(scan.distance.begin(), scan.distance.end(), 0.0F),
               0.05F * static_cast<float>(scan.points.size()))
         << picture << ": range noise of 2 cm, and almost no motion at the start";
   }
   const std::filesystem::path run = only_in(scratch.path() / "runs");
-  const Json with_returns = read_json(run / "metrics.json");
+  const Json with_returns = dataset::read_json(run / "metrics.json");
   EXPECT_FALSE(with_returns.contains("resources")) << "resources differ between repeated runs";
   ASSERT_TRUE(
       with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
   const Json scored_again = score_run(run, Parallel(1), log);
   EXPECT_TRUE(scored_again.contains("resources"));
-  EXPECT_EQ(read_json(run / "metrics.json"), with_returns);
+  EXPECT_EQ(dataset::read_json(run / "metrics.json"), with_returns);
 }
 
 TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
@@ -333,7 +333,8 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
   const auto metrics_of = [&](const char* study) {
     const std::filesystem::path out = scratch.path() / study;
     EXPECT_EQ(run_study(spec, configs(), out, {}, log).failed, 0U);
-    return read_json(out / "runs/house-house-s1-livox_mid360-kiss_icp-improved/metrics.json");
+    return dataset::read_json(out /
+                              "runs/house-house-s1-livox_mid360-kiss_icp-improved/metrics.json");
   };
   const Json kept = metrics_of("kept");
   spec.keep_maps = false;
@@ -343,7 +344,7 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
   for (const auto& entry : std::filesystem::directory_iterator(run)) {
     EXPECT_NE(entry.path().extension(), ".ply") << entry.path();
   }
-  EXPECT_THROW(read_run(run), InputError);
+  EXPECT_THROW(dataset::read_run(run), InputError);
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 1U);
   spec.keep_maps = true;
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 0U)
@@ -370,17 +371,17 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   const auto run = [&](const std::string& name) {
     return scratch.path() / "runs" / ("house-house-s1-livox_mid360-" + name + "-external");
   };
-  const Json metrics = read_json(run("still") / "metrics.json");
+  const Json metrics = dataset::read_json(run("still") / "metrics.json");
   EXPECT_EQ(metrics.at("status"), "ok");
   EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "the recording must be deleted";
-  const Json silent = read_json(run("silent") / "manifest.json");
+  const Json silent = dataset::read_json(run("silent") / "manifest.json");
   EXPECT_THAT(silent.at("failed").get<std::string>(), HasSubstr("left no trajectory.tum"));
-  const Json broken = read_json(run("broken") / "manifest.json");
+  const Json broken = dataset::read_json(run("broken") / "manifest.json");
   EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
-  EXPECT_EQ(read_bytes(run("broken") / "program.log"), "no such luck\n");
+  EXPECT_EQ(dataset::read_bytes(run("broken") / "program.log"), "no such luck\n");
   const StudyOutcome again = run_study(spec, configs(), scratch.path(), {}, log);
   EXPECT_EQ(again.reused, 1U) << "failed runs must be tried again";
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::study

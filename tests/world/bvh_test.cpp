@@ -14,7 +14,7 @@
 #include "tests/world/every_ray_caster.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -205,4 +205,4 @@ TEST(Bvh, StaysShallowWhereTheCheapestCutsPeelOffOneTriangleAtATime) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -12,7 +12,7 @@
 #include "tests/world/every_ray_caster.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -160,4 +160,4 @@ TEST(TriangleFrame, HasTheDistancesOfTheTriangle) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -8,7 +8,7 @@
 #include "lidarena/base/log.hpp"
 
 /// Helpers that capture the warnings and errors of loading a world.
-namespace lidarena::testing {
+namespace lidarena::world::testing {
 
 /// Collects the warnings.
 class RecordingLog : public LogSink {
@@ -30,4 +30,4 @@ std::string input_error_of(Action&& action) {
   return {};
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::world::testing

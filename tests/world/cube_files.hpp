@@ -9,7 +9,7 @@
 #include "tests/world/shapes.hpp"
 
 /// A box of 1 x 2 x 3 m with a corner at the origin, as the file content in each format.
-namespace lidarena::testing {
+namespace lidarena::world::testing {
 
 inline TriangleMesh tall_box() { return box_mesh({0, 0, 0}, {1, 2, 3}); }
 
@@ -135,4 +135,4 @@ inline std::string box_gltf() {
   return out.str();
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::world::testing

@@ -7,7 +7,7 @@
 
 #include "lidarena/world/world.hpp"
 
-namespace lidarena::testing {
+namespace lidarena::world::testing {
 
 /// Base of the World tests, which run for every ray caster of this build.
 class EveryRayCaster : public ::testing::TestWithParam<RayCaster> {
@@ -21,4 +21,4 @@ inline std::string ray_caster_name(const ::testing::TestParamInfo<RayCaster>& in
   return info.param == RayCaster::kEmbree ? "embree" : "bvh";
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::world::testing

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/world/export_world.hpp"
-#include "lidarena/world/sdf_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
+#include "lidarena/world/sdf_world.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "lidarena/world/primitives.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 namespace fs = std::filesystem;
@@ -50,4 +50,4 @@ TEST(ExportWorld, NamesTheFileAndTheRemedy) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

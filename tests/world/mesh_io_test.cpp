@@ -10,7 +10,7 @@
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -130,4 +130,4 @@ TEST(MeshIo, RefusesMapCoordinatesThatSinglePrecisionWouldRuin) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

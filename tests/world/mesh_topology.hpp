@@ -8,7 +8,7 @@
 
 #include "lidarena/world/triangle_mesh.hpp"
 
-namespace lidarena::testing {
+namespace lidarena::world::testing {
 
 /// Topological properties of a mesh, from its triangles' vertex indices; every vertex must be used.
 struct Topology {
@@ -69,4 +69,4 @@ inline Topology topology(const TriangleMesh& mesh) {
   return result;
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::world::testing

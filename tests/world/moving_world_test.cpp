@@ -12,7 +12,7 @@
 #include "lidarena/world/world.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -220,4 +220,4 @@ TEST(Shape, FromWithinAndFarAwayRangesAreExact) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -12,7 +12,7 @@
 #include "tests/world/complaints.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -145,4 +145,4 @@ TEST(Ply, NothingIsLeftBehindWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

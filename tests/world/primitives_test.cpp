@@ -9,7 +9,7 @@
 
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -106,4 +106,4 @@ TEST(Primitives, APlaneLiesAcrossItsNormal) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 std::string without_blanks(std::string text) {
@@ -49,4 +49,4 @@ TEST(WithoutUnseenElements, LeavesBrokenTextToTheParser) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -12,7 +12,7 @@
 #include "tests/world/cube_files.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -284,4 +284,4 @@ TEST_F(SdfWorld, OneClearErrorForEachThingThatCanBeWrong) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -5,7 +5,7 @@
 #include "lidarena/world/triangle_mesh.hpp"
 
 /// Meshes small enough to reason about.
-namespace lidarena::testing {
+namespace lidarena::world::testing {
 
 /// The box [low, high]: 8 vertices, 12 triangles, normals outward.
 inline TriangleMesh box_mesh(const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
@@ -55,4 +55,4 @@ inline double signed_volume(const TriangleMesh& mesh) {
   return six / 6.0;
 }
 
-}  // namespace lidarena::testing
+}  // namespace lidarena::world::testing

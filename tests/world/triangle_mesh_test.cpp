@@ -12,7 +12,7 @@
 #include "tests/world/complaints.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -199,4 +199,4 @@ TEST(ClosestPointOnTriangle, NoSampleOfTheTriangleIsNearer) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

@@ -12,7 +12,7 @@
 #include "tests/world/every_ray_caster.hpp"
 #include "tests/world/shapes.hpp"
 
-namespace lidarena {
+namespace lidarena::world {
 namespace {
 
 using Eigen::Vector3d;
@@ -357,4 +357,4 @@ TEST_P(WorldMesh, StaysWholeWhenMoved) {
 }
 
 }  // namespace
-}  // namespace lidarena
+}  // namespace lidarena::world

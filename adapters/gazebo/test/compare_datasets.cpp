@@ -23,7 +23,7 @@ struct Measurements {
 
 Measurements read(const char* path) {
   Measurements all;
-  const Dataset dataset = open_dataset(path);
+  const dataset::Dataset dataset = dataset::open_dataset(path);
   while (auto event = dataset.events->next()) {
     if (auto* scan = std::get_if<Scan>(&event->data)) {
       all.scans[scan->stamp] = std::move(*scan);

@@ -44,8 +44,8 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
     config_ = read_sdf_config<CompareConfig>(sdf, "compare plugin");
     std::istringstream words(config_.seconds);
     for (double s = 0.0; words >> s;) instants_.push_back(s);
-    SensorConfig sensor;  // a Mid-360, 20,000 rays
-    make_pattern(sensor)->beams(0, beams_);
+    sensor::SensorConfig sensor;  // a Mid-360, 20,000 rays
+    sensor::make_pattern(sensor)->beams(0, beams_);
     update_ = ::gazebo::event::Events::ConnectWorldUpdateEnd([this] { step(); });
   }
 
@@ -76,13 +76,13 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
     const Pose pose = to_pose(link->WorldPose());
     std::size_t both = 0, neither = 0, ours_alone = 0, theirs_alone = 0;
     double worst = 0.0, sum = 0.0;
-    for (const Beam& beam : beams_) {
+    for (const sensor::Beam& beam : beams_) {
       const Eigen::Vector3d direction =
           (pose.linear() * beam.direction.cast<double>()).normalized();
       const Eigen::Vector3d from = pose.translation() + kMinRange * direction;
       const Eigen::Vector3d to = pose.translation() + kMaxRange * direction;
-      const Ray ray{from, direction.cast<float>()};
-      Hit hit;
+      const world::Ray ray{from, direction.cast<float>()};
+      world::Hit hit;
       ours_->cast({&ray, 1}, kMaxRange - kMinRange, {&hit, 1});
       engine->SetPoints({from.x(), from.y(), from.z()}, {to.x(), to.y(), to.z()});
       double range = 0.0;
@@ -114,9 +114,9 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
   std::vector<double> instants_;
   std::size_t next_ = 0;
   bool failed_ = false;
-  std::vector<Beam> beams_;
+  std::vector<sensor::Beam> beams_;
   std::unique_ptr<GazeboScene> scene_;
-  std::shared_ptr<MovingWorld> ours_;
+  std::shared_ptr<world::MovingWorld> ours_;
   ::gazebo::event::ConnectionPtr update_;
 };
 

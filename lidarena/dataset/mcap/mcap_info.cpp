@@ -11,7 +11,7 @@
 #include "lidarena/dataset/mcap/mcap_reader.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using mcap::Opcode;
@@ -149,4 +149,4 @@ McapInfo read_mcap_info(const std::filesystem::path& file) {
   return *std::move(info);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

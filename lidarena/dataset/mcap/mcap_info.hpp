@@ -11,7 +11,7 @@
 #include "lidarena/dataset/mcap/mcap_records.hpp"
 #include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Contents of an MCAP file; its topics are its channels, in the order of their ids.
 struct McapInfo : RecordingInfo {
@@ -22,4 +22,4 @@ struct McapInfo : RecordingInfo {
 /// whole file. Throws InputError when the file is missing or is not MCAP.
 McapInfo read_mcap_info(const std::filesystem::path& file);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/compression.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 using mcap::Opcode;
 
@@ -286,4 +286,4 @@ const std::map<std::string, mcap::StringMap>& McapReader::metadata() const {
 }
 const mcap::Statistics& McapReader::statistics() const { return impl_->counted; }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

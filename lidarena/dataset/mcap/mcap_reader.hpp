@@ -12,7 +12,7 @@
 #include "lidarena/base/time.hpp"
 #include "lidarena/dataset/mcap/mcap_records.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// A message as stored in the file; `data` and `channel` are valid until the next one is read.
 struct McapMessage {
@@ -55,4 +55,4 @@ class McapReader {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

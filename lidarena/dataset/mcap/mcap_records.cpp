@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/dataset/mcap/mcap_records.hpp"
 
-namespace lidarena::mcap {
+namespace lidarena::dataset::mcap {
 namespace {
 
 /// Writes opcode, length and what `content` writes. The length, filled in at the end, includes
@@ -253,4 +253,4 @@ MetadataIndex decode_metadata_index(Bytes content) {
   return {in.get<std::uint64_t>(), in.get<std::uint64_t>(), in.get_string()};
 }
 
-}  // namespace lidarena::mcap
+}  // namespace lidarena::dataset::mcap

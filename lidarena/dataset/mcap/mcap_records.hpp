@@ -13,7 +13,7 @@
 /// The records of an MCAP file, major version 0 (specification: mcap.dev/spec). A file is
 ///   magic, Header, data records, DataEnd, summary records, SummaryOffsets, Footer, magic
 /// and every record is opcode (1 byte), length of the content (8 bytes), content; little endian.
-namespace lidarena::mcap {
+namespace lidarena::dataset::mcap {
 
 inline constexpr std::array<std::uint8_t, 8> kMagic{0x89, 'M', 'C', 'A', 'P', '0', '\r', '\n'};
 inline Bytes magic() { return std::as_bytes(std::span(kMagic)); }
@@ -161,4 +161,4 @@ Statistics decode_statistics(Bytes content);
 Metadata decode_metadata(Bytes content);
 MetadataIndex decode_metadata_index(Bytes content);
 
-}  // namespace lidarena::mcap
+}  // namespace lidarena::dataset::mcap

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/compression.hpp"
 #include "lidarena/dataset/part_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 struct McapWriter::Impl {
   Impl(const std::filesystem::path& path, const McapWriterOptions& o)
@@ -221,4 +221,4 @@ void McapWriter::close() {
   w.file.commit();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -9,7 +9,7 @@
 #include "lidarena/base/time.hpp"
 #include "lidarena/dataset/mcap/mcap_records.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 struct McapWriterOptions {
   std::string profile = "ros2";
@@ -48,4 +48,4 @@ class McapWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/config_json.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 /// A JSON string, which is a valid YAML scalar for any content.
@@ -66,4 +66,4 @@ std::string rosbag2_metadata(const std::string& file, const std::vector<RosbagTo
       quoted(file), duration, start.count(), message_count, topic_list);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/time.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Metadata of a topic for rosbag2.
 struct RosbagTopic {
@@ -28,4 +28,4 @@ std::string latched_qos();
 std::string rosbag2_metadata(const std::string& file, const std::vector<RosbagTopic>& topics,
                              Time start, Time end);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

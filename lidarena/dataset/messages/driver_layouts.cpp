@@ -11,10 +11,10 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/point_cloud2.hpp"
-#include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/recording_source.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 using ros::FieldType;
@@ -309,4 +309,4 @@ void encode_driver_imu(const ImuSample& sample, Driver driver, std::string_view 
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 
 /// Scans and IMU samples as the manufacturers' ROS drivers publish them. Encoders start a new
 /// message in `out`.
-namespace lidarena {
+namespace lidarena::dataset {
 
 enum class Driver { kUnknown, kLivox, kOuster };
 
@@ -48,4 +48,4 @@ void encode_ouster_cloud(const Scan& scan, const LidarInfo& lidar, std::string_v
 void encode_driver_imu(const ImuSample& sample, Driver driver, std::string_view frame_id,
                        MessageWriter& out);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 #include "lidarena/dataset/messages/message_stream.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 bool is_livox_type(std::string_view type) {
   return type == "livox_ros_driver2/msg/CustomMsg" || type == "livox_ros_driver/msg/CustomMsg" ||
@@ -46,4 +46,4 @@ Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
   return scan;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

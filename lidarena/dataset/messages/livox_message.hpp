@@ -6,7 +6,7 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Whether `type` (as spelled in ROS 2) is the CustomMsg of one of Livox's drivers.
 bool is_livox_type(std::string_view type);
@@ -17,4 +17,4 @@ bool is_livox_type(std::string_view type);
 /// `place`) when the message is damaged.
 Scan decode_livox(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 constexpr std::array<std::byte, 4> kLittleEndianCdr{std::byte{0}, std::byte{1}};  // then options, 0
 
@@ -96,4 +96,4 @@ void MessageReader::skip_doubles(std::size_t count) {
   take(count * sizeof(double));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/byte_stream.hpp"
 
 /// Serialization of ROS messages: their members in order, little endian.
-namespace lidarena {
+namespace lidarena::dataset {
 
 enum class Encoding {
   /// Plain CDR, version 1 (OMG CORBA 3.0 chapter 15.3; DDS-XTypes 1.3, 7.4.1), as ROS 2 writes it:
@@ -84,4 +84,4 @@ class MessageReader {
   std::string place_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

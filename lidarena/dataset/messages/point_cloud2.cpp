@@ -13,7 +13,7 @@
 
 #include "lidarena/base/error.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 namespace {
 
 /// Memory layout of Point. Its last byte is padding, written as 0.
@@ -341,4 +341,4 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
   return scan;
 }
 
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/messages/message_stream.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 
 /// sensor_msgs/msg/PointField; the numbers are those of the message.
 enum class FieldType : std::uint8_t {
@@ -72,4 +72,4 @@ std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_v
 /// Throws InputError when the layout is not supported.
 Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place);
 
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/md5.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 namespace {
 
 struct Definition {
@@ -156,4 +156,4 @@ std::string ros1_md5_of(std::string_view type) {
   return md5_of(text);
 }
 
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

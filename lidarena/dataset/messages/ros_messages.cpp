@@ -6,7 +6,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/point_cloud2.hpp"
 
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 namespace {
 
 constexpr std::size_t kCovariance3 = 9;   // doubles of a 3 x 3 covariance
@@ -166,4 +166,4 @@ std::string decode_string(Bytes message, std::string_view place, Encoding encodi
   return MessageReader(message, place, encoding).get_string();
 }
 
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -16,7 +16,7 @@
 /// Conversion of Lidarena's types to and from messages of ROS 2 or ROS 1 (whose types differ only
 /// in the header). Encoders start a new message in `out`; decoders throw InputError (place `place`)
 /// when a message is damaged.
-namespace lidarena::ros {
+namespace lidarena::dataset::ros {
 
 // Names as ROS 2 spells them; ROS 1 leaves out "msg/".
 
@@ -92,4 +92,4 @@ struct MessageHeader {
 void put_header(Time stamp, std::string_view frame_id, MessageWriter& out);
 MessageHeader get_header(MessageReader& in);
 
-}  // namespace lidarena::ros
+}  // namespace lidarena::dataset::ros

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/points/point_table.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 void append_float(std::string& bytes, float value) {
@@ -91,4 +91,4 @@ void write_pcd(const std::filesystem::path& file, const Cloud& cloud) {
                          fields, sizes, types, counts, cloud.points.size(), cloud.points.size()));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// A map: points in the world frame (m), optionally with intensity and distance.
 struct Cloud {
@@ -24,4 +24,4 @@ void write_ply(const std::filesystem::path& file, const Cloud& cloud);
 /// Writes binary PCD: float x y z [intensity] [distance]. Throws Error when the disk is full.
 void write_pcd(const std::filesystem::path& file, const Cloud& cloud);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 std::optional<std::string> expand_lzf(std::string_view input, std::size_t size) {
   // Three bytes expand to at most 264, so a false size in a file costs no memory.
@@ -22,4 +22,4 @@ std::optional<std::string> expand_lzf(std::string_view input, std::size_t size) 
   return out;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

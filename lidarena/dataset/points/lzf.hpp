@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Expands LZF data (as in binary_compressed PCD); none if `input` is not the whole of exactly
 /// `size` bytes.
 std::optional<std::string> expand_lzf(std::string_view input, std::size_t size);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -12,7 +12,7 @@
 #include "lidarena/dataset/points/point_file_text.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 /// Upper limit on the values of one field (COUNT): more than any sensor has, small enough that
@@ -174,4 +174,4 @@ PointTable parse_pcd_table(std::string_view bytes, const std::string& name) {
   return read_compressed(text, header);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

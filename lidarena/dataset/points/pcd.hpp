@@ -7,7 +7,7 @@
 
 #include "lidarena/dataset/points/point_table.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// The points of a PCD file (ascii, binary, binary_compressed) with all their fields. Points are
 /// returned as stored: VIEWPOINT is not applied. The number of points is POINTS or, without it,
@@ -17,4 +17,4 @@ PointTable read_pcd_table(const std::filesystem::path& file);
 /// The same from the bytes of a file; `name` is the file's name in messages.
 PointTable parse_pcd_table(std::string_view bytes, const std::string& name);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

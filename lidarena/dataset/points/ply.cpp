@@ -8,7 +8,7 @@
 #include "lidarena/dataset/points/point_file_text.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 std::vector<Field> vertex_fields(const PlyElement& vertex, const std::string& place) {
@@ -42,4 +42,4 @@ PointTable parse_ply_table(std::string_view bytes, const std::string& name) {
   throw InputError(name, "has no element 'vertex'", "a cloud needs vertices");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

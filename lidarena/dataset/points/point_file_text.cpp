@@ -9,7 +9,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr std::string_view kCutShort = "the file is cut short; copy or write it again";
@@ -106,4 +106,4 @@ PointTable read_ascii_rows(FileText& text, const std::vector<Field>& fields, std
   return table;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 #include "lidarena/dataset/points/point_table.hpp"
 
 /// Common parts of PLY and PCD files: a header of text lines, then rows of values.
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// A cursor over a file that begins with text and may continue in binary. Throws InputError instead
 /// of reading past the end.
@@ -54,4 +54,4 @@ PointTable read_binary_rows(FileText& text, const std::vector<Field>& fields, st
 /// The next `rows` lines of blank-separated values.
 PointTable read_ascii_rows(FileText& text, const std::vector<Field>& fields, std::size_t rows);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -9,7 +9,7 @@
 #include "lidarena/dataset/points/pcd.hpp"
 #include "lidarena/dataset/points/ply.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 template <class T>
@@ -58,4 +58,4 @@ PointTable read_point_table(const std::filesystem::path& file) {
                    "give a .ply or .pcd file");
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 
 #include "lidarena/base/scalar_type.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// One named value of each point: value i starts at byte `offset + i * stride`.
 struct Column {
@@ -39,4 +39,4 @@ struct PointTable {
 /// Reads .ply or .pcd, chosen by the extension. Throws InputError naming file, place and remedy.
 PointTable read_point_table(const std::filesystem::path& file);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

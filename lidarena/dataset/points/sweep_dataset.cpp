@@ -11,14 +11,14 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/imu_text.hpp"
-#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/points/pcd.hpp"
+#include "lidarena/dataset/points/sweep_file.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/stream_merge.hpp"
-#include "lidarena/dataset/points/sweep_file.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 namespace fs = std::filesystem;
 
@@ -44,7 +44,7 @@ constexpr const char* kStorage = "storage";  ///< key of the manifest
 
 DatasetFormat format_of(const Json& manifest) {
   const auto name = manifest.at(kStorage).get<std::string>();
-  for (const auto& [known, format] : EnumNames<DatasetFormat>::names) {
+  for (const auto& [known, format] : enum_names(DatasetFormat{})) {
     if (name == known) return format;
   }
   return DatasetFormat::kMcap;
@@ -269,4 +269,4 @@ std::unique_ptr<ScanTruthSource> open_sweep_truth(const fs::path& folder, const 
   return count == 0 ? nullptr : std::make_unique<SweepTruth>(folder, lidar->id, count);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

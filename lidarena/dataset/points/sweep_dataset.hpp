@@ -10,7 +10,7 @@
 #include "lidarena/dataset/dataset.hpp"
 
 /// Dataset folders with one file per sweep: names and functions shared by writer and reader.
-namespace lidarena {
+namespace lidarena::dataset {
 
 namespace layout {
 
@@ -42,4 +42,4 @@ Dataset open_sweep_dataset(const std::filesystem::path& folder, Rig rig, Json ma
 std::unique_ptr<ScanTruthSource> open_sweep_truth(const std::filesystem::path& folder,
                                                   const Json& manifest, const std::string& sensor);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

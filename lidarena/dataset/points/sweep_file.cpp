@@ -11,7 +11,7 @@
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 /// Float times beyond this are nanoseconds: as seconds they would be after the year 2286.
@@ -214,4 +214,4 @@ std::string sweep_file_name(Time stamp, std::string_view ending) {
   return fmt::format("{:019}{}", stamp.count(), ending);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

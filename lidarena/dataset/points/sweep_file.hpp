@@ -9,7 +9,7 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/dataset/points/point_table.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Reads one sweep: .ply, .pcd, or .bin (raw float32 rows of `layout` xyz, xyzi, xyzt or xyztr,
 /// with t in seconds). `stamp` is the sweep's time given by its folder (file name, times.txt).
@@ -45,4 +45,4 @@ std::vector<std::string> raw_layouts();
 /// Bytes of one point; throws InputError (place "layout") for an unknown name.
 std::size_t raw_point_size(const std::string& layout);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -11,7 +11,7 @@
 #include "lidarena/dataset/points/sweep_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -130,4 +130,4 @@ std::unique_ptr<DatasetStore> make_sweep_store(const fs::path& folder, const Rig
   return std::make_unique<SweepStore>(folder, rig, format);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

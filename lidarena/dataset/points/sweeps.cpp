@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/trajectories/kitti.hpp"
-#include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/points/sweep_file.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 namespace fs = std::filesystem;
@@ -258,4 +258,4 @@ Dataset open_sweep_files(const std::vector<fs::path>& files, const ReadOptions& 
   return open_files(files.front(), files, std::nullopt, options);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

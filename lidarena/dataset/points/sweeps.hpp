@@ -7,7 +7,7 @@
 
 #include "lidarena/dataset/dataset.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Whether `path` is a sweep file (.pcd, .ply, .bin) or a folder that contains some, directly or in
 /// velodyne/ as in KITTI.
@@ -29,4 +29,4 @@ Dataset open_sweep_files(const std::vector<std::filesystem::path>& files,
 /// Whether `a` comes before `b` in an order that compares runs of digits as numbers.
 bool natural_less(std::string_view a, std::string_view b);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

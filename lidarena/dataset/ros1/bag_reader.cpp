@@ -11,11 +11,11 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros1/bag_records.hpp"
 #include "lidarena/dataset/compression.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/ros1/bag_records.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 using bag::Fields;
 using bag::Op;
@@ -341,4 +341,4 @@ RecordingInfo read_bag_info(const std::filesystem::path& file) {
   return info_from_reading(file);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -8,7 +8,7 @@
 
 #include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Whether a file that starts with these bytes is a ROS bag, of any version.
 bool is_bag(std::string_view beginning);
@@ -37,4 +37,4 @@ class BagReader : public RecordingReader {
 /// file is missing or is not a bag.
 RecordingInfo read_bag_info(const std::filesystem::path& file);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-namespace lidarena::bag {
+namespace lidarena::dataset::bag {
 namespace {
 std::string_view text_of(Bytes bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -64,4 +64,4 @@ Time get_time(ByteReader& in) {
   return seconds + Time{in.get<std::uint32_t>()};
 }
 
-}  // namespace lidarena::bag
+}  // namespace lidarena::dataset::bag

@@ -11,7 +11,7 @@
 
 /// Records of ROS 1 bags, version 2.0 (wiki.ros.org/Bags/Format/2.0). A record is a header of
 /// NAME=VALUE fields and data, each preceded by its length (uint32).
-namespace lidarena::bag {
+namespace lidarena::dataset::bag {
 
 inline constexpr std::string_view kMagic = "#ROSBAG V2.0\n";
 /// Header and padding of the first record together: fixed, so that the record can be overwritten in
@@ -77,4 +77,4 @@ class Record {
 void put_time(Time time, ByteWriter& out);
 Time get_time(ByteReader& in);
 
-}  // namespace lidarena::bag
+}  // namespace lidarena::dataset::bag

@@ -7,12 +7,12 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/ros1/bag_records.hpp"
 #include "lidarena/dataset/compression.hpp"
-#include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/part_file.hpp"
+#include "lidarena/dataset/ros1/bag_records.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 using bag::Op;
 
@@ -185,4 +185,4 @@ void BagWriter::close() {
   w.file.commit();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/byte_stream.hpp"
 #include "lidarena/dataset/recording.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 enum class BagCompression { kNone, kLz4 };
 
@@ -42,4 +42,4 @@ class BagWriter : public RecordingWriter {
   std::unique_ptr<Impl> impl_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

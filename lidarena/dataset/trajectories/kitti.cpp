@@ -13,7 +13,7 @@
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/trajectories/trajectory_rows.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr std::int64_t kMaxFrame = 10'000'000;
@@ -151,4 +151,4 @@ Trajectory read_euroc_csv(const std::filesystem::path& file) {
   return poses.finish(name);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

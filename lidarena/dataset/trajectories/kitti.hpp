@@ -6,7 +6,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Reads times in seconds, one per row (times.txt of KITTI), exact to the nanosecond. Throws
 /// InputError naming file and line unless they strictly increase.
@@ -30,4 +30,4 @@ void write_times(const std::filesystem::path& file, const std::vector<Time>& tim
 /// naming file and line.
 Trajectory read_euroc_csv(const std::filesystem::path& file);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

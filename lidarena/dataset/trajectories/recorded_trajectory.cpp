@@ -8,11 +8,11 @@
 #include <optional>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/trajectory_rows.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 constexpr std::string_view kTransformStamped = "geometry_msgs/msg/TransformStamped";
@@ -92,4 +92,4 @@ FramedTrajectory read_recorded_trajectory(const std::filesystem::path& file,
   return read;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -6,7 +6,7 @@
 
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Reads the poses on a topic of an MCAP file or a ROS 1 bag: nav_msgs/Odometry,
 /// geometry_msgs/PoseStamped, PoseWithCovarianceStamped or TransformStamped, with the stamps of
@@ -16,4 +16,4 @@ namespace lidarena {
 FramedTrajectory read_recorded_trajectory(const std::filesystem::path& file,
                                           const std::string& topic = {});
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -4,13 +4,13 @@
 #include <regex>
 #include <sstream>
 
-#include "lidarena/dataset/trajectories/kitti.hpp"
-#include "lidarena/dataset/trajectories/recorded_trajectory.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/text_file.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
+#include "lidarena/dataset/trajectories/recorded_trajectory.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 /// "world" and "body" of the first word WORLD_from_BODY in the comments before the first row.
@@ -50,4 +50,4 @@ Trajectory read_trajectory(const std::filesystem::path& file, double rate_hz) {
   return read_tum(file);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

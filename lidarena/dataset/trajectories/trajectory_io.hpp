@@ -6,7 +6,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Reads a trajectory in any supported text format, detected by content: comma-separated rows are
 /// EuRoC ground truth, rows of 12 or 13 numbers are KITTI poses (times from times.txt in the same
@@ -27,4 +27,4 @@ struct FramedTrajectory {
 FramedTrajectory read_framed_trajectory(const std::filesystem::path& file,
                                         const std::string& topic = {}, double rate_hz = 10.0);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

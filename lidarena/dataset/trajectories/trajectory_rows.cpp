@@ -9,7 +9,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 /// Maximum deviation of a quaternion's norm from 1, and of R R' from the identity, that is accepted
@@ -62,4 +62,4 @@ Pose pose_from_row(const Eigen::Matrix<double, 3, 4>& matrix, const std::string&
   return make_pose(nearest, matrix.col(3));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Collects the poses of a trajectory file; errors name the line of the file.
 class TrajectoryRows {
@@ -31,4 +31,4 @@ Pose pose_from_row(const Eigen::Vector3d& position, const Eigen::Quaterniond& ro
 /// R' is within 1e-3 of the identity.
 Pose pose_from_row(const Eigen::Matrix<double, 3, 4>& matrix, const std::string& place);
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -10,7 +10,7 @@
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/trajectories/trajectory_rows.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 namespace {
 
 void append_comments(std::string& text, std::string_view header) {
@@ -87,4 +87,4 @@ void TumWriter::write(const StampedPose& pose) {
 
 void TumWriter::close() { out_.commit(); }
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

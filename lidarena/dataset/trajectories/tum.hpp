@@ -8,7 +8,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/part_file.hpp"
 
-namespace lidarena {
+namespace lidarena::dataset {
 
 /// Whether a file without rows is an empty trajectory or an error.
 enum class EmptyTrajectory { kError, kAllowed };
@@ -44,4 +44,4 @@ class TumWriter {
   std::optional<Time> latest_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::dataset

@@ -12,7 +12,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/trajectory/motion_pairs.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 using se3::Matrix6;
@@ -150,4 +150,4 @@ std::string warning_of(const LeverArm& arm) {
       t.norm(), turn.norm() * 180.0 / std::numbers::pi);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,7 +7,7 @@
 #include "lidarena/base/se3.hpp"
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Converts an estimate of a frame fixed to the body into an estimate of the truth's body frame.
 /// body_from_estimate is the pose of that frame in the body (option `--lever`). Each pose becomes
@@ -35,4 +35,4 @@ std::optional<LeverArm> find_lever_arm(const Trajectory& estimate, const Traject
 /// motions agree at least twice as well with it; else empty.
 std::string warning_of(const LeverArm& arm);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

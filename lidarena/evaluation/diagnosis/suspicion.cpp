@@ -11,7 +11,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/trajectory/motion_pairs.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kSameLength = 1.5;  // the durations may differ by up to this factor
@@ -109,4 +109,4 @@ std::string suspect_quaternion_order(const Trajectory& estimate, const Trajector
   return first.empty() ? suspect(misfit(estimate, reordered(truth)), "truth") : first;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

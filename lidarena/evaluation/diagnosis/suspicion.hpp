@@ -7,7 +7,7 @@
 
 /// Detects input mistakes that make every error meaningless by comparing two trajectories. Each
 /// function returns a warning text, or an empty string.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Times in milliseconds, microseconds or nanoseconds read as seconds (one trajectory lasts 1000,
 /// 1e6 or 1e9 times as long as the other), or trajectories that do not overlap because their clocks
@@ -19,4 +19,4 @@ std::string suspect_times(const Trajectory& estimate, const Trajectory& truth);
 /// differ by less than 2 deg RMS as read, or after a constant mounting rotation is removed.
 std::string suspect_quaternion_order(const Trajectory& estimate, const Trajectory& truth);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

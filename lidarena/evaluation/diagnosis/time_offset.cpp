@@ -8,7 +8,7 @@
 
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kStep_s = 0.01;      // of the search; a parabola interpolates the minimum
@@ -89,4 +89,4 @@ std::optional<TimeOffset> time_offset(const Trajectory& estimate, const Trajecto
   return vertex(*(least - 1), *least, *(least + 1), shift_s, std::max(1.0, seconds));
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

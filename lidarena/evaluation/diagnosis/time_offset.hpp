@@ -5,7 +5,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// A constant clock error between two trajectories: a diagnostic, never applied.
 struct TimeOffset {
@@ -20,4 +20,4 @@ struct TimeOffset {
 std::optional<TimeOffset> time_offset(const Trajectory& estimate, const Trajectory& truth,
                                       double range_s = 0.5);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

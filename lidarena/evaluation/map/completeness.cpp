@@ -6,7 +6,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -17,7 +17,7 @@ constexpr std::uint64_t kSeed = 1;
 constexpr double kGridCell_m = 0.10;
 
 /// Triangle t has the samples [first[t], first[t + 1]): systematic sampling of the cumulative area.
-std::vector<std::size_t> first_samples(const TriangleMesh& mesh) {
+std::vector<std::size_t> first_samples(const world::TriangleMesh& mesh) {
   std::vector<std::size_t> first{0};
   double area = 0.0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -29,8 +29,8 @@ std::vector<std::size_t> first_samples(const TriangleMesh& mesh) {
 
 /// Sample `k` of the `count` of a triangle: one strip of equal area per sample, parallel to one
 /// side, and along the strips multiples of the golden ratio.
-Vector3d sample_of(const TriangleMesh& mesh, std::size_t triangle, std::size_t k, std::size_t count,
-                   double u, double shift) {
+Vector3d sample_of(const world::TriangleMesh& mesh, std::size_t triangle, std::size_t k,
+                   std::size_t count, double u, double shift) {
   constexpr double kGolden = 0.6180339887498949;
   const auto index = static_cast<double>(k);
   const double along = std::sqrt((index + u) / static_cast<double>(count));
@@ -43,9 +43,9 @@ Vector3d sample_of(const TriangleMesh& mesh, std::size_t triangle, std::size_t k
 
 }  // namespace
 
-SurfaceSamples seen_samples(const World& world, const ObservedSurface& seen,
+SurfaceSamples seen_samples(const world::World& world, const ObservedSurface& seen,
                             const Parallel& parallel) {
-  const TriangleMesh& mesh = world.mesh();
+  const world::TriangleMesh& mesh = world.mesh();
   const Vector3d center = center_of(world);
   const PointGrid hits(seen.hits, SurfaceSamples::kSeen_m, SurfaceSamples::kSeen_m, parallel);
   const std::vector<std::size_t> first = first_samples(mesh);
@@ -80,7 +80,7 @@ PointGrid completeness_grid(std::span<const Vector3f> map, const Parallel& paral
 
 Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
                           std::span<const PointScore> scores, const Pose& mesh_from_map,
-                          const World& world, const Parallel& parallel) {
+                          const world::World& world, const Parallel& parallel) {
   Completeness result;
   result.samples = samples.offsets.size();
   result.seen_m2 = samples.area_m2();
@@ -110,4 +110,4 @@ Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

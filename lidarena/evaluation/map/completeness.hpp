@@ -10,7 +10,7 @@
 #include "lidarena/evaluation/map/point_grid.hpp"
 #include "lidarena/evaluation/map/point_scores.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Samples of the surface that rays hit, with the same density per area on large and small
 /// triangles.
@@ -26,7 +26,7 @@ struct SurfaceSamples {
 
 /// Samples stratified by area along the list of triangles and within each triangle; the same for
 /// the same mesh and hits on any number of threads.
-SurfaceSamples seen_samples(const World& world, const ObservedSurface& seen,
+SurfaceSamples seen_samples(const world::World& world, const ObservedSurface& seen,
                             const Parallel& parallel);
 
 /// Precision, recall and F-score of the map with respect to the seen surface.
@@ -47,6 +47,6 @@ PointGrid completeness_grid(std::span<const Eigen::Vector3f> map, const Parallel
 
 Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
                           std::span<const PointScore> scores, const Pose& mesh_from_map,
-                          const World& world, const Parallel& parallel);
+                          const world::World& world, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -9,11 +9,11 @@
 #include <optional>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/evaluation/map/map_json.hpp"
 #include "lidarena/evaluation/metrics_json.hpp"
+#include "lidarena/evaluation/trajectory/alignment.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 /// No more than `most` points of the map: every k-th point.
@@ -29,7 +29,7 @@ std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std
 /// numbers. For a failed map, far from the mesh, each search takes a hundred times as long, and the
 /// numbers only show that it has failed, so fewer points are scored.
 std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
-                        const World& world, const Parallel& parallel) {
+                        const world::World& world, const Parallel& parallel) {
   constexpr std::size_t kMost = 2'000'000, kMostOfLost = 200'000, kLook = 10'000;
   constexpr double kLost_percent = 95.0;  // beyond 20 cm
   const MapError look = map_error(sample_of(map, kLook), mesh_from_map, world, parallel);
@@ -39,14 +39,14 @@ std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_f
 /// A map and what is computed once from it for all gauges.
 struct Subject {
   std::vector<Eigen::Vector3f> map;
-  const World& world;
+  const world::World& world;
   const Parallel& parallel;
   const SeenSurface* seen;
   const IdentifiedMap* identified;
   MortonOrder order;
   std::optional<PointGrid> grid;  ///< if completeness is computed
 
-  Subject(std::span<const Eigen::Vector3f> points, std::size_t most, const World& mesh,
+  Subject(std::span<const Eigen::Vector3f> points, std::size_t most, const world::World& mesh,
           const Parallel& workers, const SeenSurface* surface, const IdentifiedMap* with_hits)
       : map(sample_of(points, most)),
         world(mesh),
@@ -127,14 +127,14 @@ double farthest_coordinate(std::span<const Eigen::Vector3f> map) {
 
 }  // namespace
 
-SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel& parallel) {
+SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const Parallel& parallel) {
   SeenSurface seen{std::move(truth.observed), {}, std::move(truth.identified)};
   seen.samples = seen_samples(world, seen.observed, parallel);
   return seen;
 }
 
 Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                  const Trajectory& truth, const World& world, const Parallel& parallel,
+                  const Trajectory& truth, const world::World& world, const Parallel& parallel,
                   const SeenSurface* seen, const IdentifiedMap* identified) {
   const Alignment rigid = align(estimate, truth, Gauge::kSe3);
   const Subject subject(map, most_points(map, rigid.truth_from_estimate, world, parallel), world,
@@ -159,7 +159,8 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
   return json;
 }
 
-std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, const World& world) {
+std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map,
+                                      const world::World& world) {
   constexpr double kSuspicious = 100.0;  // a flight rarely sees less than 1 % of a world
   constexpr double kCoarse_m = 0.0005;
   std::vector<std::string> warnings;
@@ -189,4 +190,4 @@ std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, cons
   return warnings;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

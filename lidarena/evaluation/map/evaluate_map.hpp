@@ -13,7 +13,7 @@
 #include "lidarena/evaluation/map/identity_error.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The surface that the flight's rays hit; computed once for all maps of a run.
 struct SeenSurface {
@@ -26,7 +26,7 @@ struct RayTruth {
   ObservedSurface observed;
   IdentifiedMap identified;
 };
-SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel& parallel);
+SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const Parallel& parallel);
 
 /// Scores one map (in the estimate's world frame) against the mesh in each gauge: "first_pose",
 /// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Without
@@ -35,11 +35,12 @@ SeenSurface make_seen_surface(RayTruth truth, const World& world, const Parallel
 /// number; completeness uses all points. `identified`, if given, is the same map with its true
 /// hits, for the identity error. A gauge that is not determined gives the reason under "refused".
 Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                  const Trajectory& truth, const World& world, const Parallel& parallel,
+                  const Trajectory& truth, const world::World& world, const Parallel& parallel,
                   const SeenSurface* seen = nullptr, const IdentifiedMap* identified = nullptr);
 
 /// Warnings about the inputs: a mesh or a map that seems to be in millimeters, coordinates too
 /// large for single precision, points that are not finite.
-std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map, const World& world);
+std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map,
+                                      const world::World& world);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -9,11 +9,11 @@
 #include "lidarena/evaluation/map/parallel_sort.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 struct Entry {
-  VoxelKey cube;
+  map::VoxelKey cube;
   std::uint32_t axis;  ///< of the normal's largest component
   float height;
   bool same_patch(const Entry& other) const { return cube == other.cube && axis == other.axis; }
@@ -25,7 +25,7 @@ struct Entry {
   }
 };
 
-std::vector<Entry> entries_of(std::span<const PointScore> scores, const TriangleMesh& mesh) {
+std::vector<Entry> entries_of(std::span<const PointScore> scores, const world::TriangleMesh& mesh) {
   constexpr auto kCubesPerMeter = static_cast<float>(1.0 / Ghosting::kPatch_m);
   std::vector<Entry> entries;
   entries.reserve(scores.size());
@@ -34,7 +34,7 @@ std::vector<Entry> entries_of(std::span<const PointScore> scores, const Triangle
     const Eigen::Vector3d normal = mesh.cross(score.triangle);
     Eigen::Index axis = 0;
     normal.cwiseAbs().maxCoeff(&axis);
-    const VoxelKey cube = voxel_key(voxel_of(score.foot_offset, kCubesPerMeter));
+    const map::VoxelKey cube = map::voxel_key(map::voxel_of(score.foot_offset, kCubesPerMeter));
     entries.push_back({cube, static_cast<std::uint32_t>(axis),
                        normal[axis] > 0.0 ? score.height : -score.height});
   }
@@ -105,7 +105,7 @@ Sheets split_sheets(std::span<const float> sorted_heights) {
   return best;
 }
 
-Ghosting ghosting(std::span<const PointScore> scores, const World& world,
+Ghosting ghosting(std::span<const PointScore> scores, const world::World& world,
                   const Parallel& parallel) {
   std::vector<Entry> entries = entries_of(scores, world.mesh());
   parallel_sort(std::span(entries), parallel);
@@ -132,4 +132,4 @@ Ghosting ghosting(std::span<const PointScore> scores, const World& world,
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

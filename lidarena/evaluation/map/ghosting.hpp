@@ -8,7 +8,7 @@
 #include "lidarena/evaluation/map/point_scores.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Double walls (ghosting), which the 20 cm outlier limit does not detect: how thick the map is
 /// over each patch of the surface, and whether its points there form two sheets.
@@ -46,6 +46,7 @@ Sheets split_sheets(std::span<const float> sorted_heights);
 
 /// Heights are measured along the surface's normal, flipped so that its largest component is
 /// positive; the result does not depend on the winding of the triangles.
-Ghosting ghosting(std::span<const PointScore> scores, const World& world, const Parallel& parallel);
+Ghosting ghosting(std::span<const PointScore> scores, const world::World& world,
+                  const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

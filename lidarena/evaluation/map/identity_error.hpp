@@ -11,19 +11,19 @@
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// A re-projected map with the true hit of each point.
 struct IdentifiedMap {
-  std::vector<Eigen::Vector3f> points;  ///< m, the estimate's world frame
-  std::vector<PointTruth> hits;         ///< one per point
+  std::vector<Eigen::Vector3f> points;    ///< m, the estimate's world frame
+  std::vector<dataset::PointTruth> hits;  ///< one per point
 };
 
 /// Finds the true hit of the return that each map point came from; points whose scan or return is
 /// missing in the truth are left out. `origins` as reproject() returns them, with ascending scan
 /// numbers.
 IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const ReturnOrigin> origins,
-                       ScanTruthSource& truth);
+                       dataset::ScanTruthSource& truth);
 
 /// Distance of each point from the true hit of its own ray, not from the nearest surface; the
 /// distance to the mesh is a lower bound of it. All in m.
@@ -34,4 +34,4 @@ struct IdentityError {
 };
 IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -6,7 +6,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Interpolated poses of the LiDAR. Keeps the last one, because consecutive points often have the
 /// same stamp: the points of a column of a spinning sensor are measured at once.
@@ -41,4 +41,4 @@ class LidarPoses {
   Pose pose_ = Pose::Identity();
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 
 #include "lidarena/evaluation/map/morton_order.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -44,7 +44,8 @@ MapError summarize_distances(std::span<const double> distances) {
 }
 
 MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
-                   const World& world, const Parallel& parallel, std::vector<float>* distances) {
+                   const world::World& world, const Parallel& parallel,
+                   std::vector<float>* distances) {
   const MortonOrder order = morton_order(map, parallel);
   const std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, parallel);
   return map_error(order, scores, map.size(), distances);
@@ -64,4 +65,4 @@ MapError map_error(const MortonOrder& order, std::span<const PointScore> scores,
   return summarize_distances(found);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -13,7 +13,7 @@
 #include "lidarena/evaluation/summary.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Distance of each map point to the mesh, and its statistics (paper section 3; definition
 /// `map_error` of docs/metrics.md).
@@ -37,11 +37,11 @@ MapError summarize_distances(std::span<const double> distances);
 /// `distances`, if given, receives one value per point (m; NaN for invalid points). Bit-identical
 /// for any number of threads.
 MapError map_error(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
-                   const World& world, const Parallel& parallel,
+                   const world::World& world, const Parallel& parallel,
                    std::vector<float>* distances = nullptr);
 
 /// The same from given scores of a map of `points` points (invalid ones included).
 MapError map_error(const MortonOrder& order, std::span<const PointScore> scores, std::size_t points,
                    std::vector<float>* distances = nullptr);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -3,7 +3,7 @@
 
 #include "lidarena/evaluation/metrics_json.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 Json to_json(const VoxelError& error) {
   if (error.voxels == 0) return nullptr;
@@ -102,4 +102,4 @@ Json to_json(const MeshAlignment& alignment) {
           {"turned_rad", alignment.turned_rad}};
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -11,7 +11,7 @@
 #include "lidarena/evaluation/map/voxel_error.hpp"
 
 /// Map metrics as JSON, with the conventions of metrics_json.hpp. Null where nothing was measured.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 Json to_json(const VoxelError& error);
 Json to_json(const SignedDistance& distance);
@@ -23,4 +23,4 @@ Json to_json(const VertexDistance& distance);
 /// Diagnostics of the gauge "robust".
 Json to_json(const MeshAlignment& alignment);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -17,7 +17,7 @@
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
@@ -105,19 +105,19 @@ Pose moved_by(const Vector3d& move, const Vector3d& turn, const TwistFrame& fram
 /// The points and their nearest points on the mesh at one pose.
 struct Matches {
   std::vector<Vector3d> positions;
-  std::vector<ClosestPoint> nearest;
+  std::vector<world::ClosestPoint> nearest;
   double gate = 0.0;    ///< m, farther points are not used
   double median = 0.0;  ///< m, of the distances within the gate
 };
 
-Matches match(const Points& points, const Pose& pose, double reach, const World& world,
+Matches match(const Points& points, const Pose& pose, double reach, const world::World& world,
               const Parallel& parallel) {
   Matches matches;
   for (const Vector3d& p : points.positions) matches.positions.push_back(pose * p);
   matches.nearest.resize(matches.positions.size());
   world.closest_points(matches.positions, reach, matches.nearest, parallel);
   std::vector<double> distances;
-  for (const ClosestPoint& nearest : matches.nearest) {
+  for (const world::ClosestPoint& nearest : matches.nearest) {
     if (nearest.valid()) distances.push_back(nearest.distance);
   }
   if (distances.empty()) return matches;
@@ -126,15 +126,17 @@ Matches match(const Points& points, const Pose& pose, double reach, const World&
   return matches;
 }
 
-NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame, double scale,
-                                const World& world, const Parallel& parallel) {
-  const TriangleMesh& mesh = world.mesh();
-  return accumulate_normal_equations<6>(
-      parallel, matches.positions.size(), [&](std::size_t i, NormalEquations<6>& equations) {
-        const ClosestPoint& nearest = matches.nearest[i];
+estimation::NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame,
+                                            double scale, const world::World& world,
+                                            const Parallel& parallel) {
+  const world::TriangleMesh& mesh = world.mesh();
+  return estimation::accumulate_normal_equations<6>(
+      parallel, matches.positions.size(),
+      [&](std::size_t i, estimation::NormalEquations<6>& equations) {
+        const world::ClosestPoint& nearest = matches.nearest[i];
         if (!nearest.valid() || nearest.distance > matches.gate) return;
-        const double weight =
-            robust_weight(RobustKernel::kTukey, nearest.distance * nearest.distance, scale);
+        const double weight = estimation::robust_weight(estimation::RobustKernel::kTukey,
+                                                        nearest.distance * nearest.distance, scale);
         if (weight == 0.0) return;
         const Vector3d normal = mesh.cross(nearest.triangle).normalized();
         Eigen::Matrix<double, 1, 6> jacobian;
@@ -147,7 +149,7 @@ NormalEquations<6> equations_of(const Matches& matches, const TwistFrame& frame,
 }
 
 /// The Gauss-Newton step without its components along unobservable directions.
-Vector6d held_step(const NormalEquations<6>& equations, Vector6d& eigenvalues) {
+Vector6d held_step(const estimation::NormalEquations<6>& equations, Vector6d& eigenvalues) {
   const double weight = static_cast<double>(equations.count);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.hessian / weight);
   eigenvalues = solver.eigenvalues();
@@ -172,7 +174,7 @@ struct Fit {
 
 /// Iterates with one scale of the kernel (m), or with the residuals' own when none is given.
 void descend(const Points& points, std::optional<double> fixed_scale, const Tolerance& tolerance,
-             const World& world, const Parallel& parallel, Fit& fit) {
+             const world::World& world, const Parallel& parallel, Fit& fit) {
   for (int i = 0; i < kMostIterations; ++i) {
     const double reach = fixed_scale.value_or(kReach_m);
     Matches matches = match(points, fit.pose, reach, world, parallel);
@@ -180,7 +182,8 @@ void descend(const Points& points, std::optional<double> fixed_scale, const Tole
     const double scale =
         fixed_scale.value_or(std::max(kLeastScale_m, 3.0 * 1.4826 * matches.median));
     const TwistFrame frame(points, fit.pose);
-    const NormalEquations<6> equations = equations_of(matches, frame, scale, world, parallel);
+    const estimation::NormalEquations<6> equations =
+        equations_of(matches, frame, scale, world, parallel);
     if (equations.count < kLeastPoints / 2) return;
     fit.hessian = equations.hessian / static_cast<double>(equations.count);
     const Vector6d step = held_step(equations, fit.eigenvalues);
@@ -192,11 +195,11 @@ void descend(const Points& points, std::optional<double> fixed_scale, const Tole
 }
 
 /// Computes the cost (mean of the squared distances, each at most 1 m) and the share within 20 cm.
-void rate(const Points& points, const World& world, const Parallel& parallel, Fit& fit) {
+void rate(const Points& points, const world::World& world, const Parallel& parallel, Fit& fit) {
   const Matches matches = match(points, fit.pose, kReach_m, world, parallel);
   double squares = 0.0;
   std::size_t inliers = 0;
-  for (const ClosestPoint& nearest : matches.nearest) {
+  for (const world::ClosestPoint& nearest : matches.nearest) {
     const double d = nearest.valid() ? nearest.distance : kReach_m;
     squares += d * d;
     if (d <= MapError::kOutlier_m) ++inliers;
@@ -208,8 +211,8 @@ void rate(const Points& points, const World& world, const Parallel& parallel, Fi
 
 /// Fits with up to `most_scales` scales. A narrower kernel may align one part of a bent map with
 /// the mesh and ignore the rest; a result whose total cost is clearly higher is not kept.
-Fit fit_from(const Pose& start, std::size_t most_scales, const Points& points, const World& world,
-             const Parallel& parallel) {
+Fit fit_from(const Pose& start, std::size_t most_scales, const Points& points,
+             const world::World& world, const Parallel& parallel) {
   Fit fit;
   fit.pose = start;
   while (fit.scales < most_scales) {
@@ -261,7 +264,7 @@ struct Starts {
 };
 
 /// Iterates from all starts; if their results differ, again with one narrow scale less.
-Starts narrowest_that_agree(const Pose& start, const Points& points, const World& world,
+Starts narrowest_that_agree(const Pose& start, const Points& points, const world::World& world,
                             const Parallel& parallel) {
   Starts result;
   result.scales = kScales.size();
@@ -335,10 +338,10 @@ std::string refusal_of(const MeshAlignment& alignment) {
 }  // namespace
 
 MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& start,
-                            const World& world, const Parallel& parallel) {
+                            const world::World& world, const Parallel& parallel) {
   MeshAlignment alignment;
   alignment.mesh_from_map = start;
-  const std::vector<std::uint32_t> chosen = first_of_each_voxel(map, kVoxel_m);
+  const std::vector<std::uint32_t> chosen = map::first_of_each_voxel(map, kVoxel_m);
   if (chosen.size() < kLeastPoints) {
     alignment.refusal = fmt::format("only {} voxels of 10 cm to align", chosen.size());
     return alignment;
@@ -364,4 +367,4 @@ MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& st
   return alignment;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -10,7 +10,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The gauge "robust": alignment of the map with the mesh itself, and how well it is determined.
 struct MeshAlignment {
@@ -47,6 +47,6 @@ struct MeshAlignment {
 /// five starts (off by 20 cm and 2 degrees) agree, or with fewer than 100 points. Minimizes nearly
 /// the error that is reported: it removes the rigid part of the drift, but no bending.
 MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& start,
-                            const World& world, const Parallel& parallel);
+                            const world::World& world, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

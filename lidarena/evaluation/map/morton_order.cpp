@@ -4,7 +4,7 @@
 #include "lidarena/evaluation/map/parallel_sort.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 /// The 21 low bits of `x`, each moved to every third bit.
@@ -18,7 +18,7 @@ std::uint64_t spread(std::uint64_t x) {
 
 std::uint64_t code_of(const Eigen::Vector3f& point) {
   constexpr auto kCellsPerMeter = static_cast<float>(1.0 / MortonOrder::kCell_m);
-  const Voxel voxel = voxel_of(point, kCellsPerMeter);
+  const map::Voxel voxel = map::voxel_of(point, kCellsPerMeter);
   const auto part = [&](int axis) {
     return spread(static_cast<std::uint64_t>(voxel[axis] + (1 << 20)));
   };
@@ -38,4 +38,4 @@ MortonOrder morton_order(std::span<const Eigen::Vector3f> points, const Parallel
   return order;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 
 #include "lidarena/base/parallel.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The finite points of a map, sorted along a space-filling curve (Morton, 1966): neighbors in the
 /// list are neighbors in space, and the points of one cube of a grid are contiguous.
@@ -28,4 +28,4 @@ struct MortonOrder {
 /// costs time. Up to 2^32 points.
 MortonOrder morton_order(std::span<const Eigen::Vector3f> points, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -9,7 +9,7 @@
 #include "lidarena/evaluation/map/point_scores.hpp"
 #include "lidarena/map/point_map.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -24,7 +24,7 @@ constexpr std::size_t kBatch = 1 << 16U;
 /// Collects hits and counts from which side each triangle was hit.
 class Observation {
  public:
-  explicit Observation(const World& world)
+  explicit Observation(const world::World& world)
       : world_(world),
         center_(center_of(world)),
         voxels_(ObservedSurface::kVoxel_m),
@@ -57,20 +57,20 @@ class Observation {
   }
 
  private:
-  const World& world_;
+  const world::World& world_;
   Vector3d center_;
-  PointMap voxels_;
+  map::PointMap voxels_;
   std::vector<std::uint32_t> front_, back_;
   ObservedSurface surface_;
 };
 
 /// Finds the triangles from the positions, because the truth's indices are those of the simulator's
 /// mesh.
-void add_hits(const std::vector<PointTruth>& hits, const World& world, const Parallel& parallel,
-              Observation& observation) {
+void add_hits(const std::vector<dataset::PointTruth>& hits, const world::World& world,
+              const Parallel& parallel, Observation& observation) {
   std::vector<Vector3d> positions;
-  for (const PointTruth& hit : hits) positions.push_back(hit.position.cast<double>());
-  std::vector<ClosestPoint> nearest(hits.size());
+  for (const dataset::PointTruth& hit : hits) positions.push_back(hit.position.cast<double>());
+  std::vector<world::ClosestPoint> nearest(hits.size());
   world.closest_points(positions, kOnMesh_m, nearest, parallel);
   for (std::size_t i = 0; i < hits.size(); ++i) {
     if (nearest[i].valid()) {
@@ -82,22 +82,22 @@ void add_hits(const std::vector<PointTruth>& hits, const World& world, const Par
 }
 
 struct Measured {
-  Ray ray;
+  world::Ray ray;
   double range = 0.0;
 };
 
-void add_rays(const std::vector<Measured>& measured, const World& world, const Parallel& parallel,
-              Observation& observation) {
-  std::vector<Ray> rays;
+void add_rays(const std::vector<Measured>& measured, const world::World& world,
+              const Parallel& parallel, Observation& observation) {
+  std::vector<world::Ray> rays;
   for (const Measured& m : measured) rays.push_back(m.ray);
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   constexpr std::size_t kGrain = 1024;
   parallel.for_blocks(rays.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     world.cast(std::span(rays).subspan(begin, end - begin), std::numeric_limits<double>::infinity(),
                std::span(hits).subspan(begin, end - begin));
   });
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const Hit& hit = hits[i];
+    const world::Hit& hit = hits[i];
     if (!hit.valid() || std::abs(double{hit.range} - measured[i].range) > kExplained_m) {
       observation.add_off_mesh();
       continue;
@@ -109,11 +109,12 @@ void add_rays(const std::vector<Measured>& measured, const World& world, const P
 
 }  // namespace
 
-ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parallel& parallel) {
+ObservedSurface observe(dataset::ScanTruthSource& truth, const world::World& world,
+                        const Parallel& parallel) {
   Observation observation(world);
-  std::vector<PointTruth> batch;
-  while (const std::optional<ScanTruth> scan = truth.next()) {
-    for (const PointTruth& point : scan->points) {
+  std::vector<dataset::PointTruth> batch;
+  while (const std::optional<dataset::ScanTruth> scan = truth.next()) {
+    for (const dataset::PointTruth& point : scan->points) {
       if (observation.is_new(point.position.cast<double>())) batch.push_back(point);
     }
     if (batch.size() < kBatch) continue;
@@ -124,13 +125,13 @@ ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parall
   return observation.finish();
 }
 
-ObservedSurface observe(EventSource& events, const std::string& lidar_id,
-                        const Pose& body_from_lidar, const Trajectory& truth, const World& world,
-                        const Parallel& parallel) {
+ObservedSurface observe(dataset::EventSource& events, const std::string& lidar_id,
+                        const Pose& body_from_lidar, const Trajectory& truth,
+                        const world::World& world, const Parallel& parallel) {
   Observation observation(world);
   LidarPoses poses(truth, body_from_lidar);
   std::vector<Measured> batch;
-  while (const std::optional<Event> event = events.next()) {
+  while (const std::optional<dataset::Event> event = events.next()) {
     const Scan* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar_id) continue;
     for (const Point& point : scan->points) {
@@ -150,4 +151,4 @@ ObservedSurface observe(EventSource& events, const std::string& lidar_id,
   return observation.finish();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -13,7 +13,7 @@
 #include "lidarena/evaluation/map/signed_distance.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The part of the mesh that the flight's rays really hit, and from which side.
 struct ObservedSurface {
@@ -28,12 +28,13 @@ struct ObservedSurface {
 };
 
 /// From the true hits that the simulator recorded for each return.
-ObservedSurface observe(ScanTruthSource& truth, const World& world, const Parallel& parallel);
+ObservedSurface observe(dataset::ScanTruthSource& truth, const world::World& world,
+                        const Parallel& parallel);
 
 /// From the measurements only: each return's ray, placed by the true motion, is cast again. Returns
 /// whose ray hits the mesh more than 0.5 m from the measured range count as off the mesh.
-ObservedSurface observe(EventSource& events, const std::string& lidar_id,
-                        const Pose& body_from_lidar, const Trajectory& truth, const World& world,
-                        const Parallel& parallel);
+ObservedSurface observe(dataset::EventSource& events, const std::string& lidar_id,
+                        const Pose& body_from_lidar, const Trajectory& truth,
+                        const world::World& world, const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

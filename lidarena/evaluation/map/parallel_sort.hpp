@@ -6,7 +6,7 @@
 
 #include "lidarena/base/parallel.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Sorts blocks in parallel, then merges neighboring blocks. No two of `values` may be equal (or
 /// equal ones must be interchangeable), so that the result is the same on any number of threads.
@@ -26,4 +26,4 @@ void parallel_sort(std::span<T> values, const Parallel& parallel) {
   }
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

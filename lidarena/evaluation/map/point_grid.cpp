@@ -7,17 +7,17 @@
 
 #include "lidarena/evaluation/map/parallel_sort.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
-std::vector<Voxel> steps_within(int rings) {
-  std::vector<Voxel> steps;
+std::vector<map::Voxel> steps_within(int rings) {
+  std::vector<map::Voxel> steps;
   for (int x = -rings; x <= rings; ++x) {
     for (int y = -rings; y <= rings; ++y) {
       for (int z = -rings; z <= rings; ++z) steps.emplace_back(x, y, z);
     }
   }
-  std::stable_sort(steps.begin(), steps.end(), [](const Voxel& a, const Voxel& b) {
+  std::stable_sort(steps.begin(), steps.end(), [](const map::Voxel& a, const map::Voxel& b) {
     return a.squaredNorm() < b.squaredNorm();
   });
   return steps;
@@ -31,11 +31,11 @@ PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, doubl
       inverse_cell_(static_cast<float>(1.0 / cell)),
       reach_(static_cast<float>(reach)),
       steps_(steps_within(static_cast<int>(std::ceil(reach / cell)))) {
-  std::vector<std::pair<VoxelKey, std::uint32_t>> keyed;
+  std::vector<std::pair<map::VoxelKey, std::uint32_t>> keyed;
   keyed.reserve(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) continue;
-    keyed.emplace_back(voxel_key(voxel_of(points[i], inverse_cell_)),
+    keyed.emplace_back(map::voxel_key(map::voxel_of(points[i], inverse_cell_)),
                        static_cast<std::uint32_t>(i));
   }
   parallel_sort(std::span(keyed), parallel);
@@ -48,8 +48,8 @@ PointGrid::PointGrid(std::span<const Eigen::Vector3f> points, double cell, doubl
 }
 
 float PointGrid::nearest(const Eigen::Vector3f& query) const {
-  const Voxel voxel = voxel_of(query, inverse_cell_);
-  const VoxelKey key = voxel_key(voxel);
+  const map::Voxel voxel = map::voxel_of(query, inverse_cell_);
+  const map::VoxelKey key = map::voxel_key(voxel);
   const Eigen::Array3f above = query.array() - voxel.cast<float>().array() * cell_;
   const Eigen::Array3f below = cell_ - above;
   // squared minimum distance along an axis to the cubes that are `step` away
@@ -61,9 +61,9 @@ float PointGrid::nearest(const Eigen::Vector3f& query) const {
   };
   float best = std::nextafter(reach_ * reach_, std::numeric_limits<float>::infinity());
   bool found = false;
-  for (const Voxel& step : steps_) {
+  for (const map::Voxel& step : steps_) {
     if (gap(0, step.x()) + gap(1, step.y()) + gap(2, step.z()) >= best) continue;
-    const auto cell = cells_.find(key + voxel_key_step(step.x(), step.y(), step.z()));
+    const auto cell = cells_.find(key + map::voxel_key_step(step.x(), step.y(), step.z()));
     if (cell == cells_.end()) continue;
     for (std::uint32_t i = cell->second.first; i < cell->second.second; ++i) {
       const float d2 = (points_[i] - query).squaredNorm();
@@ -75,4 +75,4 @@ float PointGrid::nearest(const Eigen::Vector3f& query) const {
   return found ? std::sqrt(best) : std::numeric_limits<float>::infinity();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

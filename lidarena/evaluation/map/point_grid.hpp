@@ -12,7 +12,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Points sorted into cubes, for exact nearest-neighbor distances up to a maximum distance. 16
 /// bytes per point.
@@ -28,9 +28,9 @@ class PointGrid {
 
  private:
   float cell_, inverse_cell_, reach_;
-  std::vector<Voxel> steps_;  ///< offsets to all cubes within reach, nearest first
+  std::vector<map::Voxel> steps_;  ///< offsets to all cubes within reach, nearest first
   std::vector<Eigen::Vector3f> points_;
-  tsl::robin_map<VoxelKey, std::pair<std::uint32_t, std::uint32_t>, VoxelKeyHash> cells_;
+  tsl::robin_map<map::VoxelKey, std::pair<std::uint32_t, std::uint32_t>, map::VoxelKeyHash> cells_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <limits>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 
@@ -12,8 +12,8 @@ namespace {
 
 constexpr std::size_t kChunk = std::size_t{1} << 18U;  // points per batch; limits the memory
 
-PointScore score_of(const Vector3d& point, const ClosestPoint& nearest, const TriangleMesh& mesh,
-                    const Vector3d& center) {
+PointScore score_of(const Vector3d& point, const world::ClosestPoint& nearest,
+                    const world::TriangleMesh& mesh, const Vector3d& center) {
   PointScore score;
   score.distance = nearest.distance;
   score.foot_offset = (nearest.point - center).cast<float>();
@@ -25,16 +25,16 @@ PointScore score_of(const Vector3d& point, const ClosestPoint& nearest, const Tr
 
 }  // namespace
 
-Vector3d center_of(const World& world) { return world.mesh().bounds().center(); }
+Vector3d center_of(const world::World& world) { return world.mesh().bounds().center(); }
 
 std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
-                                     const Pose& mesh_from_map, const World& world,
+                                     const Pose& mesh_from_map, const world::World& world,
                                      const Parallel& parallel) {
   const std::size_t count = order.entries.size();
   const Vector3d center = center_of(world);
   std::vector<PointScore> scores(count);
   std::vector<Vector3d> moved(std::min(kChunk, count));
-  std::vector<ClosestPoint> nearest(moved.size());
+  std::vector<world::ClosestPoint> nearest(moved.size());
   for (std::size_t begin = 0; begin < count; begin += kChunk) {
     const std::size_t length = std::min(kChunk, count - begin);
     constexpr std::size_t kGrain = 4096;
@@ -50,4 +50,4 @@ std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const
   return scores;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -11,7 +11,7 @@
 #include "lidarena/evaluation/map/morton_order.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Position of a map point relative to the mesh.
 struct PointScore {
@@ -23,11 +23,11 @@ struct PointScore {
 
 /// Center of the mesh's bounding box. Offsets (PointScore::foot_offset) are relative to it, so that
 /// single precision suffices for a mesh far from the origin.
-Eigen::Vector3d center_of(const World& world);
+Eigen::Vector3d center_of(const world::World& world);
 
 /// One score per entry of `order` (of `map`), after moving the map by `mesh_from_map`.
 std::vector<PointScore> score_points(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
-                                     const Pose& mesh_from_map, const World& world,
+                                     const Pose& mesh_from_map, const world::World& world,
                                      const Parallel& parallel);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,17 +7,17 @@
 #include "lidarena/evaluation/map/lidar_poses.hpp"
 #include "lidarena/map/point_map.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
-Cloud reproject(EventSource& events, const std::string& lidar_id, const Pose& body_from_lidar,
-                const Trajectory& estimate, double voxel_m, ReprojectionCounts* counts,
-                std::vector<ReturnOrigin>* origins) {
+dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
+                         const Pose& body_from_lidar, const Trajectory& estimate, double voxel_m,
+                         ReprojectionCounts* counts, std::vector<ReturnOrigin>* origins) {
   LidarPoses poses(estimate, body_from_lidar);
-  PointMap map(voxel_m);
-  Cloud cloud;
+  map::PointMap map(voxel_m);
+  dataset::Cloud cloud;
   ReprojectionCounts seen;
   std::uint32_t scans = 0;
-  while (const std::optional<Event> event = events.next()) {
+  while (const std::optional<dataset::Event> event = events.next()) {
     const Scan* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar_id) continue;
     if (!scan->timed) ++seen.untimed_scans;
@@ -41,4 +41,4 @@ Cloud reproject(EventSource& events, const std::string& lidar_id, const Pose& bo
   return cloud;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

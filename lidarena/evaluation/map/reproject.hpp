@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Numbers of processed and dropped returns.
 struct ReprojectionCounts {
@@ -30,8 +30,9 @@ struct ReturnOrigin {
 /// instant (linear position, slerp, never across a gap longer than max_bracket()), and the first
 /// return in each voxel is kept. Never averaged, because centroids hide noise. In the world frame
 /// of the estimate. `origins`, if given, receives one entry per point of the map.
-Cloud reproject(EventSource& events, const std::string& lidar_id, const Pose& body_from_lidar,
-                const Trajectory& estimate, double voxel_m = 0.02,
-                ReprojectionCounts* counts = nullptr, std::vector<ReturnOrigin>* origins = nullptr);
+dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
+                         const Pose& body_from_lidar, const Trajectory& estimate,
+                         double voxel_m = 0.02, ReprojectionCounts* counts = nullptr,
+                         std::vector<ReturnOrigin>* origins = nullptr);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -3,20 +3,20 @@
 
 #include <variant>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
-std::optional<Event> ScoredEvents::next() {
-  std::optional<Event> event = source_->next();
+std::optional<dataset::Event> ScoredEvents::next() {
+  std::optional<dataset::Event> event = source_->next();
   if (event) {
     if (auto* scan = std::get_if<Scan>(&event->data)) keep_scored(scan->points, most_);
   }
   return event;
 }
 
-std::optional<ScanTruth> ScoredTruth::next() {
-  std::optional<ScanTruth> truth = source_->next();
+std::optional<dataset::ScanTruth> ScoredTruth::next() {
+  std::optional<dataset::ScanTruth> truth = source_->next();
   if (truth) keep_scored(truth->points, most_);
   return truth;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -11,7 +11,7 @@
 #include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Maximum number of returns of a scan that are scored: all of a Mid-360's, every 15th of an
 /// OS0-128's 262,144. With more, the score would depend on the number of points that the sensor
@@ -46,27 +46,27 @@ void keep_scored(std::vector<P>& points, std::size_t most) {
 }
 
 /// The events of `source` with only the scored returns, up to `most` per scan.
-class ScoredEvents : public EventSource {
+class ScoredEvents : public dataset::EventSource {
  public:
-  ScoredEvents(std::unique_ptr<EventSource> source, std::size_t most)
+  ScoredEvents(std::unique_ptr<dataset::EventSource> source, std::size_t most)
       : source_(std::move(source)), most_(most) {}
-  std::optional<Event> next() override;
+  std::optional<dataset::Event> next() override;
 
  private:
-  std::unique_ptr<EventSource> source_;
+  std::unique_ptr<dataset::EventSource> source_;
   std::size_t most_;
 };
 
 /// The true hits of these returns.
-class ScoredTruth : public ScanTruthSource {
+class ScoredTruth : public dataset::ScanTruthSource {
  public:
-  ScoredTruth(std::unique_ptr<ScanTruthSource> source, std::size_t most)
+  ScoredTruth(std::unique_ptr<dataset::ScanTruthSource> source, std::size_t most)
       : source_(std::move(source)), most_(most) {}
-  std::optional<ScanTruth> next() override;
+  std::optional<dataset::ScanTruth> next() override;
 
  private:
-  std::unique_ptr<ScanTruthSource> source_;
+  std::unique_ptr<dataset::ScanTruthSource> source_;
   std::size_t most_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,7 +7,7 @@
 
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 void count(double value, SignedDistance& result) {
@@ -49,4 +49,4 @@ SignedDistance signed_distance(std::span<const PointScore> scores,
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

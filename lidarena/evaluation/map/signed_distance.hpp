@@ -8,7 +8,7 @@
 
 #include "lidarena/evaluation/map/point_scores.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// On which side of a triangle there is free space, determined from the rays that hit it, because
 /// the winding of a mesh is not reliable.
@@ -38,4 +38,4 @@ struct SignedDistance {
 SignedDistance signed_distance(std::span<const PointScore> scores,
                                std::span<const FreeSide> free_side);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

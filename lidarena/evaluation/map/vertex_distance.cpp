@@ -10,7 +10,7 @@
 #include "lidarena/evaluation/map/point_scores.hpp"
 #include "lidarena/map/kd_tree.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 namespace {
 
 /// Number of pieces of each edge of a triangle; a double, because it may exceed every integer type.
-double pieces_of(const TriangleMesh& mesh, const Triangle& triangle, double edge) {
+double pieces_of(const world::TriangleMesh& mesh, const world::Triangle& triangle, double edge) {
   double longest = 0.0;
   for (std::size_t k = 0; k < 3; ++k) {
     const Vector3d side = mesh.vertices[triangle[(k + 1) % 3]] - mesh.vertices[triangle[k]];
@@ -27,9 +27,9 @@ double pieces_of(const TriangleMesh& mesh, const Triangle& triangle, double edge
   return std::max(1.0, std::ceil(longest / edge));
 }
 
-std::vector<bool> used_vertices(const TriangleMesh& mesh) {
+std::vector<bool> used_vertices(const world::TriangleMesh& mesh) {
   std::vector<bool> used(mesh.vertices.size(), false);
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const world::Triangle& triangle : mesh.triangles) {
     for (const std::uint32_t corner : triangle) used[corner] = true;
   }
   return used;
@@ -37,10 +37,10 @@ std::vector<bool> used_vertices(const TriangleMesh& mesh) {
 
 }  // namespace
 
-std::uint64_t count_subdivided(const TriangleMesh& mesh, double edge) {
+std::uint64_t count_subdivided(const world::TriangleMesh& mesh, double edge) {
   const std::vector<bool> used = used_vertices(mesh);
   auto count = static_cast<double>(std::count(used.begin(), used.end(), true));
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const world::Triangle& triangle : mesh.triangles) {
     const double n = pieces_of(mesh, triangle, edge);
     count += 0.5 * (n + 1.0) * (n + 2.0) - 3.0;  // without its corners
   }
@@ -48,7 +48,7 @@ std::uint64_t count_subdivided(const TriangleMesh& mesh, double edge) {
   return static_cast<std::uint64_t>(std::min(count, kMost));
 }
 
-std::vector<Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
+std::vector<Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, double edge,
                                           const Vector3d& origin) {
   std::vector<Vector3f> vertices;
   vertices.reserve(count_subdivided(mesh, edge));
@@ -56,7 +56,7 @@ std::vector<Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
   for (std::size_t v = 0; v < used.size(); ++v) {
     if (used[v]) vertices.emplace_back((mesh.vertices[v] - origin).cast<float>());
   }
-  for (const Triangle& triangle : mesh.triangles) {
+  for (const world::Triangle& triangle : mesh.triangles) {
     const auto n = static_cast<int>(pieces_of(mesh, triangle, edge));
     const Vector3d a = mesh.vertices[triangle[0]] - origin;
     const Vector3d ab = (mesh.vertices[triangle[1]] - mesh.vertices[triangle[0]]) / n;
@@ -73,7 +73,7 @@ std::vector<Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
 
 VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder& order,
                                std::span<const PointScore> scores, const Pose& mesh_from_map,
-                               const World& world, const Parallel& parallel, double edge,
+                               const world::World& world, const Parallel& parallel, double edge,
                                std::uint64_t most) {
   VertexDistance result;
   result.edge_m = edge;
@@ -87,7 +87,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
     return result;
   }
   const Vector3d origin = center_of(world);
-  KdTree tree;
+  map::KdTree tree;
   tree.build(subdivided_vertices(world.mesh(), edge, origin));
   std::vector<double> distances(map.size(), std::numeric_limits<double>::quiet_NaN());
   constexpr std::size_t kGrain = 4096;
@@ -100,7 +100,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
     }
     const Vector3d moved = mesh_from_map * map[index].cast<double>();
     const auto bound = static_cast<float>(to_surface + edge);  // a vertex lies within 0.58 edges
-    Neighbor nearest;
+    map::Neighbor nearest;
     tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
     distances[index] = std::sqrt(double{nearest.squared_distance});
   });
@@ -108,4 +108,4 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -16,15 +16,15 @@
 #include "lidarena/world/triangle_mesh.hpp"
 #include "lidarena/world/world.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Number of vertices that subdivided_vertices() returns.
-std::uint64_t count_subdivided(const TriangleMesh& mesh, double edge);
+std::uint64_t count_subdivided(const world::TriangleMesh& mesh, double edge);
 
 /// Vertices of the mesh (m, relative to `origin`) with each triangle divided into n^2 equal ones, n
 /// the smallest number for which none of its edges is longer than `edge` (m, above 0). The mesh's
 /// own vertices are listed once, new ones on an edge once for each adjacent triangle.
-std::vector<Eigen::Vector3f> subdivided_vertices(const TriangleMesh& mesh, double edge,
+std::vector<Eigen::Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, double edge,
                                                  const Eigen::Vector3d& origin);
 
 /// Distances of a map's points to the nearest *vertex* of the subdivided mesh, as the paper
@@ -50,8 +50,8 @@ struct VertexDistance {
 /// Bit-identical for any number of threads.
 VertexDistance vertex_distance(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
                                std::span<const PointScore> scores, const Pose& mesh_from_map,
-                               const World& world, const Parallel& parallel,
+                               const world::World& world, const Parallel& parallel,
                                double edge = VertexDistance::kEdge_m,
                                std::uint64_t most = VertexDistance::kMostVertices);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

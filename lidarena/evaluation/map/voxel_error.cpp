@@ -6,7 +6,7 @@
 
 #include "lidarena/evaluation/map/map_error.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> scores) {
   constexpr unsigned kBits = 9;  // 8 x 8 x 8 cells of the Morton order
@@ -35,4 +35,4 @@ VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> sco
   return error;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

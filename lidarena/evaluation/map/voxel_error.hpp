@@ -7,7 +7,7 @@
 #include "lidarena/evaluation/map/point_scores.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Map error in which each occupied voxel of the map counts once, however many points it holds, so
 /// that near walls with their many points do not outweigh far ones.
@@ -23,4 +23,4 @@ struct VoxelError {
 /// The grid is aligned with the map frame, so the voxels are the same in every gauge.
 VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> scores);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

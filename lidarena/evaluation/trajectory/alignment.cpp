@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 // Positions that spread less than this (1 cm) determine no direction: noise dominates.
@@ -142,4 +142,4 @@ Alignment align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge
   return align(matched_poses(estimate, truth), gauge);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -8,7 +8,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// How the estimate's world frame is aligned with the truth's.
 enum class Gauge {
@@ -49,4 +49,4 @@ struct Alignment {
 Alignment align(std::span<const PosePair> pairs, Gauge gauge);
 Alignment align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

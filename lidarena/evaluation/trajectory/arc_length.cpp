@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 TimeSpan common_span(const Trajectory& a, const Trajectory& b) {
   if (a.empty() || b.empty()) return {Time{0}, Time{-1}};
@@ -43,4 +43,4 @@ double ArcLength::at(Time t) const {
   return s_[i - 1] + share * (s_[i] - s_[i - 1]);
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -5,7 +5,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// From `begin` to `end`, both inclusive.
 struct TimeSpan {
@@ -36,4 +36,4 @@ class ArcLength {
   std::vector<double> s_;
 };
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

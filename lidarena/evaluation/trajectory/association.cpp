@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 double rate_hz(const Trajectory& trajectory) {
@@ -84,4 +84,4 @@ Association associate(const Trajectory& estimate, const Trajectory& truth) {
   return found;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -7,7 +7,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// How well two trajectories can be compared (overlap, coverage, rates); printed before any error.
 struct Association {
@@ -45,4 +45,4 @@ struct PosePair {
 /// time span or in one of its gaps are left out.
 std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory& truth);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

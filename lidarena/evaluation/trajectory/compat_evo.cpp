@@ -11,7 +11,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr const char* kPlace = "evo";
@@ -337,4 +337,4 @@ EvoResult compat_evo(const Trajectory& reference, const Trajectory& estimate, co
   return result;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -16,7 +16,7 @@
 /// Reproduces the numbers of another tool, evo (v1.36.5), for the same options, so that published
 /// results can be checked. Its definitions differ from ours (see docs/metrics.md). Written from a
 /// description of its behavior.
-namespace lidarena {
+namespace lidarena::evaluation {
 
 enum class EvoMetric {
   kApe,  ///< absolute pose error
@@ -37,28 +37,22 @@ enum class EvoRelation {
 /// Unit of `delta`, the length of a piece (RPE).
 enum class EvoUnit { kFrames, kMeters, kDegrees, kRadians };
 
-template <>
-struct EnumNames<EvoMetric> {
-  static constexpr std::array names{std::pair{"ape", EvoMetric::kApe},
-                                    std::pair{"rpe", EvoMetric::kRpe}};
-};
-template <>
-struct EnumNames<EvoRelation> {
-  static constexpr std::array names{
-      std::pair{"trans_part", EvoRelation::kTranslation},
-      std::pair{"rot_part", EvoRelation::kRotation},
-      std::pair{"full", EvoRelation::kFull},
-      std::pair{"angle_deg", EvoRelation::kAngleDegrees},
-      std::pair{"angle_rad", EvoRelation::kAngleRadians},
-      std::pair{"point_distance", EvoRelation::kPointDistance},
-      std::pair{"point_distance_error_ratio", EvoRelation::kPointDistanceRatio}};
-};
-template <>
-struct EnumNames<EvoUnit> {
-  static constexpr std::array names{
-      std::pair{"f", EvoUnit::kFrames}, std::pair{"m", EvoUnit::kMeters},
-      std::pair{"d", EvoUnit::kDegrees}, std::pair{"r", EvoUnit::kRadians}};
-};
+constexpr auto enum_names(EvoMetric) {
+  return std::array{std::pair{"ape", EvoMetric::kApe}, std::pair{"rpe", EvoMetric::kRpe}};
+}
+constexpr auto enum_names(EvoRelation) {
+  return std::array{std::pair{"trans_part", EvoRelation::kTranslation},
+                    std::pair{"rot_part", EvoRelation::kRotation},
+                    std::pair{"full", EvoRelation::kFull},
+                    std::pair{"angle_deg", EvoRelation::kAngleDegrees},
+                    std::pair{"angle_rad", EvoRelation::kAngleRadians},
+                    std::pair{"point_distance", EvoRelation::kPointDistance},
+                    std::pair{"point_distance_error_ratio", EvoRelation::kPointDistanceRatio}};
+}
+constexpr auto enum_names(EvoUnit) {
+  return std::array{std::pair{"f", EvoUnit::kFrames}, std::pair{"m", EvoUnit::kMeters},
+                    std::pair{"d", EvoUnit::kDegrees}, std::pair{"r", EvoUnit::kRadians}};
+}
 
 struct EvoOptions {
   EvoMetric metric = EvoMetric::kApe;
@@ -113,4 +107,4 @@ std::vector<std::pair<std::size_t, std::size_t>> evo_association(const Trajector
 std::vector<std::pair<std::size_t, std::size_t>> evo_pieces(std::span<const Pose> poses,
                                                             const EvoOptions& options);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

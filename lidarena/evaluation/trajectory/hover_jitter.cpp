@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 bool hovers(const PosePair& a, const PosePair& b, Time bracket) {
@@ -44,4 +44,4 @@ HoverJitter hover_jitter(std::span<const PosePair> pairs, Time bracket) {
   return jitter;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -6,7 +6,7 @@
 
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Jitter of the estimated position while the body hovers.
 struct HoverJitter {
@@ -22,4 +22,4 @@ struct HoverJitter {
 /// frame by the hover's first pose.
 HoverJitter hover_jitter(std::span<const PosePair> pairs, Time bracket);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

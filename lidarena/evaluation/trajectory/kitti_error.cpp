@@ -9,7 +9,7 @@
 #include "lidarena/evaluation/trajectory/arc_length.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr std::size_t kStartEvery = 10;  // frames: one second of KITTI
@@ -72,4 +72,4 @@ KittiError kitti_error(const Trajectory& estimate, const Trajectory& truth,
   return error;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -10,7 +10,7 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The lengths of the KITTI odometry benchmark.
 inline constexpr std::array kKittiLengths_m{100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0};
@@ -40,4 +40,4 @@ struct KittiError {
 KittiError kitti_error(const Trajectory& estimate, const Trajectory& truth,
                        std::span<const double> lengths_m = kKittiLengths_m);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

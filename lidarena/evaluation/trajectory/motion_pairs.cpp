@@ -6,7 +6,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 constexpr Time kPiece = std::chrono::seconds(1);
@@ -48,4 +48,4 @@ Eigen::Matrix3d mounting_of(std::span<const MotionPair> motions) {
   return svd.matrixU() * s.asDiagonal() * svd.matrixV().transpose();
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

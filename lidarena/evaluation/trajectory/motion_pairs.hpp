@@ -6,7 +6,7 @@
 
 #include "lidarena/base/trajectory.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// The motion over the same time interval in both trajectories, each in the frame of its own start,
 /// hence independent of both world frames.
@@ -24,4 +24,4 @@ std::vector<MotionPair> motion_pairs(const Trajectory& estimate, const Trajector
 /// identity when all rotations have the same axis, because it is not determined then.
 Eigen::Matrix3d mounting_of(std::span<const MotionPair> motions);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -11,7 +11,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/trajectory/arc_length.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 namespace {
 
 // More than the rounding of a path summed over 1e5 poses with 9 significant digits (m or s); the
@@ -160,4 +160,4 @@ AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
   return ate;
 }
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
+#include "lidarena/evaluation/summary.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
-#include "lidarena/evaluation/summary.hpp"
 
-namespace lidarena {
+namespace lidarena::evaluation {
 
 /// Relative error of one piece of the flight.
 struct SegmentError {
@@ -71,4 +71,4 @@ struct AbsoluteTrajectoryError {
 AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
                                                   const Trajectory& truth, Gauge gauge);
 
-}  // namespace lidarena
+}  // namespace lidarena::evaluation

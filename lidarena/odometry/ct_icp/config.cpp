@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
@@ -20,7 +20,7 @@ Config improved(const LidarInfo& lidar) {
   sampling.max_keypoints = 2500;
   sampling.start_scans = 0;
   sampling.rigid_scans = 1;
-  config.cell_rounding = VoxelRounding::kFloor;
+  config.cell_rounding = map::VoxelRounding::kFloor;
 
   RegistrationConfig& registration = config.registration;
   registration.solver = Solver::kGaussNewton;
@@ -65,4 +65,4 @@ Config preset(const std::string& name, const LidarInfo& lidar) {
       nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -11,7 +11,7 @@
 #include "lidarena/estimation/elastic_alignment.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 /// Which points of a downsampled scan are registered.
 enum class KeypointSampling {
@@ -97,7 +97,7 @@ struct RegistrationConfig {
   double nearness_weight = 0.1;
   bool gate_distances = false;
   double max_plane_distance_m = 0.3;
-  RobustKernel robust_kernel = RobustKernel::kCauchy;
+  estimation::RobustKernel robust_kernel = estimation::RobustKernel::kCauchy;
   double robust_kernel_scale_m = 0.1;
   int max_residuals = 0;
   int min_residuals = 20;
@@ -249,7 +249,7 @@ struct RobustConfig {
 
 /// The defaults are the published program's handheld profile (2022); preset() changes them.
 struct Config {
-  VoxelRounding cell_rounding = VoxelRounding::kTruncate;
+  map::VoxelRounding cell_rounding = map::VoxelRounding::kTruncate;
   SamplingConfig sampling;
   RegistrationConfig registration;
   PriorConfig prior;
@@ -279,44 +279,34 @@ std::vector<std::string> preset_names();
 /// profile. Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 
-}  // namespace lidarena::ct_icp
+constexpr auto enum_names(KeypointSampling) {
+  return std::array{std::pair{"all", KeypointSampling::kAll},
+                    std::pair{"grid", KeypointSampling::kGrid},
+                    std::pair{"adaptive", KeypointSampling::kAdaptive}};
+}
 
-namespace lidarena {
+constexpr auto enum_names(InitialMotion) {
+  return std::array{std::pair{"last_pose", InitialMotion::kLastPose},
+                    std::pair{"constant_motion", InitialMotion::kConstantMotion},
+                    std::pair{"constant_twist", InitialMotion::kConstantTwist}};
+}
 
-template <>
-struct EnumNames<ct_icp::KeypointSampling> {
-  static constexpr std::array names{std::pair{"all", ct_icp::KeypointSampling::kAll},
-                                    std::pair{"grid", ct_icp::KeypointSampling::kGrid},
-                                    std::pair{"adaptive", ct_icp::KeypointSampling::kAdaptive}};
-};
+constexpr auto enum_names(Solver) {
+  return std::array{std::pair{"gauss_newton", Solver::kGaussNewton},
+                    std::pair{"ceres", Solver::kCeres},
+                    std::pair{"ceres_shapes", Solver::kCeresShapes}};
+}
 
-template <>
-struct EnumNames<ct_icp::InitialMotion> {
-  static constexpr std::array names{
-      std::pair{"last_pose", ct_icp::InitialMotion::kLastPose},
-      std::pair{"constant_motion", ct_icp::InitialMotion::kConstantMotion},
-      std::pair{"constant_twist", ct_icp::InitialMotion::kConstantTwist}};
-};
+constexpr auto enum_names(PlanePoint) {
+  return std::array{std::pair{"farthest", PlanePoint::kFarthest},
+                    std::pair{"nearest", PlanePoint::kNearest},
+                    std::pair{"mean", PlanePoint::kMean}};
+}
 
-template <>
-struct EnumNames<ct_icp::Solver> {
-  static constexpr std::array names{std::pair{"gauss_newton", ct_icp::Solver::kGaussNewton},
-                                    std::pair{"ceres", ct_icp::Solver::kCeres},
-                                    std::pair{"ceres_shapes", ct_icp::Solver::kCeresShapes}};
-};
+constexpr auto enum_names(Insertion) {
+  return std::array{std::pair{"always", Insertion::kAlways},
+                    std::pair{"small_rotation", Insertion::kSmallRotation},
+                    std::pair{"trusted", Insertion::kTrusted}};
+}
 
-template <>
-struct EnumNames<ct_icp::PlanePoint> {
-  static constexpr std::array names{std::pair{"farthest", ct_icp::PlanePoint::kFarthest},
-                                    std::pair{"nearest", ct_icp::PlanePoint::kNearest},
-                                    std::pair{"mean", ct_icp::PlanePoint::kMean}};
-};
-
-template <>
-struct EnumNames<ct_icp::Insertion> {
-  static constexpr std::array names{std::pair{"always", ct_icp::Insertion::kAlways},
-                                    std::pair{"small_rotation", ct_icp::Insertion::kSmallRotation},
-                                    std::pair{"trusted", ct_icp::Insertion::kTrusted}};
-};
-
-}  // namespace lidarena
+}  // namespace lidarena::odometry::ct_icp

@@ -4,16 +4,16 @@
 #include <algorithm>
 #include <utility>
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
 constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
 constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
 
-std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const TimedPoint> points,
-                                    const Parallel& parallel) {
-  const ElasticTrack track(motion);
+std::vector<Eigen::Vector3f> placed(const estimation::ElasticMotion& motion,
+                                    std::span<const TimedPoint> points, const Parallel& parallel) {
+  const estimation::ElasticTrack track(motion);
   std::vector<Eigen::Vector3f> positions(points.size());
   parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
     const Eigen::Vector3d point = points[i].position.cast<double>();
@@ -22,7 +22,7 @@ std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const
   return positions;
 }
 
-ElasticMotion moved(const Pose& by, ElasticMotion motion) {
+estimation::ElasticMotion moved(const Pose& by, estimation::ElasticMotion motion) {
   for (Pose& knot : motion.knots) knot = by * knot;
   return motion;
 }
@@ -38,16 +38,16 @@ CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult CtIcp::register_scan(const Scan& scan) {
-  const ScanTimes times = times_of(scan, scan_duration_);
+  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
   const bool rigid = !times.timed || map_.empty() || scans_ < config_.sampling.rigid_scans;
   const auto points = timed_points(scan, times, rigid, config_.sampling);
   const double voxel =
       starting() ? config_.sampling.start_frame_voxel_m : config_.sampling.frame_voxel_m;
   const auto frame = thin(points, voxel, config_.cell_rounding);
 
-  const ElasticMotion guess = history_.predict(times, config_.registration);
+  const estimation::ElasticMotion guess = history_.predict(times, config_.registration);
   const RobustRegistration found = align(frame, guess);
-  const ElasticMotion& motion = found.registration.motion;
+  const estimation::ElasticMotion& motion = found.registration.motion;
   const ScanStatus status = status_of(found, points.size());
 
   const bool inserted = status != ScanStatus::kTooFewPoints && gate_.admits(motion, found.verdict);
@@ -69,10 +69,11 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
           rigid ? std::vector<StampedPose>{} : motion_within(motion, times)};
 }
 
-RobustRegistration CtIcp::align(std::span<const TimedPoint> frame, const ElasticMotion& guess) {
+RobustRegistration CtIcp::align(std::span<const TimedPoint> frame,
+                                const estimation::ElasticMotion& guess) {
   RobustRegistration found{{guess}};
   if (map_.empty() || frame.empty()) return found;
-  const MotionPrior prior = history_.prior(guess, config_.registration, config_.prior);
+  const estimation::MotionPrior prior = history_.prior(guess, config_.registration, config_.prior);
   found =
       register_robustly(frame, map_, guess, prior, config_, starting(), first_level_, parallel_);
   const bool lost = found.verdict == Verdict::kLost;
@@ -93,8 +94,9 @@ bool CtIcp::stops_when_lost(const RobustRegistration& found) const {
   return config_.robust.stop_when_lost && found.registration.enough;
 }
 
-void CtIcp::advance(const RobustRegistration& found, const ScanTimes& times, ScanStatus status) {
-  const ElasticMotion& motion = found.registration.motion;
+void CtIcp::advance(const RobustRegistration& found, const estimation::ScanTimes& times,
+                    ScanStatus status) {
+  const estimation::ElasticMotion& motion = found.registration.motion;
   const bool lost = status == ScanStatus::kTooFewPoints;
   history_.add(motion, times, lost, config_.robust.motion_kept_when_lost);
   first_level_ = found.verdict == Verdict::kTrusted || !config_.robust.enabled ? 0 : 1;
@@ -103,8 +105,8 @@ void CtIcp::advance(const RobustRegistration& found, const ScanTimes& times, Sca
   ++scans_;
 }
 
-std::vector<StampedPose> CtIcp::motion_within(const ElasticMotion& motion,
-                                              const ScanTimes& times) const {
+std::vector<StampedPose> CtIcp::motion_within(const estimation::ElasticMotion& motion,
+                                              const estimation::ScanTimes& times) const {
   std::vector<StampedPose> poses;
   const auto segments = static_cast<std::int64_t>(motion.segments());
   for (std::int64_t i = 0; i <= segments; ++i) {
@@ -129,4 +131,4 @@ std::map<std::string, std::uint64_t> CtIcp::memory() const {
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

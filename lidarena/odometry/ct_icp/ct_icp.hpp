@@ -12,7 +12,7 @@
 #include "lidarena/odometry/ct_icp/sampling.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 /// LiDAR odometry by elastic scan-to-map registration: a scan has a pose at its beginning and one
 /// at its end, after Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP: Real-time Elastic LiDAR
@@ -30,14 +30,17 @@ class CtIcp : public Odometry {
 
  private:
   /// Aligns the downsampled scan with the map, if there is one; returns the guess if that fails.
-  RobustRegistration align(std::span<const TimedPoint> frame, const ElasticMotion& guess);
+  RobustRegistration align(std::span<const TimedPoint> frame,
+                           const estimation::ElasticMotion& guess);
   ScanStatus status_of(const RobustRegistration& found, std::size_t points) const;
   /// Whether the published program would end at this failed registration.
   bool stops_when_lost(const RobustRegistration& found) const;
   /// Stores the scan's motion.
-  void advance(const RobustRegistration& found, const ScanTimes& times, ScanStatus status);
+  void advance(const RobustRegistration& found, const estimation::ScanTimes& times,
+               ScanStatus status);
   /// Poses of the body within the scan; empty if the scan is rigid.
-  std::vector<StampedPose> motion_within(const ElasticMotion& motion, const ScanTimes& times) const;
+  std::vector<StampedPose> motion_within(const estimation::ElasticMotion& motion,
+                                         const estimation::ScanTimes& times) const;
   /// Pose of the body in the world, which is the body's frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
   bool starting() const { return scans_ < config_.sampling.start_scans; }
@@ -45,7 +48,7 @@ class CtIcp : public Odometry {
   Config config_;
   Pose body_from_lidar_;
   Parallel parallel_;
-  VoxelHashMap map_;  ///< in the lidar's frame at its first pose
+  map::VoxelHashMap map_;  ///< in the lidar's frame at its first pose
   InsertionGate gate_;
   MotionHistory history_;
 
@@ -56,4 +59,4 @@ class CtIcp : public Odometry {
   std::vector<Eigen::Vector3f> registered_scan_;
 };
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
@@ -13,7 +13,7 @@ constexpr double kDistinct = 0.8;            // minimum planarity of a plane, li
 constexpr double kDistributionWeight = 0.1;  // of a neighborhood that is neither
 constexpr double kThinnest = 0.02;           // m, minimum deviation of a distribution: range noise
 
-Eigen::Vector3d anchor_of(std::span<const Neighbor> neighbors, const Eigen::Vector3d& mean,
+Eigen::Vector3d anchor_of(std::span<const map::Neighbor> neighbors, const Eigen::Vector3d& mean,
                           PlanePoint plane_point) {
   if (plane_point == PlanePoint::kMean) return mean;
   const auto [nearest, farthest] = std::minmax_element(
@@ -24,7 +24,7 @@ Eigen::Vector3d anchor_of(std::span<const Neighbor> neighbors, const Eigen::Vect
 
 }  // namespace
 
-Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_point) {
+Neighborhood describe(std::span<const map::Neighbor> neighbors, PlanePoint plane_point) {
   const Eigen::Vector3f& origin = neighbors.front().point;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
@@ -52,11 +52,12 @@ Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_poin
   return result;
 }
 
-ElasticMatch plane_match(const Neighborhood& neighborhood, const Eigen::Vector3d& keypoint,
-                         const RegistrationConfig& config) {
+estimation::ElasticMatch plane_match(const Neighborhood& neighborhood,
+                                     const Eigen::Vector3d& keypoint,
+                                     const RegistrationConfig& config) {
   const double reach = config.max_plane_distance_m * config.min_neighbors;
   const double nearness = std::exp(-(neighborhood.anchor - keypoint).norm() / reach);
-  ElasticMatch match;
+  estimation::ElasticMatch match;
   match.anchor = neighborhood.anchor;
   match.shape.row(0) = neighborhood.normal;
   match.weight = (config.planarity_weight * neighborhood.planarity * neighborhood.planarity +
@@ -65,8 +66,8 @@ ElasticMatch plane_match(const Neighborhood& neighborhood, const Eigen::Vector3d
   return match;
 }
 
-ElasticMatch shape_match(const Neighborhood& neighborhood) {
-  ElasticMatch match;
+estimation::ElasticMatch shape_match(const Neighborhood& neighborhood) {
+  estimation::ElasticMatch match;
   match.anchor = neighborhood.anchor;
   if (neighborhood.planarity > kDistinct) {
     match.shape.row(0) = neighborhood.normal;
@@ -87,4 +88,4 @@ ElasticMatch shape_match(const Neighborhood& neighborhood) {
   return match;
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -8,7 +8,7 @@
 #include "lidarena/map/voxel_hash_map.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 /// Shape of the map's points around a keypoint (CT-ICP, III-B). With the eigenvalues l1 >= l2 >= l3
 /// of their covariance and s = sqrt(l):
@@ -22,15 +22,16 @@ struct Neighborhood {
 };
 
 /// Planarity and linearity are 0 when all neighbors coincide.
-Neighborhood describe(std::span<const Neighbor> neighbors, PlanePoint plane_point);
+Neighborhood describe(std::span<const map::Neighbor> neighbors, PlanePoint plane_point);
 
 /// Match of a keypoint with the neighborhood's plane, with the published program's weight
 /// c1 planarity^2 + c2 exp(-distance / (max_plane_distance_m min_neighbors)), c1 + c2 = 1.
-ElasticMatch plane_match(const Neighborhood& neighborhood, const Eigen::Vector3d& keypoint,
-                         const RegistrationConfig& config);
+estimation::ElasticMatch plane_match(const Neighborhood& neighborhood,
+                                     const Eigen::Vector3d& keypoint,
+                                     const RegistrationConfig& config);
 
 /// Match with a line, a plane or a distribution, by the neighborhood's shape; the weight is the
 /// square of the linearity or planarity, or 0.1.
-ElasticMatch shape_match(const Neighborhood& neighborhood);
+estimation::ElasticMatch shape_match(const Neighborhood& neighborhood);
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

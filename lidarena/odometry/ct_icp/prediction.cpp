@@ -3,10 +3,10 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
-void MotionHistory::add(const ElasticMotion& motion, const ScanTimes& times, bool lost,
-                        double kept) {
+void MotionHistory::add(const estimation::ElasticMotion& motion, const estimation::ScanTimes& times,
+                        bool lost, double kept) {
   if (lost) {
     twist_ *= kept;
   } else if (times.timed) {
@@ -20,9 +20,9 @@ void MotionHistory::add(const ElasticMotion& motion, const ScanTimes& times, boo
   ++scans_;
 }
 
-ElasticMotion MotionHistory::predict(const ScanTimes& times,
-                                     const RegistrationConfig& config) const {
-  if (scans_ == 0) return ElasticMotion::still(Pose::Identity(), config.segments);
+estimation::ElasticMotion MotionHistory::predict(const estimation::ScanTimes& times,
+                                                 const RegistrationConfig& config) const {
+  if (scans_ == 0) return estimation::ElasticMotion::still(Pose::Identity(), config.segments);
   switch (config.initial_motion) {
     case InitialMotion::kLastPose:
       break;
@@ -31,28 +31,29 @@ ElasticMotion MotionHistory::predict(const ScanTimes& times,
     case InitialMotion::kConstantTwist:
       return constant_twist(times, config.segments);
   }
-  return ElasticMotion::still(last_.end(), config.segments);
+  return estimation::ElasticMotion::still(last_.end(), config.segments);
 }
 
-ElasticMotion MotionHistory::constant_motion(int segments) const {
-  if (scans_ < 2) return ElasticMotion::still(last_.end(), segments);
+estimation::ElasticMotion MotionHistory::constant_motion(int segments) const {
+  if (scans_ < 2) return estimation::ElasticMotion::still(last_.end(), segments);
   if (scans_ == 2) {  // the first scans are rigid: begin where the last one ended
     const Pose end = last_.end() * before_.end().inverse() * last_.end();
-    ElasticMotion motion = ElasticMotion::still(last_.end(), segments);
+    estimation::ElasticMotion motion = estimation::ElasticMotion::still(last_.end(), segments);
     for (std::size_t i = 0; i < motion.knots.size(); ++i) {
       const double alpha = static_cast<double>(i) / static_cast<double>(segments);
       motion.knots[i] = interpolate(last_.end(), end, alpha);
     }
     return motion;
   }
-  ElasticMotion motion = last_;
+  estimation::ElasticMotion motion = last_;
   for (std::size_t i = 0; i < motion.knots.size(); ++i)
     motion.knots[i] = last_.knots[i] * before_.knots[i].inverse() * last_.knots[i];
   return motion;
 }
 
-ElasticMotion MotionHistory::constant_twist(const ScanTimes& times, int segments) const {
-  ElasticMotion motion;
+estimation::ElasticMotion MotionHistory::constant_twist(const estimation::ScanTimes& times,
+                                                        int segments) const {
+  estimation::ElasticMotion motion;
   for (int i = 0; i <= segments; ++i) {
     const Time instant = times.first + (times.last - times.first) * i / segments;
     motion.knots.push_back(last_.end() * se3::exp(twist_ * to_seconds(instant - instant_)));
@@ -60,11 +61,12 @@ ElasticMotion MotionHistory::constant_twist(const ScanTimes& times, int segments
   return motion;
 }
 
-MotionPrior MotionHistory::prior(const ElasticMotion& prediction, const RegistrationConfig& config,
-                                 const PriorConfig& weights) const {
+estimation::MotionPrior MotionHistory::prior(const estimation::ElasticMotion& prediction,
+                                             const RegistrationConfig& config,
+                                             const PriorConfig& weights) const {
   const bool timed = config.initial_motion == InitialMotion::kConstantTwist;
-  const ElasticMotion& alike = timed ? prediction : last_;
-  MotionPrior prior;
+  const estimation::ElasticMotion& alike = timed ? prediction : last_;
+  estimation::MotionPrior prior;
   prior.begin = timed ? prediction.begin() : last_.end();
   prior.step = alike.end().translation() - alike.begin().translation();
   prior.turn = so3::log(alike.end().linear() * alike.begin().linear().transpose());
@@ -78,4 +80,4 @@ MotionPrior MotionHistory::prior(const ElasticMotion& prediction, const Registra
   return prior;
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -6,31 +6,33 @@
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/ct_icp/sampling.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 /// Last motions of the lidar, for the initial guess and the motion prior of the next scan.
 class MotionHistory {
  public:
   /// Adds a scan's motion. A `lost` one is a prediction: the velocity is then multiplied by `kept`.
-  void add(const ElasticMotion& motion, const ScanTimes& times, bool lost, double kept);
+  void add(const estimation::ElasticMotion& motion, const estimation::ScanTimes& times, bool lost,
+           double kept);
 
   /// Initial guess for the registration of the next scan (CT-ICP, III-A).
-  ElasticMotion predict(const ScanTimes& times, const RegistrationConfig& config) const;
+  estimation::ElasticMotion predict(const estimation::ScanTimes& times,
+                                    const RegistrationConfig& config) const;
 
   /// Motion prior of the next scan (III-C): the end and the motion of the last one; with
   /// constant_twist the prediction, which is the same by real time.
-  MotionPrior prior(const ElasticMotion& prediction, const RegistrationConfig& config,
-                    const PriorConfig& weights) const;
+  estimation::MotionPrior prior(const estimation::ElasticMotion& prediction,
+                                const RegistrationConfig& config, const PriorConfig& weights) const;
 
  private:
-  ElasticMotion constant_motion(int segments) const;
-  ElasticMotion constant_twist(const ScanTimes& times, int segments) const;
+  estimation::ElasticMotion constant_motion(int segments) const;
+  estimation::ElasticMotion constant_twist(const estimation::ScanTimes& times, int segments) const;
 
   int scans_ = 0;
-  ElasticMotion last_ = ElasticMotion::still(Pose::Identity(), 1);
-  ElasticMotion before_ = last_;
+  estimation::ElasticMotion last_ = estimation::ElasticMotion::still(Pose::Identity(), 1);
+  estimation::ElasticMotion before_ = last_;
   Time instant_{0};                            ///< of the last scan's end
   se3::Vector6 twist_ = se3::Vector6::Zero();  ///< m/s, rad/s, lidar
 };
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

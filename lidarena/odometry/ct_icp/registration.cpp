@@ -9,7 +9,7 @@
 
 #include "lidarena/odometry/ct_icp/neighborhood.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
@@ -25,7 +25,7 @@ struct Found {
 /// Matches keypoints with the map; keeps neighborhoods from one iteration to the next.
 class Matcher {
  public:
-  Matcher(std::span<const TimedPoint> keypoints, const VoxelHashMap& map,
+  Matcher(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
           const RegistrationConfig& config)
       : keypoints_(keypoints),
         map_(map),
@@ -33,8 +33,9 @@ class Matcher {
         found_(keypoints.size()),
         candidates_(keypoints.size()) {}
 
-  std::span<const ElasticMatch> match(const ElasticMotion& motion, const Parallel& parallel) {
-    const ElasticTrack track(motion);
+  std::span<const estimation::ElasticMatch> match(const estimation::ElasticMotion& motion,
+                                                  const Parallel& parallel) {
+    const estimation::ElasticTrack track(motion);
     parallel.for_each(keypoints_.size(), kGrain, [&](std::size_t i) {
       candidates_[i] = match_one(keypoints_[i], track, found_[i]);
     });
@@ -48,8 +49,9 @@ class Matcher {
   }
 
  private:
-  std::optional<ElasticMatch> match_one(const TimedPoint& keypoint, const ElasticTrack& track,
-                                        Found& found) const {
+  std::optional<estimation::ElasticMatch> match_one(const TimedPoint& keypoint,
+                                                    const estimation::ElasticTrack& track,
+                                                    Found& found) const {
     const Eigen::Vector3d point = keypoint.position.cast<double>();
     const Eigen::Vector3d position = track.place(point, keypoint.alpha);
     if (!((position - found.searched_at).norm() < config_.search_again_m)) {
@@ -60,16 +62,16 @@ class Matcher {
     const double distance = near.normal.dot(position - near.anchor);
     if (config_.gate_distances && std::abs(distance) >= config_.max_plane_distance_m)
       return std::nullopt;
-    ElasticMatch match = config_.solver == Solver::kCeresShapes
-                             ? shape_match(near)
-                             : plane_match(near, position, config_);
+    estimation::ElasticMatch match = config_.solver == Solver::kCeresShapes
+                                         ? shape_match(near)
+                                         : plane_match(near, position, config_);
     match.point = point;
     match.alpha = keypoint.alpha;
     return match;
   }
 
   std::optional<Neighborhood> search(const Eigen::Vector3f& position) const {
-    std::array<Neighbor, kMostNeighbors> room;
+    std::array<map::Neighbor, kMostNeighbors> room;
     const std::span near(room.data(), static_cast<std::size_t>(config_.max_neighbors));
     const auto radius = static_cast<float>(config_.search_radius_m);
     const std::size_t count = map_.nearest(position, radius, near);
@@ -78,23 +80,24 @@ class Matcher {
   }
 
   std::span<const TimedPoint> keypoints_;
-  const VoxelHashMap& map_;
+  const map::VoxelHashMap& map_;
   const RegistrationConfig& config_;
   std::vector<Found> found_;
-  std::vector<std::optional<ElasticMatch>> candidates_;
-  std::vector<ElasticMatch> matches_;
+  std::vector<std::optional<estimation::ElasticMatch>> candidates_;
+  std::vector<estimation::ElasticMatch> matches_;
 };
 
-ElasticMotion aligned(const ElasticProblem& problem, const ElasticMotion& motion,
-                      const RegistrationConfig& config, const Parallel& parallel) {
+estimation::ElasticMotion aligned(const estimation::ElasticProblem& problem,
+                                  const estimation::ElasticMotion& motion,
+                                  const RegistrationConfig& config, const Parallel& parallel) {
   return config.solver == Solver::kGaussNewton
-             ? align_by_gauss_newton(problem, motion, config.inner_iterations, parallel)
-             : align_by_ceres(problem, motion, config.inner_iterations);
+             ? estimation::align_by_gauss_newton(problem, motion, config.inner_iterations, parallel)
+             : estimation::align_by_ceres(problem, motion, config.inner_iterations);
 }
 
-double observability_of(std::span<const ElasticMatch> matches) {
+double observability_of(std::span<const estimation::ElasticMatch> matches) {
   Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
-  for (const ElasticMatch& match : matches)
+  for (const estimation::ElasticMatch& match : matches)
     sum += match.shape.topRows(match.rows).transpose() * match.shape.topRows(match.rows);
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(sum / sum.trace(), Eigen::EigenvaluesOnly);
@@ -107,8 +110,9 @@ double Registration::matched_share() const {
   return keypoints == 0 ? 0.0 : static_cast<double>(matches) / static_cast<double>(keypoints);
 }
 
-Registration register_keypoints(std::span<const TimedPoint> keypoints, const VoxelHashMap& map,
-                                const ElasticMotion& guess, const MotionPrior& prior,
+Registration register_keypoints(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
+                                const estimation::ElasticMotion& guess,
+                                const estimation::MotionPrior& prior,
                                 const RegistrationConfig& config, int iterations,
                                 const Parallel& parallel) {
   Registration result{guess};
@@ -120,12 +124,12 @@ Registration register_keypoints(std::span<const TimedPoint> keypoints, const Vox
     result.enough = matches.size() >= static_cast<std::size_t>(config.min_residuals);
     if (!result.enough) return result;
     result.observability = observability_of(matches);
-    const ElasticMotion before = result.motion;
+    const estimation::ElasticMotion before = result.motion;
     result.motion = aligned(
         {matches, prior, config.robust_kernel, config.robust_kernel_scale_m, config.exact_slerp},
         before, config, parallel);
     ++result.iterations;
-    const MotionChange change = change_between(before, result.motion);
+    const estimation::MotionChange change = estimation::change_between(before, result.motion);
     if (change.translation_m < config.translation_threshold_m &&
         change.rotation_rad < config.rotation_threshold_rad)
       break;
@@ -133,4 +137,4 @@ Registration register_keypoints(std::span<const TimedPoint> keypoints, const Vox
   return result;
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

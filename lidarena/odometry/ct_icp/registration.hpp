@@ -10,10 +10,10 @@
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/ct_icp/sampling.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 struct Registration {
-  ElasticMotion motion;  ///< of the lidar in the map
+  estimation::ElasticMotion motion;  ///< of the lidar in the map
   int iterations = 0;
   std::size_t keypoints = 0;
   std::size_t matches = 0;     ///< matched keypoints in the last iteration
@@ -25,9 +25,10 @@ struct Registration {
 
 /// Elastic ICP of `keypoints` against `map` from `guess` (CT-ICP, III-B): alternates neighbor
 /// searches and solutions.
-Registration register_keypoints(std::span<const TimedPoint> keypoints, const VoxelHashMap& map,
-                                const ElasticMotion& guess, const MotionPrior& prior,
+Registration register_keypoints(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
+                                const estimation::ElasticMotion& guess,
+                                const estimation::MotionPrior& prior,
                                 const RegistrationConfig& config, int iterations,
                                 const Parallel& parallel);
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

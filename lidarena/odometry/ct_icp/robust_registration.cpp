@@ -5,11 +5,11 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
-double rotation_within(const ElasticMotion& motion) {
+double rotation_within(const estimation::ElasticMotion& motion) {
   return so3::angle(motion.begin().linear().transpose() * motion.end().linear());
 }
 
@@ -33,9 +33,9 @@ Config at_level(Config config, int level) {
   return config;
 }
 
-Verdict verdict_on(const Registration& registration, const ElasticMotion& guess,
+Verdict verdict_on(const Registration& registration, const estimation::ElasticMotion& guess,
                    const RobustConfig& config) {
-  const ElasticMotion& motion = registration.motion;
+  const estimation::ElasticMotion& motion = registration.motion;
   if (!registration.enough || !motion.begin().matrix().allFinite() ||
       !motion.end().matrix().allFinite())
     return Verdict::kLost;
@@ -47,10 +47,11 @@ Verdict verdict_on(const Registration& registration, const ElasticMotion& guess,
   return trusted ? Verdict::kTrusted : Verdict::kSuspect;
 }
 
-RobustRegistration register_robustly(std::span<const TimedPoint> frame, const VoxelHashMap& map,
-                                     const ElasticMotion& guess, const MotionPrior& prior,
-                                     const Config& config, bool starting, int first_level,
-                                     const Parallel& parallel) {
+RobustRegistration register_robustly(std::span<const TimedPoint> frame,
+                                     const map::VoxelHashMap& map,
+                                     const estimation::ElasticMotion& guess,
+                                     const estimation::MotionPrior& prior, const Config& config,
+                                     bool starting, int first_level, const Parallel& parallel) {
   RobustRegistration result;
   const int attempts = config.robust.enabled ? config.robust.max_attempts : 1;
   for (int attempt = 0; attempt < attempts; ++attempt) {
@@ -73,7 +74,7 @@ RobustRegistration register_robustly(std::span<const TimedPoint> frame, const Vo
   return result;
 }
 
-bool InsertionGate::admits(const ElasticMotion& motion, Verdict verdict) {
+bool InsertionGate::admits(const estimation::ElasticMotion& motion, Verdict verdict) {
   const bool suspect = (config_.rule == Insertion::kSmallRotation &&
                         rotation_within(motion) > config_.max_rotation_rad) ||
                        (config_.rule == Insertion::kTrusted && verdict != Verdict::kTrusted);
@@ -85,4 +86,4 @@ bool InsertionGate::admits(const ElasticMotion& motion, Verdict verdict) {
   return true;
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

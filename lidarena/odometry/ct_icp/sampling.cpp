@@ -9,7 +9,7 @@
 
 #include "lidarena/map/voxel_key.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 namespace {
 
@@ -30,7 +30,7 @@ std::uint32_t rank_of(std::uint32_t index) {
   return index ^ (index >> 16U);
 }
 
-std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, VoxelRounding rounding) {
+std::vector<TimedPoint> adaptive(std::span<const TimedPoint> frame, map::VoxelRounding rounding) {
   std::array<std::vector<TimedPoint>, kRings.size()> by_ring;
   for (const TimedPoint& point : frame) {
     const float range = point.position.norm();
@@ -61,8 +61,8 @@ void draw(std::vector<TimedPoint>& points, std::size_t limit) {
 
 }  // namespace
 
-std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, bool rigid,
-                                     const SamplingConfig& config) {
+std::vector<TimedPoint> timed_points(const Scan& scan, const estimation::ScanTimes& times,
+                                     bool rigid, const SamplingConfig& config) {
   const auto begin = static_cast<double>((times.first - scan.stamp).count());
   const auto length = static_cast<double>((times.last - times.first).count());
   const double per_ns = rigid ? 0.0 : 1.0 / length;
@@ -80,13 +80,13 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, b
 }
 
 std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
-                             VoxelRounding rounding) {
+                             map::VoxelRounding rounding) {
   const auto inverse = static_cast<float>(1.0 / voxel);
-  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
+  tsl::robin_map<map::VoxelKey, std::uint32_t, map::VoxelKeyHash> cells;
   cells.reserve(points.size() / 2);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
     const auto [cell, is_new] =
-        cells.try_emplace(voxel_key(voxel_of(points[i].position, inverse, rounding)), i);
+        cells.try_emplace(map::voxel_key(map::voxel_of(points[i].position, inverse, rounding)), i);
     if (!is_new && rank_of(i) < rank_of(cell->second)) cell.value() = i;
   }
   std::vector<TimedPoint> kept;
@@ -97,7 +97,7 @@ std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
 
 std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,
                                          KeypointSampling sampling, double voxel, int limit,
-                                         VoxelRounding rounding) {
+                                         map::VoxelRounding rounding) {
   std::vector<TimedPoint> keypoints;
   switch (sampling) {
     case KeypointSampling::kAll:
@@ -115,4 +115,4 @@ std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,
   return keypoints;
 }
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -9,7 +9,7 @@
 #include "lidarena/estimation/scan_times.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 
 /// A point and its instant within the scan.
 struct TimedPoint {
@@ -19,17 +19,17 @@ struct TimedPoint {
 
 /// The scan's finite points within the range gate. In a `rigid` scan all have alpha 1, as if it was
 /// taken at its last instant.
-std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, bool rigid,
-                                     const SamplingConfig& config);
+std::vector<TimedPoint> timed_points(const Scan& scan, const estimation::ScanTimes& times,
+                                     bool rigid, const SamplingConfig& config);
 
 /// One point of each cubic cell (edge in m), drawn uniformly from those in it, so that the sample
 /// covers the scan's duration evenly. The choice depends on the input only; the order looks random.
 std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
-                             VoxelRounding rounding);
+                             map::VoxelRounding rounding);
 
 /// Keypoints of a downsampled scan (CT-ICP, III-A), at most `limit` unless that is 0.
 std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,
                                          KeypointSampling sampling, double voxel, int limit,
-                                         VoxelRounding rounding);
+                                         map::VoxelRounding rounding);
 
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 Config original(const LidarInfo& lidar) {
@@ -20,10 +20,10 @@ Config improved(const LidarInfo& lidar) {
   config.min_range_m = std::max(0.3, lidar.min_range_m);
   config.deskew_first_instant = true;
   config.scan_voxel_m = 0.2;
-  config.grid_axes = GridAxes::kAskew;
+  config.grid_axes = map::GridAxes::kAskew;
   config.max_points = 4000;
   config.map_voxel_m = 0.2;
-  config.plane_fit = PlaneFit::kPrincipal;
+  config.plane_fit = estimation::PlaneFit::kPrincipal;
   config.plane_uncertainty = true;
   config.point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
   config.noise_model = NoiseModel::kDensity;
@@ -55,4 +55,4 @@ Config preset(const std::string& name, const LidarInfo& lidar) {
       nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

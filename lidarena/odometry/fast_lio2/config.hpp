@@ -11,7 +11,7 @@
 #include "lidarena/estimation/plane_fit.hpp"
 #include "lidarena/map/grid_axes.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 
 /// Source of the IMU's noise.
 enum class NoiseModel {
@@ -25,7 +25,7 @@ struct Config {
   double min_range_m = 0.5;
   bool deskew_first_instant = false;
   double scan_voxel_m = 0.5;
-  GridAxes grid_axes = GridAxes::kParallel;
+  map::GridAxes grid_axes = map::GridAxes::kParallel;
   int max_points = 100000;
   double map_voxel_m = 0.5;
 
@@ -34,7 +34,7 @@ struct Config {
   double point_variance_m2 = 1e-3;
   double max_neighbor_m = 2.236;
   double plane_thickness_m = 0.1;
-  PlaneFit plane_fit = PlaneFit::kUnitOffset;
+  estimation::PlaneFit plane_fit = estimation::PlaneFit::kUnitOffset;
   bool plane_uncertainty = false;
   bool estimate_extrinsics = false;
 
@@ -158,14 +158,9 @@ std::vector<std::string> preset_names();
 /// Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 
-}  // namespace lidarena::fast_lio2
+constexpr auto enum_names(NoiseModel) {
+  return std::array{std::pair{"per_sample", NoiseModel::kPerSample},
+                    std::pair{"density", NoiseModel::kDensity}};
+}
 
-namespace lidarena {
-
-template <>
-struct EnumNames<fast_lio2::NoiseModel> {
-  static constexpr std::array names{std::pair{"per_sample", fast_lio2::NoiseModel::kPerSample},
-                                    std::pair{"density", fast_lio2::NoiseModel::kDensity}};
-};
-
-}  // namespace lidarena
+}  // namespace lidarena::odometry::fast_lio2

@@ -8,10 +8,10 @@
 #include "lidarena/map/voxel_filter.hpp"
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
-using State = InertialState;
+using State = estimation::InertialState;
 
 constexpr double kStillSpeedSigma = 0.01;  // m/s, of the zero velocity at a standstill
 constexpr double kStillShiftSigma = 1e-4;  // m, of the held first pose
@@ -38,11 +38,11 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
                    Parallel parallel)
     : config_(config),
       body_from_imu_(imu.body_from_imu),
-      map_from_start_(grid_turn(config.grid_axes)),
+      map_from_start_(map::grid_turn(config.grid_axes)),
       world_from_map_(body_from_imu_ * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
                                                  Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
-      noise_(noise_of(imu, config.imu_noise_factor)),
+      noise_(estimation::noise_of(imu, config.imu_noise_factor)),
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       map_window_(config.map_radius_m),
@@ -53,7 +53,7 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = imu_.samples(
       integrated_until_ ? *integrated_until_ + Time{1} : Time::min(), end);  // since the last scan
-  const std::vector<ImuInterval> intervals = intervals_until(end);
+  const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
   if (started_) {
     predict(intervals);
   } else if (!start(samples) || config_.skip_first_scan) {
@@ -64,14 +64,14 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   const State predicted = belief_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(voxel_means(points, config_.scan_voxel_m, config_.grid_axes), config_.max_points);
+      evenly(map::voxel_means(points, config_.scan_voxel_m, config_.grid_axes), config_.max_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
-  const IteratedUpdate update =
-      iterated_update(belief_, std::ref(residuals),
-                      {config_.max_iterations, config_.convergence, config_.point_variance_m2});
+  const estimation::IteratedUpdate update = estimation::iterated_update(
+      belief_, std::ref(residuals),
+      {config_.max_iterations, config_.convergence, config_.point_variance_m2});
   belief_ = update.belief;
   const bool still =
-      config_.zero_velocity && still_.observe(statistics(samples), predicted,
+      config_.zero_velocity && still_.observe(estimation::statistics(samples), predicted,
                                               belief_.state.position(), config_, accel_scale_);
   if (still) stand();
   has_moved_ = has_moved_ || !still;
@@ -95,14 +95,14 @@ Time FastLio2::end_of_sweep(const Scan& scan) {
   return scan.timed ? scan.stamp + sweep_ : scan.stamp;
 }
 
-std::vector<ImuInterval> FastLio2::intervals_until(Time end) {
+std::vector<estimation::ImuInterval> FastLio2::intervals_until(Time end) {
   const bool silent = imu_.empty() || (!integrated_until_ && imu_.first_stamp() > end);
   const Time begin = silent ? end : integrated_until_.value_or(imu_.first_stamp());
-  std::vector<ImuInterval> intervals = imu_.between(begin, end);
+  std::vector<estimation::ImuInterval> intervals = imu_.between(begin, end);
   if (!silent) integrated_until_ = end;
   imu_.forget_before(end);
-  longest_gap_s_ = longest_gap_s(intervals);
-  saturated_ = count_saturated(intervals);
+  longest_gap_s_ = estimation::longest_gap_s(intervals);
+  saturated_ = estimation::count_saturated(intervals);
   return intervals;
 }
 
@@ -124,17 +124,18 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
 }
 
 void FastLio2::stand() {
-  belief_ = zero_velocity_update(belief_, kStillSpeedSigma);
+  belief_ = estimation::zero_velocity_update(belief_, kStillSpeedSigma);
   if (!config_.hold_first_pose || has_moved_) return;
-  belief_ = pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
+  belief_ = estimation::pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
 }
 
-void FastLio2::predict(const std::vector<ImuInterval>& intervals) {
+void FastLio2::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = belief_.state;
   track_.clear();
-  const Integration integration =
-      config_.second_order ? Integration::kSecondOrder : Integration::kFirstOrder;
-  for (const ImuInterval& interval : intervals) {
+  const estimation::Integration integration = config_.second_order
+                                                  ? estimation::Integration::kSecondOrder
+                                                  : estimation::Integration::kFirstOrder;
+  for (const estimation::ImuInterval& interval : intervals) {
     Eigen::Vector3d accel = accel_scale_ * interval.accel;
     if (interval.gap) {  // coast with constant velocity
       accel = state.nav.bias.accel - state.rotation().transpose() * state.gravity;
@@ -143,16 +144,18 @@ void FastLio2::predict(const std::vector<ImuInterval>& intervals) {
         state.rotation() * (accel - state.nav.bias.accel) + state.gravity;
     track_.push_back({interval.begin, state.world_from_imu(), state.nav.velocity, acceleration,
                       interval.gyro - state.nav.bias.gyro});
-    const State::Matrix f = propagate(state, interval.gyro, accel, interval.seconds(), integration);
+    const State::Matrix f =
+        estimation::propagate(state, interval.gyro, accel, interval.seconds(), integration);
     belief_.covariance = f * belief_.covariance * f.transpose() +
-                         step_noise(noise_over(interval), interval.seconds());
+                         estimation::step_noise(noise_over(interval), interval.seconds());
   }
   state.rotation() = orthonormal(state.rotation());
   state.imu_from_lidar.linear() = orthonormal(state.imu_from_lidar.linear());
 }
 
-ImuNoise FastLio2::noise_over(const ImuInterval& interval) const {
-  if (interval.gap || (config_.tell_clipping && interval.saturated)) return kCoastingNoise;
+estimation::ImuNoise FastLio2::noise_over(const estimation::ImuInterval& interval) const {
+  if (interval.gap || (config_.tell_clipping && interval.saturated))
+    return estimation::kCoastingNoise;
   if (config_.noise_model == NoiseModel::kDensity) return noise_;
   // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
   const auto density = [&](double variance) { return std::sqrt(variance * interval.seconds()); };
@@ -171,8 +174,8 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
     const float squared = scan.points[i].position.squaredNorm();
     if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
   }
-  std::vector<Eigen::Vector3f> at_end =
-      deskew(used, track_, belief_.state.imu_from_lidar, belief_.state.world_from_imu(), parallel_);
+  std::vector<Eigen::Vector3f> at_end = estimation::deskew(
+      used, track_, belief_.state.imu_from_lidar, belief_.state.world_from_imu(), parallel_);
   for (std::size_t i = 0; !config_.deskew_first_instant && i < at_end.size(); ++i) {
     if (used.points[i].dt_ns == 0) at_end[i] = used.points[i].position;
   }
@@ -188,10 +191,11 @@ void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
   map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
 }
 
-ScanStatus FastLio2::status_of(const IteratedUpdate& update, const PlaneResiduals& residuals) {
+ScanStatus FastLio2::status_of(const estimation::IteratedUpdate& update,
+                               const PlaneResiduals& residuals) {
   const State& state = belief_.state;
   if (!state.position().allFinite() || !state.rotation().allFinite() ||
-      !(state.nav.velocity.norm() < kMaxPlausibleSpeed)) {
+      !(state.nav.velocity.norm() < estimation::kMaxPlausibleSpeed)) {
     return ScanStatus::kDiverged;
   }
   if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
@@ -264,4 +268,4 @@ std::map<std::string, std::uint64_t> FastLio2::memory() const {
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

@@ -18,7 +18,7 @@
 #include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 
 /// Tightly coupled LiDAR-inertial odometry: an iterated error-state Kalman filter that registers
 /// raw points with planes of the map, after Xu, Cai, He, Lin, Zhang, "FAST-LIO2: Fast Direct
@@ -39,20 +39,20 @@ class FastLio2 : public Odometry {
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
   Time end_of_sweep(const Scan& scan);
   /// IMU intervals since the end of the last scan, or since the first sample.
-  std::vector<ImuInterval> intervals_until(Time end);
+  std::vector<estimation::ImuInterval> intervals_until(Time end);
   /// Collects samples and initializes once there are enough; returns whether it has.
   bool start(const std::vector<ImuSample>& samples);
   /// Updates the filter with the knowledge that the sensor stands still.
   void stand();
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
-  void predict(const std::vector<ImuInterval>& intervals);
-  ImuNoise noise_over(const ImuInterval& interval) const;
+  void predict(const std::vector<estimation::ImuInterval>& intervals);
+  estimation::ImuNoise noise_over(const estimation::ImuInterval& interval) const;
   /// The points in use, in the LiDAR's frame at the scan's end.
   std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
   /// Adds the points to the map and removes map points far from the sensor.
   void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
   /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const IteratedUpdate& update, const PlaneResiduals& residuals);
+  ScanStatus status_of(const estimation::IteratedUpdate& update, const PlaneResiduals& residuals);
   ScanResult refused_scan();
   ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
   Pose body_pose(const Pose& map_from_imu) const;
@@ -64,10 +64,10 @@ class FastLio2 : public Odometry {
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
   Pose world_from_map_;
   Pose imu_from_lidar_;
-  ImuNoise noise_;
+  estimation::ImuNoise noise_;
   Parallel parallel_;
 
-  ImuBuffer imu_;
+  estimation::ImuBuffer imu_;
   std::optional<Time> integrated_until_;  ///< none until there are samples
   double longest_gap_s_ = 0.0;            ///< of the IMU, in the last scan
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
@@ -76,14 +76,15 @@ class FastLio2 : public Odometry {
   bool started_ = false;
   double accel_scale_ = 1.0;
 
-  Belief belief_;  ///< state and covariance at the end of the last scan, in the map's frame
-  ImuTrack track_;
+  estimation::Belief
+      belief_;  ///< state and covariance at the end of the last scan, in the map's frame
+  estimation::ImuTrack track_;
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
   StillDetector still_;
   Pose first_pose_ = Pose::Identity();  ///< of the IMU
   bool has_moved_ = false;
-  KdTree map_;
+  map::KdTree map_;
   MapWindow map_window_;
 
   Time sweep_;  ///< duration of the last scan that had points
@@ -94,4 +95,4 @@ class FastLio2 : public Odometry {
   std::deque<ArchivedPoint> archive_;  ///< no vector, whose growth would copy gigabytes in a scan
 };
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

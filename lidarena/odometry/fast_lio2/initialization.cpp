@@ -3,10 +3,10 @@
 
 #include <cmath>
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
-using State = InertialState;
+using State = estimation::InertialState;
 
 // Maximum values at a standstill.
 constexpr double kStillDrift = 0.03;  // m
@@ -46,28 +46,29 @@ State::Matrix covariance_of(const Config& config, bool still) {
 
 Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
                  const Config& config) {
-  const ImuStatistics imu = statistics(samples);
+  const estimation::ImuStatistics imu = estimation::statistics(samples);
   Start start;
   start.accel_scale = config.always_scale_accel ? config.gravity / imu.mean_accel.norm()
-                                                : accel_scale_of(imu, config.gravity);
-  start.still = stands(imu, config.gravity, start.accel_scale);
+                                                : estimation::accel_scale_of(imu, config.gravity);
+  start.still = estimation::stands(imu, config.gravity, start.accel_scale);
   State& state = start.belief.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
   if (start.still || config.initial_sigma > 0.0) state.nav.bias.gyro = imu.mean_gyro;
   if (start.still && !config.always_scale_accel)  // else the scale contains it
-    state.nav.bias.accel = accel_bias_along(imu, config.gravity, start.accel_scale);
+    state.nav.bias.accel = estimation::accel_bias_along(imu, config.gravity, start.accel_scale);
   state.imu_from_lidar.linear() = imu_from_lidar.linear();
   state.imu_from_lidar.translation() = imu_from_lidar.translation();
   start.belief.covariance = covariance_of(config, start.still);
   return start;
 }
 
-bool StillDetector::observe(const ImuStatistics& imu, const InertialState& predicted,
+bool StillDetector::observe(const estimation::ImuStatistics& imu,
+                            const estimation::InertialState& predicted,
                             const Eigen::Vector3d& position, const Config& config,
                             double accel_scale) {
   const Eigen::Vector3d at_rest =
       predicted.nav.bias.accel - predicted.rotation().transpose() * predicted.gravity;
-  const bool is_still = stands(imu, config.gravity, accel_scale) &&
+  const bool is_still = estimation::stands(imu, config.gravity, accel_scale) &&
                         (imu.mean_gyro - predicted.nav.bias.gyro).norm() < kRestRate &&
                         (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
                         predicted.nav.velocity.norm() < kStillSpeed &&
@@ -77,4 +78,4 @@ bool StillDetector::observe(const ImuStatistics& imu, const InertialState& predi
   return is_still;
 }
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

@@ -8,11 +8,11 @@
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 
 /// Result of the initialization.
 struct Start {
-  Belief belief;
+  estimation::Belief belief;
   double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
 };
@@ -30,7 +30,7 @@ class StillDetector {
  public:
   /// `predicted`: the state before the scan's update (with a map of few scans the update turns
   /// its own errors into velocity); `position`: after the update, m.
-  bool observe(const ImuStatistics& imu, const InertialState& predicted,
+  bool observe(const estimation::ImuStatistics& imu, const estimation::InertialState& predicted,
                const Eigen::Vector3d& position, const Config& config, double accel_scale);
   int scans() const { return scans_; }  ///< number of scans in the current standstill
 
@@ -39,4 +39,4 @@ class StillDetector {
   int scans_ = 0;
 };
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

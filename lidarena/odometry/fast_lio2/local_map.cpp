@@ -3,7 +3,7 @@
 
 #include <limits>
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 enum class Insertion { kPlain, kThinned, kNone };
@@ -26,7 +26,7 @@ Insertion insertion_of(const Eigen::Vector3f& point, const Match& match, float v
 }  // namespace
 
 void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
-              float voxel, KdTree& map) {
+              float voxel, map::KdTree& map) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const Insertion insertion =
         matches.empty() ? Insertion::kThinned : insertion_of(points[i], matches[i], voxel);
@@ -35,7 +35,7 @@ void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>&
   }
 }
 
-void MapWindow::follow(const Eigen::Vector3f& sensor, KdTree& map) {
+void MapWindow::follow(const Eigen::Vector3f& sensor, map::KdTree& map) {
   if ((sensor - center_).cwiseAbs().maxCoeff() < 0.25F * radius_) return;
   center_ = sensor;
   constexpr float kFar = std::numeric_limits<float>::max();
@@ -49,4 +49,4 @@ void MapWindow::follow(const Eigen::Vector3f& sensor, KdTree& map) {
   }
 }
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

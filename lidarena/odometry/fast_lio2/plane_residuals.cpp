@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lidarena::fast_lio2 {
+namespace lidarena::odometry::fast_lio2 {
 namespace {
 
 /// Whether the residual is small for the point's range: 0.11 m at 1 m, 0.35 m at 10 m.
@@ -15,13 +15,14 @@ bool is_near(double distance, double range) {
 
 }  // namespace
 
-double plane_variance(const Neighbors& points, const Plane& plane, double point_variance) {
+double plane_variance(const Neighbors& points, const estimation::Plane& plane,
+                      double point_variance) {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const Neighbor& p : points) center += p.point.cast<double>() / kNeighbors;
-  const Eigen::Matrix<double, 3, 2> basis = tangent_basis(plane.normal);
+  for (const map::Neighbor& p : points) center += p.point.cast<double>() / kNeighbors;
+  const Eigen::Matrix<double, 3, 2> basis = estimation::tangent_basis(plane.normal);
   Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // along the plane
   double reach = 0.0;
-  for (const Neighbor& p : points) {
+  for (const map::Neighbor& p : points) {
     const Eigen::Vector2d along = basis.transpose() * (p.point.cast<double>() - center);
     spread += along * along.transpose();
     reach = std::max(reach, along.squaredNorm());
@@ -32,8 +33,8 @@ double plane_variance(const Neighbors& points, const Plane& plane, double point_
   return point_variance / kNeighbors + tilt * reach;
 }
 
-PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
-                             const InertialState& state, bool extrinsics) {
+PointResidual point_residual(const Eigen::Vector3d& point, const estimation::Plane& plane,
+                             const estimation::InertialState& state, bool extrinsics) {
   const Eigen::Vector3d in_imu =
       state.imu_from_lidar.linear() * point + state.imu_from_lidar.translation();
   const Eigen::Vector3d in_world = state.rotation() * in_imu + state.position();
@@ -49,7 +50,7 @@ PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
   return residual;
 }
 
-PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const KdTree& map,
+PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::KdTree& map,
                                const Config& config, const Parallel& parallel)
     : points_(points), map_(map), config_(config), parallel_(parallel), matches_(points.size()) {}
 
@@ -57,8 +58,8 @@ void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
   match.found = map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_m));
   match.plane.reset();
   if (match.found == kNeighbors) {
-    match.plane =
-        fit_plane(columns_of(match.neighbors), config_.plane_fit, config_.plane_thickness_m);
+    match.plane = estimation::fit_plane(map::columns_of(match.neighbors), config_.plane_fit,
+                                        config_.plane_thickness_m);
   }
   match.near_plane = match.plane.has_value();
   if (!match.plane || !config_.plane_uncertainty) return;
@@ -71,10 +72,12 @@ double PlaneResiduals::near_planes() const {
                                            [](const Match& match) { return match.near_plane; }));
 }
 
-NormalEquations<kPointDof> PlaneResiduals::operator()(const InertialState& state, bool search) {
+estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
+    const estimation::InertialState& state, bool search) {
   const Pose world_from_lidar = state.world_from_lidar();
-  return accumulate_normal_equations<kPointDof>(
-      parallel_, points_.size(), [&](std::size_t i, NormalEquations<kPointDof>& sum) {
+  return estimation::accumulate_normal_equations<estimation::kPointDof>(
+      parallel_, points_.size(),
+      [&](std::size_t i, estimation::NormalEquations<estimation::kPointDof>& sum) {
         const Eigen::Vector3d point = points_[i].cast<double>();
         Match& match = matches_[i];
         if (search) find((world_from_lidar * point).cast<float>(), match);
@@ -89,4 +92,4 @@ NormalEquations<kPointDof> PlaneResiduals::operator()(const InertialState& state
       });
 }
 
-}  // namespace lidarena::fast_lio2
+}  // namespace lidarena::odometry::fast_lio2

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 double displacement(const Pose& error, double range) {
   return error.translation().norm() + 2.0 * range * std::sin(0.5 * so3::angle(error.linear()));
@@ -43,4 +43,4 @@ void AdaptiveThreshold::observe(const Pose& prediction, const Pose& estimate, do
   count_ = kept_ * count_ + 1.0;
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

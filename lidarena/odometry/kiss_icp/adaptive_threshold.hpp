@@ -6,7 +6,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 /// Upper limit (m) on how far a prediction `error` (true pose relative to the predicted one) moves
 /// a point at `range` m: |t| + 2 range sin(angle / 2) (paper, eq. 5 and 6).
@@ -34,4 +34,4 @@ class AdaptiveThreshold {
   double count_ = 0.0;
 };
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

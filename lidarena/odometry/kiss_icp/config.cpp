@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/kiss_icp/config.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 namespace {
 
@@ -12,8 +12,8 @@ Config original() {
   Config config;
   config.min_range_m = 5.0;
   config.min_spacing = false;
-  config.cell_rounding = VoxelRounding::kTruncate;
-  config.thinning_order = ThinningOrder::kTeschner;
+  config.cell_rounding = map::VoxelRounding::kTruncate;
+  config.thinning_order = map::ThinningOrder::kTeschner;
   config.pose_instant = PoseInstant::kScanMiddle;
   config.threshold_start = ThresholdStart::kUntilMoved;
   config.kernel_fraction = 1.0 / 3.0;
@@ -22,7 +22,7 @@ Config original() {
 
 Config improved(const LidarInfo& lidar) {
   Config config;
-  config.thinning_order = ThinningOrder::kMixed;
+  config.thinning_order = map::ThinningOrder::kMixed;
   config.max_range_m = lidar.max_range_m;
   config.min_range_m = lidar.min_range_m;
   config.voxel_size_m = 0.4;
@@ -62,4 +62,4 @@ Config preset(const std::string& name, const LidarInfo& lidar) {
       nearest.empty() ? "use improved, head or original" : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

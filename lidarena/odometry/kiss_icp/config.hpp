@@ -11,7 +11,7 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 /// Instant of the scan at which its pose holds and to which its points are de-skewed.
 enum class PoseInstant { kScanMiddle, kScanEnd };
@@ -35,8 +35,8 @@ struct Config {
   std::optional<double> voxel_size_m;  ///< unset: max_range_m / 100
   int max_points_per_voxel = 20;
   bool min_spacing = true;
-  VoxelRounding cell_rounding = VoxelRounding::kFloor;
-  ThinningOrder thinning_order = ThinningOrder::kTeschnerPrime;
+  map::VoxelRounding cell_rounding = map::VoxelRounding::kFloor;
+  map::ThinningOrder thinning_order = map::ThinningOrder::kTeschnerPrime;
 
   int slices = 1;
   double slice_above_m = 0.0;
@@ -175,34 +175,19 @@ std::vector<std::string> preset_names();
 /// Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 
-}  // namespace lidarena::kiss_icp
+constexpr auto enum_names(PoseInstant) {
+  return std::array{std::pair{"scan_middle", PoseInstant::kScanMiddle},
+                    std::pair{"scan_end", PoseInstant::kScanEnd}};
+}
 
-namespace lidarena {
+constexpr auto enum_names(ThresholdLever) {
+  return std::array{std::pair{"max_range", ThresholdLever::kMaxRange},
+                    std::pair{"mean_range", ThresholdLever::kMeanRange}};
+}
 
-template <>
-struct EnumNames<kiss_icp::PoseInstant> {
-  static constexpr std::array names{std::pair{"scan_middle", kiss_icp::PoseInstant::kScanMiddle},
-                                    std::pair{"scan_end", kiss_icp::PoseInstant::kScanEnd}};
-};
+constexpr auto enum_names(ThresholdStart) {
+  return std::array{std::pair{"blended", ThresholdStart::kBlended},
+                    std::pair{"until_moved", ThresholdStart::kUntilMoved}};
+}
 
-template <>
-struct EnumNames<kiss_icp::ThresholdLever> {
-  static constexpr std::array names{std::pair{"max_range", kiss_icp::ThresholdLever::kMaxRange},
-                                    std::pair{"mean_range", kiss_icp::ThresholdLever::kMeanRange}};
-};
-
-template <>
-struct EnumNames<ThinningOrder> {
-  static constexpr std::array names{std::pair{"mixed", ThinningOrder::kMixed},
-                                    std::pair{"teschner", ThinningOrder::kTeschner},
-                                    std::pair{"teschner_prime", ThinningOrder::kTeschnerPrime}};
-};
-
-template <>
-struct EnumNames<kiss_icp::ThresholdStart> {
-  static constexpr std::array names{
-      std::pair{"blended", kiss_icp::ThresholdStart::kBlended},
-      std::pair{"until_moved", kiss_icp::ThresholdStart::kUntilMoved}};
-};
-
-}  // namespace lidarena
+}  // namespace lidarena::odometry::kiss_icp

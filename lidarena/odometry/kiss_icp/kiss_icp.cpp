@@ -4,13 +4,13 @@
 #include <cmath>
 #include <utility>
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 namespace {
 
 constexpr int kMotionSteps = 4;  // ScanResult::motion has one pose more
 
-VoxelHashMap::Options map_options(const Config& config) {
+map::VoxelHashMap::Options map_options(const Config& config) {
   const double spacing = config.voxel_size() / std::sqrt(config.max_points_per_voxel);
   return {config.voxel_size(), config.max_points_per_voxel, config.min_spacing ? spacing : 0.0,
           config.cell_rounding, config.plane_thinness.value_or(0.0)};
@@ -47,7 +47,7 @@ KissIcp::KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult KissIcp::register_scan(const Scan& scan) {
-  const ScanTimes times = times_of(scan, scan_duration_);
+  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
   if (times.timed) scan_duration_ = times.last - times.first;
   registered_scan_.clear();
   ScanResult result;
@@ -61,12 +61,12 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
 }
 
 ScanResult KissIcp::register_slice(const Scan& slice) {
-  const ScanTimes times = times_of(slice, scan_duration_);
+  const estimation::ScanTimes times = estimation::times_of(slice, scan_duration_);
   const se3::Vector6 before = twist_within(times, motion_, motion_seconds_, config_);
   const TimedPoints points = preprocess(slice, times, before, config_, parallel_);
 
   const double voxel = config_.voxel_size();
-  const Thinning thinning{config_.cell_rounding, config_.thinning_order};
+  const map::Thinning thinning{config_.cell_rounding, config_.thinning_order};
   const TimedPoints map_points = thin(points, config_.map_thinning * voxel, thinning);
   const TimedPoints keypoints = thin(map_points, config_.keypoint_thinning * voxel, thinning);
 
@@ -110,16 +110,16 @@ Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& 
   const TimedPoints first = std::exchange(first_points_, {});
   if (first.deskewed()) return found;
   const se3::Vector6 twist = twist_towards(found.map_from_lidar, departure, 1.0);
-  map_ = VoxelHashMap(map_options(config_));
+  map_ = map::VoxelHashMap(map_options(config_));
   map_.insert(transformed(departure.map_from_lidar, deskewed(first, twist, parallel_)));
   return register_from(found.map_from_lidar);
 }
 
-Departure KissIcp::departure(const ScanTimes& times, const se3::Vector6& before) const {
+Departure KissIcp::departure(const estimation::ScanTimes& times, const se3::Vector6& before) const {
   return {map_from_lidar_, instant_ ? to_seconds(reference_of(times) - *instant_) : 0.0, before};
 }
 
-Pose KissIcp::predicted_motion(const ScanTimes& times) const {
+Pose KissIcp::predicted_motion(const estimation::ScanTimes& times) const {
   if (!config_.motion_per_second || !instant_) return motion_;
   const double seconds = to_seconds(reference_of(times) - *instant_);
   return se3::exp(se3::log(motion_) * (seconds / motion_seconds_));
@@ -132,7 +132,7 @@ ScanStatus KissIcp::status_of(const Registration& registration, std::size_t poin
   return registration.matches == 0 ? ScanStatus::kTooFewPoints : ScanStatus::kTracked;
 }
 
-void KissIcp::advance(const Pose& pose, const ScanTimes& times, ScanStatus status) {
+void KissIcp::advance(const Pose& pose, const estimation::ScanTimes& times, ScanStatus status) {
   motion_ = map_from_lidar_.inverse() * pose;
   if (instant_) motion_seconds_ = to_seconds(reference_of(times) - *instant_);
   if (status == ScanStatus::kTooFewPoints)
@@ -141,7 +141,7 @@ void KissIcp::advance(const Pose& pose, const ScanTimes& times, ScanStatus statu
   instant_ = reference_of(times);
 }
 
-std::vector<StampedPose> KissIcp::motion_within(const ScanTimes& times,
+std::vector<StampedPose> KissIcp::motion_within(const estimation::ScanTimes& times,
                                                 const se3::Vector6& twist) const {
   std::vector<StampedPose> motion;
   if (twist.isZero(0.0)) return motion;
@@ -168,4 +168,4 @@ std::map<std::string, std::uint64_t> KissIcp::memory() const {
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

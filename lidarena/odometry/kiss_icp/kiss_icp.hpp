@@ -13,7 +13,7 @@
 #include "lidarena/odometry/kiss_icp/registration.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 /// LiDAR odometry by scan-to-map ICP with an adaptive search radius, after Vizzo, Guadagnino,
 /// Mersch, Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md in this
@@ -36,23 +36,26 @@ class KissIcp : public Odometry {
   /// replaces the first one in the map by its de-skewed points.
   Registration registered(const TimedPoints& keypoints, const Departure& departure,
                           const Pose& guess);
-  Time reference_of(const ScanTimes& times) const { return pose_time(times, config_.pose_instant); }
+  Time reference_of(const estimation::ScanTimes& times) const {
+    return pose_time(times, config_.pose_instant);
+  }
   /// The previous pose of the lidar, with the twist `before` up to it.
-  Departure departure(const ScanTimes& times, const se3::Vector6& before) const;
+  Departure departure(const estimation::ScanTimes& times, const se3::Vector6& before) const;
   /// Predicted motion of the lidar since the previous pose, with constant velocity.
-  Pose predicted_motion(const ScanTimes& times) const;
+  Pose predicted_motion(const estimation::ScanTimes& times) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
   /// Stores the scan's pose and the motion up to it.
-  void advance(const Pose& pose, const ScanTimes& times, ScanStatus status);
+  void advance(const Pose& pose, const estimation::ScanTimes& times, ScanStatus status);
   /// Poses of the body within the scan, as used for de-skewing; empty if it was not de-skewed.
-  std::vector<StampedPose> motion_within(const ScanTimes& times, const se3::Vector6& twist) const;
+  std::vector<StampedPose> motion_within(const estimation::ScanTimes& times,
+                                         const se3::Vector6& twist) const;
   /// Pose of the body in the world, which is the body's frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
 
   Config config_;
   Pose body_from_lidar_;
   Parallel parallel_;
-  VoxelHashMap map_;          ///< in the lidar's frame at its first pose
+  map::VoxelHashMap map_;     ///< in the lidar's frame at its first pose
   TimedPoints first_points_;  ///< of the first scan, kept until the second one de-skews it
   AdaptiveThreshold threshold_;
   double own_motion_ = 0.0;  ///< the configured value, 0 during the first calm_start scans
@@ -66,4 +69,4 @@ class KissIcp : public Odometry {
   std::vector<Eigen::Vector3f> registered_scan_;
 };
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

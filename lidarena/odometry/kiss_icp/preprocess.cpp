@@ -5,15 +5,15 @@
 
 #include "lidarena/estimation/deskew.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
-Time pose_time(const ScanTimes& times, PoseInstant instant) {
+Time pose_time(const estimation::ScanTimes& times, PoseInstant instant) {
   return instant == PoseInstant::kScanEnd ? times.last
                                           : times.first + (times.last - times.first) / 2;
 }
 
 std::vector<Scan> sliced(const Scan& scan, int count) {
-  const ScanTimes times = times_of(scan, Time{0});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   const std::int64_t duration = (times.last - times.first).count();
   if (count == 1 || !times.timed || duration < count) return {scan};
   std::vector<Scan> slices(static_cast<std::size_t>(count), Scan{scan.stamp, {}, true});
@@ -27,13 +27,13 @@ std::vector<Scan> sliced(const Scan& scan, int count) {
   return slices;
 }
 
-se3::Vector6 twist_within(const ScanTimes& times, const Pose& motion, double motion_seconds,
-                          const Config& config) {
+se3::Vector6 twist_within(const estimation::ScanTimes& times, const Pose& motion,
+                          double motion_seconds, const Config& config) {
   if (!times.timed || !config.deskew) return se3::Vector6::Zero();
   return se3::log(motion) / (config.motion_per_second ? motion_seconds : times.seconds());
 }
 
-TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
+TimedPoints preprocess(const Scan& scan, const estimation::ScanTimes& times,
                        const se3::Vector6& twist_per_second, const Config& config,
                        const Parallel& parallel) {
   // The published program divides by the scan's duration and so loses all points of such a scan.
@@ -42,7 +42,8 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
   const bool estimated = times.timed && config.deskew && config.own_motion > 0.0;
   const Time reference = pose_time(times, config.pose_instant);
   const std::vector<Eigen::Vector3f> positions =
-      estimated ? lidarena::positions(scan) : deskew(scan, twist_per_second, reference, parallel);
+      estimated ? lidarena::estimation::positions(scan)
+                : estimation::deskew(scan, twist_per_second, reference, parallel);
   TimedPoints kept;
   kept.positions.reserve(positions.size());
   if (estimated) kept.seconds.reserve(positions.size());
@@ -57,8 +58,8 @@ TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
   return kept;
 }
 
-TimedPoints thin(const TimedPoints& points, double voxel_size, const Thinning& thinning) {
-  const auto indices = thinned_indices(points.positions, voxel_size, thinning);
+TimedPoints thin(const TimedPoints& points, double voxel_size, const map::Thinning& thinning) {
+  const auto indices = map::thinned_indices(points.positions, voxel_size, thinning);
   TimedPoints thinned;
   thinned.positions.reserve(indices.size());
   for (const std::uint32_t i : indices) thinned.positions.push_back(points.positions[i]);
@@ -73,7 +74,7 @@ std::vector<Eigen::Vector3f> deskewed(const TimedPoints& points,
                                       const Parallel& parallel) {
   if (points.deskewed()) return points.positions;
   constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
-  const ConstantTwist reference_from_instant(twist_per_second);
+  const estimation::ConstantTwist reference_from_instant(twist_per_second);
   std::vector<Eigen::Vector3f> moved(points.size());
   parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
     const Pose pose = reference_from_instant.at(double{points.seconds[i]});
@@ -82,4 +83,4 @@ std::vector<Eigen::Vector3f> deskewed(const TimedPoints& points,
   return moved;
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -11,10 +11,10 @@
 #include "lidarena/map/voxel_filter.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 /// Instant of the scan that its pose belongs to.
-Time pose_time(const ScanTimes& times, PoseInstant instant);
+Time pose_time(const estimation::ScanTimes& times, PoseInstant instant);
 
 /// The scan cut into `count` parts of equal duration, in order of time, without empty parts. A scan
 /// without times, or too short to cut, is returned whole.
@@ -22,8 +22,8 @@ std::vector<Scan> sliced(const Scan& scan, int count);
 
 /// Twist per second for de-skewing the scan: `motion` divided by `motion_seconds` or, as in the
 /// published program, by the duration of this scan (paper, eq. 2).
-se3::Vector6 twist_within(const ScanTimes& times, const Pose& motion, double motion_seconds,
-                          const Config& config);
+se3::Vector6 twist_within(const estimation::ScanTimes& times, const Pose& motion,
+                          double motion_seconds, const Config& config);
 
 /// Points (m) of a scan, each in the lidar's frame at its own instant, or all at the pose's
 /// instant.
@@ -37,16 +37,16 @@ struct TimedPoints {
 
 /// The scan's points within the range gate: de-skewed by `twist_per_second` or, if the scan's own
 /// motion is estimated later, at their own instants.
-TimedPoints preprocess(const Scan& scan, const ScanTimes& times,
+TimedPoints preprocess(const Scan& scan, const estimation::ScanTimes& times,
                        const se3::Vector6& twist_per_second, const Config& config,
                        const Parallel& parallel);
 
 /// The first point of each voxel, see lidarena::thin.
-TimedPoints thin(const TimedPoints& points, double voxel_size, const Thinning& thinning);
+TimedPoints thin(const TimedPoints& points, double voxel_size, const map::Thinning& thinning);
 
 /// The points in the lidar's frame at the pose's instant; the lidar moved with `twist_per_second`.
 std::vector<Eigen::Vector3f> deskewed(const TimedPoints& points,
                                       const se3::Vector6& twist_per_second,
                                       const Parallel& parallel);
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

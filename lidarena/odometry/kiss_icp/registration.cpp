@@ -6,7 +6,7 @@
 #include "lidarena/estimation/deskew.hpp"
 #include "lidarena/estimation/least_squares.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 namespace {
 
@@ -45,7 +45,7 @@ class MovingFrame {
  private:
   const Pose& pose_;
   const TimedPoints& points_;
-  ConstantTwist motion_;
+  estimation::ConstantTwist motion_;
   double share_per_second_;
 };
 
@@ -72,7 +72,7 @@ se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departur
   return own_motion * own + (1.0 - own_motion) * departure.twist;
 }
 
-Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
+Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
                              double own_motion, const Config& config, const Parallel& parallel) {
   Registration result{guess};
@@ -84,7 +84,7 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
   while (result.iterations < config.max_iterations) {
     result.twist = twist_towards(pose, departure, own_motion);
     const MovingFrame frame(pose, result.twist, keypoints, share_per_second);
-    const auto add_match = [&](std::size_t i, NormalEquations<6>& equations) {
+    const auto add_match = [&](std::size_t i, estimation::NormalEquations<6>& equations) {
       const auto [map_from_instant, share] = frame.at(i);
       const Eigen::Vector3d point = map_from_instant * keypoints.positions[i].cast<double>();
       const auto match = map.nearest(point.cast<float>(), radius);
@@ -106,7 +106,8 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
       equations.add<3>(share * jacobian, error,
                        weight * kernel_weight(error.squaredNorm(), kernel));
     };
-    const auto equations = accumulate_normal_equations<6>(parallel, keypoints.size(), add_match);
+    const auto equations =
+        estimation::accumulate_normal_equations<6>(parallel, keypoints.size(), add_match);
     const Eigen::Vector3d center =
         config.sensor_centered ? Eigen::Vector3d(pose.translation()) : Eigen::Vector3d::Zero();
     const se3::Vector6 increment = equations.solve();
@@ -118,4 +119,4 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
   return result;
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -10,7 +10,7 @@
 #include "lidarena/odometry/kiss_icp/config.hpp"
 #include "lidarena/odometry/kiss_icp/preprocess.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 /// Difference of a point and its counterpart, and its derivative with respect to a left increment
 /// (translation, rotation about `center`) of the point's pose (paper, eq. 10). All in m, map frame.
@@ -39,7 +39,7 @@ struct Registration {
 /// 3 sigma (paper, section III-D). Keypoints that are not yet de-skewed are de-skewed in each
 /// iteration with twist_towards() the current estimate; their Jacobians are scaled by the share of
 /// the pose increment that this gives to their instants.
-Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& map,
+Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
                              double own_motion, const Config& config, const Parallel& parallel);
 
@@ -48,4 +48,4 @@ Registration register_points(const TimedPoints& keypoints, const VoxelHashMap& m
 se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
                            double own_motion);
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

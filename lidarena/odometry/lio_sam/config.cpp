@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 /// The published program's settings for spinning sensors, with voxel sizes and ranges for rooms.
@@ -55,10 +55,10 @@ Config improved(const LidarInfo& lidar) {
   config.turn_tolerance_rad = 2e-4;
   config.shift_tolerance_m = 2e-4;
   config.search_step_m = 0.01;
-  config.plane_fit = PlaneFit::kPrincipal;
+  config.plane_fit = estimation::PlaneFit::kPrincipal;
   config.plane_thickness_m = 0.06;
   config.surface_leaf_m = 0.15;
-  config.grid_axes = GridAxes::kAskew;
+  config.grid_axes = map::GridAxes::kAskew;
   config.degeneracy = Degeneracy::kShare;
   config.keyframe_distance_m = 1.0;
   config.keyframe_angle_rad = 0.2;
@@ -74,7 +74,7 @@ Config improved(const LidarInfo& lidar) {
   config.shift_sigma_m = 5e-3;
   config.point_sigma_m = 0.1;
   config.fused_pose = true;
-  config.loop = careful_loops();
+  config.loop = loop::careful_loops();
   return config;
 }
 
@@ -91,4 +91,4 @@ Config preset(const std::string& name, const LidarInfo& lidar) {
       nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -12,7 +12,7 @@
 #include "lidarena/loop/config.hpp"
 #include "lidarena/map/grid_axes.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// Meaning of a column of the range image.
 enum class Columns {
@@ -47,7 +47,7 @@ struct Config {
   double grazing_share = 0.02;
   double edge_leaf_m = 0.1;
   double surface_leaf_m = 0.2;
-  GridAxes grid_axes = GridAxes::kParallel;
+  map::GridAxes grid_axes = map::GridAxes::kParallel;
 
   int min_edges = 10;
   int min_surfaces = 100;
@@ -55,7 +55,7 @@ struct Config {
   double turn_tolerance_rad = 8.7e-4;
   double shift_tolerance_m = 5e-4;
   double search_step_m = 0.0;
-  PlaneFit plane_fit = PlaneFit::kUnitOffset;
+  estimation::PlaneFit plane_fit = estimation::PlaneFit::kUnitOffset;
   double plane_thickness_m = 0.2;
   Degeneracy degeneracy = Degeneracy::kEigenvalue;
 
@@ -82,7 +82,7 @@ struct Config {
   bool fused_pose = false;
 
   bool loop_closure = false;
-  LoopConfig loop;
+  loop::LoopConfig loop;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -200,20 +200,14 @@ std::vector<std::string> preset_names();
 /// to the Mid-360 with a 6-axis IMU. Throws InputError for another name.
 Config preset(const std::string& name, const LidarInfo& lidar);
 
-}  // namespace lidarena::lio_sam
+constexpr auto enum_names(Columns) {
+  return std::array{std::pair{"azimuth", Columns::kAzimuth},
+                    std::pair{"arrival", Columns::kArrival}};
+}
 
-namespace lidarena {
+constexpr auto enum_names(Degeneracy) {
+  return std::array{std::pair{"eigenvalue", Degeneracy::kEigenvalue},
+                    std::pair{"share", Degeneracy::kShare}};
+}
 
-template <>
-struct EnumNames<lio_sam::Columns> {
-  static constexpr std::array names{std::pair{"azimuth", lio_sam::Columns::kAzimuth},
-                                    std::pair{"arrival", lio_sam::Columns::kArrival}};
-};
-
-template <>
-struct EnumNames<lio_sam::Degeneracy> {
-  static constexpr std::array names{std::pair{"eigenvalue", lio_sam::Degeneracy::kEigenvalue},
-                                    std::pair{"share", lio_sam::Degeneracy::kShare}};
-};
-
-}  // namespace lidarena
+}  // namespace lidarena::odometry::lio_sam

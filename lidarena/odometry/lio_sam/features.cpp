@@ -6,7 +6,7 @@
 
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 constexpr int kAdjacent = 10;     // columns: points farther apart are not neighbors
@@ -125,8 +125,8 @@ Features extract_features(const RangeImage& image, const Config& config, const P
 }
 
 Features thinned(const Features& features, const Config& config) {
-  return {voxel_means(features.edges, config.edge_leaf_m, config.grid_axes),
-          voxel_means(features.surfaces, config.surface_leaf_m, config.grid_axes)};
+  return {map::voxel_means(features.edges, config.edge_leaf_m, config.grid_axes),
+          map::voxel_means(features.surfaces, config.surface_leaf_m, config.grid_axes)};
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

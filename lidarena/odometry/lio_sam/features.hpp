@@ -7,7 +7,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/odometry/lio_sam/range_image.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// Points of a scan for matching with the map (m, LiDAR frame).
 struct Features {
@@ -30,4 +30,4 @@ Features extract_features(const RangeImage& image, const Config& config, const P
 /// The features averaged in voxels of `edge_leaf_m` and `surface_leaf_m`.
 Features thinned(const Features& features, const Config& config);
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

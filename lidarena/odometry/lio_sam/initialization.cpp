@@ -3,15 +3,15 @@
 
 #include "lidarena/estimation/imu_at_rest.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr double kMovingTilt = 0.2;  // rad: error of gravity's direction under acceleration
 
-NavState::Matrix covariance_of(bool still) {
-  NavState::Vector sigma;
+estimation::NavState::Matrix covariance_of(bool still) {
+  estimation::NavState::Vector sigma;
   sigma << Vector3d::Constant(1e-4),            // rad; the start defines the frame
       Vector3d::Constant(still ? 0.01 : 3.0),   // m/s
       Vector3d::Constant(1e-4),                 // m
@@ -21,8 +21,8 @@ NavState::Matrix covariance_of(bool still) {
 }
 
 /// The published program's: small for the biases, large for the velocity.
-NavState::Matrix program_covariance() {
-  NavState::Vector sigma;
+estimation::NavState::Matrix program_covariance() {
+  estimation::NavState::Vector sigma;
   sigma << Vector3d::Constant(1e-2), Vector3d::Constant(1e4), Vector3d::Constant(1e-2),
       Vector3d::Constant(1e-3), Vector3d::Constant(1e-3);
   return sigma.cwiseAbs2().asDiagonal();
@@ -32,18 +32,19 @@ NavState::Matrix program_covariance() {
 
 Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
                  const Config& config) {
-  const ImuStatistics imu = statistics(samples);
+  const estimation::ImuStatistics imu = estimation::statistics(samples);
   Start start;
-  start.accel_scale = accel_scale_of(imu, config.gravity);
-  start.still = stands(imu, config.gravity, start.accel_scale);
-  InertialStart& inertial = start.inertial;
+  start.accel_scale = estimation::accel_scale_of(imu, config.gravity);
+  start.still = estimation::stands(imu, config.gravity, start.accel_scale);
+  estimation::InertialStart& inertial = start.inertial;
   inertial.gravity = {0.0, 0.0, -config.gravity};
   Pose world_from_body = Pose::Identity();
   if (config.level_start) {
-    world_from_body.linear() = upright(body_from_imu.linear() * imu.mean_accel);
+    world_from_body.linear() = estimation::upright(body_from_imu.linear() * imu.mean_accel);
     if (start.still) {
       inertial.state.bias.gyro = imu.mean_gyro;
-      inertial.state.bias.accel = accel_bias_along(imu, config.gravity, start.accel_scale);
+      inertial.state.bias.accel =
+          estimation::accel_bias_along(imu, config.gravity, start.accel_scale);
     }
     inertial.covariance = covariance_of(start.still);
     inertial.gravity_sigma = start.still ? config.gravity_sigma_rad : kMovingTilt;
@@ -54,4 +55,4 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_im
   return start;
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

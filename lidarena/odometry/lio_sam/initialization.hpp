@@ -8,12 +8,12 @@
 #include "lidarena/estimation/inertial_smoother.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// Result of the initialization.
 struct Start {
-  InertialStart inertial;    ///< of the IMU; the body is at the origin with yaw 0
-  double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
+  estimation::InertialStart inertial;  ///< of the IMU; the body is at the origin with yaw 0
+  double accel_scale = 1.0;            ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
 };
 
@@ -23,4 +23,4 @@ struct Start {
 Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
                  const Config& config);
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

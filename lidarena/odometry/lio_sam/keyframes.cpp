@@ -6,7 +6,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 void append(std::vector<Eigen::Vector3f>& all, const std::vector<Eigen::Vector3f>& points,
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
     places.push_back(place.cast<float>());
   }
   std::vector<std::uint32_t> chosen;
-  for (const std::uint32_t i : first_of_each_voxel(places, config.submap_density_m))
+  for (const std::uint32_t i : map::first_of_each_voxel(places, config.submap_density_m))
     chosen.push_back(near[i]);
   for (const std::uint32_t i : near) {
     if (to_seconds(now - keyframes[i].stamp) < config.submap_recent_s) chosen.push_back(i);
@@ -117,4 +117,4 @@ std::uint64_t Submap::memory_bytes() const {
   return bytes;
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -12,7 +12,7 @@
 #include "lidarena/odometry/lio_sam/features.hpp"
 #include "lidarena/odometry/lio_sam/registration.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// A scan kept for the map.
 struct Keyframe {
@@ -69,9 +69,9 @@ class Submap {
   };
 
   std::map<std::uint32_t, Part> parts_;  ///< by index of the keyframe
-  VoxelSums edges_;
-  VoxelSums surfaces_;
+  map::VoxelSums edges_;
+  map::VoxelSums surfaces_;
   FeatureMap map_;
 };
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -8,7 +8,7 @@
 #include "lidarena/odometry/lio_sam/initialization.hpp"
 #include "lidarena/odometry/lio_sam/range_image.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 constexpr std::size_t kStartSamples = 10;    // minimum number of IMU samples for initialization
@@ -16,8 +16,8 @@ constexpr Time kStartMemory{1'000'000'000};  // maximum age of these samples
 constexpr double kMaxSpeed = 30.0;           // m/s; beyond this the smoother has failed
 constexpr double kMaxBias = 1.0;             // m/s^2, rad/s; likewise
 
-ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
-  if (config.imu_noise_factor > 0.0) return noise_of(imu, config.imu_noise_factor);
+estimation::ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
+  if (config.imu_noise_factor > 0.0) return estimation::noise_of(imu, config.imu_noise_factor);
   return {config.gyro_noise, config.accel_noise, config.gyro_walk, config.accel_walk};
 }
 
@@ -36,7 +36,7 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       sweep_(from_seconds(1.0 / lidar.rate_hz)),
-      pending_(ImuBias{}, noise_),
+      pending_(estimation::ImuBias{}, noise_),
       submap_(config),
       closer_(config.loop, parallel_) {}
 
@@ -100,29 +100,30 @@ bool LioSam::is_due(Time stamp) const {
 
 LioSam::Prediction LioSam::predict(Time stamp, Time end) {
   longest_gap_s_ = 0.0;
-  const NavState& last = smoother_.latest();
+  const estimation::NavState& last = smoother_.latest();
   integrate(imu_.between(integrated_until_, stamp), last, pending_, nullptr);
   integrated_until_ = std::max(integrated_until_, stamp);
   imu_.forget_before(stamp);
-  const NavState now = pending_.predict(last, smoother_.gravity());
+  const estimation::NavState now = pending_.predict(last, smoother_.gravity());
   const Pose last_from_now = last.world_from_imu.inverse() * now.world_from_imu;
 
   Prediction prediction;
   prediction.world_from_lidar =
       world_from_lidar_ * imu_from_lidar_.inverse() * last_from_now * imu_from_lidar_;
   prediction.track_from_imu = now.world_from_imu;
-  NavState within = now;
+  estimation::NavState within = now;
   if (!config_.deskew_bias) within.bias.gyro.setZero();
-  Preintegration sum(within.bias, noise_);
+  estimation::Preintegration sum(within.bias, noise_);
   integrate(imu_.between(stamp, end), within, sum, &prediction.track);
   return prediction;
 }
 
-void LioSam::integrate(const std::vector<ImuInterval>& intervals, const NavState& state,
-                       Preintegration& sum, ImuTrack* track) {
+void LioSam::integrate(const std::vector<estimation::ImuInterval>& intervals,
+                       const estimation::NavState& state, estimation::Preintegration& sum,
+                       estimation::ImuTrack* track) {
   const Eigen::Vector3d& gravity = smoother_.gravity();
-  for (const ImuInterval& interval : intervals) {
-    const NavState now = sum.predict(state, gravity);
+  for (const estimation::ImuInterval& interval : intervals) {
+    const estimation::NavState now = sum.predict(state, gravity);
     const Eigen::Matrix3d rotation = now.world_from_imu.linear();
     Eigen::Vector3d accel = accel_scale_ * interval.accel;
     if (interval.gap) {  // coast with constant velocity
@@ -134,22 +135,24 @@ void LioSam::integrate(const std::vector<ImuInterval>& intervals, const NavState
                         rotation * (accel - state.bias.accel) + gravity,
                         interval.gyro - state.bias.gyro});
     }
-    sum.integrate(interval.gyro, accel, interval.seconds(), interval.gap ? kCoastingNoise : noise_);
+    sum.integrate(interval.gyro, accel, interval.seconds(),
+                  interval.gap ? estimation::kCoastingNoise : noise_);
   }
 }
 
 std::vector<Eigen::Vector3f> LioSam::deskewed(const Scan& scan,
                                               const Prediction& prediction) const {
   if (config_.deskew_translation)
-    return deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu, parallel_);
-  ImuTrack turning = prediction.track;  // rotation about the LiDAR, without translation
-  for (ImuStep& step : turning) {
+    return estimation::deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu,
+                              parallel_);
+  estimation::ImuTrack turning = prediction.track;  // rotation about the LiDAR, without translation
+  for (estimation::ImuStep& step : turning) {
     step.world_from_imu = rotation_of(step.world_from_imu);
     step.velocity.setZero();
     step.acceleration.setZero();
   }
-  return deskew(scan, turning, rotation_of(imu_from_lidar_), rotation_of(prediction.track_from_imu),
-                parallel_);
+  return estimation::deskew(scan, turning, rotation_of(imu_from_lidar_),
+                            rotation_of(prediction.track_from_imu), parallel_);
 }
 
 Registration LioSam::match(const Features& features, const Pose& guess, Time stamp) {
@@ -165,7 +168,7 @@ Registration LioSam::match(const Features& features, const Pose& guess, Time sta
 
 ScanStatus LioSam::status_of(const Registration& found, const Features& features) const {
   if (!found.map_from_lidar.matrix().allFinite() ||
-      !(smoother_.latest().velocity.norm() < kMaxPlausibleSpeed))
+      !(smoother_.latest().velocity.norm() < estimation::kMaxPlausibleSpeed))
     return ScanStatus::kDiverged;
   if (features.surfaces.empty()) return ScanStatus::kTooFewPoints;
   if (keyframes_.empty()) return ScanStatus::kInitializing;
@@ -187,9 +190,9 @@ void LioSam::fuse(Registration& found) {
   pending_ = nothing_yet();
 }
 
-PoseMeasurement::Information LioSam::information_of(const Registration& found,
-                                                    const Pose& odom_from_imu) const {
-  using Matrix6 = PoseMeasurement::Information;
+estimation::PoseMeasurement::Information LioSam::information_of(const Registration& found,
+                                                                const Pose& odom_from_imu) const {
+  using Matrix6 = estimation::PoseMeasurement::Information;
   const auto squared = [](double x) { return x * x; };
   Matrix6 least = Matrix6::Zero();  // covariance
   const bool all_or_nothing = config_.point_sigma_m <= 0.0 && found.degenerate_directions > 0;
@@ -211,15 +214,15 @@ PoseMeasurement::Information LioSam::information_of(const Registration& found,
 }
 
 void LioSam::restart_if_failed() {
-  const NavState& state = smoother_.latest();
+  const estimation::NavState& state = smoother_.latest();
   if (state.velocity.norm() < kMaxSpeed && state.bias.accel.norm() < kMaxBias &&
       state.bias.gyro.norm() < kMaxBias)
     return;
-  InertialStart again;
+  estimation::InertialStart again;
   again.state.world_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   again.gravity = smoother_.gravity();
   again.gravity_sigma = config_.gravity_sigma_rad;
-  again.covariance.diagonal().segment<3>(NavState::kVelocity).setConstant(9.0);
+  again.covariance.diagonal().segment<3>(estimation::NavState::kVelocity).setConstant(9.0);
   smoother_.start(again);
   ++restarts_;
 }
@@ -316,4 +319,4 @@ std::map<std::string, std::uint64_t> LioSam::memory() const {
           {"other", poses_.memory_bytes() + closer_.memory_bytes()}};
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -17,7 +17,7 @@
 #include "lidarena/odometry/lio_sam/registration.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// LiDAR-inertial odometry on edges and planes, smoothed with the IMU, after Shan, Englot, Meyers,
 /// Wang, Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping"
@@ -38,14 +38,14 @@ class LioSam : public Odometry {
   std::vector<Eigen::Vector3f> map() const override;
   std::map<std::string, std::uint64_t> memory() const override;
 
-  const LoopCloser& loops() const { return closer_; }
+  const loop::LoopCloser& loops() const { return closer_; }
 
  private:
   /// Prediction of a scan's motion by the IMU.
   struct Prediction {
-    Pose world_from_lidar;  ///< at the scan's stamp
-    ImuTrack track;         ///< within the scan, for de-skewing
-    Pose track_from_imu;    ///< at the scan's stamp
+    Pose world_from_lidar;       ///< at the scan's stamp
+    estimation::ImuTrack track;  ///< within the scan, for de-skewing
+    Pose track_from_imu;         ///< at the scan's stamp
   };
 
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
@@ -55,15 +55,16 @@ class LioSam : public Odometry {
   bool is_due(Time stamp) const;
   Prediction predict(Time stamp, Time end);
   /// Adds the IMU's intervals to `sum`, which began in `state`; fills `track` unless it is null.
-  void integrate(const std::vector<ImuInterval>& intervals, const NavState& state,
-                 Preintegration& sum, ImuTrack* track);
+  void integrate(const std::vector<estimation::ImuInterval>& intervals,
+                 const estimation::NavState& state, estimation::Preintegration& sum,
+                 estimation::ImuTrack* track);
   std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
   Registration match(const Features& features, const Pose& guess, Time stamp);
   ScanStatus status_of(const Registration& found, const Features& features) const;
   /// Adds the registered pose to the smoother; with fused_pose, replaces it by the smoother's.
   void fuse(Registration& found);
-  PoseMeasurement::Information information_of(const Registration& found,
-                                              const Pose& odom_from_imu) const;
+  estimation::PoseMeasurement::Information information_of(const Registration& found,
+                                                          const Pose& odom_from_imu) const;
   void restart_if_failed();
   /// Makes the scan a keyframe if one is due; a loop then may correct `world_from_lidar`.
   void keep(Time stamp, Pose& world_from_lidar, Features features);
@@ -74,22 +75,22 @@ class LioSam : public Odometry {
                          std::map<std::string, double> counters);
   ScanResult result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
                        std::map<std::string, double> counters) const;
-  Preintegration nothing_yet() const { return {smoother_.latest().bias, noise_}; }
+  estimation::Preintegration nothing_yet() const { return {smoother_.latest().bias, noise_}; }
 
   Config config_;
   Pose body_from_imu_;
   Pose body_from_lidar_;
   Pose imu_from_lidar_;
-  ImuNoise noise_;
+  estimation::ImuNoise noise_;
   Parallel parallel_;
 
-  ImuBuffer imu_;
+  estimation::ImuBuffer imu_;
   bool started_ = false;
   double accel_scale_ = 1.0;
   Time sweep_;  ///< duration of the last scan that had points
 
-  InertialSmoother smoother_;  ///< in the odometry frame, which has no jumps from loops
-  Preintegration pending_;     ///< since the smoother's last state
+  estimation::InertialSmoother smoother_;  ///< in the odometry frame, which has no jumps from loops
+  estimation::Preintegration pending_;     ///< since the smoother's last state
   Time integrated_until_{0};
   double longest_gap_s_ = 0.0;  ///< of the IMU, since the last scan
   int restarts_ = 0;
@@ -100,8 +101,8 @@ class LioSam : public Odometry {
   std::vector<Keyframe> keyframes_;
   KeyframeMerger merger_;  ///< of the last keyframe
   Submap submap_;
-  AnchoredTrajectory poses_;  ///< of the LiDAR
-  LoopCloser closer_;
+  loop::AnchoredTrajectory poses_;  ///< of the LiDAR
+  loop::LoopCloser closer_;
 };
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

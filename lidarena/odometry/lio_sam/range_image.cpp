@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <numbers>
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Indices = std::vector<std::uint32_t>;
@@ -60,4 +60,4 @@ RangeImage project(const Scan& scan, std::span<const Eigen::Vector3f> positions,
   return image;
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

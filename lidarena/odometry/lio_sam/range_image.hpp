@@ -9,7 +9,7 @@
 #include "lidarena/base/scan.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 /// A point and its column in the image.
 struct Pixel {
@@ -33,4 +33,4 @@ struct RangeImage {
 RangeImage project(const Scan& scan, std::span<const Eigen::Vector3f> positions,
                    const Config& config);
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

@@ -6,7 +6,7 @@
 
 #include "lidarena/base/so3.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
@@ -32,7 +32,7 @@ template <class Shape>
 using Matches = std::vector<std::optional<Shape>>;
 
 template <class Shape, class Fit>
-void search(const std::vector<Eigen::Vector3f>& points, const KdTree& map, const Pose& pose,
+void search(const std::vector<Eigen::Vector3f>& points, const map::KdTree& map, const Pose& pose,
             const Parallel& parallel, Fit&& fit, Matches<Shape>& matches) {
   constexpr std::size_t kGrain = 256;
   parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
@@ -46,7 +46,7 @@ void search(const std::vector<Eigen::Vector3f>& points, const KdTree& map, const
 template <class Shape, class Residual>
 PoseEquations sum_of(const std::vector<Eigen::Vector3f>& points, const Matches<Shape>& matches,
                      const Pose& pose, const Parallel& parallel, Residual&& residual_of) {
-  return accumulate_normal_equations<6>(
+  return estimation::accumulate_normal_equations<6>(
       parallel, points.size(), [&](std::size_t i, PoseEquations& sum) {
         if (!matches[i]) return;
         const auto residual = residual_of(points[i].cast<double>(), *matches[i], pose);
@@ -72,8 +72,8 @@ class Matcher {
       search(
           features_.surfaces, map_.surfaces, pose, parallel_,
           [&](const Neighbors& near) {
-            return fit_plane(columns_of(near), config_.plane_fit, config_.plane_thickness_m,
-                             kPlaneRatio);
+            return estimation::fit_plane(map::columns_of(near), config_.plane_fit,
+                                         config_.plane_thickness_m, kPlaneRatio);
           },
           planes_);
     }
@@ -88,7 +88,7 @@ class Matcher {
   const Config& config_;
   const Parallel& parallel_;
   Matches<Line> lines_;
-  Matches<Plane> planes_;
+  Matches<estimation::Plane> planes_;
 };
 
 /// Root mean square of the points' ranges.
@@ -101,7 +101,7 @@ double lever_of(const std::vector<Eigen::Vector3f>& points) {
 }  // namespace
 
 std::optional<Line> fit_line(const Neighbors& points) {
-  const PrincipalAxes principal = principal_axes(columns_of(points));
+  const estimation::PrincipalAxes principal = estimation::principal_axes(map::columns_of(points));
   if (!(principal.spread[2] > kLineRatio * principal.spread[1])) return std::nullopt;
   return Line{principal.center, principal.axes.col(2)};
 }
@@ -117,7 +117,7 @@ std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& li
   return residual_along(away / distance, distance, arm, weight);
 }
 
-std::optional<PointResidual> surface_residual(const Vector3d& point, const Plane& plane,
+std::optional<PointResidual> surface_residual(const Vector3d& point, const estimation::Plane& plane,
                                               const Pose& map_from_lidar) {
   const Vector3d arm = map_from_lidar.linear() * point;
   const double distance = plane.normal.dot(arm + map_from_lidar.translation()) + plane.offset;
@@ -178,4 +178,4 @@ Registration register_features(const Features& features, const FeatureMap& map, 
   return result;
 }
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

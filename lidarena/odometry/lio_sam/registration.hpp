@@ -14,12 +14,12 @@
 #include "lidarena/odometry/lio_sam/config.hpp"
 #include "lidarena/odometry/lio_sam/features.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 
 inline constexpr std::size_t kNeighbors = 5;
-using Neighbors = std::array<Neighbor, kNeighbors>;
+using Neighbors = std::array<map::Neighbor, kNeighbors>;
 /// Errors of a pose: rotation (rad, about the sensor, world axes), then translation (m, world).
-using PoseEquations = NormalEquations<6>;
+using PoseEquations = estimation::NormalEquations<6>;
 
 struct Line {
   Eigen::Vector3d center;
@@ -37,7 +37,8 @@ struct PointResidual {
 };
 std::optional<PointResidual> edge_residual(const Eigen::Vector3d& point, const Line& line,
                                            const Pose& map_from_lidar);
-std::optional<PointResidual> surface_residual(const Eigen::Vector3d& point, const Plane& plane,
+std::optional<PointResidual> surface_residual(const Eigen::Vector3d& point,
+                                              const estimation::Plane& plane,
                                               const Pose& map_from_lidar);
 
 /// Directions in which the points do not determine the pose.
@@ -52,8 +53,8 @@ Degenerate find_degenerate(const PoseEquations& equations, double lever, Degener
 
 /// Map with which a scan is matched.
 struct FeatureMap {
-  KdTree edges;
-  KdTree surfaces;
+  map::KdTree edges;
+  map::KdTree surfaces;
 };
 
 struct Registration {
@@ -68,4 +69,4 @@ struct Registration {
 Registration register_features(const Features& features, const FeatureMap& map, const Pose& guess,
                                const Config& config, const Parallel& parallel);
 
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

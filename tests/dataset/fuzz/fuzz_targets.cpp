@@ -8,22 +8,22 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/dataset/ros1/bag_writer.hpp"
-#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/messages/driver_layouts.hpp"
 #include "lidarena/dataset/imu_text.hpp"
-#include "lidarena/dataset/trajectories/kitti.hpp"
-#include "lidarena/dataset/messages/livox_message.hpp"
 #include "lidarena/dataset/mcap/mcap_writer.hpp"
+#include "lidarena/dataset/messages/driver_layouts.hpp"
+#include "lidarena/dataset/messages/livox_message.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/points/sweep_file.hpp"
+#include "lidarena/dataset/ros1/bag_writer.hpp"
+#include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
-namespace lidarena::fuzz {
+namespace lidarena::dataset::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
@@ -271,4 +271,4 @@ const Target& target(std::string_view name) {
   throw std::out_of_range("no such target");
 }
 
-}  // namespace lidarena::fuzz
+}  // namespace lidarena::dataset::fuzz

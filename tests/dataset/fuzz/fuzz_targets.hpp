@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace lidarena::fuzz {
+namespace lidarena::dataset::fuzz {
 
 /// A reader to be tested with damaged input. For any bytes, InputError is the only exception
 /// allowed: another exception, a crash or a sanitizer report is a defect.
@@ -21,4 +21,4 @@ const std::vector<Target>& targets();
 /// Throws std::out_of_range for an unknown name.
 const Target& target(std::string_view name);
 
-}  // namespace lidarena::fuzz
+}  // namespace lidarena::dataset::fuzz

@@ -11,7 +11,7 @@
 #include "lidarena/base/random.hpp"
 #include "tests/dataset/fuzz/fuzz_targets.hpp"
 
-namespace lidarena::fuzz {
+namespace lidarena::dataset::fuzz {
 namespace {
 
 /// Duration of the test of each reader, s; set by LIDARENA_FUZZ_SECONDS.
@@ -99,4 +99,4 @@ INSTANTIATE_TEST_SUITE_P(All, Readers,
 TEST(Targets, AreAllTried) { EXPECT_EQ(targets().size(), 9U); }
 
 }  // namespace
-}  // namespace lidarena::fuzz
+}  // namespace lidarena::dataset::fuzz

@@ -7,7 +7,7 @@
 
 #include "tests/odometry/kiss_icp/motions.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 namespace {
 
 TEST(AdaptiveThreshold, DisplacementIsHowFarAPointAtTheRangeMoves) {
@@ -73,4 +73,4 @@ TEST(AdaptiveThreshold, TheLeverIsTheMaximumRangeOrTheMeanRangeOfTheScan) {
 }
 
 }  // namespace
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -6,7 +6,7 @@
 #include "lidarena/base/so3.hpp"
 
 /// Twists and poses from their six numbers: translation, then rotation vector.
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 
 inline se3::Vector6 vector6(double a, double b, double c, double d, double e, double f) {
   se3::Vector6 v;
@@ -18,4 +18,4 @@ inline Pose pose_of(double x, double y, double z, double rx, double ry, double r
   return make_pose(so3::exp({rx, ry, rz}), {x, y, z});
 }
 
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -8,7 +8,7 @@
 #include "lidarena/base/se3.hpp"
 #include "tests/odometry/kiss_icp/motions.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 namespace {
 
 using se3::Vector6;
@@ -39,7 +39,7 @@ TEST(Preprocess, TheRangeGateIsOpenAtBothEndsAndRefusesWhatIsNotFinite) {
                              {kNan, 2, 2},
                              {kInfinite, 0, 0}},
                             100);
-  const ScanTimes times = times_of(scan, Time{0});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   const auto kept = preprocess(scan, times, Vector6::Zero(), config, Parallel(1));
   ASSERT_EQ(kept.size(), 2U);
   EXPECT_EQ(kept.positions[0], Eigen::Vector3f(1.01F, 0, 0));
@@ -50,17 +50,17 @@ TEST(Preprocess, TheRangeGateIsOpenAtBothEndsAndRefusesWhatIsNotFinite) {
 TEST(Preprocess, APoseBelongsToTheLastPointOrTheMiddleOfTheScan) {
   Scan scan = scan_of({{1, 0, 0}, {1, 0, 0}, {1, 0, 0}}, 300);
   std::swap(scan.points[0], scan.points[2]);  // not in order of time
-  EXPECT_EQ(pose_time(times_of(scan, Time{5}), PoseInstant::kScanEnd), Time{1600});
-  EXPECT_EQ(pose_time(times_of(scan, Time{5}), PoseInstant::kScanMiddle), Time{1300});
-  EXPECT_TRUE(times_of(scan, Time{5}).timed);
+  EXPECT_EQ(pose_time(estimation::times_of(scan, Time{5}), PoseInstant::kScanEnd), Time{1600});
+  EXPECT_EQ(pose_time(estimation::times_of(scan, Time{5}), PoseInstant::kScanMiddle), Time{1300});
+  EXPECT_TRUE(estimation::times_of(scan, Time{5}).timed);
   scan.points.clear();
-  EXPECT_EQ(pose_time(times_of(scan, Time{500}), PoseInstant::kScanEnd), Time{1500});
-  EXPECT_FALSE(times_of(scan, Time{500}).timed);
+  EXPECT_EQ(pose_time(estimation::times_of(scan, Time{500}), PoseInstant::kScanEnd), Time{1500});
+  EXPECT_FALSE(estimation::times_of(scan, Time{500}).timed);
 }
 
 TEST(Preprocess, EqualTimesLoseTheScanInTheOriginalAndMeanNoTimesWhenCured) {
   const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}}, 0);
-  const ScanTimes times = times_of(scan, Time{0});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   Config config;
   const Pose motion = pose_of(0.1, 0, 0, 0, 0, 0.1);
   const Vector6 twist = twist_within(times, motion, 0.1, config);
@@ -72,7 +72,7 @@ TEST(Preprocess, EqualTimesLoseTheScanInTheOriginalAndMeanNoTimesWhenCured) {
 
 TEST(Preprocess, MotionFillsTheScanInTheOriginalAndTheTimeItTookWhenCured) {
   const Scan scan = scan_of({{2, 0, 0}, {2, 0, 0}}, 50'000'000);  // a scan of 0.05 s
-  const ScanTimes times = times_of(scan, Time{0});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   const Vector6 moved = vector6(0.2, 0, 0, 0, 0, 0.1);  // in 0.1 s
   Config config;
   EXPECT_LT((twist_within(times, se3::exp(moved), 0.1, config) - moved / 0.05).norm(), 1e-12);
@@ -84,7 +84,7 @@ TEST(Preprocess, MotionFillsTheScanInTheOriginalAndTheTimeItTookWhenCured) {
 
 TEST(Preprocess, PointsWhoseMotionIsToBeEstimatedStayAtTheirInstantsUntilItIsKnown) {
   const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, 50'000'000);
-  const ScanTimes times = times_of(scan, Time{0});
+  const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   Config config;
   config.own_motion = 1.0;
   const Vector6 wrong = vector6(9, 9, 9, 9, 9, 9);
@@ -135,4 +135,4 @@ TEST(Preprocess, AScanWithoutTimesOrPointsIsOneSlice) {
 }
 
 }  // namespace
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

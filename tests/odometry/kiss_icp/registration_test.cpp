@@ -11,7 +11,7 @@
 #include "tests/odometry/kiss_icp/motions.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 namespace {
 
 using se3::Vector6;
@@ -35,15 +35,16 @@ std::vector<Eigen::Vector3f> look_around(const Pose& room_from_lidar, std::size_
   return points;
 }
 
-VoxelHashMap map_of(std::span<const Eigen::Vector3f> points) {
-  VoxelHashMap map({.voxel_size = 0.5, .max_points = 4096});
+map::VoxelHashMap map_of(std::span<const Eigen::Vector3f> points) {
+  map::VoxelHashMap map({.voxel_size = 0.5, .max_points = 4096});
   map.insert(points);
   return map;
 }
 
 /// ICP of de-skewed points.
-Registration register_still(const std::vector<Eigen::Vector3f>& points, const VoxelHashMap& map,
-                            const Pose& guess, double sigma, const Config& config) {
+Registration register_still(const std::vector<Eigen::Vector3f>& points,
+                            const map::VoxelHashMap& map, const Pose& guess, double sigma,
+                            const Config& config) {
   return register_points({points, {}}, map, {}, guess, sigma, 0.0, config, Parallel(1));
 }
 
@@ -69,7 +70,7 @@ TEST(Registration, JacobianOfTheResidualIsItsNumericDerivative) {
 
 TEST(Registration, TheSamePointsMovedAreFoundWhereTheyWere) {
   const auto points = look_around(synthetic::flight(0.0), 4000, 0.0, 0.0);
-  const VoxelHashMap map = map_of(points);
+  const map::VoxelHashMap map = map_of(points);
   // points are at least 0.2 m apart; with a translation of 5 cm nearly all pairs are right at once
   const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   for (const bool sensor_centered : {false, true}) {
@@ -88,7 +89,7 @@ TEST(Registration, MotionBetweenTwoNoisyScansOfARoomIsFoundToTheNoiseOfItsMean) 
   const Pose motion = pose_of(0.12, 0.05, -0.04, 0.01, -0.02, 0.04);
   constexpr double kNoise = 0.01;
   constexpr std::size_t kKeypoints = 2000;
-  const VoxelHashMap map = map_of(look_around(first, 200000, 0.0, kNoise));
+  const map::VoxelHashMap map = map_of(look_around(first, 200000, 0.0, kNoise));
   const auto keypoints = look_around(first * motion, kKeypoints, 0.7, kNoise);
   Config config;
   config.convergence = 1e-6;
@@ -107,7 +108,7 @@ TEST(Registration, TurningAboutTheSensorOrTheOriginEndsAtTheSamePose) {
   std::vector<Eigen::Vector3f> points = look_around(synthetic::flight(0.0), 4000, 0.0, 0.0);
   std::vector<Eigen::Vector3f> moved;
   for (const auto& p : points) moved.push_back((far_away * p.cast<double>()).cast<float>());
-  const VoxelHashMap map = map_of(moved);
+  const map::VoxelHashMap map = map_of(moved);
   const Pose guess = far_away * pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   Config config;
   config.convergence = 1e-7;
@@ -161,7 +162,7 @@ TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
   std::vector<Eigen::Vector3f> walls;
   for (const auto& p : look_around(start, 100000, 0.3, 0.0))
     walls.push_back((start * p.cast<double>()).cast<float>());
-  const VoxelHashMap map = map_of(walls);
+  const map::VoxelHashMap map = map_of(walls);
   const TimedPoints keypoints = look_around_moving(end, twist, 2003);
   Config config;
   config.sensor_centered = true;
@@ -209,7 +210,7 @@ TEST(Registration, PlanesAverageTheNoiseOfTheirCells) {
   Config config;
   config.sensor_centered = true;
   config.convergence = 1e-7;
-  VoxelHashMap planes({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
+  map::VoxelHashMap planes({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   planes.insert(wall);
   const Registration found = register_still(seen, planes, guess, 1.0, config);
   // the plane of 80 cells is the mean of 500 points with 1 cm of noise
@@ -239,15 +240,15 @@ TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
     pattern.push_back(there);
     seen.emplace_back(there.array() - 0.05F);
   }
-  VoxelHashMap corner({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
+  map::VoxelHashMap corner({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   corner.insert(walls);
   corner.insert(pattern);
-  VoxelHashMap alone({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
+  map::VoxelHashMap alone({.voxel_size = 0.5, .max_points = 4096, .plane_thinness = 0.2});
   alone.insert(pattern);
   Config config;
   config.sensor_centered = true;
   config.convergence = 1e-7;
-  const auto shift_in = [&](const VoxelHashMap& map, double weight) -> double {
+  const auto shift_in = [&](const map::VoxelHashMap& map, double weight) -> double {
     config.shapeless_weight = weight;
     return register_still(seen, map, Pose::Identity(), 0.5, config)
         .map_from_lidar.translation()
@@ -295,7 +296,7 @@ TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
 
 TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
   const auto points = look_around(synthetic::flight(0.0), 2000, 0.0, 0.0);
-  const VoxelHashMap map = map_of(points);
+  const map::VoxelHashMap map = map_of(points);
   const Pose shift = pose_of(0.03, -0.04, 0.02, 0.003, 0.002, -0.004);
   Config config;
   config.sensor_centered = true;
@@ -308,4 +309,4 @@ TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
 }
 
 }  // namespace
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

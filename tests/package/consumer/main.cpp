@@ -13,21 +13,22 @@
 
 int main() {
   using namespace lidarena;
-  const World world(box_shape({2.0, 2.0, 2.0}), "cube");
-  const std::array rays{Ray{Eigen::Vector3d::Zero(), Eigen::Vector3f::UnitX()}};
-  std::array<Hit, 1> hits;
+  const world::World world(world::box_shape({2.0, 2.0, 2.0}), "cube");
+  const std::array rays{world::Ray{Eigen::Vector3d::Zero(), Eigen::Vector3f::UnitX()}};
+  std::array<world::Hit, 1> hits;
   world.cast(rays, 10.0, hits);
   if (std::abs(hits[0].range - 1.0F) > 1e-5F) return 1;
 
   const std::array map{Eigen::Vector3f{1.5F, 0.0F, 0.0F}};
-  const MapError error = map_error(map, Pose::Identity(), world, Parallel(1));
+  const evaluation::MapError error =
+      evaluation::map_error(map, Pose::Identity(), world, Parallel(1));
   if (std::abs(error.distance_m.mean - 0.5) > 1e-6) return 2;
 
   Rig rig;
   rig.lidars.emplace_back().id = "lidar";
   rig.imus.emplace_back().id = "lidar";
-  for (const AlgorithmInfo& info : list_algorithms()) {
-    if (!make_odometry({info.name}, rig, "lidar", Parallel(1)).odometry) return 3;
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
+    if (!odometry::make_odometry({info.name}, rig, "lidar", Parallel(1)).odometry) return 3;
     std::printf("%s\n", info.name.c_str());
   }
 }
