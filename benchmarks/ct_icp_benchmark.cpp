@@ -39,7 +39,7 @@ const Config& config() {
 
 const map::VoxelHashMap& map() {
   static const map::VoxelHashMap filled = [] {
-    map::VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel, config().map.min_point_spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();
@@ -48,7 +48,7 @@ const map::VoxelHashMap& map() {
 
 std::vector<TimedPoint> keypoints() {
   return sample_keypoints(scan_of(20'000, 2), KeypointSampling::kGrid,
-                          config().sampling.keypoint_voxel_m, config().sampling.max_keypoints,
+                          config().sampling.keypoint_voxel_size_m, config().sampling.max_keypoints,
                           map::VoxelRounding::kFloor);
 }
 
@@ -56,7 +56,7 @@ void thin_scan(benchmark::State& state) {
   const auto points = scan_of(static_cast<std::size_t>(state.range(0)), 2);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        thin(points, config().sampling.frame_voxel_m, map::VoxelRounding::kFloor));
+        thin(points, config().sampling.scan_voxel_size_m, map::VoxelRounding::kFloor));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(thin_scan)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
@@ -65,7 +65,7 @@ void choose_keypoints(benchmark::State& state) {
   const auto frame = scan_of(20'000, 2);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        sample_keypoints(frame, KeypointSampling::kGrid, config().sampling.keypoint_voxel_m,
+        sample_keypoints(frame, KeypointSampling::kGrid, config().sampling.keypoint_voxel_size_m,
                          config().sampling.max_keypoints, map::VoxelRounding::kFloor));
 }
 BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
@@ -123,9 +123,9 @@ BENCHMARK(solve<true>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
   const auto frame =
-      thin(scan_of(20'000, 3), config().sampling.frame_voxel_m, map::VoxelRounding::kFloor);
+      thin(scan_of(20'000, 3), config().sampling.scan_voxel_size_m, map::VoxelRounding::kFloor);
   map::VoxelHashMap grown = [] {
-    map::VoxelHashMap made({config().map.voxel_m, config().map.max_points, config().map.spacing_m});
+    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel, config().map.min_point_spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();

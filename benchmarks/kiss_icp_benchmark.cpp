@@ -84,7 +84,7 @@ struct Stage {
         map_points(thin_for_map(points)),
         keypoints(thin_for_registration(map_points)),
         map({config.voxel_size(), config.max_points_per_voxel,
-             config.voxel_size() / std::sqrt(config.max_points_per_voxel), config.cell_rounding,
+             config.voxel_size() / std::sqrt(config.max_points_per_voxel), config.voxel_rounding,
              config.plane_thinness.value_or(0.0)}),
         departure{pose_at(kPeriod_s * kScans), kPeriod_s, se3::Vector6::Zero()},
         guess(pose_at(kPeriod_s * kScans)) {
@@ -140,7 +140,7 @@ void register_keypoints(benchmark::State& state) {
   const Stage& s = stage(state.range(0));
   for (auto _ : state) {
     const auto found = register_points(s.keypoints, s.map, s.departure, s.guess, 0.2,
-                                       s.config.own_motion, s.config, s.parallel);
+                                       s.config.scan_motion_share, s.config, s.parallel);
     state.counters["iterations"] = found.iterations;
     state.counters["keypoints"] = static_cast<double>(s.keypoints.size());
   }
@@ -158,7 +158,7 @@ void insert_into_map(benchmark::State& state) {
   for (auto _ : state) {
     state.PauseTiming();
     map::VoxelHashMap map({s.config.voxel_size(), s.config.max_points_per_voxel, 0.09,
-                           s.config.cell_rounding, s.config.plane_thinness.value_or(0.0)});
+                           s.config.voxel_rounding, s.config.plane_thinness.value_or(0.0)});
     state.ResumeTiming();
     map.insert(s.in_map);
   }

@@ -53,7 +53,7 @@ std::vector<Vector3f> make_map(const world::World& world, const std::vector<Vect
 
 scenes::CaveConfig fine_cave() {
   scenes::CaveConfig config;
-  config.resolution_m = 0.1;
+  config.voxel_size_m = 0.1;
   return config;
 }
 

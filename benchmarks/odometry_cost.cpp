@@ -89,7 +89,7 @@ int measure(const Arguments& a) {
   double between = 0.0;  // CPU time of the IMU calls before the next scan, s
   std::map<std::string, std::size_t> statuses;
   std::map<std::string, double> sums;
-  double least_agreement = 1.0;  // of a scan with the map, if the algorithm counts it
+  double min_inlier_share = 1.0;  // of a scan with the map, if the algorithm counts it
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);
     if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
@@ -106,8 +106,8 @@ int measure(const Arguments& a) {
     for (const auto& [name, value] : result.counters) sums[name] += value;
     const auto& counters = result.counters;
     if (counters.contains("near_planes") && counters.at("near_planes") > 0.0) {
-      least_agreement =
-          std::min(least_agreement, counters.at("planes") / counters.at("near_planes"));
+      min_inlier_share =
+          std::min(min_inlier_share, counters.at("planes") / counters.at("near_planes"));
     }
     if (scan_ms.size() % 600 == 0) print_state(scan_ms.size(), *odometry);
   }
@@ -121,7 +121,7 @@ int measure(const Arguments& a) {
              percentile(scan_ms, 0.99), percentile(scan_ms, 1.0));
   fmt::print("statuses: {}\nmeans:", statuses);
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
-  fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", least_agreement);
+  fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", min_inlier_share);
   if (!a.out.empty()) dataset::write_tum(a.out, odometry->trajectory(), "");
   return 0;
 }

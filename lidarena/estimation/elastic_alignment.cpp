@@ -124,17 +124,17 @@ class PriorTerms {
   }
   /// Adds the second differences at an inner knot.
   void add_bends(const MotionPrior& prior, Eigen::Index i) {
-    if (prior.bend > 0.0) {
-      PriorTerm& term = open(prior.bend, knot(i - 1).translation() - 2.0 * knot(i).translation() +
+    if (prior.velocity_change > 0.0) {
+      PriorTerm& term = open(prior.velocity_change, knot(i - 1).translation() - 2.0 * knot(i).translation() +
                                              knot(i + 1).translation());
       position(i - 1, 1.0, term);
       position(i, -2.0, term);
       position(i + 1, 1.0, term);
     }
-    if (prior.angular_bend > 0.0) {
+    if (prior.angular_velocity_change > 0.0) {
       const Turn before = turn_between(knot(i - 1), knot(i));
       const Turn after = turn_between(knot(i), knot(i + 1));
-      PriorTerm& term = open(prior.angular_bend, after.vector - before.vector);
+      PriorTerm& term = open(prior.angular_velocity_change, after.vector - before.vector);
       rotation(i - 1, -before.by_from, term);
       rotation(i, after.by_from - before.by_to, term);
       rotation(i + 1, after.by_to, term);

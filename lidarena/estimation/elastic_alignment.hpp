@@ -38,8 +38,8 @@ struct MotionPrior {
   double velocity = 0.0;          ///< the translation from first to last knot is `step`
   double angular_velocity = 0.0;  ///< the rotation from first to last knot is `turn`
   double small_velocity = 0.0;    ///< the translation from first to last knot is zero
-  double bend = 0.0;              ///< the second differences of positions are zero
-  double angular_bend = 0.0;      ///< the second differences of rotations are zero
+  double velocity_change = 0.0;              ///< the second differences of positions are zero
+  double angular_velocity_change = 0.0;      ///< the second differences of rotations are zero
 };
 
 struct ElasticProblem {

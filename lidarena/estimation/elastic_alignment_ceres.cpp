@@ -212,8 +212,8 @@ class Adjustment {
     add_term(prior.small_velocity, StepCost{0.0, Eigen::Vector3d::Zero()}, first, last);
     add_term(prior.angular_velocity, TurnCost{0.0, prior.turn}, first, last);
     for (std::size_t i = 1; i < last; ++i) {
-      add_term(prior.bend, BendCost{0.0}, i - 1, i, i + 1);
-      add_term(prior.angular_bend, AngularBendCost{0.0}, i - 1, i, i + 1);
+      add_term(prior.velocity_change, BendCost{0.0}, i - 1, i, i + 1);
+      add_term(prior.angular_velocity_change, AngularBendCost{0.0}, i - 1, i, i + 1);
     }
   }
 

@@ -87,10 +87,15 @@ struct TourConfig {
   double coverage = 0.9;
   double range_m = 20.0;
   double margin_m = 0.0;
-  double cell_m = 0.1;
-  int max_cells = 300000;
+  double voxel_size_m = 0.1;
+  int max_voxels = 300000;
   int max_views = 800;
   int samples = 5000;
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"cell_m", "voxel_size_m"},
+      {"max_cells", "max_voxels"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -102,9 +107,9 @@ struct TourConfig {
     v("margin_m", self.margin_m, "m",
       "distance kept in addition to clearance_m, for the tracking error of a quadrotor",
       at_least(0));
-    v("cell_m", self.cell_m, "m", "edge of the grid's cells; increased if max_cells requires it",
+    v("voxel_size_m", self.voxel_size_m, "m", "edge of the grid's cells; increased if max_voxels requires it",
       Limits{0.02, 10.0, false});
-    v("max_cells", self.max_cells, "", "upper limit on the number of cells; limits time and memory",
+    v("max_voxels", self.max_voxels, "", "upper limit on the number of cells; limits time and memory",
       between(100, 1e8));
     v("max_views", self.max_views, "", "upper limit on the number of candidate viewpoints",
       between(2, 1e5));

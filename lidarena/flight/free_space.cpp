@@ -87,27 +87,27 @@ bool join(const world::World& world, double least, const Grid& grid, const Vecto
 }  // namespace
 
 FreeSpace::FreeSpace(const world::World& world, const Vector3d& start, const Distances& distances,
-                     double cell_m, std::size_t max_cells, const Parallel& parallel)
-    : distances_(distances), cell_m_(kCoarser * cell_m) {
-  const bool is_small = explore(world, start, max_cells, parallel);
+                     double voxel_size_m, std::size_t max_voxels, const Parallel& parallel)
+    : distances_(distances), cell_m_(kCoarser * voxel_size_m) {
+  const bool is_small = explore(world, start, max_voxels, parallel);
   const double expected = static_cast<double>(cells_.size()) * std::pow(kCoarser, 3);
-  const double excess = expected / static_cast<double>(max_cells);
-  cell_m_ = is_small ? cell_m * std::max(1.0, std::cbrt(excess)) : 1.5 * cell_m_;
-  while (!explore(world, start, max_cells, parallel)) cell_m_ *= 1.5;
+  const double excess = expected / static_cast<double>(max_voxels);
+  voxel_size_m_ = is_small ? voxel_size_m * std::max(1.0, std::cbrt(excess)) : 1.5 * voxel_size_m_;
+  while (!explore(world, start, max_voxels, parallel)) voxel_size_m_ *= 1.5;
 }
 
-bool FreeSpace::explore(const world::World& world, const Vector3d& start, std::size_t max_cells,
+bool FreeSpace::explore(const world::World& world, const Vector3d& start, std::size_t max_voxels,
                         const Parallel& parallel) {
   const Eigen::AlignedBox3d box = world.mesh().bounds();
   cells_.clear();
   Grid grid;
   std::vector<Vector3i> wave{Vector3i::Zero()};
   std::vector<Vector3i> at;  // grid coordinates of each cell
-  while (!wave.empty() && cells_.size() <= max_cells) {
+  while (!wave.empty() && cells_.size() <= max_voxels) {
     std::vector<Cell> looked_at(wave.size());
     parallel.for_each(wave.size(), 32, [&](std::size_t i) {
-      const Vector3d center = start + cell_m_ * wave[i].cast<double>();
-      looked_at[i] = settled(world, center, cell_m_, distances_);
+      const Vector3d center = start + voxel_size_m_ * wave[i].cast<double>();
+      looked_at[i] = settled(world, center, voxel_size_m_, distances_);
     });
     const std::size_t first_new = cells_.size();
     for (std::size_t i = 0; i < wave.size(); ++i) {
@@ -127,7 +127,7 @@ bool FreeSpace::explore(const world::World& world, const Vector3d& start, std::s
       }
     }
   }
-  return cells_.size() <= max_cells;
+  return cells_.size() <= max_voxels;
 }
 
 namespace {

@@ -33,14 +33,14 @@ class FreeSpace {
     std::array<std::int32_t, 6> next;  ///< neighbors in -x, +x, -y, +y, -z, +z, or kNone
   };
 
-  /// Explores from `start` with cells of edge `cell_m`, or larger ones if there would be more than
-  /// `max_cells`, which is estimated with cells of four times the edge. Empty when `start` itself
+  /// Explores from `start` with cells of edge `voxel_size_m`, or larger ones if there would be more than
+  /// `max_voxels`, which is estimated with cells of four times the edge. Empty when `start` itself
   /// is too close to a surface or outside the box.
   FreeSpace(const world::World& world, const Eigen::Vector3d& start, const Distances& distances,
-            double cell_m, std::size_t max_cells, const Parallel& parallel);
+            double voxel_size_m, std::size_t max_voxels, const Parallel& parallel);
 
   std::span<const Cell> cells() const { return cells_; }
-  double cell_m() const { return cell_m_; }
+  double cell_m() const { return voxel_size_m_; }
   /// Lengths of the shortest paths along neighbors from one cell to all cells, in half cell edges;
   /// steps below the preferred distance count three times.
   std::vector<std::int32_t> lengths_from(std::int32_t from) const;
@@ -52,12 +52,12 @@ class FreeSpace {
   const Distances& distances() const { return distances_; }
 
  private:
-  /// Fills `cells_`; returns false when there are more than `max_cells`.
-  bool explore(const world::World& world, const Eigen::Vector3d& start, std::size_t max_cells,
+  /// Fills `cells_`; returns false when there are more than `max_voxels`.
+  bool explore(const world::World& world, const Eigen::Vector3d& start, std::size_t max_voxels,
                const Parallel& parallel);
 
   Distances distances_;
-  double cell_m_;
+  double voxel_size_m_;
   std::vector<Cell> cells_;
 };
 

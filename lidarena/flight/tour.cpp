@@ -41,8 +41,8 @@ Vector3d start_of(const world::WorldModel& model, const world::World& world,
 FreeSpace explored(const world::World& world, const Vector3d& start, const FlightConfig& config,
                    const std::string& place, const Parallel& parallel) {
   const double least = config.clearance_m + config.tour.margin_m + kSlack;
-  FreeSpace space(world, start, {least, least + config.corner_m}, config.tour.cell_m,
-                  static_cast<std::size_t>(config.tour.max_cells), parallel);
+  FreeSpace space(world, start, {least, least + config.corner_m}, config.tour.voxel_size_m,
+                  static_cast<std::size_t>(config.tour.max_voxels), parallel);
   if (space.cells().size() > 1) return space;
   throw InputError(
       place,
@@ -269,7 +269,7 @@ Tour plan_tour(const world::WorldModel& model, const world::World& world,
   once.duration_s = 0.0;
   Tour tour{.waypoints = tightened(way_through(world, space, visits), world, once, place),
             .views = visits.size() - 1,
-            .cell_m = space.cell_m(),
+            .voxel_size_m = space.cell_m(),
             .cells = space.cells().size()};
   const SplineFlight flight(tour.waypoints, once, place);
   Seen seen = seen_along(world, flight, samples, wanted.range_m, kCoverageSpacing);
@@ -284,7 +284,7 @@ std::string describe(const Tour& tour) {
       "a tour of {} waypoints through {} viewpoints sees {:.1f} % of what is visible from the {} "
       "reachable cells of {:.2f} m: {:.1f} % of the mesh's area of at most {:.1f} %",
       tour.waypoints.size(), tour.views, 100.0 * tour.seen / std::max(tour.seeable, 1e-12),
-      tour.cells, tour.cell_m, 100.0 * tour.seen, 100.0 * tour.seeable);
+      tour.cells, tour.voxel_size_m, 100.0 * tour.seen, 100.0 * tour.seeable);
 }
 
 std::string as_yaml(const Tour& tour, const FlightConfig& config) {

@@ -80,7 +80,7 @@ void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
   std::size_t reached = 0;
   std::size_t inliers = 0;
   const bool planes = config.metric == IcpMetric::kPlanes;
-  const auto reach = static_cast<float>(planes ? config.inlier_m : config.correspondence_m);
+  const auto reach = static_cast<float>(planes ? config.inlier_distance_m : config.max_correspondence_distance_m);
   for (const Eigen::Vector3f& p : source) {
     std::array<map::Neighbor, 1> near;
     const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
@@ -88,7 +88,7 @@ void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
     const auto squared = static_cast<double>(near[0].squared_distance);
     sum += squared;
     ++reached;
-    if (squared <= config.inlier_m * config.inlier_m) ++inliers;
+    if (squared <= config.inlier_distance_m * config.inlier_distance_m) ++inliers;
   }
   result.fitness =
       reached == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(reached);
@@ -118,11 +118,11 @@ IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTre
   IcpResult result;
   result.target_from_source = guess;
   const bool planes = config.metric == IcpMetric::kPlanes;
-  double reach = config.correspondence_m;
+  double reach = config.max_correspondence_distance_m;
   Equations sum;
   while (result.iterations < config.max_iterations && !result.converged) {
     ++result.iterations;
-    const bool at_last = !planes || reach <= config.inlier_m;
+    const bool at_last = !planes || reach <= config.inlier_distance_m;
     sum = equations(source, target, result.target_from_source, config.metric, reach, parallel);
     if (sum.count < kFewest) break;
     const Eigen::Matrix<double, 6, 1> step = sum.solve();
@@ -130,7 +130,7 @@ IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTre
     result.target_from_source = orthonormalized(
         make_pose(so3::exp(step.head<3>()), step.tail<3>()) * result.target_from_source);
     result.converged = at_last && step.cwiseAbs().maxCoeff() < kStill;
-    if (planes) reach = std::max(config.inlier_m, kShrink * reach);
+    if (planes) reach = std::max(config.inlier_distance_m, kShrink * reach);
   }
   measure(source, target, config, result);
   Vector3d center = Vector3d::Zero();

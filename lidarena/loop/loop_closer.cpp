@@ -68,14 +68,14 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
     graph_.nodes.push_back(orthonormalized(graph_.nodes.back() * previous_from_this));
     graph_.betweens.push_back(
         {index - 1, index, previous_from_this,
-         diagonal(config_.odometry_shift_sigma_m * config_.odometry_shift_sigma_m,
-                  config_.odometry_turn_sigma_rad * config_.odometry_turn_sigma_rad)});
+         diagonal(config_.odometry_translation_sigma_m * config_.odometry_translation_sigma_m,
+                  config_.odometry_rotation_sigma_rad * config_.odometry_rotation_sigma_rad)});
   }
-  if (config_.appearance_candidates > 0) {
+  if (config_.descriptor_candidates > 0) {
     const auto n = static_cast<std::size_t>(config_.source_keyframes);
     descriptors_.push_back(
         describe(turned(around(index, n, 0, cloud), graph_.nodes.back().linear()),
-                 config_.appearance_range_m));
+                 config_.descriptor_range_m));
   }
   if (due_.empty() && index % static_cast<std::size_t>(config_.keyframes_per_search) == 0)
     due_ = candidates(ways_to_last());
@@ -94,8 +94,8 @@ bool LoopCloser::try_next(const KeyframeCloud& cloud) {
 }
 
 bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& ways) const {
-  return to_seconds(stamps_.back() - stamps_[keyframe]) > config_.least_gap_s &&
-         ways[keyframe] >= config_.least_way_m;
+  return to_seconds(stamps_.back() - stamps_[keyframe]) > config_.min_time_gap_s &&
+         ways[keyframe] >= config_.min_path_length_m;
 }
 
 std::vector<LoopCloser::Candidate> LoopCloser::candidates(const std::vector<double>& ways) const {
@@ -120,7 +120,7 @@ void LoopCloser::add_nearest(const std::vector<double>& ways, std::vector<Candid
 }
 
 void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const {
-  if (config_.appearance_candidates == 0) return;
+  if (config_.descriptor_candidates == 0) return;
   const PlaceDescriptor& here = descriptors_.back();
   std::vector<std::pair<float, std::size_t>> by_rings;
   for (std::size_t i = 0; i + 1 < descriptors_.size(); ++i) {
@@ -129,11 +129,11 @@ void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidat
   }
   std::sort(by_rings.begin(), by_rings.end());
   by_rings.resize(
-      std::min(by_rings.size(), 4 * static_cast<std::size_t>(config_.appearance_candidates)));
+      std::min(by_rings.size(), 4 * static_cast<std::size_t>(config_.descriptor_candidates)));
   std::vector<std::pair<double, Candidate>> alike;
   for (const auto& [unused, i] : by_rings) {
     const Resemblance resemblance = compare(descriptors_[i], here);
-    if (resemblance.distance > config_.appearance_distance) continue;
+    if (resemblance.distance > config_.max_descriptor_distance) continue;
     const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.turn});
     const Eigen::Matrix3d rotation =
         graph_.nodes[i].linear().transpose() * level * graph_.nodes.back().linear();
@@ -143,7 +143,7 @@ void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidat
   }
   std::stable_sort(alike.begin(), alike.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  alike.resize(std::min(alike.size(), static_cast<std::size_t>(config_.appearance_candidates)));
+  alike.resize(std::min(alike.size(), static_cast<std::size_t>(config_.descriptor_candidates)));
   for (const auto& [unused, candidate] : alike) found.push_back(candidate);
 }
 
@@ -158,15 +158,15 @@ std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_
         (graph_.nodes[keyframe].inverse() * graph_.nodes[i]).cast<float>();
     for (const Eigen::Vector3f& p : cloud(i)) points.push_back(moved * p);
   }
-  return shuffled(map::voxel_means(points, config_.leaf_m));
+  return shuffled(map::voxel_means(points, config_.voxel_size_m));
 }
 
 bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
-  if (config_.drift_per_meter <= 0.0) return false;
+  if (config_.translation_drift_m_per_m <= 0.0) return false;
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
-  return apart - config_.correspondence_m >
-         config_.drift_gate * (kLeastShift + config_.drift_per_meter * loop.way);
+  return apart - config_.max_correspondence_distance_m >
+         config_.drift_gate * (kLeastShift + config_.translation_drift_m_per_m * loop.way);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
@@ -187,11 +187,11 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
   const std::size_t after =
       std::min(target_size, loop.second - std::min(loop.second, loop.first + source_size + 1));
   auto target = around(loop.first, target_size, after, cloud);
-  if (source.size() < static_cast<std::size_t>(config_.least_source_points) ||
-      target.size() < static_cast<std::size_t>(config_.least_target_points))
+  if (source.size() < static_cast<std::size_t>(config_.min_source_points) ||
+      target.size() < static_cast<std::size_t>(config_.min_target_points))
     return loop;
-  if (config_.source_points > 0 && source.size() > static_cast<std::size_t>(config_.source_points))
-    source.resize(static_cast<std::size_t>(config_.source_points));
+  if (config_.max_source_points > 0 && source.size() > static_cast<std::size_t>(config_.max_source_points))
+    source.resize(static_cast<std::size_t>(config_.max_source_points));
   map::KdTree tree;
   tree.build(std::move(target));
   const IcpResult icp = align_clouds(source, tree, candidate.guess, config_, parallel_);
@@ -211,11 +211,11 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
 LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) const {
   if (!icp.converged) return LoopVerdict::kNotConverged;
   if (!(icp.fitness < config_.max_fitness_m2)) return LoopVerdict::kPoorFit;
-  if (icp.overlap < config_.least_overlap) return LoopVerdict::kLittleOverlap;
-  if (icp.constraint < config_.least_constraint) return LoopVerdict::kUnconstrained;
-  if (config_.drift_per_meter > 0.0) {
-    const double shift = kLeastShift + config_.drift_per_meter * loop.way;
-    const double turn = kLeastTurn + config_.turn_drift_rad_per_meter * loop.way;
+  if (icp.overlap < config_.min_overlap) return LoopVerdict::kLittleOverlap;
+  if (icp.constraint < config_.min_constraint) return LoopVerdict::kUnconstrained;
+  if (config_.translation_drift_m_per_m > 0.0) {
+    const double shift = kLeastShift + config_.translation_drift_m_per_m * loop.way;
+    const double turn = kLeastTurn + config_.rotation_drift_rad_per_m * loop.way;
     if (loop.shift > config_.drift_gate * shift || loop.turn > config_.drift_gate * turn)
       return LoopVerdict::kBeyondDrift;
   }
@@ -253,8 +253,8 @@ bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
   const Pose by_b = x[b.first] * b.first_from_second;
   const Pose by_a = x[a.first] * a.first_from_second * x[a.second].inverse() * x[b.second];
   const Pose apart = by_a.inverse() * by_b;
-  return apart.translation().norm() < config_.agreement_m &&
-         so3::angle(apart.linear()) < config_.agreement_rad;
+  return apart.translation().norm() < config_.consistency_translation_m &&
+         so3::angle(apart.linear()) < config_.consistency_rotation_rad;
 }
 
 std::vector<LoopRecord> LoopCloser::believed() {
@@ -266,7 +266,7 @@ std::vector<LoopRecord> LoopCloser::believed() {
     if (agree(loop, last)) loops.push_back(loop);
   }
   loops.push_back(last);
-  if (loops.size() >= static_cast<std::size_t>(config_.agreeing_loops)) return loops;
+  if (loops.size() >= static_cast<std::size_t>(config_.min_consistent_loops)) return loops;
   last.verdict = LoopVerdict::kWaiting;
   waiting_.push_back(last);
   return {};
@@ -274,18 +274,18 @@ std::vector<LoopRecord> LoopCloser::believed() {
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   for (const LoopRecord& loop : loops) {
-    const bool by_fitness = config_.loop_shift_sigma_m <= 0.0;
+    const bool by_fitness = config_.loop_translation_sigma_m <= 0.0;
     const double variance = std::max(loop.fitness, kLeastVariance);
     const auto squared = [](double sigma) { return sigma * sigma; };
     const estimation::RobustLoss loss =
-        config_.robust_scale > 0.0
-            ? estimation::RobustLoss{estimation::RobustKernel::kCauchy, config_.robust_scale}
+        config_.robust_kernel_scale > 0.0
+            ? estimation::RobustLoss{estimation::RobustKernel::kCauchy, config_.robust_kernel_scale}
             : estimation::RobustLoss{};
     graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
                                by_fitness
                                    ? diagonal(variance, variance)
-                                   : diagonal(squared(config_.loop_shift_sigma_m),
-                                              squared(std::max(config_.loop_turn_sigma_rad, 1e-6))),
+                                   : diagonal(squared(config_.loop_translation_sigma_m),
+                                              squared(std::max(config_.loop_rotation_sigma_rad, 1e-6))),
                                loss});
     accepted_.push_back(loop);
     for (LoopRecord& record : records_) {

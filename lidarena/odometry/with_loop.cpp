@@ -35,8 +35,8 @@ ScanResult WithLoop::register_scan(const Scan& scan) {
 bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
   if (clouds_.empty()) return true;
   const Pose moved = odom_from_keyframe_.inverse() * odom_from_body;
-  return moved.translation().norm() >= config_.keyframe_distance_m ||
-         so3::angle(moved.linear()) >= config_.keyframe_angle_rad;
+  return moved.translation().norm() >= config_.keyframe_translation_m ||
+         so3::angle(moved.linear()) >= config_.keyframe_rotation_rad;
 }
 
 void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
@@ -45,7 +45,7 @@ void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
   for (const Eigen::Vector3f& p : odometry_->registered_scan()) cloud.push_back(body_from_odom * p);
   const Pose previous_from_this =
       clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
-  clouds_.push_back(map::voxel_means(cloud, config_.cloud_leaf_m));
+  clouds_.push_back(map::voxel_means(cloud, config_.cloud_voxel_size_m));
   poses_.add_anchor(stamp, previous_from_this);
   odom_from_keyframe_ = odom_from_body;
   closer_.add(stamp, previous_from_this, [this](std::size_t keyframe) {

@@ -13,7 +13,7 @@ world::WorldModel make_cave(const CaveConfig& config, std::uint64_t seed) {
   SparseField samples = rock.sample();
   make_well_composed(samples);
   world::WorldModel model{"cave", surface_net(samples), {cave_route(graph)}};
-  project_onto_surface(model.mesh, rock, config.resolution_m);
+  project_onto_surface(model.mesh, rock, config.voxel_size_m);
   model.mesh.paint(world::materials::kRock);
   return model;
 }

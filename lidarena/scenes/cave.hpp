@@ -20,7 +20,11 @@ struct CaveConfig {
   double roughness_2m_m = 0.35;
   double roughness_03m_m = 0.1;
   double roughness_005m_m = 0.02;
-  double resolution_m = 0.125;
+  double voxel_size_m = 0.125;
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"resolution_m", "voxel_size_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -43,7 +47,7 @@ struct CaveConfig {
       "amplitude of the surface noise with a lattice step of 0.3 m", between(0, 0.15));
     v("roughness_005m_m", self.roughness_005m_m, "m",
       "amplitude of the surface noise with a lattice step of 0.05 m", between(0, 0.03));
-    v("resolution_m", self.resolution_m, "m",
+    v("voxel_size_m", self.voxel_size_m, "m",
       "edge of a grid cell; triangles are about this large (finer roughness is exact at the "
       "vertices only)",
       between(0.02, 0.3));

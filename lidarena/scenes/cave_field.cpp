@@ -25,7 +25,7 @@ double smooth_min(double a, double b) {
 
 CaveField::CaveField(const CaveGraph& graph, const CaveConfig& config, std::uint64_t seed)
     : config_(config),
-      block_m_(SparseField::kBlock * config.resolution_m),
+      block_m_(SparseField::kBlock * config.voxel_size_m),
       large_(3 * seed),
       medium_(3 * seed + 1),
       small_(3 * seed + 2) {
@@ -58,7 +58,7 @@ void CaveField::index_segments() {
   const double half_diagonal = 0.5 * std::sqrt(3.0) * block_m_;
   // A segment affects the field at p when its distance is within kBlend of the minimum. The minimum
   // is at most the noise bound plus two grid steps plus the diameter of the block.
-  const double reach = 3 * half_diagonal + noise_bound() + kBlend + 2 * config_.resolution_m;
+  const double reach = 3 * half_diagonal + noise_bound() + kBlend + 2 * config_.voxel_size_m;
   for (std::uint32_t i = 0; i < segments_.size(); ++i) {
     const Segment& s = segments_[i];
     const double outer = reach + std::max(s.radius_a, s.radius_b);
@@ -106,12 +106,12 @@ double CaveField::operator()(const Eigen::Vector3d& p) const {
 bool CaveField::may_hold_surface(const Eigen::Vector3i& block, const Near& near) const {
   const double half_diagonal = 0.5 * std::sqrt(3.0) * block_m_;
   return std::abs(tunnel_distance(near, block_center(block))) <=
-         half_diagonal + noise_bound() + 2 * config_.resolution_m;
+         half_diagonal + noise_bound() + 2 * config_.voxel_size_m;
 }
 
 SparseField CaveField::sample() const {
-  SparseField field(config_.resolution_m);
-  const double band = noise_bound() + 2 * config_.resolution_m;
+  SparseField field(config_.voxel_size_m);
+  const double band = noise_bound() + 2 * config_.voxel_size_m;
   for (const Eigen::Vector3i& block : blocks_) {
     const Near& near = near_.at(SparseField::key(block));
     if (!may_hold_surface(block, near)) continue;

@@ -75,7 +75,7 @@ Furnisher::Furnisher(const HousePlan& plan, const HouseConfig& config, Sequentia
 
 Eigen::AlignedBox2d Furnisher::inner_floor(RoomUse use) const {
   const Eigen::AlignedBox2d& floor = plan_.room(use).floor;
-  const Vector2d inset = Vector2d::Constant(0.5 * config_.wall_m);
+  const Vector2d inset = Vector2d::Constant(0.5 * config_.wall_thickness_m);
   return {floor.min() + inset, floor.max() - inset};
 }
 
@@ -214,7 +214,7 @@ void Furnisher::around(RoomUse use, Handle host, const std::vector<Piece>& piece
 Furnisher::Handle Furnisher::at_window(const Opening& window, const Piece& piece, double z) {
   // The wall's positive normal points into the house at x = 0 and y = 0.
   const double inward = window.line == 0 ? 1 : -1;
-  const Vector3d foot = window.point(inward * (0.5 * config_.wall_m + kBack), z);
+  const Vector3d foot = window.point(inward * (0.5 * config_.wall_thickness_m + kBack), z);
   const int quarters = window.axis == 0 ? (inward > 0 ? 0 : 2) : (inward > 0 ? 3 : 1);
   return fixed(piece, quarter_turn(quarters, foot));
 }

@@ -14,26 +14,32 @@ namespace lidarena::scenes {
 struct HouseConfig {
   double width_m = 16;
   double depth_m = 10.4;
-  double story_m = 2.7;
-  double wall_m = 0.15;
+  double story_height_m = 2.7;
+  double wall_thickness_m = 0.15;
   double door_width_m = 0.9;
   double door_height_m = 2.05;
   bool panes = true;
-  double vary_m = 0.25;
+  double variation_m = 0.25;
   double detail = 1;
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"storey_m", "story_height_m"},
+      {"wall_m", "wall_thickness_m"},
+      {"vary_m", "variation_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("width_m", self.width_m, "m", "length of the house along x", between(15, 24));
     v("depth_m", self.depth_m, "m", "length of the house along y", between(10, 16));
-    v("story_m", self.story_m, "m", "height of a story; two rooms are twice as high",
+    v("story_height_m", self.story_height_m, "m", "height of a story; two rooms are twice as high",
       between(2.6, 3.2));
-    v("wall_m", self.wall_m, "m", "thickness of walls", between(0.1, 0.2));
+    v("wall_thickness_m", self.wall_thickness_m, "m", "thickness of walls", between(0.1, 0.2));
     v("door_width_m", self.door_width_m, "m", "clear width of the doors", between(0.86, 0.9));
     v("door_height_m", self.door_height_m, "m", "clear height of the doors", between(2, 2.2));
     v("panes", self.panes, "",
       "close the windows with glass panes; otherwise rays leave the house through them");
-    v("vary_m", self.vary_m, "m", "maximum random displacement of inner walls and doors",
+    v("variation_m", self.variation_m, "m", "maximum random displacement of inner walls and doors",
       between(0, 0.3));
     v("detail", self.detail, "", "factor on the number of facets around each curved part",
       between(0.2, 3));

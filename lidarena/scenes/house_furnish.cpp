@@ -21,7 +21,7 @@ struct Site {
 void hang_curtains(Site& s) {
   for (const Opening& window : s.plan.windows) {
     const bool small = window.width < 1;
-    const bool upper = window.sill > s.config.story_m;
+    const bool upper = window.sill > s.config.story_height_m;
     if (small || upper) continue;
     const double foot = window.sill - 0.12;
     s.place.at_window(window, curtain(s.craft, window.width + 0.5, window.head + 0.1 - foot), foot);

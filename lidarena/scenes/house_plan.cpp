@@ -17,7 +17,7 @@ struct InnerWalls {
 };
 
 InnerWalls draw_walls(const HouseConfig& c, SequentialRandom& random) {
-  const auto vary = [&] { return random.uniform(-c.vary_m, c.vary_m); };
+  const auto vary = [&] { return random.uniform(-c.variation_m, c.variation_m); };
   InnerWalls walls{};
   walls.y = 0.54 * c.depth_m + vary();
   walls.living_dining = 0.44 * c.width_m + vary();
@@ -31,7 +31,7 @@ InnerWalls draw_walls(const HouseConfig& c, SequentialRandom& random) {
 std::vector<Room> make_rooms(const HouseConfig& c, const InnerWalls& w) {
   const auto room = [&](RoomUse use, double x0, double y0, double x1, double y1, int stories) {
     return Room{use, Eigen::AlignedBox2d(Eigen::Vector2d(x0, y0), Eigen::Vector2d(x1, y1)),
-                stories * c.story_m};
+                stories * c.story_height_m};
   };
   return {room(RoomUse::kLiving, 0, 0, w.living_dining, w.y, 2),
           room(RoomUse::kDining, w.living_dining, 0, w.dining_kitchen, w.y, 1),
@@ -58,7 +58,7 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
                                 SequentialRandom& random) {
   const double north = c.depth_m - w.y;
   const auto door = [&](int axis, double line, double center) {
-    center += random.uniform(-c.vary_m, c.vary_m);
+    center += random.uniform(-c.variation_m, c.variation_m);
     return Opening{axis, line, center, c.door_width_m, 0, c.door_height_m};
   };
   return {door(1, w.living_dining, 0.32 * c.depth_m),
@@ -73,9 +73,9 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
 
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
   const double low = 0.9;                 // m, sill of ordinary windows
-  const double head = 0.82 * c.story_m;   // m, upper edge of ordinary windows
-  const double upper = 1.35 * c.story_m;  // sill of the windows of the second story
-  const double upper_head = 1.8 * c.story_m;
+  const double head = 0.82 * c.story_height_m;   // m, upper edge of ordinary windows
+  const double upper = 1.35 * c.story_height_m;  // sill of the windows of the second story
+  const double upper_head = 1.8 * c.story_height_m;
   const double north = 0.5 * (w.y + c.depth_m);
   const double main = 0.5 * (w.bath_main + c.width_m);
   const double hall = 0.5 * (w.child_hall + w.hall_bath);
@@ -193,12 +193,12 @@ GalleryPlan plan_gallery(const HousePlan& plan, const HouseConfig& config) {
   constexpr double kFlight = 0.95;  // m, width of the stairs
   constexpr double kFoot = 0.8;     // m of free floor in front of the first step
   const Eigen::AlignedBox2d& living = plan.room(RoomUse::kLiving).floor;
-  const double face = 0.5 * config.wall_m;
-  const double top = config.story_m + kSlab;
+  const double face = 0.5 * config.wall_thickness_m;
+  const double top = config.story_height_m + kSlab;
   const Eigen::Vector2d low = living.min().array() + face;
   const Eigen::Vector2d high = living.max().array() - face;
   GalleryPlan gallery;
-  gallery.floor = {Eigen::Vector3d(low.x(), low.y(), config.story_m),
+  gallery.floor = {Eigen::Vector3d(low.x(), low.y(), config.story_height_m),
                    Eigen::Vector3d(high.x(), low.y() + kDepth, top)};
   gallery.stairs = {Eigen::Vector3d(low.x(), low.y() + kDepth, 0),
                     Eigen::Vector3d(low.x() + kFlight, high.y() - kFoot, top)};

@@ -108,7 +108,7 @@ world::TriangleMesh build_wall(const Wall& wall, const HousePlan& plan, const Ho
   }
   const Eigen::AlignedBox2d extent(Eigen::Vector2d(wall.from, 0),
                                    Eigen::Vector2d(wall.to, wall.top + kSlab));
-  return plate(extent, config.wall_m, holes);
+  return plate(extent, config.wall_thickness_m, holes);
 }
 
 /// The four bars of a frame of width `width` along the inner side of a hole's edge (outer side if
@@ -143,7 +143,7 @@ world::TriangleMesh build_trims(const Opening& door, const HouseConfig& config) 
   world::TriangleMesh mesh;
   for (const double side : {-0.5, 0.5}) {
     mesh.append(shape::moved(frame(hole_of(door), -kTrim, kThick, false),
-                             {0, side * (config.wall_m + kThick), 0}));
+                             {0, side * (config.wall_thickness_m + kThick), 0}));
   }
   mesh.paint(world::materials::kWood);
   return mesh;
@@ -178,7 +178,7 @@ std::vector<Wall> plan_walls(const HousePlan& plan) {
 }
 
 world::TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
-  const double half = 0.5 * config.wall_m;
+  const double half = 0.5 * config.wall_thickness_m;
   world::TriangleMesh mesh =
       shape::box({-half, -half, -kSlab}, {config.width_m + half, config.depth_m + half, 0});
   for (const Room& room : plan.rooms) {

@@ -129,8 +129,8 @@ MotionPrior full_prior(const ElasticMotion& truth) {
   prior.velocity = 0.03;
   prior.angular_velocity = 0.05;
   prior.small_velocity = 0.001;
-  prior.bend = 0.02;
-  prior.angular_bend = 0.03;
+  prior.velocity_change = 0.02;
+  prior.angular_velocity_change = 0.03;
   return prior;
 }
 

@@ -163,7 +163,7 @@ kind: auto
 clearance_m: 0.4
 corner_m: 0.1
 duration_s: 40
-tour: {cell_m: 0.2, samples: 500, max_views: 50, start: [1, 2, 1.2]}
+tour: {voxel_size_m: 0.2, samples: 500, max_views: 50, start: [1, 2, 1.2]}
 )"),
                                   model_, world::World(world::TriangleMesh(model_.mesh)), told);
   EXPECT_EQ(flight->duration(), std::chrono::seconds(40));

@@ -105,9 +105,9 @@ TEST(ShippedFlights, TheSmallHouseIsFlownThroughItsRooms) {
 }
 
 /// The shipped tour, planned coarsely, is clear of the mesh and sees 80 % of the visible surface.
-void expect_tour(const world::WorldModel& model, const world::World& world, double cell_m) {
+void expect_tour(const world::WorldModel& model, const world::World& world, double voxel_size_m) {
   auto config = load_config<FlightConfig>(kConfigs / "flights/auto.yaml");
-  config.tour.cell_m = cell_m;
+  config.tour.voxel_size_m = voxel_size_m;
   config.tour.max_views = 150;
   config.tour.samples = 1500;
   const Tour tour = plan_tour(model, world, config, "auto.yaml", Parallel());

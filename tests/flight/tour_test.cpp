@@ -100,7 +100,7 @@ FlightConfig quick() {
   config.kind = FlightKind::kAuto;
   config.clearance_m = 0.4;
   config.corner_m = 0.1;
-  config.tour.cell_m = 0.15;
+  config.tour.voxel_size_m = 0.15;
   config.tour.samples = 2000;
   config.tour.max_views = 100;
   return config;

@@ -78,7 +78,7 @@ TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
   const places::Points source = places::seen_from(Pose::Identity(), walls, 8.0, 3);
   const IcpResult result =
       align_clouds(source, target, Pose::Identity(), careful_loops(), Parallel(1));
-  EXPECT_LT(result.constraint, careful_loops().least_constraint);
+  EXPECT_LT(result.constraint, careful_loops().min_constraint);
 }
 
 }  // namespace

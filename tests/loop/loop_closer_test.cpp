@@ -84,10 +84,10 @@ TEST(LoopCloser, ComingBackCuresTheDrift) {
 TEST(LoopCloser, LioSamsRuleDoesSoToo) {
   const Walk trip = round_trip();
   LoopConfig config;
-  config.leaf_m = 0.3;
+  config.voxel_size_m = 0.3;
   config.target_keyframes = 8;
   config.max_iterations = 30;
-  config.correspondence_m = 2.0;
+  config.max_correspondence_distance_m = 2.0;
   config.keyframes_per_search = 4;
   const LoopCloser closer = closed(trip, config);
   EXPECT_GT(closer.accepted(), 2U) << "one for every search after the first round";
@@ -98,7 +98,7 @@ TEST(LoopCloser, LioSamsRuleDoesSoToo) {
 TEST(LoopCloser, IsFoundByLooksAloneToo) {
   LoopConfig config = careful_loops();
   config.search_radius_m = 0.0;
-  config.appearance_range_m = 9.0;
+  config.descriptor_range_m = 9.0;
   const Walk trip = round_trip();
   const LoopCloser closer = closed(trip, config);
   EXPECT_GT(closer.accepted(), 0U);
@@ -130,7 +130,7 @@ Walk identical_rooms() {
 TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
   const Walk tour = identical_rooms();
   LoopConfig config = careful_loops();
-  config.appearance_range_m = 5.0;
+  config.descriptor_range_m = 5.0;
   config.search_radius_m = 15.0;
   const LoopCloser closer = closed(tour, config);
   int refused = 0;
@@ -148,7 +148,7 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
 
   // Without the limit on drift, false loops are accepted; then only the graph's robust kernel
   // limits the damage.
-  config.drift_per_meter = 0.0;
+  config.translation_drift_m_per_m = 0.0;
   const LoopCloser trusting = closed(tour, config);
   int believed = 0;
   for (const LoopRecord& loop : trusting.records())
@@ -156,8 +156,8 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
   EXPECT_GT(believed, 0);
   EXPECT_LT(rms_error(tour, trusting.poses()), 0.1);
   LoopConfig lio_sams;
-  lio_sams.leaf_m = 0.3;
-  lio_sams.source_points = 400;  // faster
+  lio_sams.voxel_size_m = 0.3;
+  lio_sams.max_source_points = 400;  // faster
   lio_sams.target_keyframes = 10;
   lio_sams.max_iterations = 60;
   EXPECT_GT(rms_error(tour, closed(tour, lio_sams).poses()), 1.0) << "the rooms are merged";
@@ -169,7 +169,7 @@ TEST(LoopCloser, StandingStillNoLoopIsTried) {
   const Walk still = walk(truth, world, 9.0, se3::Vector6::Zero());
   EXPECT_TRUE(closed(still, careful_loops()).records().empty());
   LoopConfig lio_sams;
-  lio_sams.leaf_m = 0.3;
+  lio_sams.voxel_size_m = 0.3;
   lio_sams.target_keyframes = 2;
   lio_sams.keyframes_per_search = 10;
   EXPECT_FALSE(closed(still, lio_sams).records().empty()) << "LIO-SAM has no minimum path length";

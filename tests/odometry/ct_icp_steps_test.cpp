@@ -238,13 +238,13 @@ TEST(CtIcpRobust, VerdictsFollowMotionAndMatches) {
 TEST(CtIcpRobust, EachLevelIsFinerLongerAndWider) {
   const Config config;
   const Config second = at_level(config, 2);
-  EXPECT_DOUBLE_EQ(second.sampling.keypoint_voxel_m, 0.6 / 2.25);
+  EXPECT_DOUBLE_EQ(second.sampling.keypoint_voxel_size_m, 0.6 / 2.25);
   EXPECT_EQ(second.sampling.max_keypoints, 3200);
   EXPECT_EQ(second.registration.max_iterations, 48);
   EXPECT_EQ(second.registration.inner_iterations, 80);
   EXPECT_NEAR(second.registration.robust_kernel_scale_m, 0.144, 1e-12);
   EXPECT_NEAR(second.registration.max_plane_distance_m, 0.675, 1e-12);
-  EXPECT_NEAR(second.registration.translation_threshold_m, 1e-4, 1e-12);
+  EXPECT_NEAR(second.registration.convergence_translation_m, 1e-4, 1e-12);
 }
 
 TEST(CtIcpInsertion, ScansThatTurnAreKeptOutUntilSixWere) {

@@ -55,7 +55,7 @@ TEST(KissIcp, WithoutPointsTheOriginalCoastsOnAndTheCuredOneComesToRest) {
   const std::vector<Scan> scans = synthetic::scans_of(recording);
   for (const double kept : {1.0, 0.5}) {
     Config config;
-    config.motion_kept_when_lost = kept;
+    config.lost_motion_factor = kept;
     KissIcp odometry = made(config, recording);
     for (const Scan& scan : scans) odometry.register_scan(scan);
     const auto poses = odometry.trajectory();
@@ -100,8 +100,8 @@ TEST(KissIcp, StartingInMotionTheFirstScanIsMendedByTheSecond) {
   const auto error_at_the_end = [&](bool rebuild) {
     Config config;
     config.voxel_size_m = 0.5;
-    config.own_motion = 1.0;
-    config.rebuild_start = rebuild;
+    config.scan_motion_share = 1.0;
+    config.redeskew_first_scan = rebuild;
     KissIcp odometry = made(config, recording);
     for (const Scan& scan : synthetic::scans_of(recording)) odometry.register_scan(scan);
     const auto poses = odometry.trajectory();
@@ -123,8 +123,8 @@ TEST(KissIcp, ScansAreCutOnlyAfterTheCalmStartAndWhileSigmaIsLarge) {
     Config config;
     config.slices = 2;
     config.slice_above_m = slice_above;
-    config.calm_start = 4;
-    config.own_motion = 0.5;
+    config.initial_scans = 4;
+    config.scan_motion_share = 0.5;
     KissIcp odometry = made(config, recording);
     std::vector<std::size_t> counts;
     for (const Scan& scan : scans) counts.push_back(odometry.register_scan(scan).motion.size());
@@ -143,7 +143,7 @@ TEST(KissIcp, APatternThatRepeatsHoldsTheSensorUnlessItsLinesAreLeftOut) {
   recording.repeating = true;
   const auto error_with = [&](double weight) {
     Config config = preset("improved", synthetic::rig_of(recording).lidars.front());
-    config.shapeless_weight = weight;
+    config.degenerate_cell_weight = weight;
     KissIcp odometry = made(config, recording);
     for (const Scan& scan : synthetic::scans_of(recording)) odometry.register_scan(scan);
     const auto poses = odometry.trajectory();

@@ -359,7 +359,7 @@ TEST(LioSamKeyframes, ComeWithDistanceTurnAndInTheProgramsLivoxModeWithTime) {
   EXPECT_FALSE(is_keyframe(last, from_seconds(100.0), moved(0.99, 0.19), config));
   EXPECT_TRUE(is_keyframe(last, from_seconds(11.0), moved(1.0, 0.0), config));
   EXPECT_TRUE(is_keyframe(last, from_seconds(11.0), moved(0.0, -0.2), config));
-  config.keyframe_age_s = 1.0;
+  config.keyframe_interval_s = 1.0;
   EXPECT_FALSE(is_keyframe(last, from_seconds(11.0), moved(0.0, 0.0), config));
   EXPECT_TRUE(is_keyframe(last, from_seconds(11.1), moved(0.0, 0.0), config));
 }
@@ -367,7 +367,7 @@ TEST(LioSamKeyframes, ComeWithDistanceTurnAndInTheProgramsLivoxModeWithTime) {
 TEST(LioSamKeyframes, TheSubmapTakesTheNearTheOldestOfEachCellAndTheRecent) {
   Config config;
   config.submap_radius_m = 5.0;
-  config.submap_density_m = 2.0;
+  config.submap_keyframe_spacing_m = 2.0;
   config.submap_recent_s = 10.0;
   std::vector<Keyframe> keyframes;
   const std::vector<std::pair<double, double>> time_and_x{{0, 0.5},  {20, 1.5}, {40, 2.5},
@@ -432,7 +432,7 @@ TEST(LioSam, StandingStillNothingGrowsUnlessTheProgramsLivoxModeIsAskedFor) {
   const auto keyframes_after = [&](const char* name, double age) {
     const Rig rig = synthetic::rig_of(still);
     Config config = preset(name, rig.lidars[0]);
-    config.keyframe_age_s = age;
+    config.keyframe_interval_s = age;
     LioSam odometry(config, rig.lidars[0], rig.imus[0], Parallel(1));
     double keyframes = 0.0;
     for (const dataset::Event& event : events) {
@@ -474,9 +474,9 @@ TEST(LioSam, PointsAndImuTogetherAreSmootherThanPointsAlone) {
   sparse.gyro_noise_density = 2.4e-4;
   sparse.accel_noise_density = 1.7e-3;
   Config config = preset("improved", synthetic::rig_of(sparse).lidars[0]);
-  ASSERT_TRUE(config.fused_pose);
+  ASSERT_TRUE(config.smoothed_pose);
   const double together = step_error(sparse, config);
-  config.fused_pose = false;
+  config.smoothed_pose = false;
   const double alone = step_error(sparse, config);
   EXPECT_LT(together, 0.5 * alone) << together << " m and " << alone << " m";
 }

@@ -61,10 +61,10 @@ class Drifter : public Odometry {
 
 WithLoopConfig quick() {
   WithLoopConfig config;
-  config.keyframe_distance_m = 0.5;
-  config.keyframe_angle_rad = 0.4;
-  config.loop.least_way_m = 10.0;
-  config.loop.least_target_points = 500;
+  config.keyframe_translation_m = 0.5;
+  config.keyframe_rotation_rad = 0.4;
+  config.loop.min_path_length_m = 10.0;
+  config.loop.min_target_points = 500;
   return config;
 }
 

@@ -27,7 +27,7 @@ CaveConfig small_cave() {
   config.cell_width_m = 9;
   config.winding_m = 0.5;
   config.relief_m = 0.5;
-  config.resolution_m = 0.2;
+  config.voxel_size_m = 0.2;
   return config;
 }
 
@@ -107,7 +107,7 @@ TEST(Cave, EnclosesTheVolumeOfItsTunnelsWithNormalsInward) {
 
 TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
   const world::WorldModel cave = make_cave(small_cave(), 3);
-  const double step = small_cave().resolution_m;
+  const double step = small_cave().voxel_size_m;
   for (const Triangle& t : cave.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       // Vertices of neighboring cells are less than two steps apart along each axis; the projection
@@ -218,7 +218,7 @@ constexpr double kFlat = 0.003;  // m
 
 TEST(Cave, HasNoFlatFaceHalfAMeterAcross) {
   CaveConfig config = small_cave();
-  config.resolution_m = CaveConfig{}.resolution_m;
+  config.voxel_size_m = CaveConfig{}.voxel_size_m;
   for (std::uint64_t seed = 1; seed <= 2; ++seed) {
     EXPECT_GT(flattest_place(make_cave(config, seed).mesh, 0.25), kFlat);
   }
@@ -226,7 +226,7 @@ TEST(Cave, HasNoFlatFaceHalfAMeterAcross) {
 
 TEST(Cave, WithoutRoughnessItsTunnelsWouldBeFlatAtThatScale) {
   CaveConfig config = small_cave();
-  config.resolution_m = CaveConfig{}.resolution_m;
+  config.voxel_size_m = CaveConfig{}.voxel_size_m;
   config.roughness_2m_m = config.roughness_03m_m = config.roughness_005m_m = 0;
   EXPECT_LT(flattest_place(make_cave(config, 1).mesh, 0.25), kFlat);
 }

@@ -36,11 +36,11 @@ std::vector<HouseConfig> extreme_houses() {
     HouseConfig config = coarse_house();
     config.width_m = large ? 24 : 15;
     config.depth_m = large ? 16 : 10;
-    config.story_m = large ? 3.2 : 2.6;
-    config.wall_m = large ? 0.1 : 0.2;
+    config.story_height_m = large ? 3.2 : 2.6;
+    config.wall_thickness_m = large ? 0.1 : 0.2;
     config.door_width_m = large ? 0.9 : 0.86;
     config.door_height_m = large ? 2.2 : 2.0;
-    config.vary_m = 0.3;
+    config.variation_m = 0.3;
     houses.push_back(config);
   }
   return houses;
@@ -164,7 +164,7 @@ TEST(House, DoorsAreAsWideAsAskedAndPassWallsOfRealThickness) {
         door.axis == 0 ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitY();
     for (double z = 0.1; z < config.door_height_m - 0.05; z += 0.15) {
       for (const double ahead : {-0.49, 0.0, 0.49}) {
-        const Vector3d p = door.point(ahead * config.wall_m, z);
+        const Vector3d p = door.point(ahead * config.wall_thickness_m, z);
         const std::array<Ray, 2> rays{Ray{p, side}, Ray{p, -side}};
         std::array<Hit, 2> hits;
         world.cast(rays, 100, hits);
@@ -192,7 +192,7 @@ TEST(House, RouteIsAClosedTourOfAllRoomsAndDoors) {
       ASSERT_NE(room, nullptr);
       rooms.insert(room);
       EXPECT_GE(p.z(), 0.8);
-      EXPECT_LE(p.z(), room->height > config.story_m ? 4 : 2);
+      EXPECT_LE(p.z(), room->height > config.story_height_m ? 4 : 2);
     }
     EXPECT_EQ(rooms.size(), plan.rooms.size());
     for (const Opening& door : plan.doors) {
@@ -268,7 +268,7 @@ bool is_held(const PlacedObject& object, const std::vector<PlacedObject>& all,
   if (room == nullptr) return false;
   if (std::abs(object.box.max().z() - room->height) < kTouch) return true;
   for (int axis = 0; axis < 2; ++axis) {
-    const double half = 0.5 * config.wall_m;
+    const double half = 0.5 * config.wall_thickness_m;
     if (object.box.min()[axis] - room->floor.min()[axis] - half < kTouch) return true;
     if (room->floor.max()[axis] - half - object.box.max()[axis] < kTouch) return true;
   }

@@ -117,7 +117,7 @@ TEST_F(LoadWorld, TheFilesOfConfigsWorldsAreValid) {
 }
 
 TEST_F(LoadWorld, ACaveHasItsParametersAndTheCallersSeed) {
-  const std::string yaml = "kind: cave\nseed: 5\ncave: {loops: 1, resolution_m: 0.3}\n";
+  const std::string yaml = "kind: cave\nseed: 5\ncave: {loops: 1, voxel_size_m: 0.3}\n";
   const auto file = folder_.write("small.yaml", yaml);
   const world::WorldModel five = load_world(file, {}, log_);
   WorldOptions options;
@@ -125,7 +125,7 @@ TEST_F(LoadWorld, ACaveHasItsParametersAndTheCallersSeed) {
   const world::WorldModel six = load_world(file, options, log_);
   CaveConfig config;
   config.loops = 1;
-  config.resolution_m = 0.3;
+  config.voxel_size_m = 0.3;
   EXPECT_EQ(five.name, "small");
   EXPECT_EQ(five.mesh.vertices, make_cave(config, 5).mesh.vertices);
   EXPECT_EQ(six.mesh.vertices, make_cave(config, 6).mesh.vertices);

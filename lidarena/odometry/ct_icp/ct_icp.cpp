@@ -33,7 +33,7 @@ CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
     : config_(config),
       body_from_lidar_(lidar.body_from_lidar),
       parallel_(std::move(parallel)),
-      map_({config.map.voxel_m, config.map.max_points, config.map.spacing_m, config.cell_rounding}),
+      map_({config.map.voxel_size_m, config.map.max_points_per_voxel, config.map.min_point_spacing_m, config.voxel_rounding}),
       gate_(config.insertion),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
@@ -42,8 +42,8 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const bool rigid = !times.timed || map_.empty() || scans_ < config_.sampling.rigid_scans;
   const auto points = timed_points(scan, times, rigid, config_.sampling);
   const double voxel =
-      starting() ? config_.sampling.start_frame_voxel_m : config_.sampling.frame_voxel_m;
-  const auto frame = thin(points, voxel, config_.cell_rounding);
+      starting() ? config_.sampling.initial_scan_voxel_size_m : config_.sampling.scan_voxel_size_m;
+  const auto frame = thin(points, voxel, config_.voxel_rounding);
 
   const estimation::ElasticMotion guess = history_.predict(times, config_.registration);
   const RobustRegistration found = align(frame, guess);
@@ -98,7 +98,7 @@ void CtIcp::advance(const RobustRegistration& found, const estimation::ScanTimes
                     ScanStatus status) {
   const estimation::ElasticMotion& motion = found.registration.motion;
   const bool lost = status == ScanStatus::kTooFewPoints;
-  history_.add(motion, times, lost, config_.robust.motion_kept_when_lost);
+  history_.add(motion, times, lost, config_.robust.lost_motion_factor);
   first_level_ = found.verdict == Verdict::kTrusted || !config_.robust.enabled ? 0 : 1;
   if (times.timed) scan_duration_ = times.last - times.first;
   poses_.push_back({times.last, body_pose(motion.end())});

@@ -43,7 +43,7 @@ class CtIcp : public Odometry {
                                          const estimation::ScanTimes& times) const;
   /// Pose of the body in the world, which is the body's frame at the start.
   Pose body_pose(const Pose& map_from_lidar) const;
-  bool starting() const { return scans_ < config_.sampling.start_scans; }
+  bool starting() const { return scans_ < config_.sampling.initial_scans; }
 
   Config config_;
   Pose body_from_lidar_;

@@ -61,8 +61,8 @@ estimation::ElasticMatch plane_match(const Neighborhood& neighborhood,
   match.anchor = neighborhood.anchor;
   match.shape.row(0) = neighborhood.normal;
   match.weight = (config.planarity_weight * neighborhood.planarity * neighborhood.planarity +
-                  config.nearness_weight * nearness) /
-                 (config.planarity_weight + config.nearness_weight);
+                  config.proximity_weight * nearness) /
+                 (config.planarity_weight + config.proximity_weight);
   return match;
 }
 

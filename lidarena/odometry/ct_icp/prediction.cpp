@@ -75,8 +75,8 @@ estimation::MotionPrior MotionHistory::prior(const estimation::ElasticMotion& pr
   prior.velocity = weights.velocity;
   prior.angular_velocity = weights.angular_velocity;
   prior.small_velocity = weights.small_velocity;
-  prior.bend = weights.bend;
-  prior.angular_bend = weights.angular_bend;
+  prior.velocity_change = weights.velocity_change;
+  prior.angular_velocity_change = weights.angular_velocity_change;
   return prior;
 }
 

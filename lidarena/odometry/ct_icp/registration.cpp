@@ -54,7 +54,7 @@ class Matcher {
                                                     Found& found) const {
     const Eigen::Vector3d point = keypoint.position.cast<double>();
     const Eigen::Vector3d position = track.place(point, keypoint.alpha);
-    if (!((position - found.searched_at).norm() < config_.search_again_m)) {
+    if (!((position - found.searched_at).norm() < config_.reassociation_distance_m)) {
       found = {search(position.cast<float>()), position};
     }
     if (!found.neighborhood) return std::nullopt;
@@ -130,8 +130,8 @@ Registration register_keypoints(std::span<const TimedPoint> keypoints, const map
         before, config, parallel);
     ++result.iterations;
     const estimation::MotionChange change = estimation::change_between(before, result.motion);
-    if (change.translation_m < config.translation_threshold_m &&
-        change.rotation_rad < config.rotation_threshold_rad)
+    if (change.translation_m < config.convergence_translation_m &&
+        change.rotation_rad < config.convergence_rotation_rad)
       break;
   }
   return result;

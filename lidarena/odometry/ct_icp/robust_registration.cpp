@@ -19,14 +19,14 @@ Config at_level(Config config, int level) {
   SamplingConfig& sampling = config.sampling;
   RegistrationConfig& registration = config.registration;
   for (int i = 0; i < level; ++i) {
-    sampling.keypoint_voxel_m /= 1.5;
-    sampling.start_keypoint_voxel_m /= 1.5;
+    sampling.keypoint_voxel_size_m /= 1.5;
+    sampling.initial_keypoint_voxel_size_m /= 1.5;
     sampling.max_keypoints *= 2;
     registration.max_residuals *= 2;
     registration.max_iterations += 20;
     registration.inner_iterations += 30;
-    registration.translation_threshold_m /= 10.0;
-    registration.rotation_threshold_rad /= 10.0;
+    registration.convergence_translation_m /= 10.0;
+    registration.convergence_rotation_rad /= 10.0;
     registration.robust_kernel_scale_m *= 1.2;
     registration.max_plane_distance_m *= 1.5;
   }
@@ -41,7 +41,7 @@ Verdict verdict_on(const Registration& registration, const estimation::ElasticMo
     return Verdict::kLost;
   const double turned = rotation_within(motion);
   const double moved = (motion.end().translation() - guess.begin().translation()).norm();
-  if (moved > config.max_translation_m || turned > config.max_turn_rad) return Verdict::kLost;
+  if (moved > config.lost_translation_m || turned > config.lost_rotation_rad) return Verdict::kLost;
   const bool trusted =
       turned < config.max_rotation_rad && registration.matched_share() >= config.min_matched_share;
   return trusted ? Verdict::kTrusted : Verdict::kSuspect;
@@ -59,12 +59,12 @@ RobustRegistration register_robustly(std::span<const TimedPoint> frame,
     const Config settings = at_level(config, result.level);
     const SamplingConfig& sampling = settings.sampling;
     const RegistrationConfig& registration = settings.registration;
-    const double voxel = starting ? sampling.start_keypoint_voxel_m : sampling.keypoint_voxel_m;
+    const double voxel = starting ? sampling.initial_keypoint_voxel_size_m : sampling.keypoint_voxel_size_m;
     const auto keypoints =
         sample_keypoints(frame, sampling.keypoints, voxel, starting ? 0 : sampling.max_keypoints,
-                         config.cell_rounding);
+                         config.voxel_rounding);
     const int iterations =
-        starting ? std::max(registration.start_iterations, registration.max_iterations)
+        starting ? std::max(registration.initial_iterations, registration.max_iterations)
                  : registration.max_iterations;
     result.registration =
         register_keypoints(keypoints, map, guess, prior, registration, iterations, parallel);

@@ -29,7 +29,7 @@ struct RobustRegistration {
 
 /// Registers the keypoints of `frame` at `first_level`; while the result is not trusted, repeats
 /// that from the same guess at the next level, up to max_attempts in total (one unless
-/// `config.robust.enabled`). `starting`: the scan is one of the first start_scans.
+/// `config.robust.enabled`). `starting`: the scan is one of the first initial_scans.
 RobustRegistration register_robustly(std::span<const TimedPoint> frame,
                                      const map::VoxelHashMap& map,
                                      const estimation::ElasticMotion& guess,

@@ -19,25 +19,25 @@ Config improved(const LidarInfo& lidar) {
   config.point_stride = 1;
   config.min_range_m = std::max(0.3, lidar.min_range_m);
   config.deskew_first_instant = true;
-  config.scan_voxel_m = 0.2;
+  config.scan_voxel_size_m = 0.2;
   config.grid_axes = map::GridAxes::kAskew;
-  config.max_points = 4000;
-  config.map_voxel_m = 0.2;
+  config.max_scan_points = 4000;
+  config.map_voxel_size_m = 0.2;
   config.plane_fit = estimation::PlaneFit::kPrincipal;
   config.plane_uncertainty = true;
   config.point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
   config.noise_model = NoiseModel::kDensity;
   config.imu_noise_factor = 10.0;
-  config.second_order = true;
-  config.tell_clipping = true;
-  config.least_agreement = 0.75;
+  config.second_order_integration = true;
+  config.detect_saturation = true;
+  config.min_inlier_share = 0.75;
   config.skip_first_scan = false;
   config.always_scale_accel = false;
   config.gravity = 9.80665;
   config.initial_sigma = 0.0;
   config.map_radius_m = 1.5 * lidar.max_range_m;
   config.keep_all_scans = false;
-  config.zero_velocity = true;
+  config.zero_velocity_updates = true;
   config.hold_first_pose = true;
   return config;
 }

@@ -24,16 +24,16 @@ struct Config {
   int point_stride = 3;
   double min_range_m = 0.5;
   bool deskew_first_instant = false;
-  double scan_voxel_m = 0.5;
+  double scan_voxel_size_m = 0.5;
   map::GridAxes grid_axes = map::GridAxes::kParallel;
-  int max_points = 100000;
-  double map_voxel_m = 0.5;
+  int max_scan_points = 100000;
+  double map_voxel_size_m = 0.5;
 
   int max_iterations = 3;
   double convergence = 1e-3;
   double point_variance_m2 = 1e-3;
-  double max_neighbor_m = 2.236;
-  double plane_thickness_m = 0.1;
+  double max_neighbor_distance_m = 2.236;
+  double max_plane_thickness_m = 0.1;
   estimation::PlaneFit plane_fit = estimation::PlaneFit::kUnitOffset;
   bool plane_uncertainty = false;
   bool estimate_extrinsics = false;
@@ -44,12 +44,12 @@ struct Config {
   double gyro_bias_variance = 1e-4;
   double accel_bias_variance = 1e-4;
   double imu_noise_factor = 1.0;
-  bool second_order = false;
+  bool second_order_integration = false;
   double max_imu_gap_s = 0.05;
-  bool tell_clipping = false;
-  double least_agreement = 0.0;
+  bool detect_saturation = false;
+  double min_inlier_share = 0.0;
 
-  int init_samples = 10;
+  int initialization_samples = 10;
   bool skip_first_scan = true;
   bool always_scale_accel = true;
   double gravity = 9.81;
@@ -57,9 +57,23 @@ struct Config {
 
   double map_radius_m = 500.0;
   bool keep_all_scans = true;
-  bool zero_velocity = false;
-  int still_scans_mapped = 20;
+  bool zero_velocity_updates = false;
+  int standing_scans_mapped = 20;
   bool hold_first_pose = false;
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"scan_voxel_m", "scan_voxel_size_m"},
+      {"map_voxel_m", "map_voxel_size_m"},
+      {"max_points", "max_scan_points"},
+      {"max_neighbour_m", "max_neighbor_distance_m"},
+      {"plane_thickness_m", "max_plane_thickness_m"},
+      {"second_order", "second_order_integration"},
+      {"tell_clipping", "detect_saturation"},
+      {"least_agreement", "min_inlier_share"},
+      {"init_samples", "initialization_samples"},
+      {"zero_velocity", "zero_velocity_updates"},
+      {"still_scans_mapped", "standing_scans_mapped"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -68,16 +82,16 @@ struct Config {
     v("deskew_first_instant", self.deskew_first_instant, "",
       "also de-skew the points of the scan's first instant, when a spinning sensor fires a whole "
       "column; the published program leaves them unchanged");
-    v("scan_voxel_m", self.scan_voxel_m, "m", "voxel size in which a scan's points are averaged",
+    v("scan_voxel_size_m", self.scan_voxel_size_m, "m", "voxel size in which a scan's points are averaged",
       above(0));
     v("grid_axes", self.grid_axes, "",
       "axes of the scan's grid in the LiDAR's frame and of the map's in the world: parallel, or "
       "askew, which keeps walls from being parallel to the cells (not in the published program)");
-    v("max_points", self.max_points, "",
+    v("max_scan_points", self.max_scan_points, "",
       "upper limit on the averaged points of a scan, taken evenly from all; bounds the time of a "
       "scan",
       at_least(100));
-    v("map_voxel_m", self.map_voxel_m, "m", "voxel size of the map, which keeps one point per cell",
+    v("map_voxel_size_m", self.map_voxel_size_m, "m", "voxel size of the map, which keeps one point per cell",
       above(0));
     v("max_iterations", self.max_iterations, "",
       "maximum number of iterations of the filter's update", at_least(0));
@@ -85,9 +99,9 @@ struct Config {
       above(0));
     v("point_variance_m2", self.point_variance_m2, "m^2",
       "variance of a point's distance from its plane", above(0));
-    v("max_neighbor_m", self.max_neighbor_m, "m", "maximum distance of the fifth neighbor",
+    v("max_neighbor_distance_m", self.max_neighbor_distance_m, "m", "maximum distance of the fifth neighbor",
       above(0));
-    v("plane_thickness_m", self.plane_thickness_m, "m",
+    v("max_plane_thickness_m", self.max_plane_thickness_m, "m",
       "maximum distance of a neighbor from the plane fitted to all", above(0));
     v("plane_fit", self.plane_fit, "", "unit_offset, or principal (not in the published program)");
     v("plane_uncertainty", self.plane_uncertainty, "",
@@ -108,19 +122,19 @@ struct Config {
       "factor on the data sheet's densities, with density: covers vibration and errors that the "
       "planes do not show",
       above(0));
-    v("second_order", self.second_order, "",
+    v("second_order_integration", self.second_order_integration, "",
       "include a dt^2 / 2 in the position (not in the published program)");
     v("max_imu_gap_s", self.max_imu_gap_s, "s",
       "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
-    v("tell_clipping", self.tell_clipping, "",
+    v("detect_saturation", self.detect_saturation, "",
       "use large noise for IMU samples at the end of the measuring range (not in the published "
       "program)");
-    v("least_agreement", self.least_agreement, "",
+    v("min_inlier_share", self.min_inlier_share, "",
       "a scan is not added to the map when a smaller share of its points near planes lies on them; "
       "after fifteen such scans in a row the status is diverged; 0: never, as in the published "
       "program",
       between(0, 1));
-    v("init_samples", self.init_samples, "", "number of IMU samples for the initialization",
+    v("initialization_samples", self.initialization_samples, "", "number of IMU samples for the initialization",
       at_least(2));
     v("skip_first_scan", self.skip_first_scan, "", "do not use the first scan and its IMU samples");
     v("always_scale_accel", self.always_scale_accel, "",
@@ -138,15 +152,15 @@ struct Config {
     v("keep_all_scans", self.keep_all_scans, "",
       "keep all points of all scans in memory, as the published program does for the file it "
       "writes at its end");
-    v("zero_velocity", self.zero_velocity, "",
+    v("zero_velocity_updates", self.zero_velocity_updates, "",
       "hold the velocity at zero while the IMU shows that the sensor stands still (not in the "
       "published program)");
-    v("still_scans_mapped", self.still_scans_mapped, "",
-      "maximum number of scans added to the map during a standstill; with zero_velocity",
+    v("standing_scans_mapped", self.standing_scans_mapped, "",
+      "maximum number of scans added to the map during a standstill; with zero_velocity_updates",
       at_least(1));
     v("hold_first_pose", self.hold_first_pose, "",
       "hold the first pose until the first motion, so that the map begins without drift; with "
-      "zero_velocity (not in the published program)");
+      "zero_velocity_updates (not in the published program)");
   }
 };
 

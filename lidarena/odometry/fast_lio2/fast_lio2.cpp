@@ -64,20 +64,20 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   const State predicted = belief_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(map::voxel_means(points, config_.scan_voxel_m, config_.grid_axes), config_.max_points);
+      evenly(map::voxel_means(points, config_.scan_voxel_size_m, config_.grid_axes), config_.max_scan_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       belief_, std::ref(residuals),
       {config_.max_iterations, config_.convergence, config_.point_variance_m2});
   belief_ = update.belief;
   const bool still =
-      config_.zero_velocity && still_.observe(estimation::statistics(samples), predicted,
+      config_.zero_velocity_updates && still_.observe(estimation::statistics(samples), predicted,
                                               belief_.state.position(), config_, accel_scale_);
   if (still) stand();
   has_moved_ = has_moved_ || !still;
 
   const ScanStatus status = status_of(update, residuals);
-  const bool seen_enough = still && still_.scans() > config_.still_scans_mapped;
+  const bool seen_enough = still && still_.scans() > config_.standing_scans_mapped;
   if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
   publish(points);
   return finish_scan(end, status,
@@ -110,7 +110,7 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   const bool skip = first_scan_ && config_.skip_first_scan;
   first_scan_ = false;
   if (!skip) start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
-  if (start_samples_.size() < static_cast<std::size_t>(config_.init_samples)) return false;
+  if (start_samples_.size() < static_cast<std::size_t>(config_.initialization_samples)) return false;
   const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
   belief_ = begin.belief;
   belief_.state.rotation() = map_from_start_ * belief_.state.rotation();
@@ -132,7 +132,7 @@ void FastLio2::stand() {
 void FastLio2::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = belief_.state;
   track_.clear();
-  const estimation::Integration integration = config_.second_order
+  const estimation::Integration integration = config_.second_order_integration
                                                   ? estimation::Integration::kSecondOrder
                                                   : estimation::Integration::kFirstOrder;
   for (const estimation::ImuInterval& interval : intervals) {
@@ -154,7 +154,7 @@ void FastLio2::predict(const std::vector<estimation::ImuInterval>& intervals) {
 }
 
 estimation::ImuNoise FastLio2::noise_over(const estimation::ImuInterval& interval) const {
-  if (interval.gap || (config_.tell_clipping && interval.saturated))
+  if (interval.gap || (config_.detect_saturation && interval.saturated))
     return estimation::kCoastingNoise;
   if (config_.noise_model == NoiseModel::kDensity) return noise_;
   // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
@@ -187,7 +187,7 @@ void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
   const Pose world_from_lidar = belief_.state.world_from_lidar();
   add_scan(transformed(world_from_lidar, points),
            map_.empty() ? std::vector<Match>{} : residuals.matches(),
-           static_cast<float>(config_.map_voxel_m), map_);
+           static_cast<float>(config_.map_voxel_size_m), map_);
   map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
 }
 
@@ -202,7 +202,7 @@ ScanStatus FastLio2::status_of(const estimation::IteratedUpdate& update,
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
   const bool contradicts =
-      static_cast<double>(update.points.count) < config_.least_agreement * residuals.near_planes();
+      static_cast<double>(update.points.count) < config_.min_inlier_share * residuals.near_planes();
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;

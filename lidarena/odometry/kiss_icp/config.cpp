@@ -12,7 +12,7 @@ Config original() {
   Config config;
   config.min_range_m = 5.0;
   config.min_spacing = false;
-  config.cell_rounding = map::VoxelRounding::kTruncate;
+  config.voxel_rounding = map::VoxelRounding::kTruncate;
   config.thinning_order = map::ThinningOrder::kTeschner;
   config.pose_instant = PoseInstant::kScanMiddle;
   config.threshold_start = ThresholdStart::kUntilMoved;
@@ -29,21 +29,21 @@ Config improved(const LidarInfo& lidar) {
   config.map_thinning = 0.25;
   config.keypoint_thinning = 1.0;
   config.plane_thinness = 0.2;
-  config.shapeless_weight = 1e-4;
+  config.degenerate_cell_weight = 1e-4;
   config.slices = 2;
   config.slice_above_m = 0.15;
-  config.own_motion = 0.75;
-  config.calm_start = 5;
-  config.rebuild_start = true;
+  config.scan_motion_share = 0.75;
+  config.initial_scans = 5;
+  config.redeskew_first_scan = true;
   config.initial_threshold_m = 0.2;
   config.threshold_memory = 10.0;
   config.threshold_lever = ThresholdLever::kMeanRange;
-  config.kernel_in_meters = true;
+  config.kernel_scale_in_meters = true;
   config.max_iterations = 20;
   config.convergence = 1e-3;
-  config.equal_times_are_no_times = true;
+  config.ignore_equal_times = true;
   config.motion_per_second = true;
-  config.motion_kept_when_lost = 0.5;
+  config.lost_motion_factor = 0.5;
   config.sensor_centered = true;
   return config;
 }

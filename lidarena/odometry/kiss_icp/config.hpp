@@ -35,14 +35,14 @@ struct Config {
   std::optional<double> voxel_size_m;  ///< unset: max_range_m / 100
   int max_points_per_voxel = 20;
   bool min_spacing = true;
-  map::VoxelRounding cell_rounding = map::VoxelRounding::kFloor;
+  map::VoxelRounding voxel_rounding = map::VoxelRounding::kFloor;
   map::ThinningOrder thinning_order = map::ThinningOrder::kTeschnerPrime;
 
   int slices = 1;
   double slice_above_m = 0.0;
   bool deskew = true;
-  double own_motion = 0.0;
-  bool rebuild_start = false;
+  double scan_motion_share = 0.0;
+  bool redeskew_first_scan = false;
   PoseInstant pose_instant = PoseInstant::kScanEnd;
 
   double initial_threshold_m = 2.0;
@@ -52,21 +52,33 @@ struct Config {
   ThresholdLever threshold_lever = ThresholdLever::kMaxRange;
 
   std::optional<double> plane_thinness;
-  double shapeless_weight = 1.0;
+  double degenerate_cell_weight = 1.0;
   double map_thinning = 0.5;
   double keypoint_thinning = 1.5;
-  int calm_start = 0;
+  int initial_scans = 0;
   double kernel_fraction = 1.0;
-  bool kernel_in_meters = false;
+  bool kernel_scale_in_meters = false;
   int max_iterations = 500;
   double convergence = 1e-4;
 
-  bool equal_times_are_no_times = false;
+  bool ignore_equal_times = false;
   bool motion_per_second = false;
-  double motion_kept_when_lost = 1.0;
+  double lost_motion_factor = 1.0;
   bool sensor_centered = false;
 
   double voxel_size() const { return voxel_size_m.value_or(max_range_m / 100.0); }
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"cell_rounding", "voxel_rounding"},
+      {"own_motion", "scan_motion_share"},
+      {"rebuild_start", "redeskew_first_scan"},
+      {"shapeless_weight", "degenerate_cell_weight"},
+      {"calm_start", "initial_scans"},
+      {"kernel_in_metres", "kernel_scale_in_meters"},
+      {"equal_times_are_no_times", "ignore_equal_times"},
+      {"motion_kept_when_lost", "lost_motion_factor"},
+      {"sensor_centred", "sensor_centered"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -83,7 +95,7 @@ struct Config {
     v("min_spacing", self.min_spacing, "",
       "keep the points of a cell at least voxel_size / sqrt(max_points_per_voxel) apart; false: "
       "keep the first points of a cell");
-    v("cell_rounding", self.cell_rounding, "",
+    v("voxel_rounding", self.voxel_rounding, "",
       "how a point's cell is computed: floor, or truncate: the cells around x, y, z = 0 are twice "
       "as wide");
     v("thinning_order", self.thinning_order, "",
@@ -98,12 +110,12 @@ struct Config {
       "than the whole scan, and helps only where the motion changes fast",
       at_least(0));
     v("deskew", self.deskew, "", "remove the motion within the scan, if its points carry times");
-    v("own_motion", self.own_motion, "",
+    v("scan_motion_share", self.scan_motion_share, "",
       "share of the scan's own motion, estimated anew in each ICP iteration, in the motion used "
       "for de-skewing; the rest is the previous motion. Near 1 the estimate oscillates; above 0: "
       "not in the published program",
       between(0, 1));
-    v("rebuild_start", self.rebuild_start, "",
+    v("redeskew_first_scan", self.redeskew_first_scan, "",
       "de-skew the first scan in the map with the motion estimated from the second (not in the "
       "published program)");
     v("pose_instant", self.pose_instant, "", "instant of the pose: scan_middle or scan_end");
@@ -128,14 +140,14 @@ struct Config {
       "fraction of that along it; points are then matched along its normal only; null: no planes, "
       "as in the published program",
       between(0, 1));
-    v("shapeless_weight", self.shapeless_weight, "",
+    v("degenerate_cell_weight", self.degenerate_cell_weight, "",
       "with plane_thinness: weight of matches in cells with fewer than 5 points or with points on "
       "a line only. They show the scan pattern, not the surface; if the pattern repeats, they hold "
       "the estimate at the previous pose. Below 1: not in the published program",
       between(0, 1));
     v("map_thinning", self.map_thinning, "voxel sizes",
       "edge of the cells from each of which one point is offered to the map", above(0));
-    v("calm_start", self.calm_start, "scans",
+    v("initial_scans", self.initial_scans, "scans",
       "number of scans at the start that are neither cut nor de-skewed with their own motion, "
       "because the map is still too sparse to separate motion from noise; above 0: not in the "
       "published program",
@@ -143,8 +155,8 @@ struct Config {
     v("keypoint_thinning", self.keypoint_thinning, "voxel sizes",
       "edge of the cells from each of which one point is registered", above(0));
     v("kernel_fraction", self.kernel_fraction, "",
-      "scale of the robust kernel as a fraction of sigma, see kernel_in_meters", above(0));
-    v("kernel_in_meters", self.kernel_in_meters, "",
+      "scale of the robust kernel as a fraction of sigma, see kernel_scale_in_meters", above(0));
+    v("kernel_scale_in_meters", self.kernel_scale_in_meters, "",
       "the robust kernel's scale is a length, kernel_fraction times sigma (not in the published "
       "program); false: the square root of that, as in the program's formula");
     v("max_iterations", self.max_iterations, "",
@@ -152,13 +164,13 @@ struct Config {
       at_least(1));
     v("convergence", self.convergence, "m and rad", "ICP ends when the norm of its step is smaller",
       at_least(0));
-    v("equal_times_are_no_times", self.equal_times_are_no_times, "",
+    v("ignore_equal_times", self.ignore_equal_times, "",
       "register a scan whose points all have the same time without de-skewing; the published "
       "program drops all its points");
     v("motion_per_second", self.motion_per_second, "",
       "predict and de-skew by real time, so that a dropped scan causes no error; the published "
       "program counts scans");
-    v("motion_kept_when_lost", self.motion_kept_when_lost, "",
+    v("lost_motion_factor", self.lost_motion_factor, "",
       "factor on the predicted motion after each scan without matches; below 1: not in the "
       "published program",
       between(0, 1));

@@ -13,7 +13,7 @@ constexpr int kMotionSteps = 4;  // ScanResult::motion has one pose more
 map::VoxelHashMap::Options map_options(const Config& config) {
   const double spacing = config.voxel_size() / std::sqrt(config.max_points_per_voxel);
   return {config.voxel_size(), config.max_points_per_voxel, config.min_spacing ? spacing : 0.0,
-          config.cell_rounding, config.plane_thinness.value_or(0.0)};
+          config.voxel_rounding, config.plane_thinness.value_or(0.0)};
 }
 
 double mean_range(std::span<const Eigen::Vector3f> points) {
@@ -51,9 +51,9 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
   if (times.timed) scan_duration_ = times.last - times.first;
   registered_scan_.clear();
   ScanResult result;
-  const bool calm = poses_.size() < static_cast<std::size_t>(config_.calm_start);
+  const bool calm = poses_.size() < static_cast<std::size_t>(config_.initial_scans);
   const bool whole = calm || threshold_.sigma() <= config_.slice_above_m;
-  own_motion_ = calm ? 0.0 : config_.own_motion;
+  scan_motion_share_ = calm ? 0.0 : config_.scan_motion_share;
   for (const Scan& slice : sliced(scan, whole ? 1 : config_.slices))
     append(register_slice(slice), result);
   poses_.push_back(result.estimate);
@@ -66,7 +66,7 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
   const TimedPoints points = preprocess(slice, times, before, config_, parallel_);
 
   const double voxel = config_.voxel_size();
-  const map::Thinning thinning{config_.cell_rounding, config_.thinning_order};
+  const map::Thinning thinning{config_.voxel_rounding, config_.thinning_order};
   const TimedPoints map_points = thin(points, config_.map_thinning * voxel, thinning);
   const TimedPoints keypoints = thin(map_points, config_.keypoint_thinning * voxel, thinning);
 
@@ -78,8 +78,8 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
 
   const ScanStatus status = status_of(found, points.size());
   const se3::Vector6 twist =
-      points.deskewed() ? before : twist_towards(pose, departure(times, before), own_motion_);
-  if (config_.rebuild_start && map_.empty()) first_points_ = map_points;
+      points.deskewed() ? before : twist_towards(pose, departure(times, before), scan_motion_share_);
+  if (config_.redeskew_first_scan && map_.empty()) first_points_ = map_points;
   map_.insert(transformed(pose, deskewed(map_points, twist, parallel_)));
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
 
@@ -102,7 +102,7 @@ Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& 
                                  const Pose& guess) {
   const double sigma = threshold_.sigma();
   const auto register_from = [&](const Pose& start) {
-    return register_points(keypoints, map_, departure, start, sigma, own_motion_, config_,
+    return register_points(keypoints, map_, departure, start, sigma, scan_motion_share_, config_,
                            parallel_);
   };
   const Registration found = register_from(guess);
@@ -136,7 +136,7 @@ void KissIcp::advance(const Pose& pose, const estimation::ScanTimes& times, Scan
   motion_ = map_from_lidar_.inverse() * pose;
   if (instant_) motion_seconds_ = to_seconds(reference_of(times) - *instant_);
   if (status == ScanStatus::kTooFewPoints)
-    motion_ = se3::exp(config_.motion_kept_when_lost * se3::log(motion_));
+    motion_ = se3::exp(config_.lost_motion_factor * se3::log(motion_));
   map_from_lidar_ = pose;
   instant_ = reference_of(times);
 }

@@ -32,7 +32,7 @@ class KissIcp : public Odometry {
  private:
   /// Registers a part of a scan and appends its points to `registered_scan_`.
   ScanResult register_slice(const Scan& slice);
-  /// Calls register_points from the predicted pose. With rebuild_start, the second scan first
+  /// Calls register_points from the predicted pose. With redeskew_first_scan, the second scan first
   /// replaces the first one in the map by its de-skewed points.
   Registration registered(const TimedPoints& keypoints, const Departure& departure,
                           const Pose& guess);
@@ -58,7 +58,7 @@ class KissIcp : public Odometry {
   map::VoxelHashMap map_;     ///< in the lidar's frame at its first pose
   TimedPoints first_points_;  ///< of the first scan, kept until the second one de-skews it
   AdaptiveThreshold threshold_;
-  double own_motion_ = 0.0;  ///< the configured value, 0 during the first calm_start scans
+  double scan_motion_share_ = 0.0;  ///< the configured value, 0 during the first initial_scans scans
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< of the lidar, between the last two scans

@@ -37,9 +37,9 @@ TimedPoints preprocess(const Scan& scan, const estimation::ScanTimes& times,
                        const se3::Vector6& twist_per_second, const Config& config,
                        const Parallel& parallel) {
   // The published program divides by the scan's duration and so loses all points of such a scan.
-  const bool lost = scan.timed && !times.timed && config.deskew && !config.equal_times_are_no_times;
+  const bool lost = scan.timed && !times.timed && config.deskew && !config.ignore_equal_times;
   if (lost) return {};
-  const bool estimated = times.timed && config.deskew && config.own_motion > 0.0;
+  const bool estimated = times.timed && config.deskew && config.scan_motion_share > 0.0;
   const Time reference = pose_time(times, config.pose_instant);
   const std::vector<Eigen::Vector3f> positions =
       estimated ? lidarena::estimation::positions(scan)

@@ -19,7 +19,7 @@ double kernel_weight(double squared_error, double sigma) {
 
 /// The `sigma` for kernel_weight() when the configured scale is `scale` m.
 double kernel_of(double scale, const Config& config) {
-  return config.kernel_in_meters ? scale * scale : scale;
+  return config.kernel_scale_in_meters ? scale * scale : scale;
 }
 
 /// Pose of the lidar at a point's instant, and the share of the scan's increment that applies to
@@ -65,24 +65,24 @@ PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d
 }
 
 se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
-                           double own_motion) {
+                           double scan_motion_share) {
   if (departure.seconds <= 0.0) return departure.twist;
   const se3::Vector6 own =
       se3::log(departure.map_from_lidar.inverse() * map_from_lidar) / departure.seconds;
-  return own_motion * own + (1.0 - own_motion) * departure.twist;
+  return scan_motion_share * own + (1.0 - scan_motion_share) * departure.twist;
 }
 
 Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
-                             double own_motion, const Config& config, const Parallel& parallel) {
+                             double scan_motion_share, const Config& config, const Parallel& parallel) {
   Registration result{guess};
   if (map.empty()) return result;
   const auto radius = static_cast<float>(3.0 * sigma);
   const double kernel = kernel_of(sigma * config.kernel_fraction, config);
-  const double share_per_second = departure.seconds > 0.0 ? own_motion / departure.seconds : 0.0;
+  const double share_per_second = departure.seconds > 0.0 ? scan_motion_share / departure.seconds : 0.0;
   Pose& pose = result.map_from_lidar;
   while (result.iterations < config.max_iterations) {
-    result.twist = twist_towards(pose, departure, own_motion);
+    result.twist = twist_towards(pose, departure, scan_motion_share);
     const MovingFrame frame(pose, result.twist, keypoints, share_per_second);
     const auto add_match = [&](std::size_t i, estimation::NormalEquations<6>& equations) {
       const auto [map_from_instant, share] = frame.at(i);
@@ -102,7 +102,7 @@ Registration register_points(const TimedPoints& keypoints, const map::VoxelHashM
         return;
       }
       const auto [error, jacobian] = point_to_point(point, match.point.cast<double>(), center);
-      const double weight = match.shapeless ? config.shapeless_weight : 1.0;
+      const double weight = match.shapeless ? config.degenerate_cell_weight : 1.0;
       equations.add<3>(share * jacobian, error,
                        weight * kernel_weight(error.squaredNorm(), kernel));
     };

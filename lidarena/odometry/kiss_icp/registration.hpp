@@ -41,11 +41,11 @@ struct Registration {
 /// the pose increment that this gives to their instants.
 Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
                              const Departure& departure, const Pose& guess, double sigma,
-                             double own_motion, const Config& config, const Parallel& parallel);
+                             double scan_motion_share, const Config& config, const Parallel& parallel);
 
-/// Twist within a scan that ends at `map_from_lidar`: `own_motion` times the mean twist since
-/// `departure`, plus (1 - `own_motion`) times the twist before it.
+/// Twist within a scan that ends at `map_from_lidar`: `scan_motion_share` times the mean twist since
+/// `departure`, plus (1 - `scan_motion_share`) times the twist before it.
 se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
-                           double own_motion);
+                           double scan_motion_share);
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -11,7 +11,7 @@ Config original_spinning(const LidarInfo& lidar) {
   Config config;
   config.min_range_m = 0.5;
   if (lidar.columns > 0) config.columns = lidar.columns;
-  config.loop.leaf_m = config.surface_leaf_m;
+  config.loop.voxel_size_m = config.surface_voxel_size_m;
   return config;
 }
 
@@ -26,17 +26,17 @@ Config original_livox() {
   config.occluded_points = 3;
   config.grazing_share = 0.1;
   config.max_iterations = 25;
-  config.keyframe_distance_m = 0.5;
-  config.keyframe_angle_rad = 0.1;
-  config.keyframe_age_s = 1.0;
+  config.keyframe_translation_m = 0.5;
+  config.keyframe_rotation_rad = 0.1;
+  config.keyframe_interval_s = 1.0;
   config.submap_radius_m = 20.0;
-  config.submap_density_m = 0.5;
+  config.submap_keyframe_spacing_m = 0.5;
   config.gravity = 9.8035;
-  config.gyro_noise = 1e-4;
-  config.accel_noise = 1e-4;
-  config.gyro_walk = 0.04;
-  config.accel_walk = 0.19;
-  config.loop.leaf_m = config.surface_leaf_m;
+  config.gyro_noise_density = 1e-4;
+  config.accel_noise_density = 1e-4;
+  config.gyro_bias_walk = 0.04;
+  config.accel_bias_walk = 0.19;
+  config.loop.voxel_size_m = config.surface_voxel_size_m;
   return config;
 }
 
@@ -52,28 +52,28 @@ Config improved(const LidarInfo& lidar) {
   config.deskew_translation = true;
   config.deskew_bias = true;
   config.min_edges = 0;
-  config.turn_tolerance_rad = 2e-4;
-  config.shift_tolerance_m = 2e-4;
-  config.search_step_m = 0.01;
+  config.convergence_rotation_rad = 2e-4;
+  config.convergence_translation_m = 2e-4;
+  config.reassociation_distance_m = 0.01;
   config.plane_fit = estimation::PlaneFit::kPrincipal;
-  config.plane_thickness_m = 0.06;
-  config.surface_leaf_m = 0.15;
+  config.max_plane_thickness_m = 0.06;
+  config.surface_voxel_size_m = 0.15;
   config.grid_axes = map::GridAxes::kAskew;
   config.degeneracy = Degeneracy::kShare;
-  config.keyframe_distance_m = 1.0;
-  config.keyframe_angle_rad = 0.2;
-  config.keyframe_age_s = 0.0;
+  config.keyframe_translation_m = 1.0;
+  config.keyframe_rotation_rad = 0.2;
+  config.keyframe_interval_s = 0.0;
   config.scans_per_keyframe = 16;
   config.submap_radius_m = 20.0;
-  config.submap_density_m = 2.0;
-  config.level_start = true;
+  config.submap_keyframe_spacing_m = 2.0;
+  config.gravity_aligned_start = true;
   config.gravity = 9.80665;
   config.gravity_sigma_rad = 0.02;
   config.imu_noise_factor = 10.0;
-  config.turn_sigma_rad = 1e-3;
-  config.shift_sigma_m = 5e-3;
+  config.min_rotation_sigma_rad = 1e-3;
+  config.min_translation_sigma_m = 5e-3;
   config.point_sigma_m = 0.1;
-  config.fused_pose = true;
+  config.smoothed_pose = true;
   config.loop = loop::careful_loops();
   return config;
 }

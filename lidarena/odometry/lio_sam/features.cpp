@@ -125,8 +125,8 @@ Features extract_features(const RangeImage& image, const Config& config, const P
 }
 
 Features thinned(const Features& features, const Config& config) {
-  return {map::voxel_means(features.edges, config.edge_leaf_m, config.grid_axes),
-          map::voxel_means(features.surfaces, config.surface_leaf_m, config.grid_axes)};
+  return {map::voxel_means(features.edges, config.edge_voxel_size_m, config.grid_axes),
+          map::voxel_means(features.surfaces, config.surface_voxel_size_m, config.grid_axes)};
 }
 
 }  // namespace lidarena::odometry::lio_sam

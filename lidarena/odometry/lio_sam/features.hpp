@@ -27,7 +27,7 @@ std::vector<float> roughness(std::span<const Pixel> row, const Config& config);
 /// are surface points (Zhang, Singh, "LOAM", RSS 2014, section V-A, as in LIO-SAM).
 Features extract_features(const RangeImage& image, const Config& config, const Parallel& parallel);
 
-/// The features averaged in voxels of `edge_leaf_m` and `surface_leaf_m`.
+/// The features averaged in voxels of `edge_voxel_size_m` and `surface_voxel_size_m`.
 Features thinned(const Features& features, const Config& config);
 
 }  // namespace lidarena::odometry::lio_sam

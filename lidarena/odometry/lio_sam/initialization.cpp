@@ -39,7 +39,7 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_im
   estimation::InertialStart& inertial = start.inertial;
   inertial.gravity = {0.0, 0.0, -config.gravity};
   Pose world_from_body = Pose::Identity();
-  if (config.level_start) {
+  if (config.gravity_aligned_start) {
     world_from_body.linear() = estimation::upright(body_from_imu.linear() * imu.mean_accel);
     if (start.still) {
       inertial.state.bias.gyro = imu.mean_gyro;

@@ -29,9 +29,9 @@ bool is_keyframe(const Keyframe& last, Time stamp, const Pose& world_from_lidar,
                  const Config& config) {
   const Pose moved = last.world_from_lidar.inverse() * world_from_lidar;
   const bool old =
-      config.keyframe_age_s > 0.0 && to_seconds(stamp - last.stamp) > config.keyframe_age_s;
-  return old || moved.translation().norm() >= config.keyframe_distance_m ||
-         so3::log(moved.linear()).cwiseAbs().maxCoeff() >= config.keyframe_angle_rad;
+      config.keyframe_interval_s > 0.0 && to_seconds(stamp - last.stamp) > config.keyframe_interval_s;
+  return old || moved.translation().norm() >= config.keyframe_translation_m ||
+         so3::log(moved.linear()).cwiseAbs().maxCoeff() >= config.keyframe_rotation_rad;
 }
 
 void KeyframeMerger::begin(const Features& features) {
@@ -60,7 +60,7 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
     places.push_back(place.cast<float>());
   }
   std::vector<std::uint32_t> chosen;
-  for (const std::uint32_t i : map::first_of_each_voxel(places, config.submap_density_m))
+  for (const std::uint32_t i : map::first_of_each_voxel(places, config.submap_keyframe_spacing_m))
     chosen.push_back(near[i]);
   for (const std::uint32_t i : near) {
     if (to_seconds(now - keyframes[i].stamp) < config.submap_recent_s) chosen.push_back(i);

@@ -53,8 +53,8 @@ std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
 class Submap {
  public:
   explicit Submap(const Config& config)
-      : edges_(config.edge_leaf_m, config.grid_axes),
-        surfaces_(config.surface_leaf_m, config.grid_axes) {}
+      : edges_(config.edge_voxel_size_m, config.grid_axes),
+        surfaces_(config.surface_voxel_size_m, config.grid_axes) {}
   /// `chosen`: sorted indices of `keyframes`.
   void select(const std::vector<Keyframe>& keyframes, const std::vector<std::uint32_t>& chosen);
   const FeatureMap& map() const { return map_; }

@@ -18,7 +18,7 @@ constexpr double kMaxBias = 1.0;             // m/s^2, rad/s; likewise
 
 estimation::ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
   if (config.imu_noise_factor > 0.0) return estimation::noise_of(imu, config.imu_noise_factor);
-  return {config.gyro_noise, config.accel_noise, config.gyro_walk, config.accel_walk};
+  return {config.gyro_noise_density, config.accel_noise_density, config.gyro_bias_walk, config.accel_bias_walk};
 }
 
 Pose rotation_of(const Pose& pose) {
@@ -182,7 +182,7 @@ void LioSam::fuse(Registration& found) {
   const Pose odom_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   smoother_.add(pending_, {odom_from_imu, information_of(found, odom_from_imu)});
   restart_if_failed();
-  if (config_.fused_pose) {
+  if (config_.smoothed_pose) {
     odom_from_lidar_ = smoother_.latest().world_from_imu * imu_from_lidar_;
     found.map_from_lidar = orthonormalized(odom_from_world.inverse() * odom_from_lidar_);
   }
@@ -196,8 +196,8 @@ estimation::PoseMeasurement::Information LioSam::information_of(const Registrati
   const auto squared = [](double x) { return x * x; };
   Matrix6 least = Matrix6::Zero();  // covariance
   const bool all_or_nothing = config_.point_sigma_m <= 0.0 && found.degenerate_directions > 0;
-  least.diagonal().head<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.turn_sigma_rad));
-  least.diagonal().tail<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.shift_sigma_m));
+  least.diagonal().head<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.min_rotation_sigma_rad));
+  least.diagonal().tail<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.min_translation_sigma_m));
   if (config_.point_sigma_m <= 0.0) return least.inverse();
 
   // Jacobian of the errors of the registered LiDAR pose by those of the IMU's pose.

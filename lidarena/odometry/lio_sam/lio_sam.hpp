@@ -61,7 +61,7 @@ class LioSam : public Odometry {
   std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
   Registration match(const Features& features, const Pose& guess, Time stamp);
   ScanStatus status_of(const Registration& found, const Features& features) const;
-  /// Adds the registered pose to the smoother; with fused_pose, replaces it by the smoother's.
+  /// Adds the registered pose to the smoother; with smoothed_pose, replaces it by the smoother's.
   void fuse(Registration& found);
   estimation::PoseMeasurement::Information information_of(const Registration& found,
                                                           const Pose& odom_from_imu) const;

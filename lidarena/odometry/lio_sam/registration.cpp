@@ -73,7 +73,7 @@ class Matcher {
           features_.surfaces, map_.surfaces, pose, parallel_,
           [&](const Neighbors& near) {
             return estimation::fit_plane(map::columns_of(near), config_.plane_fit,
-                                         config_.plane_thickness_m, kPlaneRatio);
+                                         config_.max_plane_thickness_m, kPlaneRatio);
           },
           planes_);
     }
@@ -161,7 +161,7 @@ Registration register_features(const Features& features, const FeatureMap& map, 
   double shift = 1.0;
   while (result.iterations < config.max_iterations && !result.converged) {
     const PoseEquations points =
-        matcher.equations(result.map_from_lidar, shift > config.search_step_m);
+        matcher.equations(result.map_from_lidar, shift > config.reassociation_distance_m);
     if (points.count < kLeastMatches) break;
     if (result.iterations == 0) degenerate = find_degenerate(points, lever, config.degeneracy);
     const Eigen::Matrix<double, 6, 1> step = degenerate.observed * points.solve();
@@ -170,8 +170,8 @@ Registration register_features(const Features& features, const FeatureMap& map, 
     result.points = points;
     result.degenerate_directions = degenerate.directions;
     shift = step.tail<3>().norm() + lever * step.head<3>().norm();
-    result.converged = step.head<3>().norm() < config.turn_tolerance_rad &&
-                       step.tail<3>().norm() < config.shift_tolerance_m;
+    result.converged = step.head<3>().norm() < config.convergence_rotation_rad &&
+                       step.tail<3>().norm() < config.convergence_translation_m;
     ++result.iterations;
   }
   result.map_from_lidar = orthonormalized(result.map_from_lidar);

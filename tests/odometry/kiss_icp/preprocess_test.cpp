@@ -66,7 +66,7 @@ TEST(Preprocess, EqualTimesLoseTheScanInTheOriginalAndMeanNoTimesWhenCured) {
   const Vector6 twist = twist_within(times, motion, 0.1, config);
   EXPECT_EQ(twist, Vector6::Zero());
   EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 0U);
-  config.equal_times_are_no_times = true;
+  config.ignore_equal_times = true;
   EXPECT_EQ(preprocess(scan, times, twist, config, Parallel(1)).size(), 2U);
 }
 
@@ -86,7 +86,7 @@ TEST(Preprocess, PointsWhoseMotionIsToBeEstimatedStayAtTheirInstantsUntilItIsKno
   const Scan scan = scan_of({{2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, 50'000'000);
   const estimation::ScanTimes times = estimation::times_of(scan, Time{0});
   Config config;
-  config.own_motion = 1.0;
+  config.scan_motion_share = 1.0;
   const Vector6 wrong = vector6(9, 9, 9, 9, 9, 9);
   const TimedPoints points = preprocess(scan, times, wrong, config, Parallel(1));
   ASSERT_EQ(points.seconds, (std::vector<float>{-0.1F, -0.05F, 0.0F}));

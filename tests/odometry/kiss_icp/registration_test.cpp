@@ -167,9 +167,9 @@ TEST(Registration, MotionWithinTheScanIsFoundWithThePose) {
   Config config;
   config.sensor_centered = true;
   config.convergence = 1e-6;
-  const auto error_with = [&](double own_motion) {
+  const auto error_with = [&](double scan_motion_share) {
     const auto found = register_points(keypoints, map, {start, 0.1, Vector6::Zero()}, start, 1.0,
-                                       own_motion, config, Parallel(1));
+                                       scan_motion_share, config, Parallel(1));
     return Pose(end.inverse() * found.map_from_lidar);
   };
   // The map's points are 5 cm apart: residuals of 2.5 cm along the wall; a third of 2000 keypoints
@@ -249,7 +249,7 @@ TEST(Registration, CellsWithoutAShapeDecideOnlyWhatNothingElseDoes) {
   config.sensor_centered = true;
   config.convergence = 1e-7;
   const auto shift_in = [&](const map::VoxelHashMap& map, double weight) -> double {
-    config.shapeless_weight = weight;
+    config.degenerate_cell_weight = weight;
     return register_still(seen, map, Pose::Identity(), 0.5, config)
         .map_from_lidar.translation()
         .norm();
@@ -287,7 +287,7 @@ TEST(Registration, TheKernelsScaleIsALengthOrTheRootOfOne) {
     config.sensor_centered = true;
     config.convergence = 1e-9;
     config.kernel_fraction = kFraction;
-    config.kernel_in_meters = in_meters;
+    config.kernel_scale_in_meters = in_meters;
     const auto found = register_still(seen, map_of(points), Pose::Identity(), kSigma, config);
     EXPECT_NEAR(found.map_from_lidar.translation().x(), low, 1e-7) << in_meters;
     EXPECT_LT(found.map_from_lidar.translation().tail<2>().norm(), 1e-7);
