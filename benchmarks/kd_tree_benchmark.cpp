@@ -57,7 +57,7 @@ const std::vector<Points>& scans(int length) {
 }
 
 void add(const Points& scan, map::KdTree& tree) {
-  for (const Eigen::Vector3f& point : scan) tree.insert_thinned(point, kVoxel);
+  for (const Eigen::Vector3f& point : scan) tree.insert_downsampled(point, kVoxel);
 }
 
 map::KdTree walked(int length) {
@@ -88,7 +88,7 @@ void kd_tree_insertion(benchmark::State& state) {
       const auto begin = Clock::now();
       for (const Eigen::Vector3f& point : scan) {
         const auto start = Clock::now();
-        tree.insert_thinned(point, kVoxel);
+        tree.insert_downsampled(point, kVoxel);
         each.push_back(since(start));
       }
       whole.push_back(since(begin));

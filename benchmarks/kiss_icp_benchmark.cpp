@@ -72,7 +72,7 @@ struct Stage {
   estimation::ScanTimes times;
   TimedPoints points, map_points, keypoints;
   map::VoxelHashMap map;
-  Departure departure;
+  PreviousPose previous_pose;
   Pose guess;
   std::vector<Vector3f> in_map;
 
@@ -86,7 +86,7 @@ struct Stage {
         map({config.voxel_size(), config.max_points_per_voxel,
              config.voxel_size() / std::sqrt(config.max_points_per_voxel), config.voxel_rounding,
              config.plane_thinness.value_or(0.0)}),
-        departure{pose_at(kPeriod_s * kScans), kPeriod_s, se3::Vector6::Zero()},
+        previous_pose{pose_at(kPeriod_s * kScans), kPeriod_s, se3::Vector6::Zero()},
         guess(pose_at(kPeriod_s * kScans)) {
     for (int i = 0; i < kScans; ++i) {
       for (const Point& point : scan_at(i, count).points) {
@@ -139,7 +139,7 @@ void thin_twice(benchmark::State& state) {
 void register_keypoints(benchmark::State& state) {
   const Stage& s = stage(state.range(0));
   for (auto _ : state) {
-    const auto found = register_points(s.keypoints, s.map, s.departure, s.guess, 0.2,
+    const auto found = register_points(s.keypoints, s.map, s.previous_pose, s.guess, 0.2,
                                        s.config.scan_motion_share, s.config, s.parallel);
     state.counters["iterations"] = found.iterations;
     state.counters["keypoints"] = static_cast<double>(s.keypoints.size());

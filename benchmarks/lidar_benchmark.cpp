@@ -40,7 +40,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kTogether = sensor::CastOrder::kTogether;
+constexpr std::size_t kPacketSize = sensor::CastOrder::kPacketSize;
 
 /// A closed room of 1,001,112 triangles, 40 m by 26 m by 8 m, with bumps of all sizes.
 world::TriangleMesh bumpy_room() {
@@ -172,7 +172,7 @@ std::vector<RTCRayHit8> packets_of(const sensor::Lidar& lidar, const sensor::Sen
   std::vector<sensor::Beam> beams;
   lidar.pattern().beams(index, beams);
   const sensor::CastOrder order(beams);
-  std::vector<RTCRayHit8> packets(beams.size() / kTogether);
+  std::vector<RTCRayHit8> packets(beams.size() / kPacketSize);
   for (std::size_t i = 0; i < beams.size(); ++i) {
     const Time dt{config.mode == sensor::ScanMode::kRolling ? beams[i].dt_ns : 0};
     const Pose pose = stage.flight.pose_at(lidar.stamp(index) + dt) * config.body_from_lidar;
@@ -180,8 +180,8 @@ std::vector<RTCRayHit8> packets_of(const sensor::Lidar& lidar, const sensor::Sen
     const Eigen::Vector3f direction =
         (pose.linear() * beams[i].direction.cast<double>()).cast<float>();
     const std::size_t place = order.place(i, beams.size());
-    RTCRayHit8& packet = packets[place / kTogether];
-    const std::size_t lane = place % kTogether;
+    RTCRayHit8& packet = packets[place / kPacketSize];
+    const std::size_t lane = place % kPacketSize;
     packet.ray.org_x[lane] = origin.x();
     packet.ray.org_y[lane] = origin.y();
     packet.ray.org_z[lane] = origin.z();
@@ -243,14 +243,14 @@ void measure(benchmark::State& state, Sensor sensor, Effects effects) {
       benchmark::DoNotOptimize(lidar.measure(stage.world, stage.flight, index, parallel));
     });
   }
-  const auto shots = static_cast<double>(packets.size() * kTogether);
+  const auto shots = static_cast<double>(packets.size() * kPacketSize);
   state.counters["bare"] = shots / bare.processor_s;
   state.counters["measured"] = shots / measured.processor_s;
   state.counters["of_bare"] = bare.processor_s / measured.processor_s;
   state.counters["real_time"] = to_seconds(lidar.pattern().period()) / measured.wall_s;
 }
 
-constexpr int kTurns = 25;  // runs per row, of which the minimum time is reported
+constexpr int kRuns = 25;  // runs per row, of which the minimum time is reported
 
 void register_rows() {
   const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
@@ -266,7 +266,7 @@ void register_rows() {
           ->ArgName("threads")
           ->Arg(1)
           ->Arg(2)
-          ->Iterations(kTurns)
+          ->Iterations(kRuns)
           ->UseRealTime()
           ->Unit(benchmark::kMillisecond);
     }
@@ -312,7 +312,7 @@ void simulate_to_file(benchmark::State& state, Sensor sensor, Effects effects,
       out.close();
     });
   }
-  const auto shots = static_cast<double>(scans * packets[0].size() * kTogether);
+  const auto shots = static_cast<double>(scans * packets[0].size() * kPacketSize);
   const auto bytes = static_cast<double>(fs::file_size(folder / "data.mcap"));
   fs::remove_all(folder);
   state.counters["bare"] = shots / bare.processor_s;
@@ -373,7 +373,7 @@ void bare_one_by_one(benchmark::State& state, Sensor sensor) {
   RTCRayHit query{};
   for (auto _ : state) {
     for (const RTCRayHit8& packet : packets) {
-      for (std::size_t lane = 0; lane < kTogether; ++lane) {
+      for (std::size_t lane = 0; lane < kPacketSize; ++lane) {
         query.ray = rtcGetRayFromRayN(reinterpret_cast<RTCRayN*>(const_cast<RTCRay8*>(&packet.ray)),
                                       8, static_cast<unsigned>(lane));
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;

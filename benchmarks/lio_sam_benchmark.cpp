@@ -177,7 +177,7 @@ void verify_loop(benchmark::State& state) {
   const Parallel parallel(1);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        loop::align_clouds(source.surfaces, tree, guess, loop::careful_loops(), parallel));
+        loop::align_clouds(source.surfaces, tree, guess, loop::conservative_loops(), parallel));
 }
 
 constexpr auto kUnit = benchmark::kMillisecond;

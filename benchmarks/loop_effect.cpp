@@ -21,10 +21,10 @@ namespace {
 
 evaluation::MapError error_of(const odometry::Odometry& odometry, const Trajectory& truth,
                               const world::World& world, const Parallel& parallel) {
-  constexpr std::size_t kMost = 200'000;
+  constexpr std::size_t kMaxPoints = 200'000;
   const std::vector<Eigen::Vector3f> map = odometry.map();
   std::vector<Eigen::Vector3f> sample;
-  const std::size_t stride = map.size() / kMost + 1;
+  const std::size_t stride = map.size() / kMaxPoints + 1;
   for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
   const evaluation::Alignment alignment =
       evaluation::align(odometry.trajectory(), truth, evaluation::Gauge::kSe3);

@@ -74,12 +74,12 @@ def write_reference(program, pages):
     (folder / "index.md").write_text("\n".join(index) + "\n")
 
 
-def unlinked_outside(text):
+def without_source_links(text):
     """`text` without its links to files of the source tree, which the site does not contain."""
     return re.sub(r"\[([^\]]+)\]\((?!https?:|#)[^)]+\)", r"\1", text)
 
 
-def linked_inside(page):
+def link_to_site_pages(page):
     """Changes links to an algorithm's README in the source tree to its page on the site."""
     text = page.read_text()
     page.write_text(re.sub(r"\.\./lidarena/odometry/(\w+)/README\.md", r"algorithms/\1.md", text))
@@ -97,9 +97,9 @@ def main():
     (pages / "algorithms").mkdir()
     for name in ALGORITHMS:
         readme = ROOT / "lidarena" / "odometry" / name / "README.md"
-        (pages / "algorithms" / f"{name}.md").write_text(unlinked_outside(readme.read_text()))
+        (pages / "algorithms" / f"{name}.md").write_text(without_source_links(readme.read_text()))
     for page in pages.glob("*.md"):
-        linked_inside(page)
+        link_to_site_pages(page)
     write_reference(program, pages)
     config = (ROOT / "mkdocs.yml").read_text()
     (out / "mkdocs.yml").write_text(config + f"\ndocs_dir: {pages}\nsite_dir: {out / 'site'}\n")

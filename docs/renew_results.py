@@ -28,11 +28,11 @@ NAMES = {
     "lio_sam": "LIO-SAM",
     "fast_lio2": "FAST-LIO2",
 }
-BESIDE = ("brisk-", "timing-")  # prefixes of other studies' tables
+OTHER_STUDIES = ("brisk-", "timing-")  # prefixes of other studies' tables
 MARK = re.compile(r"(<!-- tables/(\S+)\.md -->\n).*?(<!-- end -->)", re.DOTALL)
 
 
-def take(source, target, prefix):
+def replace_files(source, target, prefix):
     """Replaces the files PREFIX* of `target`; returns the names that `source` lacks."""
     missing = []
     for old in sorted(target.iterdir()):
@@ -41,7 +41,7 @@ def take(source, target, prefix):
         new = source / old.name.removeprefix(prefix)
         if new.exists():
             shutil.copyfile(new, old)
-        elif prefix or not old.name.startswith(BESIDE):
+        elif prefix or not old.name.startswith(OTHER_STUDIES):
             missing.append(old.name)
     return missing
 
@@ -54,10 +54,10 @@ def table_of(markdown):
 
 def with_tables(page):
     """`page` with each marked table replaced by the content of its file."""
-    def renewed(found):
+    def replaced(found):
         table = table_of((RESULTS / "tables" / (found[2] + ".md")).read_text())
         return f"{found[1]}\n{table}\n{found[3]}"
-    return MARK.sub(renewed, page)
+    return MARK.sub(replaced, page)
 
 
 def main():
@@ -68,9 +68,9 @@ def main():
     prefix = arguments.prefix + "-" if arguments.prefix else ""
     if not (arguments.study / "tables").is_dir():
         sys.exit(f"{arguments.study} contains no report; run: lidarena report {arguments.study}")
-    missing = take(arguments.study / "tables", RESULTS / "tables", prefix)
+    missing = replace_files(arguments.study / "tables", RESULTS / "tables", prefix)
     if not prefix:
-        missing += take(arguments.study / "figures", RESULTS / "figures", prefix)
+        missing += replace_files(arguments.study / "figures", RESULTS / "figures", prefix)
         shutil.copyfile(arguments.study / "results.csv", RESULTS / "results.csv")
     index = RESULTS / "index.md"
     index.write_text(with_tables(index.read_text()))

@@ -25,13 +25,13 @@ int main() {
   std::vector<world::Hit> hits(rays.size());
   world.cast(rays, 50.0, hits);
 
-  float least = 50.0F;
+  float min_range = 50.0F;
   for (std::size_t i = 0; i < hits.size(); ++i) {
     std::printf("%4zu deg: %6.2f m\n", 30 * i, static_cast<double>(hits[i].range));
-    least = std::min(least, hits[i].range);
+    min_range = std::min(min_range, hits[i].range);
   }
   const world::ClosestPoint nearest = world.closest_point(center);
   std::printf("the nearest surface is %.3f m away, at %.3f %.3f %.3f\n", nearest.distance,
               nearest.point.x(), nearest.point.y(), nearest.point.z());
-  return nearest.distance <= static_cast<double>(least) + 1e-4 ? 0 : 1;
+  return nearest.distance <= static_cast<double>(min_range) + 1e-4 ? 0 : 1;
 }

@@ -11,7 +11,7 @@
 namespace {
 
 /// A flight that stays at the origin.
-class Still : public lidarena::flight::Flight {
+class StaticFlight : public lidarena::flight::Flight {
  public:
   lidarena::flight::Motion at(lidarena::Time) const override { return {}; }
   lidarena::Time duration() const override { return std::chrono::seconds(1); }
@@ -36,7 +36,7 @@ int main() {
   const world::World room(world::box_shape({6.0, 6.0, 6.0}), "room");
   const sensor::Lidar lidar(sensor, sensor::make_pattern(sensor), sensor.name, 1, true);
   std::vector<dataset::PointTruth> truth;
-  const Scan scan = lidar.measure(room, Still(), 0, Parallel(), &truth);
+  const Scan scan = lidar.measure(room, StaticFlight(), 0, Parallel(), &truth);
   double squares = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     squares += std::pow(static_cast<double>(scan.points[i].position.norm() - truth[i].range), 2);

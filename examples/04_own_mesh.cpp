@@ -45,9 +45,9 @@ int main(int argc, char** argv) {
   const world::Ray down{{1.234, -4.321, 5.0}, -Eigen::Vector3f::UnitZ()};
   world::Hit hit;
   world.cast({&down, 1}, 10.0, {&hit, 1});
-  const double found = 5.0 - static_cast<double>(hit.range);
-  const double wanted = height(1.234, -4.321);
+  const double measured = 5.0 - static_cast<double>(hit.range);
+  const double expected = height(1.234, -4.321);
   std::printf("%zu triangles; height below the ray: %.4f m by the formula, %.4f m by the mesh\n",
-              world.mesh().triangles.size(), wanted, found);
-  return std::abs(found - wanted) < 0.3 * 0.25 * 0.25 / 4.0 ? 0 : 1;  // chord to curve
+              world.mesh().triangles.size(), expected, measured);
+  return std::abs(measured - expected) < 0.3 * 0.25 * 0.25 / 4.0 ? 0 : 1;  // chord to curve
 }

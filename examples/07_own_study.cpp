@@ -26,10 +26,10 @@ int main(int argc, char** argv) {
   LogSink silent;
   const study::ConfigFolder configs = study::ConfigFolder::find(".");
   const study::StudyOutcome outcome = study::run_study(spec, configs, folder, {}, silent);
-  for (const study::PlannedRun& cell : study::plan(spec, configs)) {
-    const Json metrics = dataset::read_json(folder / "runs" / cell.name / "metrics.json");
+  for (const study::PlannedRun& planned : study::plan(spec, configs)) {
+    const Json metrics = dataset::read_json(folder / "runs" / planned.name / "metrics.json");
     const Json& error = metrics.at("live").at("rpe").at("1s").at("translation");
-    std::printf("%-16s %.2f cm RPE over 1 s\n", cell.sensor.c_str(),
+    std::printf("%-16s %.2f cm RPE over 1 s\n", planned.sensor.c_str(),
                 100.0 * error.at("rmse_m").get<double>());
   }
   return outcome.runs == 2 && outcome.failed == 0 ? 0 : 1;

@@ -41,10 +41,10 @@ struct Cell {
 };
 
 std::map<Key, Cell> cells_of(const std::vector<Eigen::Vector3d>& points,
-                             const Eigen::Vector3d& shift) {
+                             const Eigen::Vector3d& offset) {
   std::map<Key, Cell> cells;
   for (const Eigen::Vector3d& point : points) {
-    const Eigen::Vector3d p = point + shift;
+    const Eigen::Vector3d p = point + offset;
     const Eigen::Vector3i k = (p / kCell).array().floor().cast<int>();
     Cell& cell = cells[{k.x(), k.y(), k.z()}];
     ++cell.count;
@@ -93,10 +93,10 @@ class CellPlanes : public odometry::Odometry {
       const auto there = reference_.find(key);
       if (there == reference_.end() || cell.normal().isZero()) continue;
       const Eigen::Vector3d n = there->second.normal();
-      const double off = n.dot(there->second.mean() - cell.mean());
-      if (std::abs(off) > 0.3) continue;
+      const double distance = n.dot(there->second.mean() - cell.mean());
+      if (std::abs(distance) > 0.3) continue;
       a += n * n.transpose();
-      b += off * n;
+      b += distance * n;
     }
     return a.ldlt().solve(b);
   }
@@ -131,8 +131,8 @@ int main() {
   const odometry::RunResult result = odometry::run(odometry, *events, {}, silent);
   const auto poses = result.files.trajectory.poses();
   const Eigen::Vector3d moved = poses.back().world_from_body.translation();
-  const Eigen::Vector3d wanted = flight.at(poses.back().stamp).world_from_body.translation();
+  const Eigen::Vector3d expected = flight.at(poses.back().stamp).world_from_body.translation();
   std::printf("estimated translation %.3f %.3f %.3f m, true %.3f %.3f %.3f\n", moved.x(), moved.y(),
-              moved.z(), wanted.x(), wanted.y(), wanted.z());
-  return (moved - wanted).norm() < 0.25 * wanted.norm() ? 0 : 1;
+              moved.z(), expected.x(), expected.y(), expected.z());
+  return (moved - expected).norm() < 0.25 * expected.norm() ? 0 : 1;
 }

@@ -15,9 +15,9 @@ namespace {
 using namespace lidarena;
 
 /// RMS distance (m) of points to the best-fit plane of each face. `cloud` is in the mesh's frame;
-/// uses points within `reach` meters of a face, and faces that have `least` points or more.
+/// uses points within `reach` meters of a face, and faces that have `min_points` points or more.
 double flatness(const std::vector<Eigen::Vector3d>& cloud, const world::World& world,
-                double reach = 0.2, std::size_t least = 100) {
+                double reach = 0.2, std::size_t min_points = 100) {
   std::vector<world::ClosestPoint> nearest(cloud.size());
   world.closest_points(cloud, reach, nearest, Parallel());
   std::map<std::uint32_t, std::vector<Eigen::Vector3d>> faces;
@@ -27,12 +27,12 @@ double flatness(const std::vector<Eigen::Vector3d>& cloud, const world::World& w
   double squares = 0.0;
   std::size_t count = 0;
   for (const auto& [face, points] : faces) {
-    if (points.size() < least) continue;
+    if (points.size() < min_points) continue;
     const Eigen::Map<const Eigen::Matrix3Xd> rows(points[0].data(), 3,
                                                   static_cast<Eigen::Index>(points.size()));
-    const Eigen::Matrix3Xd away = rows.colwise() - rows.rowwise().mean();
-    squares +=
-        Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(away * away.transpose()).eigenvalues()[0];
+    const Eigen::Matrix3Xd centered = rows.colwise() - rows.rowwise().mean();
+    squares += Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(centered * centered.transpose())
+                   .eigenvalues()[0];
     count += points.size();
   }
   return std::sqrt(squares / static_cast<double>(count));

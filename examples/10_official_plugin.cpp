@@ -30,7 +30,7 @@ constexpr int kBandWidth = 10;  // deg of elevation
 constexpr int kBands = 6;       // -10 .. 50 deg
 
 /// A flight that stays at the origin.
-class Still : public flight::Flight {
+class StaticFlight : public flight::Flight {
  public:
   flight::Motion at(Time) const override { return {}; }
   Time duration() const override { return std::chrono::seconds(1); }
@@ -43,7 +43,7 @@ Scan look_at_cylinder(const world::World& world, sensor::ScanMode mode) {
   config.min_range_m = kMinRange;
   config.mode = mode;
   const sensor::Lidar lidar(config, sensor::make_pattern(config), config.name, 1, false);
-  return lidar.measure(world, Still(), 0, Parallel());
+  return lidar.measure(world, StaticFlight(), 0, Parallel());
 }
 
 double radius(const Point& point) { return point.position.head<2>().norm(); }

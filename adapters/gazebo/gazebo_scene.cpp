@@ -66,7 +66,7 @@ bool GazeboScene::has_changed() const {
   const auto models = world_->Models();
   if (models.size() != models_.size()) return true;
   for (std::size_t i = 0; i < models.size(); ++i) {
-    const Standing& known = models_[i];
+    const KnownModel& known = models_[i];
     if (models[i].get() != known.model || models[i]->IsStatic() != known.is_static) return true;
     if (known.is_static && models[i]->WorldPose() != known.pose) return true;
   }

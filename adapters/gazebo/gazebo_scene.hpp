@@ -30,7 +30,7 @@ class GazeboScene {
   std::vector<Pose> poses() const;
 
  private:
-  struct Standing {
+  struct KnownModel {
     const ::gazebo::physics::Model* model;
     ignition::math::Pose3d pose;  ///< when the world was built
     bool is_static;
@@ -52,7 +52,7 @@ class GazeboScene {
   ::gazebo::physics::WorldPtr world_;
   Geometry geometry_;
   const ::gazebo::physics::Link* carrier_;
-  std::vector<Standing> models_;
+  std::vector<KnownModel> models_;
   std::vector<world::PlacedShape> shapes_;  ///< while building
   std::vector<Moving> moving_;
   std::map<std::string, world::ShapePtr> meshes_;  ///< by file, part and scale

@@ -98,18 +98,18 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
   void step() {
     if (is_done_) return;
     const StampedPose pose{to_time(world_->SimTime()), to_pose(link_->WorldPose())};
-    if (auto rebuilt = scene_->rebuilt_if_changed()) surroundings_ = std::move(rebuilt);
+    if (auto rebuilt = scene_->rebuilt_if_changed()) moving_world_ = std::move(rebuilt);
     if (start_ < Time{0}) {
       start_ = pose.stamp;
       start_wall_ = std::chrono::steady_clock::now();
       start_cpu_ = process_cpu_seconds();
     }
     if (thread_) {
-      thread_->add([this, pose, world = surroundings_, moved = scene_->poses()] {
+      thread_->add([this, pose, world = moving_world_, moved = scene_->poses()] {
         measure(pose, *world, moved);
       });
     } else {
-      measure(pose, *surroundings_, scene_->poses());
+      measure(pose, *moving_world_, scene_->poses());
     }
     const bool ends =
         config_.record_seconds > 0.0 && pose.stamp - start_ >= from_seconds(config_.record_seconds);
@@ -162,7 +162,7 @@ class LidarPlugin : public ::gazebo::SensorPlugin {
   ::gazebo::physics::WorldPtr world_;
   ::gazebo::physics::LinkPtr link_;
   std::unique_ptr<GazeboScene> scene_;
-  std::shared_ptr<world::MovingWorld> surroundings_;
+  std::shared_ptr<world::MovingWorld> moving_world_;
   std::optional<sensor::SteppedSensor> sensor_;
   std::vector<std::unique_ptr<Output>> outputs_;
   std::vector<dataset::Event> events_;

@@ -16,16 +16,17 @@ namespace lidarena::gazebo_plugin {
 /// <noise>) are skipped.
 template <class Config>
 Config read_sdf_config(const sdf::ElementPtr& plugin, const std::string& place) {
-  std::vector<std::string> truths;  // names of boolean fields: SDF converts their values to 0 and 1
+  std::vector<std::string>
+      booleans;  // names of boolean fields: SDF converts their values to 0 and 1
   Config config;
   Config::visit(config, [&](const char* name, auto& field, auto&&...) {
-    if (std::is_same_v<decltype(field), bool&>) truths.emplace_back(name);
+    if (std::is_same_v<decltype(field), bool&>) booleans.emplace_back(name);
   });
   std::string yaml;
   for (auto element = plugin->GetFirstElement(); element; element = element->GetNextElement("")) {
     if (element->GetFirstElement() || !element->GetValue()) continue;
     std::string value = element->GetValue()->GetAsString();
-    if (std::find(truths.begin(), truths.end(), element->GetName()) != truths.end()) {
+    if (std::find(booleans.begin(), booleans.end(), element->GetName()) != booleans.end()) {
       if (value == "1") value = "true";
       if (value == "0") value = "false";
     }

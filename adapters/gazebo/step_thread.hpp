@@ -25,7 +25,7 @@ class StepThread {
   }
   void add(std::function<void()> job) {
     std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return jobs_.size() < kMostOpen; });
+    changed_.wait(lock, [this] { return jobs_.size() < kMaxPending; });
     jobs_.push_back(std::move(job));
     changed_.notify_all();
   }
@@ -36,7 +36,7 @@ class StepThread {
   }
 
  private:
-  static constexpr std::size_t kMostOpen = 200;  // jobs (steps)
+  static constexpr std::size_t kMaxPending = 200;  // jobs (steps)
 
   void run() {
     std::unique_lock lock(mutex_);

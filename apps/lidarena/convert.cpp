@@ -33,8 +33,9 @@ struct ConvertOptions {
 enum class Kind { kWorld, kCloud, kTrajectory, kDataset };
 
 template <std::size_t N>
-bool ends_in(const fs::path& file, const std::array<const char*, N>& endings) {
-  return std::find(endings.begin(), endings.end(), file.extension().string()) != endings.end();
+bool has_extension(const fs::path& file, const std::array<const char*, N>& extensions) {
+  return std::find(extensions.begin(), extensions.end(), file.extension().string()) !=
+         extensions.end();
 }
 
 /// False for a .ply without faces, which is a point cloud.
@@ -53,17 +54,17 @@ Kind kind_of(const fs::path& in, const fs::path& out) {
   constexpr std::array kTrajectories{".tum", ".txt", ".csv"};
   constexpr std::array kPoses{".tum", ".txt"};
   if (fs::is_directory(in)) return Kind::kDataset;
-  if (ends_in(in, kWorlds)) return Kind::kWorld;
-  if (ends_in(in, kTrajectories) || ends_in(out, kPoses)) return Kind::kTrajectory;
+  if (has_extension(in, kWorlds)) return Kind::kWorld;
+  if (has_extension(in, kTrajectories) || has_extension(out, kPoses)) return Kind::kTrajectory;
   if (in.extension() == ".pcd") return Kind::kCloud;
   if (in.extension() == ".ply") return has_faces(in) ? Kind::kWorld : Kind::kCloud;
   return Kind::kDataset;
 }
 
-[[noreturn]] void refuse_ending(const fs::path& out, const std::string& what,
-                                const std::string& endings) {
+[[noreturn]] void reject_extension(const fs::path& out, const std::string& what,
+                                   const std::string& extensions) {
   throw InputError(out.string(), "has an extension that " + what + " cannot be written to",
-                   "use " + endings);
+                   "use " + extensions);
 }
 
 Json convert_world(const fs::path& in, const fs::path& out, LogSink& log) {
@@ -81,7 +82,7 @@ Json convert_cloud(const fs::path& in, const fs::path& out) {
   } else if (out.extension() == ".pcd") {
     dataset::write_pcd(out, cloud);
   } else {
-    refuse_ending(out, "clouds", ".ply or .pcd");
+    reject_extension(out, "clouds", ".ply or .pcd");
   }
   return {{"kind", "cloud"}, {"points", cloud.points.size()}};
 }
@@ -100,7 +101,7 @@ Json convert_trajectory(const fs::path& in, const fs::path& out, double rate_hz)
     for (const StampedPose& pose : trajectory.poses()) times.push_back(pose.stamp);
     dataset::write_times(fs::path(out).replace_extension(".times.txt"), times);
   } else {
-    refuse_ending(out, "trajectories", ".tum (TUM) or .txt (KITTI)");
+    reject_extension(out, "trajectories", ".tum (TUM) or .txt (KITTI)");
   }
   return {{"kind", "trajectory"}, {"poses", trajectory.size()}};
 }

@@ -50,9 +50,9 @@ Pose parse_lever(const std::string& text) {
 
 /// The estimate as poses of the truth's body frame. Throws InputError if no `lever` is given and
 /// both files name their body frame, with different names.
-Trajectory in_truths_body(const dataset::FramedTrajectory& estimate,
-                          const dataset::FramedTrajectory& truth, const std::string& name,
-                          const std::string& lever) {
+Trajectory in_body_of_truth(const dataset::FramedTrajectory& estimate,
+                            const dataset::FramedTrajectory& truth, const std::string& name,
+                            const std::string& lever) {
   if (!lever.empty()) return evaluation::moved_to_body(estimate.trajectory, parse_lever(lever));
   if (!estimate.body.empty() && !truth.body.empty() && estimate.body != truth.body) {
     throw InputError(
@@ -83,7 +83,7 @@ class Files {
   }
   const Trajectory& truth() const { return truth_.trajectory; }
   Trajectory estimate(const std::string& file) const {
-    return in_truths_body(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
+    return in_body_of_truth(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
   }
   evaluation::ScoredRun score(const std::string& file, const Parallel& parallel,
                               LogSink& log) const {
@@ -136,8 +136,8 @@ Json failed(const std::string& reason) { return {{"status", "failed"}, {"reason"
 evaluation::ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel,
                                    LogSink& log) {
   evaluation::ScoredRun run;
-  const bool bare = folder.filename().empty();  // "run/"
-  run.name = (bare ? folder.parent_path() : folder).filename().string();
+  const bool ends_with_slash = folder.filename().empty();  // "run/"
+  run.name = (ends_with_slash ? folder.parent_path() : folder).filename().string();
   try {
     describe(folder, run);
     const std::string failure = failure_of(folder);

@@ -106,9 +106,9 @@ Json dataset_info(const fs::path& path) {
 }
 
 bool is_mesh_or_world(const fs::path& file) {
-  static const std::set<std::string> endings{".obj", ".stl", ".dae",  ".gltf",
-                                             ".glb", ".sdf", ".world"};
-  return endings.contains(file.extension().string());
+  static const std::set<std::string> extensions{".obj", ".stl", ".dae",  ".gltf",
+                                                ".glb", ".sdf", ".world"};
+  return extensions.contains(file.extension().string());
 }
 
 /// Describes a .ply as a mesh if it has faces, else as a cloud.

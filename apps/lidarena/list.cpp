@@ -36,7 +36,7 @@ int list_algorithms_verb(const Common& common) {
 }
 
 /// "a" or "a to b" with a unit; "-" if unknown.
-std::string figure(double low, double high, const char* unit) {
+std::string range_text(double low, double high, const char* unit) {
   if (high <= 0.0) return "-";
   return low > 0.0 && low < high ? fmt::format("{:g} to {:g} {}", low, high, unit)
                                  : fmt::format("{:g} {}", high, unit);
@@ -73,8 +73,9 @@ int list_sensors(const Common& common) {
                    {"facts", to_json(facts)}});
       if (!common.json) {
         fmt::print(kRow, name, fov_of(facts), fmt::format("{:.0f}", rate),
-                   figure(0.0, sensor.max_range_m, "m"), figure(0.0, 1000.0 * facts.weight_kg, "g"),
-                   figure(facts.power_min_w, facts.power_max_w, "W"),
+                   range_text(0.0, sensor.max_range_m, "m"),
+                   range_text(0.0, 1000.0 * facts.weight_kg, "g"),
+                   range_text(facts.power_min_w, facts.power_max_w, "W"),
                    facts.price.empty() ? "-" : facts.price);
       }
     } catch (const InputError& error) {

@@ -15,7 +15,7 @@ namespace lidarena {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInstants[] = {0.1, 0.5, 1.0, 4.0};  // s
+constexpr double kTimes[] = {0.1, 0.5, 1.0, 4.0};  // s
 
 /// Cell size in degrees: finer for narrow fields of view.
 double cell_of(const sensor::FieldOfView& fov) {
@@ -110,7 +110,7 @@ Json pattern_info(const sensor::SensorConfig& sensor, const std::filesystem::pat
             {"coverage", Json::object()}};
   if (!sensor.facts.approximate.empty()) json["approximate"] = sensor.facts.approximate;
   sensor::Shots shots(*pattern);
-  for (const double seconds : kInstants) {
+  for (const double seconds : kTimes) {
     for (; shots.time() < from_seconds(seconds); shots.advance()) {
       inside.add(shots.beam().direction);
       drawn.add(shots.beam().direction);

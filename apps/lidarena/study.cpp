@@ -25,7 +25,7 @@ struct StudyRequest {
 };
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
-study::StudySpec spec_of_one_place(const StudyRequest& request) {
+study::StudySpec spec_of_one_world(const StudyRequest& request) {
   if (request.world.empty()) {
     throw InputError("study", "neither a study nor a world is given",
                      "name a study, or give --world and --sensors");
@@ -66,14 +66,15 @@ void print_plan(const study::StudySpec& spec, const std::vector<study::PlannedRu
 int study_verb(const Common& common, const StudyRequest& request) {
   const study::ConfigFolder configs = common.config_folder();
   const auto spec = request.name.empty()
-                        ? spec_of_one_place(request)
+                        ? spec_of_one_world(request)
                         : load_config<study::StudySpec>(configs.resolve("studies", request.name));
   study::StudyOptions options;
   options.threads = common.threads;
   options.jobs = request.jobs;
   options.shard = study::parse_shard(request.shard);
   if (request.dry) {
-    print_plan(spec, study::cells_of(study::plan(spec, configs), options.shard, configs), configs);
+    print_plan(spec, study::cells_of_shard(study::plan(spec, configs), options.shard, configs),
+               configs);
     return kDone;
   }
   Console console(common.quiet);

@@ -52,9 +52,9 @@ void add_world(report::Scene& scene, const fs::path& file, LogSink& log) {
 }
 
 /// Adds a folder, a file, or the world called `name` in configs/worlds to the scene.
-void add_thing(report::Scene& scene, const Common& common, const ViewOptions& o,
-               const std::string& name, const report::SceneOptions& options,
-               const Parallel& parallel, LogSink& log) {
+void add_item(report::Scene& scene, const Common& common, const ViewOptions& o,
+              const std::string& name, const report::SceneOptions& options,
+              const Parallel& parallel, LogSink& log) {
   fs::path path = name;
   if (!fs::exists(path)) path = common.config_folder().resolve("worlds", name);
   std::string ending = path.extension().string();
@@ -94,7 +94,7 @@ report::Scene load_scene(const Common& common, const ViewOptions& o, const Paral
   report::Scene scene;
   scene.title = title_of(o.files);
   for (const std::string& file : o.files) {
-    add_thing(scene, common, o, file, options, parallel, log);
+    add_item(scene, common, o, file, options, parallel, log);
   }
   report::measure_distances(scene, parallel);
   for (const report::SceneCloud& cloud : scene.clouds) {
@@ -130,12 +130,12 @@ int view_verb(const Common& common, const ViewOptions& o) {
     picture = report::scene_picture(scene);
     return report::pack(scene, parallel);
   }();
-  Json told{{"layers", summary_of(packed)}};
+  Json summary{{"layers", summary_of(packed)}};
   if (!o.out.empty()) {
     report::write_view_page(o.out, packed, picture);
-    told["page"] = o.out;
+    summary["page"] = o.out;
     if (common.json) {
-      print_json(told);
+      print_json(summary);
     } else {
       fmt::print("{}\n", o.out);
     }
@@ -143,9 +143,9 @@ int view_verb(const Common& common, const ViewOptions& o) {
   }
   serve_view(
       report::served_view_page(packed, picture), packed, o.port, [&](const std::string& address) {
-        told["address"] = address;
+        summary["address"] = address;
         if (common.json) {
-          print_json(told);
+          print_json(summary);
         } else {
           fmt::print(
               "{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",

@@ -15,7 +15,7 @@ namespace {
 
 constexpr const char* kHost = "127.0.0.1";
 
-void refuse_foreign_hosts(httplib::Server& server, int port) {
+void reject_foreign_hosts(httplib::Server& server, int port) {
   server.set_pre_routing_handler([port](const httplib::Request& request,
                                         httplib::Response& response) {
     const std::string host = request.get_header_value("Host");
@@ -64,7 +64,7 @@ void serve_view(const std::string& page, const report::PackedScene& scene, int p
     throw InputError("--port", "this port is in use or not allowed",
                      "leave --port out for any free port");
   }
-  refuse_foreign_hosts(server, port);
+  reject_foreign_hosts(server, port);
   listening(fmt::format("http://{}:{}/", kHost, port));
   server.listen_after_bind();
 }

@@ -15,7 +15,7 @@ import sys
 import numpy as np
 
 VOXEL = 0.4  # m
-NEAR = 1.0  # m, maximum distance of a match
+MAX_MATCH_DISTANCE = 1.0  # m, maximum distance of a match
 ITERATIONS = 15
 
 
@@ -32,7 +32,7 @@ def read_pcd(path):
     return rows[:, first:first + 12].copy().view(np.float32).astype(float)
 
 
-def thinned(points, voxel):
+def downsampled(points, voxel):
     """The first point in each voxel."""
     cells = np.floor(points / voxel).astype(np.int64)
     return points[np.sort(np.unique(cells, axis=0, return_index=True)[1])]
@@ -70,20 +70,20 @@ def rigid_fit(source, target):
     """The rigid transform that best aligns source with target (Arun, Huang and Blostein 1987)."""
     a, b = source.mean(axis=0), target.mean(axis=0)
     u, _, vt = np.linalg.svd((source - a).T @ (target - b))
-    turn = vt.T @ np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
+    rot = vt.T @ np.diag([1, 1, np.sign(np.linalg.det(vt.T @ u.T))]) @ u.T
     fit = np.eye(4)
-    fit[:3, :3], fit[:3, 3] = turn, b - turn @ a
+    fit[:3, :3], fit[:3, 3] = rot, b - rot @ a
     return fit
 
 
-def quaternion(turn):
+def quaternion(rot):
     """Quaternion x y z w of a rotation matrix, computed from its largest component."""
-    four = np.array([1 + turn[0, 0] - turn[1, 1] - turn[2, 2], 1 - turn[0, 0] + turn[1, 1] - turn[2, 2],
-                     1 - turn[0, 0] - turn[1, 1] + turn[2, 2], 1 + np.trace(turn)])
-    rows = np.array([[four[0], turn[0, 1] + turn[1, 0], turn[0, 2] + turn[2, 0], turn[2, 1] - turn[1, 2]],
-                     [turn[0, 1] + turn[1, 0], four[1], turn[1, 2] + turn[2, 1], turn[0, 2] - turn[2, 0]],
-                     [turn[0, 2] + turn[2, 0], turn[1, 2] + turn[2, 1], four[2], turn[1, 0] - turn[0, 1]],
-                     [turn[2, 1] - turn[1, 2], turn[0, 2] - turn[2, 0], turn[1, 0] - turn[0, 1], four[3]]])
+    four = np.array([1 + rot[0, 0] - rot[1, 1] - rot[2, 2], 1 - rot[0, 0] + rot[1, 1] - rot[2, 2],
+                     1 - rot[0, 0] - rot[1, 1] + rot[2, 2], 1 + np.trace(rot)])
+    rows = np.array([[four[0], rot[0, 1] + rot[1, 0], rot[0, 2] + rot[2, 0], rot[2, 1] - rot[1, 2]],
+                     [rot[0, 1] + rot[1, 0], four[1], rot[1, 2] + rot[2, 1], rot[0, 2] - rot[2, 0]],
+                     [rot[0, 2] + rot[2, 0], rot[1, 2] + rot[2, 1], four[2], rot[1, 0] - rot[0, 1]],
+                     [rot[2, 1] - rot[1, 2], rot[0, 2] - rot[2, 0], rot[1, 0] - rot[0, 1], four[3]]])
     best = rows[int(np.argmax(four))]
     return best / np.linalg.norm(best)
 
@@ -93,11 +93,11 @@ def main(sweeps, output):
     world, pose, motion = VoxelMap(VOXEL), np.eye(4), np.eye(4)
     rows = ["# world_from_lidar"]
     for stamp, sweep in zip(stamps, sorted(sweeps.glob("*.pcd"))):
-        points = thinned(read_pcd(sweep), VOXEL)
+        points = downsampled(read_pcd(sweep), VOXEL)
         before, pose = pose, pose @ motion
         for _ in range(ITERATIONS if world.points else 0):
             placed = points @ pose[:3, :3].T + pose[:3, 3]
-            which, found = world.nearest(placed, NEAR)
+            which, found = world.nearest(placed, MAX_MATCH_DISTANCE)
             if len(which) < 10:
                 break
             step = rigid_fit(placed[which], found)

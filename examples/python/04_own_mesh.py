@@ -21,8 +21,8 @@ triangles = np.concatenate([np.stack([corner, corner + n, corner + n + 1], 1),
 world = lidarena.World(vertices, triangles, name="waves")
 world.save(folder / "waves.ply")
 
-again = lidarena.load_world(folder / "waves.ply")
-assert len(again.triangles) == len(triangles)
+reloaded = lidarena.load_world(folder / "waves.ply")
+assert len(reloaded.triangles) == len(triangles)
 
 # hover 3 m above it for one second
 stamps = np.arange(0, 1_000_000_001, 100_000_000)
@@ -30,7 +30,7 @@ poses = np.tile(np.eye(4), (len(stamps), 1, 1))
 poses[:, 2, 3] = 3.0
 flight = lidarena.replay(lidarena.Trajectory(stamps, poses))
 sensor = lidarena.load_sensor("ouster_os1_64")
-scan, truth = lidarena.Lidar(sensor).measure(again, flight, 0, truth=True)
+scan, truth = lidarena.Lidar(sensor).measure(reloaded, flight, 0, truth=True)
 height = 0.3 * np.sin(truth["position"][:, 0]) * np.cos(truth["position"][:, 1])
 print(f"{len(scan)} points within {abs(truth['position'][:, 2] - height).max() * 100:.1f} cm "
       "of the surface that the mesh approximates")

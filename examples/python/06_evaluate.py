@@ -12,7 +12,7 @@ import numpy as np
 import lidarena
 
 
-def made_up():
+def generated():
     world = lidarena.load_world("house")
     flight = lidarena.make_flight("house", world)
     truth = flight.sample(np.arange(0, flight.duration, 50_000_000))
@@ -27,7 +27,7 @@ if len(sys.argv) > 2:
     cloud = lidarena.read_cloud(sys.argv[3]) if len(sys.argv) > 4 else None
     world = lidarena.load_world(sys.argv[4]) if len(sys.argv) > 4 else None
 else:
-    estimate, truth, cloud, world = made_up()
+    estimate, truth, cloud, world = generated()
 
 metrics = lidarena.evaluate(estimate, truth)
 for warning in metrics["warnings"]:

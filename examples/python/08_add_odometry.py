@@ -23,8 +23,8 @@ def planes(points):
     """(keys, centroids, normals) of the cells with ten or more points that lie in a plane."""
     keys, cell, count = np.unique(keys_of(points), return_inverse=True, return_counts=True)
     means = np.stack([np.bincount(cell, points[:, i]) for i in range(3)], axis=1) / count[:, None]
-    away = points - means[cell]
-    squares = np.stack([np.bincount(cell, away[:, i] * away[:, j])
+    centered = points - means[cell]
+    squares = np.stack([np.bincount(cell, centered[:, i] * centered[:, j])
                         for i in range(3) for j in range(3)], axis=1).reshape(-1, 3, 3)
     values, vectors = np.linalg.eigh(squares / count[:, None, None])
     flat = (count >= 10) & (values[:, 0] < 0.01 * values[:, 1])
@@ -41,8 +41,8 @@ class CellPlanes(lidarena.Odometry):
         self.reference = None
 
     def register_scan(self, scan):
-        turn, offset = self.body_from_lidar[:3, :3], self.body_from_lidar[:3, 3]
-        points = scan.positions.astype(float) @ turn.T + offset
+        rotation, offset = self.body_from_lidar[:3, :3], self.body_from_lidar[:3, 3]
+        points = scan.positions.astype(float) @ rotation.T + offset
         if self.reference is None:
             self.reference = planes(points)
             return lidarena.ScanResult(scan.stamp, np.eye(4), status="initializing")
@@ -51,12 +51,12 @@ class CellPlanes(lidarena.Odometry):
             keys, means, _ = planes(points + self.position)
             _, here, there = np.intersect1d(keys, self.reference[0], return_indices=True)
             normals = self.reference[2][there]
-            off = np.einsum("ij,ij->i", normals, self.reference[1][there] - means[here])
-            near = np.abs(off) < 0.3
+            distances = np.einsum("ij,ij->i", normals, self.reference[1][there] - means[here])
+            near = np.abs(distances) < 0.3
             matches = near.sum()
             if matches < 5:
                 return self.result(scan, "too_few_points", matches)
-            self.position += np.linalg.lstsq(normals[near], off[near], rcond=None)[0]
+            self.position += np.linalg.lstsq(normals[near], distances[near], rcond=None)[0]
         return self.result(scan, "tracked", matches)
 
     def result(self, scan, status, matches):

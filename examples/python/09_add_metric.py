@@ -10,18 +10,18 @@ import numpy as np
 import lidarena
 
 
-def flatness(cloud, world, reach=0.2, least=100):
+def flatness(cloud, world, reach=0.2, min_points=100):
     """RMS distance (m) of points to the best-fit plane of each face.
 
     `cloud` (N, 3) is in the mesh's frame; uses points within `reach` meters of a face, and faces
-    that have `least` points or more. Returns NaN if there is no such face.
+    that have `min_points` points or more. Returns NaN if there is no such face.
     """
     nearest = world.closest_points(cloud, max_distance=reach)
     faces = nearest["triangle"]
     squares, count = 0.0, 0
     for face in np.unique(faces[np.isfinite(nearest["distance"])]):
         points = cloud[faces == face].astype(float)
-        if len(points) < least:
+        if len(points) < min_points:
             continue
         centered = points - points.mean(axis=0)
         squares += np.linalg.svd(centered, compute_uv=False)[2] ** 2

@@ -35,35 +35,35 @@ void decompress_stream(Bytes input, std::uint64_t size, std::vector<std::byte>& 
   while (!input.empty()) {
     if (used == output.size() && used < size)
       output.resize(std::min<std::uint64_t>(size, 2 * used));
-    std::span<std::byte> room = std::span(output).subspan(used);
+    std::span<std::byte> free_output = std::span(output).subspan(used);
     const std::size_t input_before = input.size();
-    const std::size_t room_before = room.size();
-    frame_ended = step(room, input);
-    used += room_before - room.size();
-    const bool stuck = input.size() == input_before && room.size() == room_before;
+    const std::size_t free_before = free_output.size();
+    frame_ended = step(free_output, input);
+    used += free_before - free_output.size();
+    const bool stuck = input.size() == input_before && free_output.size() == free_before;
     if (stuck && used == size) throw std::runtime_error("holds more bytes than stated");
     if (stuck) throw std::runtime_error("cannot be decompressed");
   }
   while (!frame_ended && used < size) {  // all input consumed, output still in the decompressor
     if (used == output.size()) output.resize(std::min<std::uint64_t>(size, 2 * used));
-    std::span<std::byte> room = std::span(output).subspan(used);
-    const std::size_t room_before = room.size();
-    frame_ended = step(room, input);
-    if (room.size() == room_before) break;
-    used += room_before - room.size();
+    std::span<std::byte> free_output = std::span(output).subspan(used);
+    const std::size_t free_before = free_output.size();
+    frame_ended = step(free_output, input);
+    if (free_output.size() == free_before) break;
+    used += free_before - free_output.size();
   }
   if (!frame_ended || used != size) throw std::runtime_error("holds fewer bytes than stated");
 }
 
 void decompress_zstd(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
   const std::unique_ptr<ZSTD_DCtx, DeleteZstd> context(ZSTD_createDCtx());
-  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+  decompress_stream(input, size, output, [&](std::span<std::byte>& free_output, Bytes& rest) {
     ZSTD_inBuffer in{rest.data(), rest.size(), 0};
-    ZSTD_outBuffer out{room.data(), room.size(), 0};
+    ZSTD_outBuffer out{free_output.data(), free_output.size(), 0};
     const std::size_t result = ZSTD_decompressStream(context.get(), &out, &in);
     if (ZSTD_isError(result)) throw std::runtime_error(ZSTD_getErrorName(result));
     rest = rest.subspan(in.pos);
-    room = room.subspan(out.pos);
+    free_output = free_output.subspan(out.pos);
     return result == 0;
   });
 }
@@ -72,14 +72,14 @@ void decompress_lz4(Bytes input, std::uint64_t size, std::vector<std::byte>& out
   LZ4F_dctx* created = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&created, LZ4F_VERSION))) throw std::bad_alloc();
   const std::unique_ptr<LZ4F_dctx, DeleteLz4> context(created);
-  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+  decompress_stream(input, size, output, [&](std::span<std::byte>& free_output, Bytes& rest) {
     std::size_t consumed = rest.size();
-    std::size_t produced = room.size();
-    const std::size_t result =
-        LZ4F_decompress(context.get(), room.data(), &produced, rest.data(), &consumed, nullptr);
+    std::size_t produced = free_output.size();
+    const std::size_t result = LZ4F_decompress(context.get(), free_output.data(), &produced,
+                                               rest.data(), &consumed, nullptr);
     if (LZ4F_isError(result)) throw std::runtime_error(LZ4F_getErrorName(result));
     rest = rest.subspan(consumed);
-    room = room.subspan(produced);
+    free_output = free_output.subspan(produced);
     return result == 0;
   });
 }
@@ -93,16 +93,16 @@ void decompress_bz2(Bytes input, std::uint64_t size, std::vector<std::byte>& out
   bz_stream state{};
   if (BZ2_bzDecompressInit(&state, 0, 0) != BZ_OK) throw std::bad_alloc();
   const std::unique_ptr<bz_stream, EndBzip2> stream(&state);
-  decompress_stream(input, size, output, [&](std::span<std::byte>& room, Bytes& rest) {
+  decompress_stream(input, size, output, [&](std::span<std::byte>& free_output, Bytes& rest) {
     // the library takes its input as char*, but does not modify it
     stream->next_in = reinterpret_cast<char*>(const_cast<std::byte*>(rest.data()));
     stream->avail_in = static_cast<unsigned>(rest.size());
-    stream->next_out = reinterpret_cast<char*>(room.data());
-    stream->avail_out = static_cast<unsigned>(room.size());
+    stream->next_out = reinterpret_cast<char*>(free_output.data());
+    stream->avail_out = static_cast<unsigned>(free_output.size());
     const int result = BZ2_bzDecompress(stream.get());
     if (result != BZ_OK && result != BZ_STREAM_END) throw std::runtime_error("is not valid bz2");
     rest = rest.last(stream->avail_in);
-    room = room.last(stream->avail_out);
+    free_output = free_output.last(stream->avail_out);
     return result == BZ_STREAM_END;
   });
 }

@@ -13,26 +13,26 @@ namespace {
 namespace fs = std::filesystem;
 
 /// The ground truth of a dataset, copied in time order together with its events.
-class TruthBeside {
+class TruthCopier {
  public:
-  explicit TruthBeside(const Dataset& in) : path_(load_truth(in.path)) {
+  explicit TruthCopier(const Dataset& in) : trajectory_(load_truth(in.path)) {
     for (const LidarInfo& lidar : in.rig.lidars) {
-      if (!may_have_hits(in)) break;
+      if (!may_have_point_truth(in)) break;
       if (auto hits = open_scan_truth(in.path, lidar.id)) hits_[lidar.id] = std::move(hits);
     }
   }
 
   /// Copies the poses up to `time`.
-  void write_path(Time time, DatasetWriter& out, CopySummary& summary) {
-    if (!path_) return;
-    for (; next_ < path_->size() && path_->poses()[next_].stamp <= time; ++next_) {
-      out.write_truth(path_->poses()[next_]);
+  void copy_poses(Time time, DatasetWriter& out, CopySummary& summary) {
+    if (!trajectory_) return;
+    for (; next_ < trajectory_->size() && trajectory_->poses()[next_].stamp <= time; ++next_) {
+      out.write_truth(trajectory_->poses()[next_]);
       ++summary.poses;
     }
   }
 
   /// Copies the ground truth of the points of the next scan.
-  void write_hits(const std::string& id, DatasetWriter& out, CopySummary& summary) {
+  void copy_hits(const std::string& id, DatasetWriter& out, CopySummary& summary) {
     const auto source = hits_.find(id);
     if (source == hits_.end()) return;
     if (const auto truth = source->second->next()) {
@@ -43,19 +43,19 @@ class TruthBeside {
 
  private:
   /// Third-party data have no ground truth of points (and LiDAR ids made up by the reader).
-  static bool may_have_hits(const Dataset& in) {
+  static bool may_have_point_truth(const Dataset& in) {
     if (fs::is_directory(in.path)) return fs::exists(in.path / layout::kManifest);
     return recording_format_of(in.path) &&
            layout::description_in(read_recording_info(in.path), in.path.string());
   }
 
-  std::optional<Trajectory> path_;
+  std::optional<Trajectory> trajectory_;
   std::size_t next_ = 0;
   std::map<std::string, std::unique_ptr<ScanTruthSource>> hits_;
 };
 
 /// The keys of the manifest that do not describe how the measurements are stored.
-Json manifest_of(const Json& manifest) {
+Json keys_without_storage(const Json& manifest) {
   Json kept = Json::object();
   if (!manifest.is_object()) return kept;
   for (const auto& [key, value] : manifest.items()) {
@@ -67,7 +67,7 @@ Json manifest_of(const Json& manifest) {
   return kept;
 }
 
-void check_apart(const fs::path& in, const fs::path& out) {
+void check_not_same_dataset(const fs::path& in, const fs::path& out) {
   std::error_code error;
   const bool into_itself =
       fs::exists(out) && (fs::equivalent(in, out, error) ||
@@ -81,28 +81,28 @@ void check_apart(const fs::path& in, const fs::path& out) {
 }  // namespace
 
 CopySummary copy_dataset(Dataset& in, const fs::path& out, const WriteOptions& options) {
-  check_apart(in.path, out);
-  TruthBeside truth(in);
+  check_not_same_dataset(in.path, out);
+  TruthCopier truth(in);
   DatasetWriter writer(out, in.rig, options);
   CopySummary summary;
   while (const auto event = in.events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
       summary.points += scan->points.size();
-      truth.write_path(scan->stamp, writer, summary);
-      truth.write_hits(event->sensor_id, writer, summary);
+      truth.copy_poses(scan->stamp, writer, summary);
+      truth.copy_hits(event->sensor_id, writer, summary);
     } else {
       ++summary.imu_samples;
-      truth.write_path(std::get<ImuSample>(event->data).stamp, writer, summary);
+      truth.copy_poses(std::get<ImuSample>(event->data).stamp, writer, summary);
     }
     writer.write(*event);
   }
-  truth.write_path(Time::max(), writer, summary);
+  truth.copy_poses(Time::max(), writer, summary);
   const auto world = fs::is_directory(in.path) ? find_world_mesh(in.path) : std::nullopt;
   if (world && fs::is_directory(out)) {
     fs::copy_file(*world, out / layout::kWorld, fs::copy_options::overwrite_existing);
   }
-  writer.finish(manifest_of(in.manifest));
+  writer.finish(keys_without_storage(in.manifest));
   return summary;
 }
 

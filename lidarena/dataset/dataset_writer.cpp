@@ -31,7 +31,7 @@ void prepare(const fs::path& folder) {
 }
 
 /// `options` with the format given by the file name (.mcap or .bag), if any.
-WriteOptions named(const fs::path& path, WriteOptions options) {
+WriteOptions with_format_of_name(const fs::path& path, WriteOptions options) {
   if (const auto format = recording_format_of(path)) {
     options.format = *format == RecordingFormat::kBag ? DatasetFormat::kBag : DatasetFormat::kMcap;
   }
@@ -50,7 +50,10 @@ bool has_imu(const Rig& rig, const std::string& id) {
 
 struct DatasetWriter::Impl {
   Impl(const fs::path& path, const Rig& r, const WriteOptions& o)
-      : place(path), rig(r), options(named(path, o)), is_folder(!recording_format_of(path)) {
+      : place(path),
+        rig(r),
+        options(with_format_of_name(path, o)),
+        is_folder(!recording_format_of(path)) {
     layout::topics_of(rig);  // throws if two sensors have the same id
     if (!is_folder) {
       store = make_recording_store(path, rig, options, false);

@@ -64,7 +64,7 @@ class McapRecordingWriter final : public RecordingWriter {
  public:
   McapRecordingWriter(const fs::path& file, const RecordingOptions& options)
       : file_(file),
-        metadata_beside_(options.metadata_beside),
+        write_metadata_file_(options.write_metadata_file),
         mcap_(file, {.zstd_level = options.compress ? 1 : 0}) {
     if (!options.name.empty()) mcap_.add_metadata(options.name, options.description);
   }
@@ -110,13 +110,13 @@ class McapRecordingWriter final : public RecordingWriter {
     const std::string yaml =
         rosbag2_metadata(file_.filename().string(), topics_, written.start, written.end);
     mcap_.add_metadata("rosbag2", {{"serialized_metadata", yaml}});
-    if (metadata_beside_) write_text_file(file_.parent_path() / kMetadataFile, yaml);
+    if (write_metadata_file_) write_text_file(file_.parent_path() / kMetadataFile, yaml);
     mcap_.close();
   }
 
  private:
   fs::path file_;
-  bool metadata_beside_;
+  bool write_metadata_file_;
   McapWriter mcap_;
   std::map<std::string, std::uint16_t> schemas_;
   std::vector<RosbagTopic> topics_;  ///< at index channel id - 1

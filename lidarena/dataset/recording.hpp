@@ -93,8 +93,8 @@ RecordingInfo read_recording_info(const std::filesystem::path& file);
 /// `name`.
 struct RecordingOptions {
   RecordingFormat format = RecordingFormat::kMcap;
-  bool metadata_beside = false;  ///< MCAP: write rosbag2's metadata.yaml to the file's folder
-  bool compress = false;         ///< MCAP chunks, by zstd; bag chunks are always compressed, by LZ4
+  bool write_metadata_file = false;  ///< MCAP: write rosbag2's metadata.yaml to the file's folder
+  bool compress = false;  ///< MCAP chunks, by zstd; bag chunks are always compressed, by LZ4
   std::string name;
   StringMap description;
 };

@@ -26,7 +26,7 @@ class RecordedEvents final : public EventSource {
       if (auto event = merge_.pop()) return event;
       if (failure_) std::rethrow_exception(failure_);
       if (finished_) return std::nullopt;
-      read_on();
+      read_next();
     }
   }
 
@@ -41,7 +41,7 @@ class RecordedEvents final : public EventSource {
   }
 
   /// Reads one message. At the end of the file, or where it is damaged, releases the waiting scans.
-  void read_on() {
+  void read_next() {
     if (const auto message = next_message()) return deliver(*message);
     finished_ = true;
     merge_.finish();

@@ -35,7 +35,7 @@ std::optional<Event> StreamMerge::pop() {
   return event;
 }
 
-void StreamMerge::fail_backwards(const Event& event, Time previous, Time stamp) const {
+void StreamMerge::fail_not_increasing(const Event& event, Time previous, Time stamp) const {
   throw InputError(place_,
                    fmt::format("times do not increase: '{}' has {} s after {} s", event.sensor_id,
                                format_seconds(stamp), format_seconds(previous)),
@@ -45,7 +45,7 @@ void StreamMerge::fail_backwards(const Event& event, Time previous, Time stamp) 
 void StreamMerge::push_imu(Event event) {
   const Time stamp = std::get<ImuSample>(event.data).stamp;
   const auto latest = latest_imu_.try_emplace(event.sensor_id, stamp).first;
-  if (stamp < latest->second) fail_backwards(event, latest->second, stamp);
+  if (stamp < latest->second) fail_not_increasing(event, latest->second, stamp);
   latest->second = stamp;
   if (const auto imu = covered_.find(event.sensor_id); imu != covered_.end()) imu->second = stamp;
   ready_.push_back(std::move(event));
@@ -55,12 +55,13 @@ void StreamMerge::push_imu(Event event) {
 void StreamMerge::push_scan(Event event) {
   const Scan& scan = std::get<Scan>(event.data);
   const auto [latest, first] = latest_scan_.try_emplace(event.sensor_id, scan.stamp);
-  if (!first && scan.stamp <= latest->second) fail_backwards(event, latest->second, scan.stamp);
+  if (!first && scan.stamp <= latest->second)
+    fail_not_increasing(event, latest->second, scan.stamp);
   latest->second = scan.stamp;
   const Time end = end_of(scan);
   waiting_.emplace_back(end, std::move(event));
   release();
-  if (waiting_.empty() || end - waiting_.front().first <= kLongestGap) return;
+  if (waiting_.empty() || end - waiting_.front().first <= kMaxGap) return;
   const auto late =
       std::ranges::min_element(covered_, {}, [](const auto& imu) { return imu.second; });
   throw InputError(

@@ -20,11 +20,11 @@ namespace lidarena::dataset {
 /// the scans that still wait: there is no later sample to wait for.
 ///
 /// Throws InputError when the times of a sensor do not increase (IMU samples may repeat a stamp),
-/// and when an IMU lags more than `kLongestGap` behind the scans: waiting longer would fill the
+/// and when an IMU lags more than `kMaxGap` behind the scans: waiting longer would fill the
 /// memory.
 class StreamMerge {
  public:
-  static constexpr Time kLongestGap = std::chrono::seconds(5);
+  static constexpr Time kMaxGap = std::chrono::seconds(5);
 
   /// `imu_ids` are the IMUs to wait for; `place` names the file in messages.
   StreamMerge(std::string place, const std::vector<std::string>& imu_ids);
@@ -39,7 +39,7 @@ class StreamMerge {
   void push_imu(Event event);
   void push_scan(Event event);
   void release();
-  void fail_backwards(const Event& event, Time previous, Time stamp) const;
+  void fail_not_increasing(const Event& event, Time previous, Time stamp) const;
 
   std::string place_;
   std::map<std::string, Time> covered_;  ///< time of the latest sample of each IMU waited for

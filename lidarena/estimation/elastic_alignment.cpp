@@ -72,12 +72,12 @@ struct PriorTerm {
 
 /// Rotation vector in the world frame from one knot to another, and its derivatives with respect to
 /// their increments.
-struct Turn {
+struct RelativeRotation {
   Eigen::Vector3d vector;
   Eigen::Matrix3d by_from;
   Eigen::Matrix3d by_to;
 };
-Turn turn_between(const Pose& from, const Pose& to) {
+RelativeRotation rotation_between(const Pose& from, const Pose& to) {
   const Eigen::Vector3d vector = so3::log(to.linear() * from.linear().transpose());
   return {vector, -so3::right_jacobian_inverse(vector), so3::left_jacobian_inverse(vector)};
 }
@@ -91,13 +91,13 @@ class PriorTerms {
     if (prior.location > 0.0)
       position(0, 1.0, open(prior.location, begin.translation() - prior.begin.translation()));
     if (prior.orientation > 0.0) {
-      const Turn turn = turn_between(prior.begin, begin);
+      const RelativeRotation turn = rotation_between(prior.begin, begin);
       rotation(0, turn.by_to, open(prior.orientation, turn.vector));
     }
     if (prior.velocity > 0.0) add_step(open(prior.velocity, step - prior.step));
     if (prior.small_velocity > 0.0) add_step(open(prior.small_velocity, step));
     if (prior.angular_velocity > 0.0) {
-      const Turn turn = turn_between(begin, motion.end());
+      const RelativeRotation turn = rotation_between(begin, motion.end());
       PriorTerm& term = open(prior.angular_velocity, turn.vector - prior.turn);
       rotation(0, turn.by_from, term);
       rotation(last_, turn.by_to, term);
@@ -125,15 +125,16 @@ class PriorTerms {
   /// Adds the second differences at an inner knot.
   void add_bends(const MotionPrior& prior, Eigen::Index i) {
     if (prior.velocity_change > 0.0) {
-      PriorTerm& term = open(prior.velocity_change, knot(i - 1).translation() - 2.0 * knot(i).translation() +
-                                             knot(i + 1).translation());
+      PriorTerm& term =
+          open(prior.velocity_change,
+               knot(i - 1).translation() - 2.0 * knot(i).translation() + knot(i + 1).translation());
       position(i - 1, 1.0, term);
       position(i, -2.0, term);
       position(i + 1, 1.0, term);
     }
     if (prior.angular_velocity_change > 0.0) {
-      const Turn before = turn_between(knot(i - 1), knot(i));
-      const Turn after = turn_between(knot(i), knot(i + 1));
+      const RelativeRotation before = rotation_between(knot(i - 1), knot(i));
+      const RelativeRotation after = rotation_between(knot(i), knot(i + 1));
       PriorTerm& term = open(prior.angular_velocity_change, after.vector - before.vector);
       rotation(i - 1, -before.by_from, term);
       rotation(i, after.by_from - before.by_to, term);

@@ -42,7 +42,7 @@ Vector3<T> rotation_vector(const Quaternion<T>& q) {
   return vector;
 }
 template <class T>
-Vector3<T> turn_between(const T* from, const T* to) {
+Vector3<T> rotation_between(const T* from, const T* to) {
   return rotation_vector<T>(rotation_of(to) * rotation_of(from).conjugate());
 }
 template <class T>
@@ -124,12 +124,12 @@ struct StepCost {
   }
 };
 
-struct TurnCost {
+struct RotationCost {
   double weight;
   Eigen::Vector3d expected;
   template <class T>
   bool operator()(const T* from, const T* to, T* residual) const {
-    return put<T>(weight, turn_between(from, to) - expected.cast<T>(), residual);
+    return put<T>(weight, rotation_between(from, to) - expected.cast<T>(), residual);
   }
 };
 
@@ -146,7 +146,7 @@ struct AngularBendCost {
   double weight;
   template <class T>
   bool operator()(const T* before, const T* here, const T* after, T* residual) const {
-    return put<T>(weight, turn_between(here, after) - turn_between(before, here), residual);
+    return put<T>(weight, rotation_between(here, after) - rotation_between(before, here), residual);
   }
 };
 
@@ -210,7 +210,7 @@ class Adjustment {
              first);
     add_term(prior.velocity, StepCost{0.0, prior.step}, first, last);
     add_term(prior.small_velocity, StepCost{0.0, Eigen::Vector3d::Zero()}, first, last);
-    add_term(prior.angular_velocity, TurnCost{0.0, prior.turn}, first, last);
+    add_term(prior.angular_velocity, RotationCost{0.0, prior.turn}, first, last);
     for (std::size_t i = 1; i < last; ++i) {
       add_term(prior.velocity_change, BendCost{0.0}, i - 1, i, i + 1);
       add_term(prior.angular_velocity_change, AngularBendCost{0.0}, i - 1, i, i + 1);

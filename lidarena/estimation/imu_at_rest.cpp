@@ -43,18 +43,18 @@ double accel_scale_of(const ImuStatistics& imu, double gravity) {
   return imu.mean_accel.norm() < kAccelInG ? gravity : 1.0;
 }
 
-bool stands(const ImuStatistics& imu, double gravity, double accel_scale) {
+bool is_at_rest(const ImuStatistics& imu, double gravity, double accel_scale) {
   return imu.count > 2 && imu.gyro_sigma < kStillGyroSigma &&
          accel_scale * imu.accel_sigma < kStillAccelSigma && imu.mean_gyro.norm() < kStillRate &&
          std::abs(accel_scale * imu.mean_accel.norm() - gravity) < kStillForce;
 }
 
-Vector3d accel_bias_along(const ImuStatistics& imu, double gravity, double accel_scale) {
+Vector3d accel_bias_along_gravity(const ImuStatistics& imu, double gravity, double accel_scale) {
   const double too_long = accel_scale * imu.mean_accel.norm() - gravity;
   return too_long * imu.mean_accel.normalized();
 }
 
-Eigen::Matrix3d upright(const Vector3d& up) {
+Eigen::Matrix3d level_rotation(const Vector3d& up) {
   const Vector3d direction = up.normalized();
   const double pitch = std::asin(std::clamp(-direction.x(), -1.0, 1.0));
   const double roll = std::atan2(direction.y(), direction.z());

@@ -32,13 +32,14 @@ double accel_scale_of(const ImuStatistics& imu, double gravity);
 /// at rest, a mean rate within a gyro's turn-on bias, and a mean force as long as `gravity`
 /// (m/s^2). A constant horizontal acceleration is not detected, because it hardly changes the
 /// length of the force.
-bool stands(const ImuStatistics& imu, double gravity, double accel_scale);
+bool is_at_rest(const ImuStatistics& imu, double gravity, double accel_scale);
 
 /// The accelerometer's bias along gravity at rest (m/s^2, IMU frame): by how much the mean force is
 /// longer than `gravity`. The horizontal bias cannot be distinguished from a tilt.
-Eigen::Vector3d accel_bias_along(const ImuStatistics& imu, double gravity, double accel_scale);
+Eigen::Vector3d accel_bias_along_gravity(const ImuStatistics& imu, double gravity,
+                                         double accel_scale);
 
 /// The rotation without yaw that maps `up` (body frame, any length) to the direction of z.
-Eigen::Matrix3d upright(const Eigen::Vector3d& up);
+Eigen::Matrix3d level_rotation(const Eigen::Vector3d& up);
 
 }  // namespace lidarena::estimation

@@ -108,7 +108,7 @@ std::vector<ImuSample> ImuBuffer::samples(Time begin, Time end) const {
   return inside;
 }
 
-void ImuBuffer::forget_before(Time t) {
+void ImuBuffer::remove_before(Time t) {
   while (samples_.size() > 1 && samples_[1].stamp <= t) samples_.pop_front();
 }
 

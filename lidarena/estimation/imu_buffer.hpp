@@ -46,7 +46,7 @@ class ImuBuffer {
   /// The samples themselves in [begin, end].
   std::vector<ImuSample> samples(Time begin, Time end) const;
   /// Removes the samples that queries for `t` or later do not need.
-  void forget_before(Time t);
+  void remove_before(Time t);
 
   bool empty() const { return samples_.empty(); }
   /// Of the first sample that is not forgotten; the buffer is not empty.

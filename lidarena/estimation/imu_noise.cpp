@@ -15,8 +15,8 @@ ImuNoise noise_of(const ImuInfo& imu, double factor) {
   };
   return {density(imu.gyro_noise_density, kNominalNoise.gyro_density),
           density(imu.accel_noise_density, kNominalNoise.accel_density),
-          density(imu.gyro_bias_walk, kNominalNoise.gyro_walk),
-          density(imu.accel_bias_walk, kNominalNoise.accel_walk)};
+          density(imu.gyro_bias_walk, kNominalNoise.gyro_bias_walk),
+          density(imu.accel_bias_walk, kNominalNoise.accel_bias_walk)};
 }
 
 }  // namespace lidarena::estimation

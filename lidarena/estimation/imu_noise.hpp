@@ -7,10 +7,10 @@ namespace lidarena::estimation {
 
 /// Noise of an IMU: continuous densities, as on data sheets.
 struct ImuNoise {
-  double gyro_density = 0.0;   ///< rad/s/sqrt(Hz)
-  double accel_density = 0.0;  ///< m/s^2/sqrt(Hz)
-  double gyro_walk = 0.0;      ///< rad/s^2/sqrt(Hz)
-  double accel_walk = 0.0;     ///< m/s^3/sqrt(Hz)
+  double gyro_density = 0.0;     ///< rad/s/sqrt(Hz)
+  double accel_density = 0.0;    ///< m/s^2/sqrt(Hz)
+  double gyro_bias_walk = 0.0;   ///< rad/s^2/sqrt(Hz)
+  double accel_bias_walk = 0.0;  ///< m/s^3/sqrt(Hz)
 };
 
 /// While no samples arrive: large enough to cover what a vehicle may do meanwhile.

@@ -14,14 +14,14 @@ using State = NavState;
 
 constexpr int kIterations = 3;       // quadratic convergence: two suffice, a third at the start
 constexpr double kConverged = 1e-9;  // m, rad, ...: largest element of the step
-constexpr double kKnown = 1e-6;      // rad: sigma of the direction of a known gravity
-constexpr double kLeastVariance = 1e-16;  // added to all, for random walks that are set to 0
+constexpr double kKnownGravitySigma = 1e-6;  // rad: sigma of the direction of a known gravity
+constexpr double kMinVariance = 1e-16;       // added to all, for random walks that are set to 0
 
 Eigen::Index block(std::size_t state) { return 2 + static_cast<Eigen::Index>(state) * State::kDof; }
 
 State::Matrix inverse(const State::Matrix& covariance) {
   State::Matrix padded = covariance;
-  padded.diagonal().array() += kLeastVariance;
+  padded.diagonal().array() += kMinVariance;
   return padded.ldlt().solve(State::Matrix::Identity());
 }
 
@@ -42,7 +42,7 @@ void InertialSmoother::start(const InertialStart& start) {
   prior_state_ = start.state;
   prior_tilt_.setZero();
   set_tilt(Eigen::Vector2d::Zero());
-  const double sigma = std::max(start.gravity_sigma, kKnown);
+  const double sigma = std::max(start.gravity_sigma, kKnownGravitySigma);
   prior_information_.setZero();
   prior_information_.diagonal().head<2>().setConstant(1.0 / (sigma * sigma));
   prior_information_.bottomRightCorner<State::kDof, State::kDof>() = inverse(start.covariance);

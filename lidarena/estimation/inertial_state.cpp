@@ -17,7 +17,7 @@ auto part(const State::Vector& v, State::Block block) {
 }
 
 /// The rotation vector, perpendicular to `b`, that rotates the direction of `b` to that of `a`.
-Eigen::Vector3d turn_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+Eigen::Vector3d rotation_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const Eigen::Vector3d across = b.cross(a);
   const double sine = across.norm();
   const double angle = std::atan2(sine, a.dot(b));
@@ -59,7 +59,7 @@ State::Vector minus(const State& a, const State& b) {
       a.imu_from_lidar.translation() - b.imu_from_lidar.translation(),
       a.nav.velocity - b.nav.velocity, a.nav.bias.gyro - b.nav.bias.gyro,
       a.nav.bias.accel - b.nav.bias.accel,
-      tangent_basis(b.gravity).transpose() * turn_between(a.gravity, b.gravity);
+      tangent_basis(b.gravity).transpose() * rotation_between(a.gravity, b.gravity);
   return delta;
 }
 
@@ -114,8 +114,8 @@ State::Matrix step_noise(const ImuNoise& noise, double seconds) {
   };
   set(State::kRotation, noise.gyro_density);
   set(State::kVelocity, noise.accel_density);
-  set(State::kGyroBias, noise.gyro_walk);
-  set(State::kAccelBias, noise.accel_walk);
+  set(State::kGyroBias, noise.gyro_bias_walk);
+  set(State::kAccelBias, noise.accel_bias_walk);
   return variances.asDiagonal();
 }
 

@@ -16,10 +16,10 @@ State::Matrix symmetric(const State::Matrix& m) { return 0.5 * (m + m.transpose(
 
 }  // namespace
 
-IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
+IteratedUpdate iterated_update(const StateEstimate& prior, const PointResiduals& residuals,
                                const IteratedUpdateOptions& options) {
   IteratedUpdate result;
-  result.belief = prior;
+  result.estimate = prior;
   State x = prior.state;
   int converged_before = 0;
   bool search = true;
@@ -43,7 +43,7 @@ IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residu
 
     const State::Matrix to_new = transport(x, step);
     x = plus(x, step);
-    result.belief = {x, symmetric(to_new * inverse(information) * to_new.transpose())};
+    result.estimate = {x, symmetric(to_new * inverse(information) * to_new.transpose())};
 
     const bool converged = step.cwiseAbs().maxCoeff() <= options.tolerance;
     converged_before += converged ? 1 : 0;
@@ -59,8 +59,8 @@ namespace {
 /// Kalman update with a measurement of N neighboring components of the state: `off` is measured
 /// minus predicted, in their tangent space.
 template <int N>
-Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<double, N>& off,
-               const Eigen::Vector<double, N>& sigma) {
+StateEstimate observe(const StateEstimate& prior, State::Block first,
+                      const Eigen::Vector<double, N>& off, const Eigen::Vector<double, N>& sigma) {
   const auto columns = prior.covariance.middleCols<N>(first);
   Eigen::Matrix<double, N, N> innovation = columns.template middleRows<N>(first);
   innovation += sigma.cwiseAbs2().asDiagonal();
@@ -74,13 +74,13 @@ Belief observe(const Belief& prior, State::Block first, const Eigen::Vector<doub
 
 }  // namespace
 
-Belief zero_velocity_update(const Belief& prior, double sigma) {
+StateEstimate zero_velocity_update(const StateEstimate& prior, double sigma) {
   return observe<3>(prior, State::kVelocity, -prior.state.nav.velocity,
                     Eigen::Vector3d::Constant(sigma));
 }
 
-Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
-                   double rotation_sigma) {
+StateEstimate pose_update(const StateEstimate& prior, const Pose& world_from_imu,
+                          double position_sigma, double rotation_sigma) {
   static_assert(State::kRotation == State::kPosition + 3);
   State measured = prior.state;
   measured.position() = world_from_imu.translation();

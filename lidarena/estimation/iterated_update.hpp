@@ -10,7 +10,7 @@
 namespace lidarena::estimation {
 
 /// Estimate of the motion: the state and the covariance of its error.
-struct Belief {
+struct StateEstimate {
   InertialState state;
   InertialState::Matrix covariance = InertialState::Matrix::Identity();
 };
@@ -26,10 +26,10 @@ struct IteratedUpdateOptions {
 };
 
 struct IteratedUpdate {
-  Belief belief;
+  StateEstimate estimate;
   int evaluations = 0;
   bool converged = false;
-  /// Of the last evaluation that had residuals; its count is 0 if none had: then `belief` is the
+  /// Of the last evaluation that had residuals; its count is 0 if none had: then `estimate` is the
   /// prior.
   NormalEquations<kPointDof> points;
 };
@@ -44,13 +44,13 @@ using PointResiduals =
 /// 14-18, after He, Xu, Zhang, "Kalman Filters on Differentiable Manifolds", 2021). New
 /// correspondences are searched at the start, whenever an evaluation has converged, and for the
 /// last evaluation if none has.
-IteratedUpdate iterated_update(const Belief& prior, const PointResiduals& residuals,
+IteratedUpdate iterated_update(const StateEstimate& prior, const PointResiduals& residuals,
                                const IteratedUpdateOptions& options);
 
 /// Kalman update with the measurement "the velocity is zero", sigma `sigma` m/s on each axis.
-Belief zero_velocity_update(const Belief& prior, double sigma);
+StateEstimate zero_velocity_update(const StateEstimate& prior, double sigma);
 /// Kalman update with a measured pose of the IMU, with sigmas in m and rad on each axis.
-Belief pose_update(const Belief& prior, const Pose& world_from_imu, double position_sigma,
-                   double rotation_sigma);
+StateEstimate pose_update(const StateEstimate& prior, const Pose& world_from_imu,
+                          double position_sigma, double rotation_sigma);
 
 }  // namespace lidarena::estimation

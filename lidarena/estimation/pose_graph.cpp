@@ -61,11 +61,11 @@ struct BetweenError {
   bool operator()(const T* rotation_a, const T* translation_a, const T* rotation_b,
                   const T* translation_b, T* residual) const {
     const Quaternion<T> back = Quaternion<T>(rotation_a).conjugate();
-    const Vector3<T> way = back * (Eigen::Map<const Vector3<T>>(translation_b) -
-                                   Eigen::Map<const Vector3<T>>(translation_a));
+    const Vector3<T> relative_translation = back * (Eigen::Map<const Vector3<T>>(translation_b) -
+                                                    Eigen::Map<const Vector3<T>>(translation_a));
     const Quaternion<T> turned = back * Quaternion<T>(rotation_b);
     Eigen::Map<Eigen::Matrix<T, 6, 1>>{residual} =
-        root.cast<T>() * difference<T>(turned, way, measured);
+        root.cast<T>() * difference<T>(turned, relative_translation, measured);
     return true;
   }
 };

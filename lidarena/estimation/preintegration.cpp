@@ -58,9 +58,9 @@ void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, doub
            step.by_input * input.asDiagonal() * step.by_input.transpose())
               .eval();
   covariance_.diagonal().segment<3>(State::kGyroBias).array() +=
-      variance(noise.gyro_walk) * seconds;
+      variance(noise.gyro_bias_walk) * seconds;
   covariance_.diagonal().segment<3>(State::kAccelBias).array() +=
-      variance(noise.accel_walk) * seconds;
+      variance(noise.accel_bias_walk) * seconds;
   seconds_ += seconds;
 }
 
@@ -73,33 +73,34 @@ RelativeMotion Preintegration::motion(const ImuBias& bias) const {
 }
 
 NavState Preintegration::predict(const NavState& first, const Vector3d& gravity) const {
-  const RelativeMotion felt = motion(first.bias);
+  const RelativeMotion measured = motion(first.bias);
   const Matrix3d rotation = first.world_from_imu.linear();
   NavState second = first;
-  second.world_from_imu.linear() = rotation * felt.rotation;
-  second.velocity += gravity * seconds_ + rotation * felt.velocity;
-  second.world_from_imu.translation() +=
-      first.velocity * seconds_ + 0.5 * seconds_ * seconds_ * gravity + rotation * felt.position;
+  second.world_from_imu.linear() = rotation * measured.rotation;
+  second.velocity += gravity * seconds_ + rotation * measured.velocity;
+  second.world_from_imu.translation() += first.velocity * seconds_ +
+                                         0.5 * seconds_ * seconds_ * gravity +
+                                         rotation * measured.position;
   return second;
 }
 
 InertialResidual Preintegration::residual(const NavState& first, const NavState& second,
                                           const Vector3d& gravity) const {
-  const RelativeMotion felt = motion(first.bias);
+  const RelativeMotion measured = motion(first.bias);
   const Matrix3d back = first.world_from_imu.linear().transpose();  // world to the first IMU frame
   const Matrix3d turned = back * second.world_from_imu.linear();
   const Vector3d speed = back * (second.velocity - first.velocity - gravity * seconds_);
-  const Vector3d way =
+  const Vector3d displacement =
       back * (second.world_from_imu.translation() - first.world_from_imu.translation() -
               first.velocity * seconds_ - 0.5 * seconds_ * seconds_ * gravity);
-  const Vector3d turn_error = so3::log(felt.rotation.transpose() * turned);
+  const Vector3d turn_error = so3::log(measured.rotation.transpose() * turned);
   const Vector3d bias_turn =
       by_bias_.topRows<3>() * (Eigen::Matrix<double, 6, 1>() << first.bias.gyro - bias_.gyro,
                                first.bias.accel - bias_.accel)
                                   .finished();
 
   InertialResidual r;
-  r.value << turn_error, speed - felt.velocity, way - felt.position,
+  r.value << turn_error, speed - measured.velocity, displacement - measured.position,
       second.bias.gyro - first.bias.gyro, second.bias.accel - first.bias.accel;
   const Matrix3d by_turn = so3::right_jacobian_inverse(turn_error);
   r.by_first = -State::Matrix::Identity();
@@ -109,7 +110,7 @@ InertialResidual Preintegration::residual(const NavState& first, const NavState&
                                                 by_bias_.topLeftCorner<3, 3>();
   r.by_first.block<3, 3>(3, State::kRotation) = so3::hat(speed);
   r.by_first.block<3, 3>(3, State::kVelocity) = -back;
-  r.by_first.block<3, 3>(6, State::kRotation) = so3::hat(way);
+  r.by_first.block<3, 3>(6, State::kRotation) = so3::hat(displacement);
   r.by_first.block<3, 3>(6, State::kVelocity) = -seconds_ * back;
   r.by_first.block<3, 3>(6, State::kPosition) = -back;
   r.by_first.block<6, 6>(3, State::kGyroBias) = -by_bias_.bottomRows<6>();

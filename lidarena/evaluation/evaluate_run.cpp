@@ -44,8 +44,9 @@ Status status_of(const Trajectory& estimate, const Trajectory& truth) {
 /// The status of the manifest unless it is "ok", else that of the poses.
 Status status_of(const dataset::RunFiles& run, const Trajectory& truth) {
   if (run.manifest.is_object()) {
-    const std::string said = run.manifest.value("status", "ok");
-    if (said != "ok") return {said, run.manifest.value("reason", "its manifest gives no reason")};
+    const std::string manifest_status = run.manifest.value("status", "ok");
+    if (manifest_status != "ok")
+      return {manifest_status, run.manifest.value("reason", "its manifest gives no reason")};
   }
   return status_of(run.trajectory, truth);
 }
@@ -146,7 +147,7 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
 
   Json over_time;
   const Trajectory perfect = truth_at_estimates(estimate, truth);
-  for (const double length : kLadder_m) {
+  for (const double length : kRpeLengths_m) {
     const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
     json["rpe"][fmt::format("{}m", length)] =
         with_floor(rpe, relative_pose_error(perfect, truth, length, length));
@@ -165,9 +166,9 @@ Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
     }
   }
   json["kitti"] = to_json(kitti_error(estimate, truth));
-  json["kitti_short"] = to_json(kitti_error(estimate, truth, kLadder_m));
+  json["kitti_short"] = to_json(kitti_error(estimate, truth, kRpeLengths_m));
   json["hover_jitter"] =
-      to_json(hover_jitter(matched_poses(estimate, truth), max_bracket(estimate)));
+      to_json(hover_jitter(matched_poses(estimate, truth), gap_limit_of(estimate)));
   json["errors_over_time"] = over_time;
   return json;
 }

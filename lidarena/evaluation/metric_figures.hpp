@@ -21,7 +21,7 @@ struct MetricFigure {
   const char* value;    ///< JSON pointer from there to the number
   double factor;
   const char* unit;
-  const char* words;  ///< label on a terminal
+  const char* label;  ///< label on a terminal
   FigureTable table = FigureTable::kNone;
   Better better = Better::kLess;
 };

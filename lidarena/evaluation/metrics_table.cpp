@@ -21,7 +21,7 @@ bool has_coverage(const MetricFigure& figure) {
 }
 
 /// The number of samples ("38 of 45 pieces", "900 points"); empty when the figure has none.
-std::string basis_of(const Json& metrics, const MetricFigure& figure) {
+std::string sample_count_text(const Json& metrics, const MetricFigure& figure) {
   const std::string group = figure.group;
   const auto used = number_in(metrics, group + "/used");
   const auto total = number_in(metrics, group + "/total");
@@ -96,13 +96,13 @@ std::string block_of(const MetricFigure& figure) {
 
 std::string figure_text(const Json& metrics, const MetricFigure& figure) {
   const std::string refused = text_in(metrics, std::string(figure.group) + "/refused");
-  if (!refused.empty()) return fmt::format("  {:<38}   refused: {}\n", figure.words, refused);
+  if (!refused.empty()) return fmt::format("  {:<38}   refused: {}\n", figure.label, refused);
   const auto value = value_of(metrics, figure);
   if (!value) return {};
-  std::string line = fmt::format("  {:<38}{:>10.3f} {:<4}", figure.words, *value, figure.unit);
+  std::string line = fmt::format("  {:<38}{:>10.3f} {:<4}", figure.label, *value, figure.unit);
   const auto coverage = coverage_of(metrics, figure);
   if (has_coverage(figure) && coverage) {
-    const std::string basis = basis_of(metrics, figure);
+    const std::string basis = sample_count_text(metrics, figure);
     line += fmt::format("  coverage {:.0f} %{}{}", *coverage, basis.empty() ? "" : ", ", basis);
   }
   const std::string warning = text_in(metrics, std::string(figure.group) + "/warning");

@@ -106,7 +106,7 @@ std::string statistics_text(const Json& statistics) {
     for (const MetricFigure& figure : metric_figures()) {
       const Json& s = figures.at(figure.key);
       if (s.at("values") == 0 || s.at("runs") == 1) continue;
-      text += fmt::format("  {:<38}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.words,
+      text += fmt::format("  {:<38}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.label,
                           shown(s.at("median")), figure.unit, shown(s.at("min")),
                           shown(s.at("max")), interval_text(s.at("median_95")),
                           s.at("values").get<std::size_t>(), s.at("runs").get<std::size_t>());
@@ -122,7 +122,7 @@ std::string statistics_text(const Json& statistics) {
   for (const MetricFigure& figure : metric_figures()) {
     const Json& c = paired.at("figures").at(figure.key);
     if (c.at("pairs") == 0) continue;
-    text += fmt::format("  {:<38}{:>8} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.words,
+    text += fmt::format("  {:<38}{:>8} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.label,
                         shown(c.at("median_difference")), figure.unit,
                         interval_text(c.at("difference_95")), shown(c.at("wilcoxon_p")),
                         c.at("pairs").get<std::size_t>());

@@ -8,9 +8,9 @@ namespace lidarena::flight {
 std::optional<Encounter> first_encounter(const Flight& flight, const world::World& world,
                                          double clearance) {
   constexpr Time kStep = std::chrono::milliseconds(5);
-  Eigen::Vector3d asked = flight.pose_at(Time{0}).translation();  // position of the last query
-  Eigen::Vector3d last = asked;
-  double margin = 0.0;  // path length from `asked` within which no new query is needed
+  Eigen::Vector3d queried = flight.pose_at(Time{0}).translation();  // position of the last query
+  Eigen::Vector3d last = queried;
+  double margin = 0.0;  // path length from `queried` within which no new query is needed
   double flown = 0.0;
   for (Time t{0};; t = std::min(t + kStep, flight.duration())) {
     const Eigen::Vector3d here = flight.pose_at(t).translation();
@@ -18,11 +18,11 @@ std::optional<Encounter> first_encounter(const Flight& flight, const world::Worl
     last = here;
     if (flown >= margin) {
       const world::ClosestPoint nearest = world.closest_point(here);
-      const bool passes_through = here != asked && !world.visible(asked, here);
+      const bool passes_through = here != queried && !world.visible(queried, here);
       if (passes_through || nearest.distance < clearance) {
         return Encounter{t, here, nearest.point, passes_through ? 0.0 : nearest.distance};
       }
-      asked = here;
+      queried = here;
       margin = nearest.distance - clearance;
       flown = 0.0;
     }

@@ -38,16 +38,16 @@ std::vector<SurfaceSample> sample_surface(const world::TriangleMesh& mesh, std::
 namespace {
 
 /// Marks the samples that are visible from `place` and not yet marked.
-void look(const world::World& world, const Vector3d& place, std::span<const SurfaceSample> samples,
-          double range_m, Seen& seen) {
-  constexpr double kBefore = 0.002;  // m; rounding error of the ray caster in a world of 1 km
+void mark_visible(const world::World& world, const Vector3d& place,
+                  std::span<const SurfaceSample> samples, double range_m, Seen& seen) {
+  constexpr double kTolerance = 0.002;  // m; rounding error of the ray caster in a world of 1 km
   std::vector<world::Ray> rays;
   std::vector<std::size_t> index;
   for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Vector3d way = samples[i].point - place;
-    const double length = way.norm();
-    if (seen[i] != 0 || length > range_m || length < kBefore) continue;
-    rays.push_back({place, (way / length).cast<float>()});
+    const Vector3d offset = samples[i].point - place;
+    const double length = offset.norm();
+    if (seen[i] != 0 || length > range_m || length < kTolerance) continue;
+    rays.push_back({place, (offset / length).cast<float>()});
     index.push_back(i);
   }
   std::vector<world::Hit> hits(rays.size());
@@ -55,7 +55,8 @@ void look(const world::World& world, const Vector3d& place, std::span<const Surf
   for (std::size_t k = 0; k < rays.size(); ++k) {
     const SurfaceSample& sample = samples[index[k]];
     const double length = (sample.point - place).norm();
-    if (hits[k].triangle == sample.triangle || hits[k].range > length - kBefore) seen[index[k]] = 1;
+    if (hits[k].triangle == sample.triangle || hits[k].range > length - kTolerance)
+      seen[index[k]] = 1;
   }
 }
 
@@ -64,7 +65,7 @@ void look(const world::World& world, const Vector3d& place, std::span<const Surf
 Seen seen_from(const world::World& world, const Vector3d& place,
                std::span<const SurfaceSample> samples, double range_m) {
   Seen seen(samples.size(), 0);
-  look(world, place, samples, range_m, seen);
+  mark_visible(world, place, samples, range_m, seen);
   return seen;
 }
 
@@ -85,7 +86,7 @@ Seen seen_along(const world::World& world, const Flight& flight,
   for (Time t{0}; t <= flight.duration(); t += std::chrono::milliseconds(20)) {
     const Vector3d here = flight.pose_at(t).translation();
     if ((here - last).norm() < spacing_m) continue;
-    look(world, here, samples, range_m, seen);
+    mark_visible(world, here, samples, range_m, seen);
     last = here;
   }
   return seen;
@@ -107,12 +108,12 @@ std::vector<std::size_t> choose_views(std::span<const Seen> views, double share)
   const double wanted = share * static_cast<double>(count_seen(all));
   Seen seen(all.size(), 0);
   for (std::size_t count = 0; static_cast<double>(count) < wanted; count = count_seen(seen)) {
-    std::size_t best = 0, most = 0;
+    std::size_t best = 0, best_gain = 0;
     for (std::size_t v = 0; v < views.size(); ++v) {
       std::size_t gain = 0;
       for (std::size_t i = 0; i < seen.size(); ++i) gain += views[v][i] > seen[i] ? 1U : 0U;
-      if (gain > most) {
-        most = gain;
+      if (gain > best_gain) {
+        best_gain = gain;
         best = v;
       }
     }

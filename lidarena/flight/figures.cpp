@@ -33,7 +33,7 @@ FlightFigures figures_of(const Flight& flight) {
         m.velocity_world.norm() > kLivelySpeed || m.angular_rate_body.norm() > kLivelyRate;
     if (is_lively) lively += 1.0;
   }
-  figures.lively_share = lively / count;
+  figures.fast_share = lively / count;
   return figures;
 }
 
@@ -42,7 +42,7 @@ std::string describe(const FlightFigures& f) {
       "{:.1f} s, {:.1f} m, up to {:.2f} m/s, {:.2f} m/s^2, tilt {:.0f} deg, {:.2f} rad/s; "
       "{:.0f} % of the time above 2 m/s or 90 deg/s",
       f.duration_s, f.length_m, f.max_speed, f.max_acceleration,
-      f.max_tilt * 180.0 / std::numbers::pi, f.max_angular_rate, 100.0 * f.lively_share);
+      f.max_tilt * 180.0 / std::numbers::pi, f.max_angular_rate, 100.0 * f.fast_share);
 }
 
 }  // namespace lidarena::flight

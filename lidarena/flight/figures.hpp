@@ -16,7 +16,7 @@ struct FlightFigures {
   double max_tilt = 0.0;                  ///< rad, of the body's z axis from the vertical
   double max_angular_rate = 0.0;          ///< rad/s
   double max_angular_acceleration = 0.0;  ///< rad/s^2
-  double lively_share = 0.0;              ///< share of the time above 2 m/s or above 90 deg/s
+  double fast_share = 0.0;                ///< share of the time above 2 m/s or above 90 deg/s
 };
 
 FlightFigures figures_of(const Flight& flight);

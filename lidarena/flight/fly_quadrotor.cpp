@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kStep = 0.002;      // s; a tenth of a rotor's lag: order 4 has errors of 1e-6
 constexpr double kKnot = 4 * kStep;  // s; samples at odd multiples of half a knot are even steps
-constexpr double kLost = 3.0;        // m, position error above which tracking has failed
+constexpr double kMaxError = 3.0;    // m, position error above which tracking has failed
 
 double hover_speed(const DynamicsConfig& config, const std::string& place) {
   const double share = config.mass_kg * kGravity / (4.0 * config.max_thrust);
@@ -62,7 +62,7 @@ class Pilot {
 
   void require_near(double t) const {
     const Eigen::Vector3d wanted = reference_.pose_at(from_seconds(t)).translation();
-    if ((state_.position - wanted).norm() < kLost) return;  // false for NaN, too
+    if ((state_.position - wanted).norm() < kMaxError) return;  // false for NaN, too
     throw InputError(place_,
                      fmt::format("the quadrotor has lost the path {:.2f} s after the start", t),
                      "reduce limits (or choose a gentler style) or dynamics.gusts, or increase "

@@ -14,7 +14,7 @@ using Eigen::Vector3i;
 using Cell = FreeSpace::Cell;
 using Grid = std::unordered_map<std::uint64_t, std::int32_t>;  // cell index, kBlocked or kOpen
 
-constexpr double kCoarser = 4.0;       // factor on the cell size in the first exploration
+constexpr double kCoarseFactor = 4.0;  // factor on the cell size in the first exploration
 constexpr double kFar = 1.0;           // m; larger distances are treated as equal
 constexpr std::int32_t kBlocked = -2;  // visited, too close to a surface or not connected
 constexpr std::int32_t kOpen = -3;     // to be visited next
@@ -36,14 +36,14 @@ std::uint64_t key_of(const Vector3i& at) {
 /// Cell whose point is moved by hill climbing to the place in the cube around `center` that is
 /// farthest from the surface. The point stays at the center if that already has the preferred
 /// distance, or if the minimum distance cannot be reached within the cube.
-Cell settled(const world::World& world, const Vector3d& center, double edge,
-             const Distances& wanted) {
+Cell adjusted_cell(const world::World& world, const Vector3d& center, double edge,
+                   const Distances& wanted) {
   Cell cell{center, 0.0, {}};
   cell.next.fill(FreeSpace::kNone);
   world::ClosestPoint nearest = world.closest_point(center, kFar);
   cell.clearance = std::min(nearest.distance, kFar);
   const double most = cell.clearance + 0.5 * std::sqrt(3.0) * edge;
-  if (most < wanted.least || cell.clearance == 0.0) return cell;
+  if (most < wanted.minimum || cell.clearance == 0.0) return cell;
   for (double step = 0.5 * edge; step > 0.1 * edge && cell.clearance < wanted.preferred;
        step *= 0.5) {
     const Vector3d away = (cell.point - nearest.point) / nearest.distance;
@@ -59,24 +59,24 @@ Cell settled(const world::World& world, const Vector3d& center, double edge,
   return cell;
 }
 
-/// True when the line between the points of two cells keeps the distance `least`. This follows from
-/// the clearances at both ends if they are large enough; otherwise the world is queried.
-bool is_joined(const world::World& world, const Cell& a, const Cell& b, double least) {
+/// True when the line between the points of two cells keeps the distance `minimum`. This follows
+/// from the clearances at both ends if they are large enough; otherwise the world is queried.
+bool is_joined(const world::World& world, const Cell& a, const Cell& b, double minimum) {
   const double apart = (a.point - b.point).norm();
-  if (0.5 * (a.clearance + b.clearance - apart) >= least) return true;
-  return is_clear(world, a.point, b.point, least);
+  if (0.5 * (a.clearance + b.clearance - apart) >= minimum) return true;
+  return is_clear(world, a.point, b.point, minimum);
 }
 
 /// Connects `cell` at the grid coordinates `at`, which will be appended to `cells`, with its
 /// neighbors; returns false if it cannot be connected with any.
-bool join(const world::World& world, double least, const Grid& grid, const Vector3i& at, Cell& cell,
-          std::vector<Cell>& cells) {
+bool join(const world::World& world, double minimum, const Grid& grid, const Vector3i& at,
+          Cell& cell, std::vector<Cell>& cells) {
   bool joined = false;
   for (std::size_t side = 0; side < kSteps.size(); ++side) {
     const auto other = grid.find(key_of(stepped(at, side)));
     if (other == grid.end() || other->second < 0) continue;
     Cell& neighbor = cells[static_cast<std::size_t>(other->second)];
-    if (!is_joined(world, cell, neighbor, least)) continue;
+    if (!is_joined(world, cell, neighbor, minimum)) continue;
     cell.next[side] = other->second;
     neighbor.next[side ^ 1U] = static_cast<std::int32_t>(cells.size());
     joined = true;
@@ -88,9 +88,9 @@ bool join(const world::World& world, double least, const Grid& grid, const Vecto
 
 FreeSpace::FreeSpace(const world::World& world, const Vector3d& start, const Distances& distances,
                      double voxel_size_m, std::size_t max_voxels, const Parallel& parallel)
-    : distances_(distances), cell_m_(kCoarser * voxel_size_m) {
+    : distances_(distances), cell_m_(kCoarseFactor * voxel_size_m) {
   const bool is_small = explore(world, start, max_voxels, parallel);
-  const double expected = static_cast<double>(cells_.size()) * std::pow(kCoarser, 3);
+  const double expected = static_cast<double>(cells_.size()) * std::pow(kCoarseFactor, 3);
   const double excess = expected / static_cast<double>(max_voxels);
   voxel_size_m_ = is_small ? voxel_size_m * std::max(1.0, std::cbrt(excess)) : 1.5 * voxel_size_m_;
   while (!explore(world, start, max_voxels, parallel)) voxel_size_m_ *= 1.5;
@@ -107,14 +107,15 @@ bool FreeSpace::explore(const world::World& world, const Vector3d& start, std::s
     std::vector<Cell> looked_at(wave.size());
     parallel.for_each(wave.size(), 32, [&](std::size_t i) {
       const Vector3d center = start + voxel_size_m_ * wave[i].cast<double>();
-      looked_at[i] = settled(world, center, voxel_size_m_, distances_);
+      looked_at[i] = adjusted_cell(world, center, voxel_size_m_, distances_);
     });
     const std::size_t first_new = cells_.size();
     for (std::size_t i = 0; i < wave.size(); ++i) {
       grid[key_of(wave[i])] = kBlocked;
       Cell& cell = looked_at[i];
-      if (cell.clearance < distances_.least || !box.contains(cell.point)) continue;
-      if (!join(world, distances_.least, grid, wave[i], cell, cells_) && !cells_.empty()) continue;
+      if (cell.clearance < distances_.minimum || !box.contains(cell.point)) continue;
+      if (!join(world, distances_.minimum, grid, wave[i], cell, cells_) && !cells_.empty())
+        continue;
       grid[key_of(wave[i])] = static_cast<std::int32_t>(cells_.size());
       cells_.push_back(cell);
       at.push_back(wave[i]);
@@ -170,7 +171,7 @@ std::vector<std::int32_t> FreeSpace::lengths_from(std::int32_t from) const {
   return shortest(*this, from, kNone);
 }
 
-std::vector<std::int32_t> FreeSpace::way(std::int32_t from, std::int32_t to) const {
+std::vector<std::int32_t> FreeSpace::path(std::int32_t from, std::int32_t to) const {
   const std::vector<std::int32_t> length = shortest(*this, to, from);
   std::vector<std::int32_t> cells{from};
   while (cells.back() != to) {
@@ -187,7 +188,7 @@ std::vector<std::int32_t> FreeSpace::way(std::int32_t from, std::int32_t to) con
 
 bool is_clear(const world::World& world, const Vector3d& from, const Vector3d& to,
               double clearance) {
-  constexpr double kLeastStep = 0.02;  // m
+  constexpr double kMinStep = 0.02;  // m
   const double length = (to - from).norm();
   if (length > 0.0 && !world.visible(from, to)) return false;
   for (double s = 0.0;;) {
@@ -195,7 +196,7 @@ bool is_clear(const world::World& world, const Vector3d& from, const Vector3d& t
     const double room = world.closest_point(here, clearance + kFar).distance - clearance;
     if (room < 0.0) return false;
     if (s >= length) return true;
-    s = std::min(length, s + std::clamp(room, kLeastStep, kFar));
+    s = std::min(length, s + std::clamp(room, kMinStep, kFar));
   }
 }
 

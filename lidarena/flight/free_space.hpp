@@ -15,7 +15,7 @@ namespace lidarena::flight {
 
 /// Distances from surfaces.
 struct Distances {
-  double least = 0.0;      ///< m, minimum everywhere
+  double minimum = 0.0;    ///< m, minimum everywhere
   double preferred = 0.0;  ///< m, kept where possible; below it path lengths count three times
 };
 
@@ -33,19 +33,19 @@ class FreeSpace {
     std::array<std::int32_t, 6> next;  ///< neighbors in -x, +x, -y, +y, -z, +z, or kNone
   };
 
-  /// Explores from `start` with cells of edge `voxel_size_m`, or larger ones if there would be more than
-  /// `max_voxels`, which is estimated with cells of four times the edge. Empty when `start` itself
-  /// is too close to a surface or outside the box.
+  /// Explores from `start` with cells of edge `voxel_size_m`, or larger ones if there would be more
+  /// than `max_voxels`, which is estimated with cells of four times the edge. Empty when `start`
+  /// itself is too close to a surface or outside the box.
   FreeSpace(const world::World& world, const Eigen::Vector3d& start, const Distances& distances,
             double voxel_size_m, std::size_t max_voxels, const Parallel& parallel);
 
   std::span<const Cell> cells() const { return cells_; }
-  double cell_m() const { return voxel_size_m_; }
+  double voxel_size_m() const { return voxel_size_m_; }
   /// Lengths of the shortest paths along neighbors from one cell to all cells, in half cell edges;
   /// steps below the preferred distance count three times.
   std::vector<std::int32_t> lengths_from(std::int32_t from) const;
   /// The cells on a shortest path, both ends included.
-  std::vector<std::int32_t> way(std::int32_t from, std::int32_t to) const;
+  std::vector<std::int32_t> path(std::int32_t from, std::int32_t to) const;
   bool is_wide(std::int32_t cell) const {
     return cells_[static_cast<std::size_t>(cell)].clearance >= distances_.preferred;
   }

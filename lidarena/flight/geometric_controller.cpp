@@ -14,15 +14,15 @@ using Eigen::Vector3d;
 
 /// Upper limit on the acceleration that corrects errors, m/s^2: half of gravity, so that the thrust
 /// never points downward.
-constexpr double kMostCorrection = 0.5 * kGravity;
+constexpr double kMaxCorrection = 0.5 * kGravity;
 
-Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
-                      const Motion& reference) {
+Vector3d desired_force(const Quadrotor& quadrotor, const QuadrotorState& state,
+                       const Motion& reference) {
   const DynamicsConfig& c = quadrotor.config();
   const double w = c.position_bandwidth;
   Vector3d correction = w * w * (reference.world_from_body.translation() - state.position) +
                         2.0 * c.damping * w * (reference.velocity_world - state.velocity);
-  correction *= std::min(1.0, kMostCorrection / std::max(correction.norm(), 1e-12));
+  correction *= std::min(1.0, kMaxCorrection / std::max(correction.norm(), 1e-12));
   return c.mass_kg * (reference.acceleration_world + correction + kGravity * Vector3d::UnitZ()) -
          quadrotor.drag(reference.world_from_body.linear(), reference.velocity_world);
 }
@@ -30,7 +30,7 @@ Vector3d wanted_force(const Quadrotor& quadrotor, const QuadrotorState& state,
 /// Attitude error as a rotation vector in the body frame: x and y are the shortest rotation that
 /// aligns the z axis, z is the remaining heading error. A lag of the heading thus does not affect
 /// the tilt.
-Vector3d turn_to(const Matrix3d& body_from_wanted) {
+Vector3d attitude_error(const Matrix3d& body_from_wanted) {
   const Matrix3d tilt =
       Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), body_from_wanted.col(2))
           .toRotationMatrix();
@@ -43,7 +43,7 @@ Vector3d turn_to(const Matrix3d& body_from_wanted) {
 Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
                        const Motion& reference) {
   const DynamicsConfig& c = quadrotor.config();
-  const Vector3d force = wanted_force(quadrotor, state, reference);
+  const Vector3d force = desired_force(quadrotor, state, reference);
   const Matrix3d& of_reference = reference.world_from_body.linear();
   const Matrix3d wanted =
       Eigen::Quaterniond::FromTwoVectors(of_reference.col(2), force) * of_reference;
@@ -52,10 +52,10 @@ Wrench tracking_wrench(const Quadrotor& quadrotor, const QuadrotorState& state,
 
   const Vector3d rate = body_from_wanted * reference.angular_rate_body;
   const Vector3d w{c.tilt_bandwidth, c.tilt_bandwidth, c.yaw_bandwidth};
-  const Vector3d angular_acceleration = w.cwiseAbs2().cwiseProduct(turn_to(body_from_wanted)) -
-                                        2.0 * c.damping * w.cwiseProduct(state.rate - rate) -
-                                        state.rate.cross(rate) +
-                                        body_from_wanted * reference.angular_acceleration_body;
+  const Vector3d angular_acceleration =
+      w.cwiseAbs2().cwiseProduct(attitude_error(body_from_wanted)) -
+      2.0 * c.damping * w.cwiseProduct(state.rate - rate) - state.rate.cross(rate) +
+      body_from_wanted * reference.angular_acceleration_body;
   return {std::max(0.0, force.dot(r.col(2))),
           c.inertia.cwiseProduct(angular_acceleration) +
               state.rate.cross(c.inertia.cwiseProduct(state.rate))};

@@ -9,13 +9,13 @@ namespace lidarena::flight {
 namespace {
 
 // Minimum horizontal part of a unit vector; the heading of steeper directions is undefined.
-constexpr double kLeastHorizontal = 0.1;
+constexpr double kMinHorizontal = 0.1;
 
 }  // namespace
 
 std::vector<double> yaw_along(std::span<const Eigen::Vector3d> directions) {
   const auto is_level = [](const Eigen::Vector3d& d) {
-    return d.head<2>().norm() >= kLeastHorizontal;
+    return d.head<2>().norm() >= kMinHorizontal;
   };
   const auto first = std::find_if(directions.begin(), directions.end(), is_level);
   double last = first == directions.end() ? 0.0 : std::atan2(first->y(), first->x());

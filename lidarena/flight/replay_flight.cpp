@@ -111,12 +111,12 @@ ReplayFlight::ReplayFlight(const Trajectory& recording, const std::string& name)
     const Pose& from = poses[i].world_from_body;
     const Pose& to = poses[i + 1].world_from_body;
     const double h = to_seconds(poses[i + 1].stamp - poses[i].stamp);
-    const Vector3d turn = so3::log(from.linear().transpose() * to.linear());
+    const Vector3d rotation_vector = so3::log(from.linear().transpose() * to.linear());
     Piece piece{
         .world_from_begin = from.linear(),
         .position = quintic(from.translation(), begin.position, to.translation(), end.position, h),
-        .rotation =
-            quintic(Vector3d::Zero(), begin.rotation, turn, vector_rates(turn, end.rotation), h),
+        .rotation = quintic(Vector3d::Zero(), begin.rotation, rotation_vector,
+                            vector_rates(rotation_vector, end.rotation), h),
         .begin = poses[i].stamp - recording.begin_time(),
         .length_s = h};
     pieces_.push_back(piece);

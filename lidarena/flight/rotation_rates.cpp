@@ -35,17 +35,17 @@ Quotients quotients(double x) {
 
 Vector3d body_rate(const Vector3d& v, const Vector3d& dv) {
   const Quotients q = quotients(v.squaredNorm());
-  const Vector3d turn = v.cross(dv);
-  return dv - q.b * turn + q.c * v.cross(turn);
+  const Vector3d v_cross_dv = v.cross(dv);
+  return dv - q.b * v_cross_dv + q.c * v.cross(v_cross_dv);
 }
 
 Vector3d body_acceleration(const Vector3d& v, const Vector3d& dv, const Vector3d& ddv) {
   const Quotients q = quotients(v.squaredNorm());
   const double dx = 2.0 * v.dot(dv);
-  const Vector3d turn = v.cross(dv);
-  const Vector3d dturn = v.cross(ddv);
-  return ddv - q.db * dx * turn - q.b * dturn + q.dc * dx * v.cross(turn) +
-         q.c * (dv.cross(turn) + v.cross(dturn));
+  const Vector3d v_cross_dv = v.cross(dv);
+  const Vector3d v_cross_ddv = v.cross(ddv);
+  return ddv - q.db * dx * v_cross_dv - q.b * v_cross_ddv + q.dc * dx * v.cross(v_cross_dv) +
+         q.c * (dv.cross(v_cross_dv) + v.cross(v_cross_ddv));
 }
 
 }  // namespace lidarena::flight

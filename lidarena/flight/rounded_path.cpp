@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kLeastStep = 1e-3;      // m; waypoints closer than this are an input error
-constexpr double kLeastRadius = 1e-3;    // m; at a tighter corner the path stops
+constexpr double kMinStep = 1e-3;        // m; waypoints closer than this are an input error
+constexpr double kMinRadius = 1e-3;      // m; at a tighter corner the path stops
 constexpr double kStraightAngle = 1e-6;  // rad; corners below this angle are ignored
 
 /// The arc that rounds a corner; `reach` (m) is the length that it replaces on both segments.
@@ -23,7 +23,7 @@ struct Corner {
   double angle = 0.0, radius = 0.0, reach = 0.0;
   Vector3d normal = Vector3d::Zero();
   bool is_straight() const { return angle < kStraightAngle; }
-  bool is_stop() const { return !is_straight() && radius < kLeastRadius; }
+  bool is_stop() const { return !is_straight() && radius < kMinRadius; }
   bool is_arc() const { return !is_straight() && !is_stop(); }
 };
 
@@ -32,8 +32,9 @@ Corner corner_at(const Vector3d& in, const Vector3d& out, double reach, double t
   corner.angle = std::atan2(in.cross(out).norm(), in.dot(out));
   if (corner.is_straight()) return corner;
   const double half = 0.5 * corner.angle;
-  const double leave = 1.0 / std::cos(half) - 1.0;  // distance from corner to arc, per radius
-  corner.radius = std::min(tolerance / leave, reach / std::tan(half));
+  const double corner_distance =
+      1.0 / std::cos(half) - 1.0;  // distance from corner to arc, per radius
+  corner.radius = std::min(tolerance / corner_distance, reach / std::tan(half));
   if (corner.is_stop()) return corner;
   corner.reach = corner.radius * std::tan(half);
   corner.normal = (out - out.dot(in) * in).normalized();
@@ -108,7 +109,7 @@ void check_waypoints(std::span<const Vector3d> waypoints, const std::string& pla
                      "a flight needs at least two");
   }
   for (std::size_t i = 1; i < waypoints.size(); ++i) {
-    if ((waypoints[i] - waypoints[i - 1]).norm() >= kLeastStep) continue;
+    if ((waypoints[i] - waypoints[i - 1]).norm() >= kMinStep) continue;
     const Vector3d& p = waypoints[i];
     throw InputError(place,
                      fmt::format("waypoint {} repeats the previous one: ({:g}, {:g}, {:g})", i + 1,

@@ -38,7 +38,7 @@ double sweep_gain(double period_s, double knot) {
 }
 
 /// The waypoints repeated (back and forth when the line is open) for at least `length` (m).
-std::vector<Vector3d> tour(std::span<const Vector3d> waypoints, double length) {
+std::vector<Vector3d> repeated_line(std::span<const Vector3d> waypoints, double length) {
   constexpr double kClosed = 1e-3;  // m
   std::vector<Vector3d> lap(waypoints.begin(), waypoints.end());
   if ((lap.front() - lap.back()).norm() > kClosed) {
@@ -146,7 +146,7 @@ SplineFlight::Plan SplineFlight::plan(std::span<const Vector3d> waypoints,
 
   const bool loops = config.duration_s > 0.0;
   const double moving_s = loops ? moving_time(config.duration_s, begin_s, place) : 0.0;
-  const auto line = loops ? tour(waypoints, limits.max_speed * moving_s)
+  const auto line = loops ? repeated_line(waypoints, limits.max_speed * moving_s)
                           : std::vector<Vector3d>(waypoints.begin(), waypoints.end());
   const RoundedPath path = round_corners(line, config.corner_m - smoothed_away);
   const TimeLaw law =

@@ -40,8 +40,8 @@ Vector3d start_of(const world::WorldModel& model, const world::World& world,
 
 FreeSpace explored(const world::World& world, const Vector3d& start, const FlightConfig& config,
                    const std::string& place, const Parallel& parallel) {
-  const double least = config.clearance_m + config.tour.margin_m + kSlack;
-  FreeSpace space(world, start, {least, least + config.corner_m}, config.tour.voxel_size_m,
+  const double minimum = config.clearance_m + config.tour.margin_m + kSlack;
+  FreeSpace space(world, start, {minimum, minimum + config.corner_m}, config.tour.voxel_size_m,
                   static_cast<std::size_t>(config.tour.max_voxels), parallel);
   if (space.cells().size() > 1) return space;
   throw InputError(
@@ -56,7 +56,7 @@ FreeSpace explored(const world::World& world, const Vector3d& start, const Fligh
 /// until there are at most `most` of them.
 std::vector<std::int32_t> spread(const FreeSpace& space, std::size_t most) {
   const auto cells = space.cells();
-  for (double edge = 5.0 * space.cell_m();; edge *= 1.25) {
+  for (double edge = 5.0 * space.voxel_size_m();; edge *= 1.25) {
     std::map<std::tuple<std::int64_t, std::int64_t, std::int64_t>, std::int32_t> blocks;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const Vector3d at = (cells[i].point - cells[0].point) / edge;
@@ -109,11 +109,11 @@ std::vector<std::int32_t> ordered(const FreeSpace& space, const std::vector<std:
   return visits;
 }
 
-/// Appends the points of `line` after its first one, which is already in `way`, to its last one,
+/// Appends the points of `line` after its first one, which is already in `path`, to its last one,
 /// and skips those that a straight segment with this clearance can bypass. The longest segment is
 /// found by doubling the number of skipped points, then by bisection.
-void append_pulled(const world::World& world, std::span<const Vector3d> line, double clearance,
-                   std::vector<Vector3d>& way) {
+void append_shortened(const world::World& world, std::span<const Vector3d> line, double clearance,
+                      std::vector<Vector3d>& path) {
   for (std::size_t from = 0; from + 1 < line.size();) {
     const std::size_t left = line.size() - 1 - from;
     std::size_t good = 1, bad = left + 1;
@@ -131,45 +131,45 @@ void append_pulled(const world::World& world, std::span<const Vector3d> line, do
       (is_clear(world, line[from], line[from + leap], clearance) ? good : bad) = leap;
     }
     from += good;
-    way.push_back(line[from]);
+    path.push_back(line[from]);
   }
 }
 
 /// Appends the path along `cells`, shortened by straight segments: wide sections keep the preferred
 /// distance; narrow sections, with one more cell at either end, keep the minimum distance.
-void append_way(const world::World& world, const FreeSpace& space,
-                std::span<const std::int32_t> cells, std::vector<Vector3d>& way) {
+void append_path(const world::World& world, const FreeSpace& space,
+                 std::span<const std::int32_t> cells, std::vector<Vector3d>& path) {
   const auto wide = [&](std::size_t i) { return space.is_wide(cells[i]); };
   for (std::size_t from = 0; from + 1 < cells.size();) {
     const bool is_wide = wide(from) && wide(from + 1);
     std::size_t to = from + 1;
     while (to + 1 < cells.size() && (wide(to) && wide(to + 1)) == is_wide) ++to;
     const auto line = points_of(space, cells.subspan(from, to - from + 1));
-    append_pulled(world, line, is_wide ? space.distances().preferred : space.distances().least,
-                  way);
+    append_shortened(world, line, is_wide ? space.distances().preferred : space.distances().minimum,
+                     path);
     from = to;
   }
 }
 
 /// Drops points that are closer than kApart to the previous one.
-std::vector<Vector3d> thinned(const std::vector<Vector3d>& way) {
+std::vector<Vector3d> thinned(const std::vector<Vector3d>& path) {
   constexpr double kApart = 0.02;  // m
-  std::vector<Vector3d> kept{way.front()};
-  for (const Vector3d& point : way) {
+  std::vector<Vector3d> kept{path.front()};
+  for (const Vector3d& point : path) {
     if ((point - kept.back()).norm() > kApart) kept.push_back(point);
   }
-  kept.back() = way.back();
+  kept.back() = path.back();
   return kept;
 }
 
 /// The path from each cell to the next, and from the last to the first.
-std::vector<Vector3d> way_through(const world::World& world, const FreeSpace& space,
-                                  const std::vector<std::int32_t>& visits) {
-  std::vector<Vector3d> way{space.cells()[static_cast<std::size_t>(visits.front())].point};
+std::vector<Vector3d> path_through(const world::World& world, const FreeSpace& space,
+                                   const std::vector<std::int32_t>& visits) {
+  std::vector<Vector3d> path{space.cells()[static_cast<std::size_t>(visits.front())].point};
   for (std::size_t i = 0; i < visits.size(); ++i) {
-    append_way(world, space, space.way(visits[i], visits[(i + 1) % visits.size()]), way);
+    append_path(world, space, space.path(visits[i], visits[(i + 1) % visits.size()]), path);
   }
-  return thinned(way);
+  return thinned(path);
 }
 
 /// A corner of the tour. If `reach` (m) is finite, extra waypoints at that distance before and
@@ -231,13 +231,13 @@ std::vector<std::size_t> tight_corners(const Flight& flight, const world::World&
 }
 
 /// The path as waypoints whose flight keeps the clearance at its corners, if possible.
-std::vector<Vector3d> tightened(const std::vector<Vector3d>& way, const world::World& world,
+std::vector<Vector3d> tightened(const std::vector<Vector3d>& path, const world::World& world,
                                 const FlightConfig& config, const std::string& place) {
   constexpr int kRounds = 8;
   constexpr double kFirstReach = 0.8;  // m; halved in each further round
   std::vector<Corner> corners;
-  corners.reserve(way.size());
-  for (const Vector3d& point : way) corners.push_back({point});
+  corners.reserve(path.size());
+  for (const Vector3d& point : path) corners.push_back({point});
   for (int round = 0; round < kRounds; ++round) {
     const SplineFlight flight(waypoints_of(corners), config, place);
     const auto tight = tight_corners(flight, world, config.clearance_m, corners);
@@ -267,9 +267,9 @@ Tour plan_tour(const world::WorldModel& model, const world::World& world,
 
   FlightConfig once = config;
   once.duration_s = 0.0;
-  Tour tour{.waypoints = tightened(way_through(world, space, visits), world, once, place),
+  Tour tour{.waypoints = tightened(path_through(world, space, visits), world, once, place),
             .views = visits.size() - 1,
-            .voxel_size_m = space.cell_m(),
+            .voxel_size_m = space.voxel_size_m(),
             .cells = space.cells().size()};
   const SplineFlight flight(tour.waypoints, once, place);
   Seen seen = seen_along(world, flight, samples, wanted.range_m, kCoverageSpacing);

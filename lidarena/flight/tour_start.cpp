@@ -11,8 +11,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kAcross = 16;  // number of grid points along the longest edge of the bounding box
-constexpr int kLeast = 4;    // minimum number of grid points along any edge
+constexpr int kPointsAcross =
+    16;                        // number of grid points along the longest edge of the bounding box
+constexpr int kMinPoints = 4;  // minimum number of grid points along any edge
 constexpr std::size_t kDirections = 64;
 
 /// Directions distributed evenly over the sphere (golden-angle spiral).
@@ -29,10 +30,10 @@ std::vector<Eigen::Vector3f> directions() {
 
 std::vector<Vector3d> grid(const Eigen::AlignedBox3d& box) {
   const Vector3d size = box.sizes();
-  const double step = size.maxCoeff() / kAcross;
+  const double step = size.maxCoeff() / kPointsAcross;
   Eigen::Vector3i count;
   for (int i = 0; i < 3; ++i)
-    count[i] = std::max(kLeast, static_cast<int>(std::ceil(size[i] / step)));
+    count[i] = std::max(kMinPoints, static_cast<int>(std::ceil(size[i] / step)));
   std::vector<Vector3d> places;
   for (int z = 0; z < count.z(); ++z) {
     for (int y = 0; y < count.y(); ++y) {

@@ -17,7 +17,7 @@ void AnchoredTrajectory::add(Time stamp, const Pose& anchor_from_body) {
 std::vector<StampedPose> AnchoredTrajectory::placed(std::span<const Pose> anchors) const {
   std::vector<StampedPose> placed;
   placed.reserve(poses_.size());
-  for (const Hanging& pose : poses_) {
+  for (const AnchoredPose& pose : poses_) {
     const std::size_t next = pose.anchors;
     if (next == 0) {
       placed.push_back({pose.stamp, pose.anchor_from_body});
@@ -38,7 +38,7 @@ std::vector<StampedPose> AnchoredTrajectory::placed(std::span<const Pose> anchor
 }
 
 std::uint64_t AnchoredTrajectory::memory_bytes() const {
-  return anchors_.capacity() * sizeof(Anchor) + poses_.capacity() * sizeof(Hanging);
+  return anchors_.capacity() * sizeof(Anchor) + poses_.capacity() * sizeof(AnchoredPose);
 }
 
 }  // namespace lidarena::loop

@@ -32,13 +32,13 @@ class AnchoredTrajectory {
     Time stamp{0};
     Pose previous_from_this = Pose::Identity();
   };
-  struct Hanging {
+  struct AnchoredPose {
     Time stamp{0};
     std::size_t anchors = 0;  ///< number of keyframes so far; relative to the last of them
     Pose anchor_from_body = Pose::Identity();
   };
   std::vector<Anchor> anchors_;
-  std::vector<Hanging> poses_;
+  std::vector<AnchoredPose> poses_;
 };
 
 }  // namespace lidarena::loop

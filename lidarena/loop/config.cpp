@@ -3,7 +3,7 @@
 
 namespace lidarena::loop {
 
-LoopConfig careful_loops() {
+LoopConfig conservative_loops() {
   LoopConfig config;
   config.keyframes_per_search = 2;
   config.min_time_gap_s = 10.0;

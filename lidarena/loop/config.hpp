@@ -101,25 +101,25 @@ struct LoopConfig {
       "number of keyframes before the new one whose points are matched with its own", at_least(0));
     v("target_keyframes", self.target_keyframes, "",
       "number of keyframes on each side of the old one whose points are matched", at_least(0));
-    v("voxel_size_m", self.voxel_size_m, "m", "voxel size in which the points of both clouds are averaged",
-      above(0));
+    v("voxel_size_m", self.voxel_size_m, "m",
+      "voxel size in which the points of both clouds are averaged", above(0));
     v("max_source_points", self.max_source_points, "",
       "upper limit on the points of the new place that are matched; 0: all", at_least(0));
-    v("min_source_points", self.min_source_points, "",
-      "minimum number of points of the new place", at_least(1));
-    v("min_target_points", self.min_target_points, "",
-      "minimum number of points of the old place", at_least(1));
+    v("min_source_points", self.min_source_points, "", "minimum number of points of the new place",
+      at_least(1));
+    v("min_target_points", self.min_target_points, "", "minimum number of points of the old place",
+      at_least(1));
     v("metric", self.metric, "", "distances that ICP minimizes: to points or planes");
-    v("max_correspondence_distance_m", self.max_correspondence_distance_m, "m", "maximum distance to a corresponding point",
-      above(0));
+    v("max_correspondence_distance_m", self.max_correspondence_distance_m, "m",
+      "maximum distance to a corresponding point", above(0));
     v("max_iterations", self.max_iterations, "", "maximum number of iterations of ICP",
       at_least(1));
     v("max_fitness_m2", self.max_fitness_m2, "m^2",
       "maximum mean squared distance of corresponding points", above(0));
-    v("inlier_distance_m", self.inlier_distance_m, "m", "points within this distance of the other cloud overlap",
-      above(0));
-    v("min_overlap", self.min_overlap, "",
-      "minimum share of the new place's points that overlap", between(0, 1));
+    v("inlier_distance_m", self.inlier_distance_m, "m",
+      "points within this distance of the other cloud overlap", above(0));
+    v("min_overlap", self.min_overlap, "", "minimum share of the new place's points that overlap",
+      between(0, 1));
     v("min_constraint", self.min_constraint, "",
       "minimum share of the least constrained direction in the information of all points (planes "
       "only)",
@@ -133,8 +133,8 @@ struct LoopConfig {
     v("drift_gate", self.drift_gate, "sigma", "maximum correction by a loop", above(0));
     v("min_consistent_loops", self.min_consistent_loops, "",
       "number of loops with the same correction that are required to accept them", at_least(1));
-    v("consistency_translation_m", self.consistency_translation_m, "m", "maximum difference in translation of loops that agree",
-      above(0));
+    v("consistency_translation_m", self.consistency_translation_m, "m",
+      "maximum difference in translation of loops that agree", above(0));
     v("consistency_rotation_rad", self.consistency_rotation_rad, "rad",
       "maximum difference in rotation of loops that agree", above(0));
     v("odometry_translation_sigma_m", self.odometry_translation_sigma_m, "m",
@@ -145,8 +145,8 @@ struct LoopConfig {
       "sigma of the translation of a loop; 0: its fitness is the variance of both, in m^2 and "
       "rad^2",
       at_least(0));
-    v("loop_rotation_sigma_rad", self.loop_rotation_sigma_rad, "rad", "sigma of the rotation of a loop",
-      at_least(0));
+    v("loop_rotation_sigma_rad", self.loop_rotation_sigma_rad, "rad",
+      "sigma of the rotation of a loop", at_least(0));
     v("robust_kernel_scale", self.robust_kernel_scale, "sigma",
       "scale of the Cauchy kernel of loops; 0: no robust kernel", at_least(0));
   }
@@ -154,7 +154,7 @@ struct LoopConfig {
 
 /// Our own settings (not those of LIO-SAM): candidates by distance and by appearance, verified by
 /// overlap, fitness and the possible drift of the odometry, and accepted only if two agree.
-LoopConfig careful_loops();
+LoopConfig conservative_loops();
 
 constexpr auto enum_names(IcpMetric) {
   return std::array{std::pair{"points", IcpMetric::kPoints},

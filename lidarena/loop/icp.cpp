@@ -18,11 +18,11 @@ using Equations =
 using Eigen::Vector3d;
 
 constexpr std::size_t kPlanePoints = 6;
-constexpr double kFlat = 0.1;        // maximum ratio of the variances across and along
-constexpr double kPlaneReach = 1.0;  // m: minimum search radius for points of a plane
-constexpr std::size_t kFewest = 10;  // minimum number of correspondences
-constexpr double kStill = 3e-4;      // m, rad: converged below this step
-constexpr double kShrink = 0.7;      // factor on the maximum distance per iteration
+constexpr double kFlat = 0.1;                    // maximum ratio of the variances across and along
+constexpr double kPlaneReach = 1.0;              // m: minimum search radius for points of a plane
+constexpr std::size_t kMinCorrespondences = 10;  // minimum number of correspondences
+constexpr double kConvergedStep = 3e-4;          // m, rad: converged below this step
+constexpr double kShrink = 0.7;                  // factor on the maximum distance per iteration
 
 /// Fits a plane to the points `near`; returns whether they are flat.
 bool find_normal(std::span<const map::Neighbor> near, Vector3d& normal) {
@@ -80,7 +80,8 @@ void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
   std::size_t reached = 0;
   std::size_t inliers = 0;
   const bool planes = config.metric == IcpMetric::kPlanes;
-  const auto reach = static_cast<float>(planes ? config.inlier_distance_m : config.max_correspondence_distance_m);
+  const auto reach =
+      static_cast<float>(planes ? config.inlier_distance_m : config.max_correspondence_distance_m);
   for (const Eigen::Vector3f& p : source) {
     std::array<map::Neighbor, 1> near;
     const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
@@ -124,12 +125,12 @@ IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTre
     ++result.iterations;
     const bool at_last = !planes || reach <= config.inlier_distance_m;
     sum = equations(source, target, result.target_from_source, config.metric, reach, parallel);
-    if (sum.count < kFewest) break;
+    if (sum.count < kMinCorrespondences) break;
     const Eigen::Matrix<double, 6, 1> step = sum.solve();
     if (!step.allFinite()) break;
     result.target_from_source = orthonormalized(
         make_pose(so3::exp(step.head<3>()), step.tail<3>()) * result.target_from_source);
-    result.converged = at_last && step.cwiseAbs().maxCoeff() < kStill;
+    result.converged = at_last && step.cwiseAbs().maxCoeff() < kConvergedStep;
     if (planes) reach = std::max(config.inlier_distance_m, kShrink * reach);
   }
   measure(source, target, config, result);

@@ -16,16 +16,16 @@ namespace {
 
 using Covariance = estimation::PoseGraph::Covariance;
 
-constexpr double kLeastShift = 0.1;       // m: sigma of the drift at path length zero
-constexpr double kLeastTurn = 0.01;       // rad: likewise
-constexpr double kLeverArm = 1.0;         // m of path length per radian of rotation
-constexpr std::size_t kWaitingKept = 20;  // keyframes that a loop waits for another
-constexpr double kLeastVariance = 1e-6;   // m^2: minimum variance of a loop
+constexpr double kMinTranslationSigma = 0.1;   // m: sigma of the drift at path length zero
+constexpr double kMinRotationSigma = 0.01;     // rad: likewise
+constexpr double kLeverArm = 1.0;              // m of path length per radian of rotation
+constexpr std::size_t kMaxWaitKeyframes = 20;  // keyframes that a loop waits for another
+constexpr double kMinVariance = 1e-6;          // m^2: minimum variance of a loop
 
-Covariance diagonal(double shift_variance, double turn_variance) {
+Covariance diagonal(double translation_variance, double rotation_variance) {
   Covariance covariance = Covariance::Zero();
-  covariance.diagonal().head<3>().setConstant(shift_variance);
-  covariance.diagonal().tail<3>().setConstant(turn_variance);
+  covariance.diagonal().head<3>().setConstant(translation_variance);
+  covariance.diagonal().tail<3>().setConstant(rotation_variance);
   return covariance;
 }
 
@@ -77,74 +77,77 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
         describe(turned(around(index, n, 0, cloud), graph_.nodes.back().linear()),
                  config_.descriptor_range_m));
   }
-  if (due_.empty() && index % static_cast<std::size_t>(config_.keyframes_per_search) == 0)
-    due_ = candidates(ways_to_last());
-  return !due_.empty() && try_next(cloud);
+  if (pending_.empty() && index % static_cast<std::size_t>(config_.keyframes_per_search) == 0)
+    pending_ = candidates(path_lengths_to_last());
+  return !pending_.empty() && try_next(cloud);
 }
 
 bool LoopCloser::try_next(const KeyframeCloud& cloud) {
-  const Candidate candidate = due_.front();
-  due_.erase(due_.begin());
+  const Candidate candidate = pending_.front();
+  pending_.erase(pending_.begin());
   records_.push_back(verify(candidate, cloud));
   if (records_.back().verdict != LoopVerdict::kAccepted) return false;
-  due_.clear();
-  const std::vector<LoopRecord> loops = believed();
+  pending_.clear();
+  const std::vector<LoopRecord> loops = confirmed_loops();
   if (!loops.empty()) close(loops);
   return !loops.empty();
 }
 
-bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& ways) const {
+bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& path_lengths) const {
   return to_seconds(stamps_.back() - stamps_[keyframe]) > config_.min_time_gap_s &&
-         ways[keyframe] >= config_.min_path_length_m;
+         path_lengths[keyframe] >= config_.min_path_length_m;
 }
 
-std::vector<LoopCloser::Candidate> LoopCloser::candidates(const std::vector<double>& ways) const {
+std::vector<LoopCloser::Candidate> LoopCloser::candidates(
+    const std::vector<double>& path_lengths) const {
   std::vector<Candidate> found;
-  add_nearest(ways, found);
-  add_alike(ways, found);
+  add_nearest(path_lengths, found);
+  add_similar(path_lengths, found);
   return found;
 }
 
-void LoopCloser::add_nearest(const std::vector<double>& ways, std::vector<Candidate>& found) const {
+void LoopCloser::add_nearest(const std::vector<double>& path_lengths,
+                             std::vector<Candidate>& found) const {
   const Pose& here = graph_.nodes.back();
   double nearest = config_.search_radius_m;
   std::size_t best = graph_.nodes.size();
   for (std::size_t i = 0; i + 1 < graph_.nodes.size(); ++i) {
     const double distance = (graph_.nodes[i].translation() - here.translation()).norm();
-    if (distance >= nearest || !may_close(i, ways)) continue;
+    if (distance >= nearest || !may_close(i, path_lengths)) continue;
     nearest = distance;
     best = i;
   }
   if (best < graph_.nodes.size())
-    found.push_back({best, last(), ways[best], false, graph_.nodes[best].inverse() * here});
+    found.push_back({best, last(), path_lengths[best], false, graph_.nodes[best].inverse() * here});
 }
 
-void LoopCloser::add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const {
+void LoopCloser::add_similar(const std::vector<double>& path_lengths,
+                             std::vector<Candidate>& found) const {
   if (config_.descriptor_candidates == 0) return;
   const PlaceDescriptor& here = descriptors_.back();
   std::vector<std::pair<float, std::size_t>> by_rings;
   for (std::size_t i = 0; i + 1 < descriptors_.size(); ++i) {
-    if (may_close(i, ways))
+    if (may_close(i, path_lengths))
       by_rings.emplace_back((descriptors_[i].ring_means - here.ring_means).norm(), i);
   }
   std::sort(by_rings.begin(), by_rings.end());
   by_rings.resize(
       std::min(by_rings.size(), 4 * static_cast<std::size_t>(config_.descriptor_candidates)));
-  std::vector<std::pair<double, Candidate>> alike;
+  std::vector<std::pair<double, Candidate>> similar;
   for (const auto& [unused, i] : by_rings) {
     const Resemblance resemblance = compare(descriptors_[i], here);
     if (resemblance.distance > config_.max_descriptor_distance) continue;
-    const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.turn});
+    const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.rotation_rad});
     const Eigen::Matrix3d rotation =
         graph_.nodes[i].linear().transpose() * level * graph_.nodes.back().linear();
-    alike.push_back(
+    similar.push_back(
         {resemblance.distance,
-         {i, last(), ways[i], true, make_pose(rotation, Eigen::Vector3d::Zero().eval())}});
+         {i, last(), path_lengths[i], true, make_pose(rotation, Eigen::Vector3d::Zero().eval())}});
   }
-  std::stable_sort(alike.begin(), alike.end(),
+  std::stable_sort(similar.begin(), similar.end(),
                    [](const auto& a, const auto& b) { return a.first < b.first; });
-  alike.resize(std::min(alike.size(), static_cast<std::size_t>(config_.descriptor_candidates)));
-  for (const auto& [unused, candidate] : alike) found.push_back(candidate);
+  similar.resize(std::min(similar.size(), static_cast<std::size_t>(config_.descriptor_candidates)));
+  for (const auto& [unused, candidate] : similar) found.push_back(candidate);
 }
 
 std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_t before,
@@ -161,12 +164,13 @@ std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_
   return shuffled(map::voxel_means(points, config_.voxel_size_m));
 }
 
-bool LoopCloser::is_out_of_reach(const LoopRecord& loop) const {
+bool LoopCloser::is_beyond_drift(const LoopRecord& loop) const {
   if (config_.translation_drift_m_per_m <= 0.0) return false;
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
   return apart - config_.max_correspondence_distance_m >
-         config_.drift_gate * (kLeastShift + config_.translation_drift_m_per_m * loop.way);
+         config_.drift_gate *
+             (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
@@ -176,9 +180,9 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
   loop.first = candidate.keyframe;
   loop.second = candidate.seen_from;
   loop.by_appearance = candidate.by_appearance;
-  loop.way = candidate.way;
+  loop.path_length = candidate.path_length;
   loop.first_from_second = candidate.guess;
-  if (candidate.by_appearance && is_out_of_reach(loop)) {
+  if (candidate.by_appearance && is_beyond_drift(loop)) {
     loop.verdict = LoopVerdict::kBeyondDrift;
     return loop;
   }
@@ -190,7 +194,8 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
   if (source.size() < static_cast<std::size_t>(config_.min_source_points) ||
       target.size() < static_cast<std::size_t>(config_.min_target_points))
     return loop;
-  if (config_.max_source_points > 0 && source.size() > static_cast<std::size_t>(config_.max_source_points))
+  if (config_.max_source_points > 0 &&
+      source.size() > static_cast<std::size_t>(config_.max_source_points))
     source.resize(static_cast<std::size_t>(config_.max_source_points));
   map::KdTree tree;
   tree.build(std::move(target));
@@ -202,8 +207,8 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
   loop.fitness = icp.fitness;
   loop.overlap = icp.overlap;
   loop.constraint = icp.constraint;
-  loop.shift = contradiction.translation().norm();
-  loop.turn = so3::angle(contradiction.linear());
+  loop.translation_m = contradiction.translation().norm();
+  loop.rotation_rad = so3::angle(contradiction.linear());
   loop.verdict = judge(icp, loop);
   return loop;
 }
@@ -214,37 +219,40 @@ LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) cons
   if (icp.overlap < config_.min_overlap) return LoopVerdict::kLittleOverlap;
   if (icp.constraint < config_.min_constraint) return LoopVerdict::kUnconstrained;
   if (config_.translation_drift_m_per_m > 0.0) {
-    const double shift = kLeastShift + config_.translation_drift_m_per_m * loop.way;
-    const double turn = kLeastTurn + config_.rotation_drift_rad_per_m * loop.way;
-    if (loop.shift > config_.drift_gate * shift || loop.turn > config_.drift_gate * turn)
+    const double translation_m =
+        kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length;
+    const double rotation_rad =
+        kMinRotationSigma + config_.rotation_drift_rad_per_m * loop.path_length;
+    if (loop.translation_m > config_.drift_gate * translation_m ||
+        loop.rotation_rad > config_.drift_gate * rotation_rad)
       return LoopVerdict::kBeyondDrift;
   }
   return LoopVerdict::kAccepted;
 }
 
-std::vector<double> LoopCloser::ways_to_last() const {
+std::vector<double> LoopCloser::path_lengths_to_last() const {
   const std::size_t count = graph_.nodes.size();
-  std::vector<double> ways(count, std::numeric_limits<double>::infinity());
+  std::vector<double> path_lengths(count, std::numeric_limits<double>::infinity());
   using Reached = std::pair<double, std::size_t>;
   std::priority_queue<Reached, std::vector<Reached>, std::greater<>> next;
-  const auto reach = [&](std::size_t keyframe, double way) {
-    if (way >= ways[keyframe]) return;
-    ways[keyframe] = way;
-    next.emplace(way, keyframe);
+  const auto reach = [&](std::size_t keyframe, double path_length) {
+    if (path_length >= path_lengths[keyframe]) return;
+    path_lengths[keyframe] = path_length;
+    next.emplace(path_length, keyframe);
   };
   reach(count - 1, 0.0);
   while (!next.empty()) {
-    const auto [way, i] = next.top();
+    const auto [path_length, i] = next.top();
     next.pop();
-    if (way > ways[i]) continue;
-    if (i > 0) reach(i - 1, way + steps_[i]);
-    if (i + 1 < count) reach(i + 1, way + steps_[i + 1]);
+    if (path_length > path_lengths[i]) continue;
+    if (i > 0) reach(i - 1, path_length + steps_[i]);
+    if (i + 1 < count) reach(i + 1, path_length + steps_[i + 1]);
     for (const LoopRecord& loop : accepted_) {
-      if (loop.first == i) reach(loop.second, way);
-      if (loop.second == i) reach(loop.first, way);
+      if (loop.first == i) reach(loop.second, path_length);
+      if (loop.second == i) reach(loop.first, path_length);
     }
   }
-  return ways;
+  return path_lengths;
 }
 
 bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
@@ -257,10 +265,11 @@ bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
          so3::angle(apart.linear()) < config_.consistency_rotation_rad;
 }
 
-std::vector<LoopRecord> LoopCloser::believed() {
+std::vector<LoopRecord> LoopCloser::confirmed_loops() {
   LoopRecord& last = records_.back();
-  std::erase_if(waiting_,
-                [&](const LoopRecord& loop) { return loop.second + kWaitingKept < last.second; });
+  std::erase_if(waiting_, [&](const LoopRecord& loop) {
+    return loop.second + kMaxWaitKeyframes < last.second;
+  });
   std::vector<LoopRecord> loops;
   for (const LoopRecord& loop : waiting_) {
     if (agree(loop, last)) loops.push_back(loop);
@@ -275,18 +284,18 @@ std::vector<LoopRecord> LoopCloser::believed() {
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   for (const LoopRecord& loop : loops) {
     const bool by_fitness = config_.loop_translation_sigma_m <= 0.0;
-    const double variance = std::max(loop.fitness, kLeastVariance);
+    const double variance = std::max(loop.fitness, kMinVariance);
     const auto squared = [](double sigma) { return sigma * sigma; };
     const estimation::RobustLoss loss =
         config_.robust_kernel_scale > 0.0
             ? estimation::RobustLoss{estimation::RobustKernel::kCauchy, config_.robust_kernel_scale}
             : estimation::RobustLoss{};
-    graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
-                               by_fitness
-                                   ? diagonal(variance, variance)
-                                   : diagonal(squared(config_.loop_translation_sigma_m),
-                                              squared(std::max(config_.loop_rotation_sigma_rad, 1e-6))),
-                               loss});
+    graph_.betweens.push_back(
+        {loop.first, loop.second, loop.first_from_second,
+         by_fitness ? diagonal(variance, variance)
+                    : diagonal(squared(config_.loop_translation_sigma_m),
+                               squared(std::max(config_.loop_rotation_sigma_rad, 1e-6))),
+         loss});
     accepted_.push_back(loop);
     for (LoopRecord& record : records_) {
       if (record.first == loop.first && record.second == loop.second &&
@@ -299,7 +308,7 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
 }
 
 std::uint64_t LoopCloser::memory_bytes() const {
-  return due_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
+  return pending_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
          steps_.capacity() * sizeof(double) + descriptors_.capacity() * sizeof(PlaceDescriptor) +
          graph_.nodes.capacity() * sizeof(Pose) +
          graph_.betweens.capacity() * sizeof(estimation::PoseGraph::Between) +

@@ -40,9 +40,9 @@ struct LoopRecord {
   double fitness = 0.0;                       ///< m^2
   double overlap = 0.0;
   double constraint = 0.0;
-  double shift = 0.0;  ///< m, translation by which the loop would correct the poses
-  double turn = 0.0;   ///< rad, likewise, rotation
-  double way = 0.0;    ///< m, path length between the two
+  double translation_m = 0.0;  ///< m, translation by which the loop would correct the poses
+  double rotation_rad = 0.0;   ///< rad, likewise, rotation
+  double path_length = 0.0;    ///< m, path length between the two
 };
 
 /// The points of a keyframe, in its own frame (m).
@@ -72,29 +72,29 @@ class LoopCloser {
   struct Candidate {
     std::size_t keyframe = 0;
     std::size_t seen_from = 0;  ///< keyframe of the second visit
-    double way = 0.0;           ///< m, path length between the two
+    double path_length = 0.0;   ///< m, path length between the two
     bool by_appearance = false;
     Pose guess = Pose::Identity();  ///< initial guess of keyframe_from_seen_from
   };
   std::size_t last() const { return graph_.nodes.size() - 1; }
   /// Verifies the next candidate: one per keyframe, to limit the time that a keyframe takes.
   bool try_next(const KeyframeCloud& cloud);
-  std::vector<Candidate> candidates(const std::vector<double>& ways) const;
-  void add_nearest(const std::vector<double>& ways, std::vector<Candidate>& found) const;
-  void add_alike(const std::vector<double>& ways, std::vector<Candidate>& found) const;
-  bool may_close(std::size_t keyframe, const std::vector<double>& ways) const;
+  std::vector<Candidate> candidates(const std::vector<double>& path_lengths) const;
+  void add_nearest(const std::vector<double>& path_lengths, std::vector<Candidate>& found) const;
+  void add_similar(const std::vector<double>& path_lengths, std::vector<Candidate>& found) const;
+  bool may_close(std::size_t keyframe, const std::vector<double>& path_lengths) const;
   std::vector<Eigen::Vector3f> around(std::size_t keyframe, std::size_t before, std::size_t after,
                                       const KeyframeCloud& cloud) const;
   LoopRecord verify(const Candidate& candidate, const KeyframeCloud& cloud) const;
   /// Whether the two places are farther apart than drift can explain.
-  bool is_out_of_reach(const LoopRecord& loop) const;
+  bool is_beyond_drift(const LoopRecord& loop) const;
   LoopVerdict judge(const IcpResult& icp, const LoopRecord& loop) const;
   /// Path length (m) from each keyframe to the last one, by the shortest path through known loops.
-  std::vector<double> ways_to_last() const;
+  std::vector<double> path_lengths_to_last() const;
   bool agree(const LoopRecord& a, const LoopRecord& b) const;
   /// The last record and the waiting ones that agree with it, if they are enough to be accepted;
   /// else none, and the last record waits, too.
-  std::vector<LoopRecord> believed();
+  std::vector<LoopRecord> confirmed_loops();
   void close(const std::vector<LoopRecord>& loops);
 
   LoopConfig config_;
@@ -103,7 +103,7 @@ class LoopCloser {
   std::vector<double> steps_;  ///< m, path length from the keyframe before
   std::vector<PlaceDescriptor> descriptors_;
   estimation::PoseGraph graph_;
-  std::vector<Candidate> due_;  ///< of the last search, not verified yet
+  std::vector<Candidate> pending_;  ///< of the last search, not verified yet
   std::vector<LoopRecord> records_;
   std::vector<LoopRecord> waiting_;
   std::vector<LoopRecord> accepted_;

@@ -19,8 +19,8 @@ struct PlaceDescriptor {
 PlaceDescriptor describe(std::span<const Eigen::Vector3f> points, double range);
 
 struct Resemblance {
-  double distance = 1.0;  ///< 0 equal, 1 nothing in common
-  double turn = 0.0;      ///< rad about z: rotated by it, the second place matches the first
+  double distance = 1.0;      ///< 0 equal, 1 nothing in common
+  double rotation_rad = 0.0;  ///< rad about z: rotated by it, the second place matches the first
 };
 Resemblance compare(const PlaceDescriptor& first, const PlaceDescriptor& second);
 

@@ -17,16 +17,16 @@ namespace lidarena::map {
 /// crosses its cells at all heights, and the error averages out.
 enum class GridAxes {
   kParallel,  ///< axes parallel to the frame's
-  kAskew,     ///< rotated grid: no axis within 23 degrees of an axis of the frame
+  kRotated,   ///< rotated grid: no axis within 23 degrees of an axis of the frame
 };
 
 constexpr auto enum_names(GridAxes) {
   return std::array{std::pair{"parallel", GridAxes::kParallel},
-                    std::pair{"askew", GridAxes::kAskew}};
+                    std::pair{"rotated", GridAxes::kRotated}};
 }
 
 /// Rotation from the frame of the points to that of the grid.
-inline Eigen::Matrix3d grid_turn(GridAxes axes) {
+inline Eigen::Matrix3d grid_from_points(GridAxes axes) {
   using Eigen::AngleAxisd;
   using Eigen::Vector3d;
   if (axes == GridAxes::kParallel) return Eigen::Matrix3d::Identity();

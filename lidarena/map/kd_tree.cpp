@@ -64,7 +64,7 @@ void KdTree::insert(const Eigen::Vector3f& point) {
   root_ = insert(root_, point);
 }
 
-bool KdTree::insert_thinned(const Eigen::Vector3f& point, float voxel) {
+bool KdTree::insert_downsampled(const Eigen::Vector3f& point, float voxel) {
   const Eigen::Vector3f corner = (point / voxel).array().floor() * voxel;
   // The upper faces belong to the next cell.
   const Eigen::Vector3f last = (corner.array() + voxel).unaryExpr([](float x) {
@@ -126,7 +126,7 @@ void KdTree::release(Index node) {
 
 /// Whether a subtree with a child of `larger` points is out of balance. Small subtrees are exempt:
 /// they cannot be balanced to better than a leaf or two.
-bool KdTree::leans(std::uint32_t larger, std::uint32_t size) const {
+bool KdTree::is_unbalanced(std::uint32_t larger, std::uint32_t size) const {
   return size > 4 * kLeafSize &&
          static_cast<float>(larger) > options_.balance * static_cast<float>(size);
 }
@@ -179,7 +179,7 @@ KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point) {
   const bool left = x - split.low < split.high - x;  // the nearer side gets the point
   const Index child = left ? split.left : split.right;
   // The topmost subtree that would be out of balance is rebuilt, including the point.
-  if (leans(size_of(child) + 1, split.size + 1)) return rebuilt(node, &point);
+  if (is_unbalanced(size_of(child) + 1, split.size + 1)) return rebuilt(node, &point);
   split.peak = std::max(split.peak, ++split.size);
   if (left) {
     split.low = std::max(split.low, x);
@@ -192,7 +192,7 @@ KdTree::Index KdTree::insert(Index node, const Eigen::Vector3f& point) {
 }
 
 /// Removes the points of a leaf that lie in the box; returns kNone if none is left.
-KdTree::Index KdTree::without(Index node, const Eigen::AlignedBox3f& box) {
+KdTree::Index KdTree::remove_from_leaf(Index node, const Eigen::AlignedBox3f& box) {
   Leaf& points = leaf(node);
   const Leaf before = points;
   points.count = 0;
@@ -213,7 +213,7 @@ KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box,
     release(node);
     return kNone;
   }
-  if (is_leaf(node)) return without(node, box);
+  if (is_leaf(node)) return remove_from_leaf(node, box);
   const Split split = splits_[node];
   Eigen::AlignedBox3f lower = bounds;
   Eigen::AlignedBox3f upper = bounds;
@@ -232,7 +232,7 @@ KdTree::Index KdTree::remove(Index node, const Eigen::AlignedBox3f& box,
   const bool hollow = static_cast<float>(changed.size) <
                       (1.0F - options_.removed_share) * static_cast<float>(changed.peak);
   const std::uint32_t larger = std::max(size_of(left), size_of(right));
-  return hollow || leans(larger, changed.size) ? rebuilt(node, nullptr) : node;
+  return hollow || is_unbalanced(larger, changed.size) ? rebuilt(node, nullptr) : node;
 }
 
 template <class Visit>

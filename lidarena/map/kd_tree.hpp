@@ -36,7 +36,7 @@ class KdTree {
   /// Inserts with downsampling: of `point` and the points in its cell of a grid with voxel size
   /// `voxel` (m), keeps the one nearest to the cell's center and removes the others. True if that
   /// is `point`.
-  bool insert_thinned(const Eigen::Vector3f& point, float voxel);
+  bool insert_downsampled(const Eigen::Vector3f& point, float voxel);
   /// Removes the points in a closed box; returns how many.
   std::size_t remove(const Eigen::AlignedBox3f& box);
   void clear();
@@ -93,12 +93,12 @@ class KdTree {
   template <class Node>
   static Index allocate(std::vector<Node>& nodes, std::vector<Index>& free);
   void release(Index node);
-  bool leans(std::uint32_t larger, std::uint32_t size) const;
+  bool is_unbalanced(std::uint32_t larger, std::uint32_t size) const;
   Index build(std::span<Eigen::Vector3f> points);
   Index rebuilt(Index node, const Eigen::Vector3f* added);
   Index insert(Index node, const Eigen::Vector3f& point);
   Index remove(Index node, const Eigen::AlignedBox3f& box, const Eigen::AlignedBox3f& bounds);
-  Index without(Index leaf, const Eigen::AlignedBox3f& box);
+  Index remove_from_leaf(Index leaf, const Eigen::AlignedBox3f& box);
   template <class Visit>
   void visit(Index node, const Eigen::AlignedBox3f& box, const Visit& visit_point) const;
   void search(Index node, Search& query) const;

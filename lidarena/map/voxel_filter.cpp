@@ -23,7 +23,7 @@ class FirstPoints {
       : points_(points),
         inverse_size_(static_cast<float>(1.0 / voxel_size)),
         rounding_(rounding),
-        slots_(kLeastSlots, kFree) {
+        slots_(kMinSlots, kFree) {
     if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
     for (std::size_t i = 0; i < points.size(); ++i)
       if (points[i].allFinite()) offer(static_cast<std::uint32_t>(i));
@@ -42,7 +42,7 @@ class FirstPoints {
 
  private:
   static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
-  static constexpr std::size_t kLeastSlots = 64;
+  static constexpr std::size_t kMinSlots = 64;
 
   VoxelKey key_of(std::uint32_t i) const {
     return voxel_key(voxel_of(points_[i], inverse_size_, rounding_));
@@ -78,8 +78,8 @@ std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> 
   return FirstPoints(points, voxel_size, rounding).take();
 }
 
-std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> points,
-                                           double voxel_size, const Thinning& thinning) {
+std::vector<std::uint32_t> downsampled_indices(std::span<const Eigen::Vector3f> points,
+                                               double voxel_size, const Thinning& thinning) {
   if (thinning.order == ThinningOrder::kMixed)
     return FirstPoints(points, voxel_size, thinning.rounding).in_table_order();
   const std::uint32_t y_factor = thinning.order == ThinningOrder::kTeschner ? 19349663U : 19349669U;
@@ -104,14 +104,14 @@ std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> poin
 std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, double voxel_size,
                                   const Thinning& thinning) {
   std::vector<Eigen::Vector3f> thinned;
-  for (const std::uint32_t i : thinned_indices(points, voxel_size, thinning))
+  for (const std::uint32_t i : downsampled_indices(points, voxel_size, thinning))
     thinned.push_back(points[i]);
   return thinned;
 }
 
 std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
                                          GridAxes axes) {
-  const Eigen::Matrix3f cells_from_points = (grid_turn(axes) / voxel_size).cast<float>();
+  const Eigen::Matrix3f cells_from_points = (grid_from_points(axes) / voxel_size).cast<float>();
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
   std::vector<Eigen::Vector3f> sums;
   std::vector<std::uint32_t> counts;

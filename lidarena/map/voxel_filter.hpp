@@ -42,8 +42,8 @@ struct Thinning {
 /// The indices of first_of_each_voxel() in the order of `thinning`. In such a pseudo-random order,
 /// a second, coarser pass selects points from the whole duration of the scan and not only from its
 /// beginning.
-std::vector<std::uint32_t> thinned_indices(std::span<const Eigen::Vector3f> points,
-                                           double voxel_size, const Thinning& thinning = {});
+std::vector<std::uint32_t> downsampled_indices(std::span<const Eigen::Vector3f> points,
+                                               double voxel_size, const Thinning& thinning = {});
 
 /// The points at these indices, with their own coordinates (no centroids).
 std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, double voxel_size,

@@ -77,22 +77,22 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
 }
 
 void VoxelHashMap::fit_plane(Cell& cell) {
-  constexpr int kLeastPoints = 5;         // fewer can lie near a plane by chance
+  constexpr int kMinPlanePoints = 5;      // fewer can lie near a plane by chance
   constexpr float kLineThinness = 0.02F;  // line: middle below this share of the largest variance
-  if (cell.count < kLeastPoints) return;
+  if (cell.count < kMinPlanePoints) return;
   const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
   const Eigen::Vector3f mean = points.rowwise().mean();
   const Eigen::Matrix3Xf centered = points.colwise() - mean;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
   solver.computeDirect(centered * centered.transpose());
   const Eigen::Vector3f& variances = solver.eigenvalues();
-  if (variances[1] < kLineThinness * variances[2]) return release_plane(cell, kShapeless);
+  if (variances[1] < kLineThinness * variances[2]) return release_plane(cell, kDegenerate);
   if (!(variances[0] < static_cast<float>(options_.plane_thinness) * variances[1]))
     return release_plane(cell, kNoPlane);
-  if (cell.plane >= kShapeless && free_planes_.empty()) {
+  if (cell.plane >= kDegenerate && free_planes_.empty()) {
     cell.plane = static_cast<std::uint32_t>(planes_.size());
     planes_.emplace_back();
-  } else if (cell.plane >= kShapeless) {
+  } else if (cell.plane >= kDegenerate) {
     cell.plane = free_planes_.back();
     free_planes_.pop_back();
   }
@@ -100,7 +100,7 @@ void VoxelHashMap::fit_plane(Cell& cell) {
 }
 
 void VoxelHashMap::release_plane(Cell& cell, std::uint32_t instead) {
-  if (cell.plane < kShapeless) free_planes_.push_back(cell.plane);
+  if (cell.plane < kDegenerate) free_planes_.push_back(cell.plane);
   cell.plane = instead;
 }
 
@@ -113,7 +113,7 @@ void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
       continue;
     }
     blocks_.release(cell.points, cell.level);
-    release_plane(cell, kShapeless);
+    release_plane(cell, kDegenerate);
     size_ -= cell.count;
     it = cells_.erase(it);
   }
@@ -151,8 +151,8 @@ VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float ma
       plane = cell.plane;
     }
   }
-  best.shapeless = options_.plane_thinness > 0.0 && plane == kShapeless;
-  if (plane < kShapeless) best.plane = &planes_[plane];
+  best.degenerate = options_.plane_thinness > 0.0 && plane == kDegenerate;
+  if (plane < kDegenerate) best.plane = &planes_[plane];
   return best;
 }
 

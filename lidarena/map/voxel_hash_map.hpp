@@ -39,7 +39,7 @@ class VoxelHashMap {
     const Plane* plane = nullptr;  ///< of the point's cell; null if it is not flat
     /// Only with plane fitting: the cell of the point has fewer than five points, or they lie on a
     /// line, so that they show the scan pattern rather than a surface.
-    bool shapeless = false;
+    bool degenerate = false;
     explicit operator bool() const { return found; }
   };
 
@@ -72,12 +72,12 @@ class VoxelHashMap {
 
  private:
   static constexpr std::uint32_t kNoPlane = 0xFFFFFFFFU;
-  static constexpr std::uint32_t kShapeless = 0xFFFFFFFEU;  ///< no plane, see Neighbor
+  static constexpr std::uint32_t kDegenerate = 0xFFFFFFFEU;  ///< no plane, see Neighbor
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
-    std::uint8_t level = 0;            ///< of the block, see PointBlocks
-    std::uint32_t plane = kShapeless;  ///< index in planes_, kNoPlane or kShapeless
+    std::uint8_t level = 0;             ///< of the block, see PointBlocks
+    std::uint32_t plane = kDegenerate;  ///< index in planes_, kNoPlane or kShapeless
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {

@@ -20,7 +20,7 @@ Eigen::Matrix<std::int64_t, 3, 1> in_micrometers(const Eigen::Vector3f& point) {
 }  // namespace
 
 VoxelSums::VoxelSums(double voxel_size, GridAxes axes)
-    : cells_from_points_((grid_turn(axes) / voxel_size).cast<float>()) {
+    : cells_from_points_((grid_from_points(axes) / voxel_size).cast<float>()) {
   if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
 }
 

@@ -27,7 +27,7 @@ class Recorder {
         log_(log),
         imu_id_(options.imu_id),
         lidar_id_(options.lidar_id),
-        map_(options.map_voxel_m) {}
+        map_(options.map_voxel_size_m) {}
 
   /// True for samples of the run's IMU and for scans of its LiDAR that are in time order.
   bool wants(const dataset::Event& event);

@@ -16,7 +16,7 @@ struct RunOptions {
   std::string lidar_id{};                   ///< scans of other LiDARs are skipped
   std::string imu_id{};                     ///< the IMU to use; empty: the first in the events
   std::optional<std::size_t> scan_count{};  ///< for the progress display
-  double map_voxel_m = 0.02;                ///< map.ply keeps the first point of each voxel
+  double map_voxel_size_m = 0.02;           ///< map.ply keeps the first point of each voxel
   bool paced = false;                       ///< drop scans when the algorithm is late, see Pacer
 };
 

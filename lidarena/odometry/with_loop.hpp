@@ -16,13 +16,12 @@ struct WithLoopConfig {
   double keyframe_translation_m = 1.0;
   double keyframe_rotation_rad = 0.5;
   double cloud_voxel_size_m = 0.1;
-  loop::LoopConfig loop = loop::careful_loops();
+  loop::LoopConfig loop = loop::conservative_loops();
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"keyframe_distance_m", "keyframe_translation_m"},
-      {"keyframe_angle_rad", "keyframe_rotation_rad"},
-      {"cloud_leaf_m", "cloud_voxel_size_m"}};
+  static constexpr RenamedKey renamed_keys[] = {{"keyframe_distance_m", "keyframe_translation_m"},
+                                                {"keyframe_angle_rad", "keyframe_rotation_rad"},
+                                                {"cloud_leaf_m", "cloud_voxel_size_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -30,8 +29,8 @@ struct WithLoopConfig {
       "a scan becomes a keyframe after this translation since the last one", above(0));
     v("keyframe_rotation_rad", self.keyframe_rotation_rad, "rad",
       "a scan becomes a keyframe after this rotation since the last one", above(0));
-    v("cloud_voxel_size_m", self.cloud_voxel_size_m, "m", "voxel size for averaging a keyframe's points",
-      above(0));
+    v("cloud_voxel_size_m", self.cloud_voxel_size_m, "m",
+      "voxel size for averaging a keyframe's points", above(0));
     v("loop", self.loop, "", "how loop candidates are found, verified and used");
   }
 };

@@ -12,7 +12,7 @@ constexpr double kLeft = 46.0;  // px, space for the tick labels
 constexpr double kTop = 44.0;
 constexpr double kTitleHeight = 20.0;
 constexpr double kAxisHeight = 44.0;
-constexpr double kWide = 2.0;  // width / height above which panels are stacked
+constexpr double kStackedAspectRatio = 2.0;  // width / height above which panels are stacked
 
 /// Positions and sizes, px.
 struct Layout {
@@ -23,7 +23,7 @@ struct Layout {
   explicit Layout(const CellChart& chart) {
     const double span_x = chart.columns * chart.cell_deg;
     const double span_y = chart.rows * chart.cell_deg;
-    across = span_x > kWide * span_y ? 1 : 2;
+    across = span_x > kStackedAspectRatio * span_y ? 1 : 2;
     width = across == 1 ? 840.0 : 400.0;
     px_per_deg = width / span_x;
     height = span_y * px_per_deg;

@@ -14,10 +14,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kAlike = 1.25;   // ratio; the paper calls 1.78 and 1.53 (1.16) largely unaffected
-constexpr double kTenfold = 5.0;  // minimum ratio: "tenfold", within a factor of two
-constexpr double kEasy_percent = 5;  // the paper has at most 4.24 % outliers in the House
-constexpr double kLinear = 0.9;      // minimum r squared of a line fit for growth to be linear
+constexpr double kSimilarRatio =
+    1.25;  // ratio; the paper calls 1.78 and 1.53 (1.16) largely unaffected
+constexpr double kTenfoldMinRatio = 5.0;  // minimum ratio: "tenfold", within a factor of two
+constexpr double kMaxEasyOutliers_percent =
+    5;  // the paper has at most 4.24 % outliers in the House
+constexpr double kMinLinearRSquared =
+    0.9;  // minimum r squared of a line fit for growth to be linear
 
 struct Place {
   std::string name;   ///< in the study
@@ -39,9 +42,9 @@ std::string shown(std::optional<double> value) {
   return text.empty() ? "not measured" : text;
 }
 
-class Judge {
+class ClaimChecker {
  public:
-  Judge(const Results& results, const std::string& preset)
+  ClaimChecker(const Results& results, const std::string& preset)
       : cells_(results, preset),
         worlds_(places(cells_.worlds(), paper_world)),
         sensors_(places(cells_.sensors(), paper_sensor)) {}
@@ -53,30 +56,30 @@ class Judge {
       for (const Place& sensor : sensors_) {
         const auto own = drift(world, sensor, algorithm);
         std::optional<double> rival;
-        std::string who;
+        std::string rival_name;
         for (const std::string& other : cells_.algorithms()) {
           const auto theirs = drift(world, sensor, other);
           if (other == algorithm || !theirs) continue;
-          if (!rival || sign * *theirs < sign * *rival) rival = theirs, who = other;
+          if (!rival || sign * *theirs < sign * *rival) rival = theirs, rival_name = other;
         }
         if (!own || !rival) continue;
         judge(claim, sign * *own < sign * *rival);
         claim.evidence.push_back(fmt::format("{}, {}: {} cm per m, against {} of {}", world.name,
-                                             sensor.name, shown(own), shown(rival), who));
+                                             sensor.name, shown(own), shown(rival), rival_name));
       }
     }
     return claim;
   }
 
-  Claim ct_icp_indifferent(Claim claim) const {
+  Claim ct_icp_independent_of_sensor(Claim claim) const {
     for (const Place& world : worlds_) {
       const auto mid = at(world.paper, "Mid-360", "ct_icp", rpe_of);
       const auto os0 = at(world.paper, "Os0-128", "ct_icp", rpe_of);
       if (!mid || !os0) {
-        tell_what_failed(claim, world.paper, "ct_icp");
+        add_failures(claim, world.paper, "ct_icp");
         continue;
       }
-      judge(claim, std::max(*mid / *os0, *os0 / *mid) < kAlike);
+      judge(claim, std::max(*mid / *os0, *os0 / *mid) < kSimilarRatio);
       claim.evidence.push_back(fmt::format("{}: {} cm per m with the Mid-360, {} with the Os0-128",
                                            world.name, shown(mid), shown(os0)));
     }
@@ -91,11 +94,12 @@ class Judge {
     const auto high = at(world, worse, algorithm, of);
     const auto low = at(world, better, algorithm, of);
     if (!high || !low) {
-      tell_what_failed(claim, world, algorithm);
+      add_failures(claim, world, algorithm);
       return claim;
     }
     const auto lost = [&](const std::string& sensor) {
-      return at(world, sensor, algorithm, outliers_of).value_or(0.0) > kLostMap_percent;
+      return at(world, sensor, algorithm, outliers_of).value_or(0.0) >
+             kTrackingLostOutliers_percent;
     };
     if (lost(worse) && lost(better)) {
       claim.evidence.push_back(world + ": tracking lost with both sensors");
@@ -107,7 +111,7 @@ class Judge {
     return claim;
   }
 
-  Claim loop_closure_cures(Claim claim) const {
+  Claim loop_closure_improves_cave(Claim claim) const {
     for (const Place& sensor : sensors_) {
       const auto with = at("Cave", sensor.paper, "lio_sam_lc", outliers_of);
       const auto without = at("Cave", sensor.paper, "lio_sam", outliers_of);
@@ -124,7 +128,7 @@ class Judge {
     return claim;
   }
 
-  Claim loop_closure_worsens(Claim claim) const {
+  Claim loop_closure_worsens_house(Claim claim) const {
     const auto with = at("House", "Mid-360", "lio_sam_lc", outliers_of);
     const auto without = at("House", "Mid-360", "lio_sam", outliers_of);
     if (!with || !without) return claim;
@@ -139,7 +143,7 @@ class Judge {
       for (const std::string& algorithm : cells_.algorithms()) {
         const auto outliers = at("House", sensor.paper, algorithm, outliers_of);
         if (!outliers) continue;
-        judge(claim, *outliers < kEasy_percent);
+        judge(claim, *outliers < kMaxEasyOutliers_percent);
         claim.evidence.push_back(
             fmt::format("{}, {}: {} % outliers", algorithm, sensor.name, shown(outliers)));
       }
@@ -171,10 +175,10 @@ class Judge {
         for (const ResultRow* row : cells_.rows(world.name, sensor.name, "fast_lio2")) {
           const auto line = memory_line(*row);
           if (!line) continue;
-          judge(claim, line->r_squared > kLinear && line->slope > 0);
+          judge(claim, line->r_squared > kMinLinearRSquared && line->slope > 0);
           claim.evidence.push_back(fmt::format(
               "{}, {}, seed {}: {} MB per second{}, r squared {:.2f}", world.name, sensor.name,
-              row->seed, shown(line->slope), bytes_a_shot(*row, line->slope), line->r_squared));
+              row->seed, shown(line->slope), bytes_per_shot(*row, line->slope), line->r_squared));
         }
       }
     }
@@ -212,7 +216,7 @@ class Judge {
   }
 
   /// ", 12 bytes per shot"; empty if the sensor is not known.
-  static std::string bytes_a_shot(const ResultRow& row, double mb_per_s) {
+  static std::string bytes_per_shot(const ResultRow& row, double mb_per_s) {
     if (!row.lidar.is_object()) return {};
     const double shots = row.lidar.value("rows", 0.0) * row.lidar.value("columns", 0.0) *
                          row.lidar.value("rate_hz", 0.0);
@@ -220,8 +224,7 @@ class Judge {
   }
 
   /// Adds to the evidence the states of the runs of `algorithm` in `world` that did not succeed.
-  void tell_what_failed(Claim& claim, const std::string& world,
-                        const std::string& algorithm) const {
+  void add_failures(Claim& claim, const std::string& world, const std::string& algorithm) const {
     for (const Place& w : worlds_) {
       for (const Place& s : sensors_) {
         const std::string state = cells_.status_text(w.name, s.name, algorithm);
@@ -258,9 +261,9 @@ class Judge {
 }  // namespace
 
 std::vector<Claim> paper_claims(const Results& results, const std::string& preset) {
-  const Judge judge(results, preset);
-  const auto claim = [](const char* text, const char* rule, const char* guess) {
-    return Claim{text, rule, {}, {}, guess};
+  const ClaimChecker judge(results, preset);
+  const auto claim = [](const char* text, const char* rule, const char* possible_reason) {
+    return Claim{text, rule, {}, {}, possible_reason};
   };
   return {
       judge.extreme(
@@ -275,7 +278,7 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
                           "its RPE over 1 m is above that of every other algorithm (paper: 3.34 to "
                           "8.17 cm per m)",
                           "a smoother flight violates its assumption of constant velocity less")),
-      judge.ct_icp_indifferent(
+      judge.ct_icp_independent_of_sensor(
           claim("CT-ICP's drift hardly depends on the sensor",
                 "the two sensors' RPE differ by less than a quarter (paper: 1.78 and 1.53, 2.72 "
                 "and 2.79 cm per m)",
@@ -283,7 +286,7 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
                 "many times: if the body rotates far during the scan, the spinning sensor "
                 "constrains the rotation between its start and end less")),
       judge.sensor_matters(
-          "Cave", "ct_icp", "Mid-360", outliers_of, kTenfold, "% outliers",
+          "Cave", "ct_icp", "Mid-360", outliers_of, kTenfoldMinRatio, "% outliers",
           claim("CT-ICP's Cave map has ten times the outliers with the Mid-360",
                 "more than five times the outliers with the Mid-360, which is tenfold within a "
                 "factor of two (paper: 14.95 against 1.40 %)",
@@ -303,13 +306,13 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
                                  "less drift with the OS0-128 (paper: 1.51 against 2.70 cm per m)",
                                  "the paper's version may extract edge and plane features from a "
                                  "Livox scan differently")),
-      judge.loop_closure_cures(
+      judge.loop_closure_improves_cave(
           claim("Loop closure improves the Cave map",
                 "less than half the outliers (paper: from 10.68 to 3.68 % and from 21.78 to "
                 "0.17 %)",
                 "if the map is good without loop closure, there is little to improve, and "
                 "distortions between two loops remain")),
-      judge.loop_closure_worsens(
+      judge.loop_closure_worsens_house(
           claim("Loop closure worsens the House map with the Mid-360",
                 "more outliers with loop closure (paper: from 2.28 to 4.24 %)",
                 "the paper's loops in the House may have been false matches")),

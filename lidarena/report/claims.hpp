@@ -15,7 +15,7 @@ struct Claim {
   std::string rule;                   ///< check applied to our figures, with the paper's figures
   std::vector<std::string> evidence;  ///< our figures
   std::optional<bool> holds;          ///< empty: our runs cannot tell; `evidence` has the reasons
-  std::string guess;  ///< possible reason for a difference; shown if it does not hold
+  std::string possible_reason;  ///< possible reason for a difference; shown if it does not hold
 };
 
 /// The paper's findings, checked with the runs of one preset.

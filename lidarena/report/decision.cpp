@@ -11,7 +11,7 @@
 namespace lidarena::report {
 namespace {
 
-constexpr double kAlike = 1.1;  // ratio below which two map errors count as equal
+constexpr double kSimilarRatio = 1.1;  // ratio below which two map errors count as equal
 
 std::optional<double> map_rmse(const ResultRow& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->rmse_cm) : std::nullopt;
@@ -19,7 +19,7 @@ std::optional<double> map_rmse(const ResultRow& row) {
 std::optional<double> outliers(const ResultRow& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->outliers_percent) : std::nullopt;
 }
-std::optional<double> busy(const ResultRow& row) {
+std::optional<double> period_share(const ResultRow& row) {
   if (!row.latency_p95_ms || !row.lidar.is_object()) return std::nullopt;
   return *row.latency_p95_ms * 1e-3 * row.lidar.value("rate_hz", 10.0);
 }
@@ -33,9 +33,9 @@ Candidate candidate(const StudyCells& cells, const std::string& world, const std
   for (const ResultRow* row : cells.rows(world, sensor, algorithm)) {
     ++c.runs;
     const bool kept = row->status == "ok" && row->reprojected_map &&
-                      row->reprojected_map->outliers_percent < kLostMap_percent;
+                      row->reprojected_map->outliers_percent < kTrackingLostOutliers_percent;
     c.good_runs += kept ? 1 : 0;
-    c.reading = reading_of(*row);
+    c.variant = variant_of(*row);
   }
   const auto median = [&](const RowFigure& figure) {
     return cells.median(world, sensor, algorithm, figure).value_or(0.0);
@@ -43,16 +43,16 @@ Candidate candidate(const StudyCells& cells, const std::string& world, const std
   c.map_rmse_cm = median(map_rmse);
   c.outliers_percent = median(outliers);
   c.drift_cm_per_m = median(rpe_of);
-  c.busy = cells.median(world, sensor, algorithm, busy);
+  c.period_share = cells.median(world, sensor, algorithm, period_share);
   c.memory_mb = median(memory);
   return c;
 }
 
 /// "fast_lio2", with its preset if that is not the default.
 std::string name_of(const Candidate& c) {
-  return c.reading == "improved" || c.reading == "improved-rolling"
+  return c.variant == "improved" || c.variant == "improved-rolling"
              ? c.algorithm
-             : c.algorithm + " (" + c.reading + ")";
+             : c.algorithm + " (" + c.variant + ")";
 }
 
 std::string figures_of(const Candidate& c) {
@@ -61,7 +61,8 @@ std::string figures_of(const Candidate& c) {
       "path drifts by {} cm per meter; 95 % of the scans are processed in less than {:.0f} % of "
       "the scan period, and the algorithm uses {} MB of memory",
       figure(c.map_rmse_cm, 2).text, figure(c.outliers_percent, 2).text,
-      figure(c.drift_cm_per_m, 2).text, 100.0 * c.busy.value_or(0.0), figure(c.memory_mb, 2).text);
+      figure(c.drift_cm_per_m, 2).text, 100.0 * c.period_share.value_or(0.0),
+      figure(c.memory_mb, 2).text);
 }
 
 /// Weight, power and price from the sensor's file: " (0.265 kg, up to 14 W, ...)".
@@ -87,18 +88,18 @@ std::string facts_of(const Results& results, const std::string& sensor) {
   return "";
 }
 
-std::string choice(const Results& results, const std::string& world,
-                   const std::vector<Candidate>& all) {
+std::string recommendation(const Results& results, const std::string& world,
+                           const std::vector<Candidate>& all) {
   if (all.empty() || !all.front().is_usable()) {
     return fmt::format("{}: no combination that was tried keeps tracking in real time. ", world);
   }
   const Candidate& best = all.front();
   std::string text = fmt::format("{}: use the {}{} with {}: {}. ", world, best.sensor,
                                  facts_of(results, best.sensor), name_of(best), figures_of(best));
-  std::vector<std::string> said{best.sensor};
+  std::vector<std::string> mentioned{best.sensor};
   for (const Candidate& c : all) {
-    if (std::ranges::find(said, c.sensor) != said.end()) continue;
-    said.push_back(c.sensor);
+    if (std::ranges::find(mentioned, c.sensor) != mentioned.end()) continue;
+    mentioned.push_back(c.sensor);
     if (!c.is_usable()) {
       text += fmt::format("With the {}{}, no algorithm keeps tracking in real time. ", c.sensor,
                           facts_of(results, c.sensor));
@@ -107,7 +108,7 @@ std::string choice(const Results& results, const std::string& world,
     const double ratio = best.map_rmse_cm > 0.0 ? c.map_rmse_cm / best.map_rmse_cm : 1.0;
     text += fmt::format(
         "With the {}{}, {} is best, {}: {}. ", c.sensor, facts_of(results, c.sensor), name_of(c),
-        ratio < kAlike
+        ratio < kSimilarRatio
             ? std::string("with about the same map error, so that weight and price decide")
             : fmt::format("with {:.1f} times the map RMSE", ratio),
         figures_of(c));
@@ -116,10 +117,10 @@ std::string choice(const Results& results, const std::string& world,
 }
 
 std::string verdict(const Candidate& c) {
-  if (!c.keeps_track())
+  if (!c.keeps_tracking())
     return fmt::format("tracking lost in {} of {}", c.runs - c.good_runs, c.runs);
-  if (!c.busy) return "time not measured";
-  return c.is_in_time() ? "usable" : "too slow for real time";
+  if (!c.period_share) return "time not measured";
+  return c.is_real_time() ? "usable" : "too slow for real time";
 }
 
 ReportTable candidates_table(const std::string& world, const std::vector<Candidate>& all) {
@@ -136,7 +137,7 @@ ReportTable candidates_table(const std::string& world, const std::vector<Candida
     for (const double value : {c.map_rmse_cm, c.outliers_percent, c.drift_cm_per_m, c.memory_mb}) {
       cells.push_back(c.map_rmse_cm > 0.0 ? figure(value) : word(""));
     }
-    cells.insert(cells.end() - 1, c.busy ? figure(100.0 * *c.busy) : word(""));
+    cells.insert(cells.end() - 1, c.period_share ? figure(100.0 * *c.period_share) : word(""));
     table.rows.push_back(std::move(cells));
   }
   return table;
@@ -146,8 +147,8 @@ ReportTable candidates_table(const std::string& world, const std::vector<Candida
 
 std::vector<Candidate> candidates(const Results& results, const std::string& world) {
   std::vector<Candidate> all;
-  for (const std::string& reading : readings_of(results)) {
-    const StudyCells cells(results, reading);
+  for (const std::string& variant : variants_of(results)) {
+    const StudyCells cells(results, variant);
     for (const std::string& sensor : cells.sensors()) {
       for (const std::string& algorithm : cells.algorithms()) {
         const auto rows = cells.rows(world, sensor, algorithm);
@@ -160,7 +161,7 @@ std::vector<Candidate> candidates(const Results& results, const std::string& wor
     }
   }
   std::ranges::stable_sort(all, {}, [](const Candidate& c) {
-    return std::tuple(!c.keeps_track(), !c.is_in_time(), c.good_runs == 0, c.map_rmse_cm);
+    return std::tuple(!c.keeps_tracking(), !c.is_real_time(), c.good_runs == 0, c.map_rmse_cm);
   });
   return all;
 }
@@ -171,7 +172,7 @@ ReportSection decision_section(const Results& results) {
     const std::vector<Candidate> all = candidates(results, world);
     if (all.empty()) continue;
     if (!section.text.empty()) section.text += '\n';
-    section.text += choice(results, world, all);
+    section.text += recommendation(results, world, all);
     section.tables.push_back(candidates_table(world, all));
   }
   return section;

@@ -76,12 +76,12 @@ std::string base64(std::string_view bytes) {
 }
 
 Rgb distance_color(double distance_m) {
-  constexpr double kFull_m = 0.20;
+  constexpr double kMaxRampDistance_m = 0.20;
   constexpr std::array<Rgb, 5> kRamp{Rgb{0, 34, 78}, Rgb{55, 83, 130}, Rgb{110, 125, 125},
                                      Rgb{180, 165, 90}, Rgb{254, 226, 52}};
   constexpr Rgb kOutlier{214, 32, 39};
-  if (!(distance_m <= kFull_m)) return kOutlier;
-  const double position = distance_m / kFull_m * (kRamp.size() - 1);
+  if (!(distance_m <= kMaxRampDistance_m)) return kOutlier;
+  const double position = distance_m / kMaxRampDistance_m * (kRamp.size() - 1);
   const auto low = std::min<std::size_t>(static_cast<std::size_t>(position), kRamp.size() - 2);
   const double s = position - static_cast<double>(low);
   Rgb color{};

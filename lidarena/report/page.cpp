@@ -91,7 +91,7 @@ std::string world_view(const Results& results, const std::string& world, std::si
   SceneOptions options;
   options.map = MapChoice::kScored;
   options.max_points = std::min(kPointsOfRun, kPoints / std::max<std::size_t>(runs, 1));
-  for (const ResultRow* row : shown_rows(results, world)) {
+  for (const ResultRow* row : first_seed_rows(results, world)) {
     if (fs::exists(row->folder / "scored.ply")) add_run(scene, row->folder, options, log);
   }
   if (scene.clouds.empty()) return {};
@@ -114,9 +114,9 @@ std::string section_html(const ReportSection& section, const std::vector<WorldPi
   for (std::string text; std::getline(paragraphs, text);) html += "<p>" + escaped(text) + "</p>";
   for (std::size_t i = 0; i < section.tables.size(); ++i) {
     ReportTable table = section.tables[i];
-    const bool said_again =
+    const bool is_repeated =
         i + 1 < section.tables.size() && section.tables[i + 1].note == table.note;
-    if (said_again) table.note.clear();  // tables side by side show a common note once
+    if (is_repeated) table.note.clear();  // tables side by side show a common note once
     html += table_html(table);
   }
   if (section.id == "costs") html += "<div class='figures' id='figures'></div>";
@@ -159,7 +159,7 @@ constexpr const char* kTiming =
     "same, without time stamps per point. official: like frozen_unstamped, and every range is too "
     "short by the sensor's minimum range, as in the manufacturer's simulation plugin. Differences "
     "between the columns are caused by the simulator, not by the algorithm.";
-constexpr const char* kReading =
+constexpr const char* kDefinitions =
     "RPE: the true path is cut into segments of 1 m that begin and end at estimated poses; in "
     "each, the estimated motion is compared with the true one; root mean square over all segments. "
     "ATE: distance between the two paths after aligning them. Map: point-to-mesh distance to the "
@@ -172,7 +172,7 @@ ReportSection summary_section(const Results& results) {
   const auto ok = std::count_if(results.rows.begin(), results.rows.end(),
                                 [](const ResultRow& r) { return r.status == "ok"; });
   std::string text = fmt::format("{} of {} runs succeeded.", ok, results.rows.size());
-  for (const std::string& preset : readings_of(results)) {
+  for (const std::string& preset : variants_of(results)) {
     std::size_t holds = 0;
     std::size_t fails = 0;
     for (const Claim& claim : paper_claims(results, preset)) {
@@ -195,11 +195,11 @@ ReportSection summary_section(const Results& results) {
 std::vector<ReportSection> report_sections(const Results& results) {
   std::vector<ReportSection> sections{summary_section(results), decision_section(results)};
   ReportSection claims{"claims", "The paper's findings, checked with these runs", "", "", {}};
-  for (const std::string& preset : readings_of(results)) {
+  for (const std::string& preset : variants_of(results)) {
     claims.tables.push_back(claims_table(paper_claims(results, preset), preset));
   }
   sections.push_back(std::move(claims));
-  for (const std::string& preset : readings_of(results)) {
+  for (const std::string& preset : variants_of(results)) {
     sections.push_back({"paper-" + preset, "The paper's tables from our runs, " + preset, "", "",
                         paper_tables(results, preset)});
   }
@@ -211,7 +211,7 @@ std::vector<ReportSection> report_sections(const Results& results) {
   }
   sections.push_back({"costs", "Error against cost", "", "", {}});
   sections.push_back(
-      {"again", "How to reproduce these results", kReading, "", {commands_table(results)}});
+      {"again", "How to reproduce these results", kDefinitions, "", {commands_table(results)}});
   return sections;
 }
 
@@ -220,7 +220,7 @@ std::string html_page(const Results& results, const std::vector<ReportSection>& 
                       const Parallel& parallel, LogSink& log) {
   const std::vector<std::string> worlds = worlds_of(results);
   std::size_t runs = 0;
-  for (const std::string& world : worlds) runs += shown_rows(results, world).size();
+  for (const std::string& world : worlds) runs += first_seed_rows(results, world).size();
   std::string body;
   std::string nav;
   for (const ReportSection& section : sections) {

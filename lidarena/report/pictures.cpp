@@ -41,18 +41,18 @@ Picture map_picture(const ResultRow& row) {
   dataset::Cloud map;
   if (fs::exists(row.folder / "scored.ply")) map = dataset::read_cloud(row.folder / "scored.ply");
   TopView view;
-  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, reading_of(row));
+  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, variant_of(row));
   view.map = &map;
   view.truth = truth ? &*truth : nullptr;
   view.estimate = aligned_positions(row, estimate);
   view.width = kMapWidth;
-  return {fmt::format("map-{}-{}-{}-{}", row.world, row.sensor, row.algorithm, reading_of(row)),
+  return {fmt::format("map-{}-{}-{}-{}", row.world, row.sensor, row.algorithm, variant_of(row)),
           top_view_svg(view)};
 }
 
 std::vector<Picture> map_pictures(const Results& results, const std::string& world) {
   std::vector<Picture> pictures;
-  for (const ResultRow* row : shown_rows(results, world)) {
+  for (const ResultRow* row : first_seed_rows(results, world)) {
     if (fs::exists(row->folder / "trajectory.tum")) pictures.push_back(map_picture(*row));
   }
   return pictures;
@@ -114,12 +114,12 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
 
 }  // namespace
 
-std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world) {
+std::vector<const ResultRow*> first_seed_rows(const Results& results, const std::string& world) {
   std::vector<const ResultRow*> rows;
   std::set<std::string> seen;
   for (const ResultRow& row : results.rows) {
     if (row.world != world || row.status != "ok") continue;
-    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + reading_of(row)).second) {
+    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + variant_of(row)).second) {
       rows.push_back(&row);
     }
   }

@@ -22,7 +22,7 @@ struct WorldPictures {
 };
 
 /// The first run with status ok for each sensor, algorithm and reading_of() of a world.
-std::vector<const ResultRow*> shown_rows(const Results& results, const std::string& world);
+std::vector<const ResultRow*> first_seed_rows(const Results& results, const std::string& world);
 
 /// The pictures of every world, as far as the folders still hold their files.
 std::vector<WorldPictures> draw_pictures(const Results& results);

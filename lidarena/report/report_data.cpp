@@ -80,7 +80,7 @@ Json run_json(const ResultRow& row) {
           {"flight", row.flight},
           {"sensor", row.sensor},
           {"algorithm", row.algorithm},
-          {"preset", reading_of(row)},
+          {"preset", variant_of(row)},
           {"seed", row.seed},
           {"status", row.status},
           {"rpe_cm_per_m", rounded(row.rpe_cm_per_m)},

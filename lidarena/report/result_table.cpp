@@ -131,9 +131,9 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 
 }  // namespace
 
-std::string reading_of(const ResultRow& row) { return reading_of(row.preset, row.mode); }
+std::string variant_of(const ResultRow& row) { return variant_of(row.preset, row.mode); }
 
-std::string reading_of(const std::string& preset, const std::string& mode) {
+std::string variant_of(const std::string& preset, const std::string& mode) {
   return mode.empty() ? preset : preset + "-" + mode;
 }
 
@@ -228,7 +228,7 @@ std::string results_text(const Results& results) {
     const auto shown = [](const std::optional<double>& v, const char* format) {
       return v ? cell(v, format) : std::string("-");
     };
-    lines.push_back({r.world, r.sensor, r.algorithm + ":" + reading_of(r),
+    lines.push_back({r.world, r.sensor, r.algorithm + ":" + variant_of(r),
                      shown(r.rpe_cm_per_m, "{:.2f}"), shown(r.ate_cm, "{:.2f}"),
                      shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),
                      shown(figure(r.reprojected_map, &MapFigures::outliers_percent), "{:.3g}"),

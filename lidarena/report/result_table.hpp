@@ -40,8 +40,8 @@ struct ResultRow {
 
 /// Runs are compared only within one reading: the preset, or "PRESET-MODE" if the study sets timing
 /// modes.
-std::string reading_of(const ResultRow& row);
-std::string reading_of(const std::string& preset, const std::string& mode);
+std::string variant_of(const ResultRow& row);
+std::string variant_of(const std::string& preset, const std::string& mode);
 
 struct Results {
   std::string title;

@@ -7,11 +7,11 @@
 namespace lidarena::report {
 namespace {
 
-constexpr std::size_t kSampled = 200'000;  // points of a cloud from which its box is computed
-constexpr double kStray = 0.001;           // share of the points ignored at either end
+constexpr std::size_t kMaxSampled = 200'000;  // points of a cloud from which its box is computed
+constexpr double kIgnoredShare = 0.001;       // share of the points ignored at either end
 
 Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3f>& points) {
-  const std::size_t stride = points.size() / kSampled + 1;
+  const std::size_t stride = points.size() / kMaxSampled + 1;
   Eigen::Vector3d low;
   Eigen::Vector3d high;
   for (int axis = 0; axis < 3; ++axis) {
@@ -20,7 +20,8 @@ Eigen::AlignedBox3d box_of(const std::vector<Eigen::Vector3f>& points) {
       if (points[i].allFinite()) values.push_back(points[i][axis]);
     }
     if (values.empty()) return {};
-    const auto cut = static_cast<std::ptrdiff_t>(kStray * static_cast<double>(values.size()));
+    const auto cut =
+        static_cast<std::ptrdiff_t>(kIgnoredShare * static_cast<double>(values.size()));
     std::nth_element(values.begin(), values.begin() + cut, values.end());
     low[axis] = values[static_cast<std::size_t>(cut)];
     std::nth_element(values.begin(), values.end() - 1 - cut, values.end());

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t kChunkPoints = 65'536;
 constexpr std::size_t kBlockPoints = 1'000'000;
-constexpr double kLargest = 65'535.0;       // largest stored value of a coordinate
-constexpr double kLargestValue = 65'534.0;  // likewise of a field; 65535 means "none"
+constexpr double kMaxStoredCoordinate = 65'535.0;  // largest stored value of a coordinate
+constexpr double kMaxStoredValue = 65'534.0;       // likewise of a field; 65535 means "none"
 constexpr std::uint16_t kNone = 65'535;
 
 static_assert(std::endian::native == std::endian::little);
@@ -40,7 +40,7 @@ struct Field {
     if (!std::isfinite(v)) return kNone;
     if (!(max > min)) return 0;
     const double share = (static_cast<double>(v) - min) / (static_cast<double>(max) - min);
-    return static_cast<std::uint16_t>(std::lround(share * kLargestValue));
+    return static_cast<std::uint16_t>(std::lround(share * kMaxStoredValue));
   }
 };
 
@@ -63,14 +63,14 @@ std::vector<Field> fields_of(const SceneCloud& cloud) {
 }
 
 /// A point and its index in the cloud, stored together so that sorting accesses memory in order.
-struct Numbered {
+struct IndexedPoint {
   Eigen::Vector3f position;
   std::uint32_t number;
 };
-using Points = std::span<Numbered>;
+using Points = std::span<IndexedPoint>;
 
-std::vector<Numbered> finite_points(const SceneCloud& cloud) {
-  std::vector<Numbered> points;
+std::vector<IndexedPoint> finite_points(const SceneCloud& cloud) {
+  std::vector<IndexedPoint> points;
   points.reserve(cloud.points.size());
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
     if (!cloud.points[i].allFinite()) continue;
@@ -81,7 +81,7 @@ std::vector<Numbered> finite_points(const SceneCloud& cloud) {
 
 Eigen::AlignedBox3f box_of(Points points) {
   Eigen::AlignedBox3f box;
-  for (const Numbered& point : points) box.extend(point.position);
+  for (const IndexedPoint& point : points) box.extend(point.position);
   return box;
 }
 
@@ -90,9 +90,10 @@ void halve(Points points) {
   Eigen::Index axis = 0;
   box_of(points).sizes().maxCoeff(&axis);
   const auto middle = points.begin() + static_cast<std::ptrdiff_t>(points.size() / 2);
-  std::nth_element(
-      points.begin(), middle, points.end(),
-      [axis](const Numbered& a, const Numbered& b) { return a.position[axis] < b.position[axis]; });
+  std::nth_element(points.begin(), middle, points.end(),
+                   [axis](const IndexedPoint& a, const IndexedPoint& b) {
+                     return a.position[axis] < b.position[axis];
+                   });
 }
 
 /// Halves the points repeatedly until every part fits into a chunk.
@@ -125,14 +126,14 @@ void append_points(std::string& bytes, const std::vector<Field>& fields,
                    const Eigen::AlignedBox3f& box, Points points) {
   const Eigen::Vector3d low = box.min().cast<double>();
   const Eigen::Vector3d size = box.sizes().cast<double>().cwiseMax(1e-6);
-  for (const Numbered& point : points) {
+  for (const IndexedPoint& point : points) {
     const Eigen::Vector3d share = (point.position.cast<double>() - low).cwiseQuotient(size);
     for (int axis = 0; axis < 3; ++axis) {
-      append(bytes, static_cast<std::uint16_t>(std::lround(share[axis] * kLargest)));
+      append(bytes, static_cast<std::uint16_t>(std::lround(share[axis] * kMaxStoredCoordinate)));
     }
   }
   for (const Field& field : fields) {
-    for (const Numbered& point : points) append(bytes, field.stored(point.number));
+    for (const IndexedPoint& point : points) append(bytes, field.stored(point.number));
   }
 }
 
@@ -212,7 +213,7 @@ class Packer {
   }
 
   Json add_cloud(const SceneCloud& cloud) {
-    std::vector<Numbered> points = finite_points(cloud);
+    std::vector<IndexedPoint> points = finite_points(cloud);
     const std::vector<Points> chunks = cut_into_chunks(points, parallel_);
     std::vector<Eigen::AlignedBox3f> boxes(chunks.size());
     parallel_.for_each(chunks.size(), 1, [&](std::size_t c) {

@@ -22,11 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kFar_m = 1000.0;          // beyond this, coordinates are relative to an origin
-constexpr double kOriginStep_m = 100.0;    // the origin is rounded to multiples of this
-constexpr double kReach_m = 2.0;           // maximum distance to the mesh that is measured
-constexpr double kEpoch_s = 1e6;           // larger times are times since an epoch
-constexpr std::size_t kMaxPoses = 20'000;  // of a path; more would not be visible
+constexpr double kMinOriginDistance_m =
+    1000.0;                                 // beyond this, coordinates are relative to an origin
+constexpr double kOriginStep_m = 100.0;     // the origin is rounded to multiples of this
+constexpr double kMaxMeshDistance_m = 2.0;  // maximum distance to the mesh that is measured
+constexpr double kMinEpochTime_s = 1e6;     // larger times are times since an epoch
+constexpr std::size_t kMaxPoses = 20'000;   // of a path; more would not be visible
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 bool is_empty(const Scene& scene) {
@@ -35,7 +36,7 @@ bool is_empty(const Scene& scene) {
 
 /// The first object of a scene determines the scene's origin.
 void choose_origin(Scene& scene, const Eigen::Vector3d& somewhere) {
-  if (!is_empty(scene) || !(somewhere.norm() > kFar_m)) return;
+  if (!is_empty(scene) || !(somewhere.norm() > kMinOriginDistance_m)) return;
   scene.origin = (somewhere / kOriginStep_m).array().round().matrix() * kOriginStep_m;
 }
 
@@ -50,14 +51,14 @@ class Thinning {
   explicit Thinning(std::size_t limit) : limit_(limit) {}
 
   /// Whether to keep the next point.
-  bool takes() {
+  bool keeps_next() {
     const double draw = random_.uniform(seen_++);
     if (draw >= share_) return false;
     draws_.push_back(draw);
     return true;
   }
   /// To be called after a point was kept: drops points of `cloud` if there are too many.
-  void enforce(SceneCloud& cloud) {
+  void enforce_limit(SceneCloud& cloud) {
     while (draws_.size() > limit_) {
       share_ /= 2;
       drop(cloud.points);
@@ -164,7 +165,7 @@ SceneCloud cloud_of(Scene& scene, const dataset::PointTable& table, const Pose& 
   };
   if (table.size > 0) choose_origin(scene, at(0));
   const double first_time = time != nullptr && table.size > 0 ? table.number(*time, 0) : 0.0;
-  const double time_zero = std::abs(first_time) > kEpoch_s ? first_time : 0.0;
+  const double time_zero = std::abs(first_time) > kMinEpochTime_s ? first_time : 0.0;
 
   SceneCloud cloud;
   const CounterRandom random(0, stream_of("thinning"));
@@ -193,12 +194,12 @@ class ScanCollector {
 
   void take(const Scan& scan) {
     for (const Point& point : scan.points) {
-      if (!thinning_.takes()) continue;
+      if (!thinning_.keeps_next()) continue;
       const Time t = scan.stamp + Time{point.dt_ns};
       cloud_.points.push_back(place(point.position.cast<double>(), t));
       cloud_.intensity.push_back(point.intensity);
       cloud_.time.push_back(static_cast<float>(to_seconds(t - scene_.time_origin)));
-      thinning_.enforce(cloud_);
+      thinning_.enforce_limit(cloud_);
     }
   }
   SceneCloud finished(std::string name) {
@@ -324,7 +325,7 @@ void measure_distances(Scene& scene, const Parallel& parallel) {
         points.push_back(cloud.points[i].cast<double>() + scene.origin);
       }
       std::vector<world::ClosestPoint> nearest(points.size());
-      world.closest_points(points, kReach_m, nearest, Parallel(1));
+      world.closest_points(points, kMaxMeshDistance_m, nearest, Parallel(1));
       for (std::size_t i = begin; i < end; ++i) {
         const world::ClosestPoint& there = nearest[i - begin];
         cloud.distance[i] = there.valid() ? static_cast<float>(there.distance) : kNone;

@@ -30,9 +30,9 @@ std::optional<double> map_rmse_of(const ResultRow& row) {
   return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
 }
 
-StudyCells::StudyCells(const Results& results, const std::string& reading) {
+StudyCells::StudyCells(const Results& results, const std::string& variant) {
   for (const ResultRow& row : results.rows) {
-    if (reading.empty() || reading_of(row) == reading) rows_.push_back(&row);
+    if (variant.empty() || variant_of(row) == variant) rows_.push_back(&row);
   }
 }
 
@@ -81,15 +81,15 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
   return text;
 }
 
-std::vector<std::string> readings_of(const Results& results) {
-  std::vector<std::string> readings;
+std::vector<std::string> variants_of(const Results& results) {
+  std::vector<std::string> variants;
   for (const ResultRow& row : results.rows) {
-    const std::string reading = reading_of(row);
-    if (std::ranges::find(readings, reading) == readings.end()) readings.push_back(reading);
+    const std::string variant = variant_of(row);
+    if (std::ranges::find(variants, variant) == variants.end()) variants.push_back(variant);
   }
   std::ranges::stable_partition(
-      readings, [](const std::string& reading) { return reading.starts_with("original"); });
-  return readings;
+      variants, [](const std::string& variant) { return variant.starts_with("original"); });
+  return variants;
 }
 
 std::string paper_world(const std::string& world) {

@@ -11,7 +11,7 @@
 namespace lidarena::report {
 
 /// If more of a map's points than this lie beyond 20 cm, tracking counts as lost.
-constexpr double kLostMap_percent = 50.0;
+constexpr double kTrackingLostOutliers_percent = 50.0;
 
 using RowFigure = std::function<std::optional<double>(const ResultRow&)>;
 
@@ -24,7 +24,7 @@ std::optional<double> map_rmse_of(const ResultRow& row);  ///< cm, of the publis
 class StudyCells {
  public:
   /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
-  StudyCells(const Results& results, const std::string& reading);
+  StudyCells(const Results& results, const std::string& variant);
 
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;
@@ -45,7 +45,7 @@ class StudyCells {
 
 /// All readings in the order of their first use, but those of the preset `original` first, since
 /// they are to be compared with the paper.
-std::vector<std::string> readings_of(const Results& results);
+std::vector<std::string> variants_of(const Results& results);
 
 /// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm
 /// ("Fast LIO2"); empty if the paper has none. Worlds and sensors are recognized by a part of

@@ -9,11 +9,11 @@ namespace lidarena::report {
 namespace {
 
 /// The smallest figure with its algorithm: "fast_lio2 (improved): 0.84"; empty if there is none.
-std::string least(const Results& results, const std::string& world, const std::string& sensor,
-                  const RowFigure& of) {
+std::string smallest_figure(const Results& results, const std::string& world,
+                            const std::string& sensor, const RowFigure& of) {
   std::optional<double> best;
   std::string text;
-  for (const std::string& preset : readings_of(results)) {
+  for (const std::string& preset : variants_of(results)) {
     const StudyCells cells(results, preset);
     for (const std::string& algorithm : cells.algorithms()) {
       const auto value = cells.median(world, sensor, algorithm, of);
@@ -63,8 +63,8 @@ ReportTable winners_table(const Results& results) {
   for (const std::string& world : all.worlds()) {
     for (const std::string& sensor : all.sensors()) {
       table.rows.push_back({word(world + ", " + sensor),
-                            word(least(results, world, sensor, rpe_of)),
-                            word(least(results, world, sensor, outliers_of))});
+                            word(smallest_figure(results, world, sensor, rpe_of)),
+                            word(smallest_figure(results, world, sensor, outliers_of))});
     }
   }
   return table;
@@ -84,7 +84,7 @@ ReportTable runs_table(const Results& results, const std::string& world) {
   for (const ResultRow& row : results.rows) {
     if (row.world != world) continue;
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, reading_of(row), row.seed))};
+        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, variant_of(row), row.seed))};
     for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
                               map_value(row.own_map, &MapFigures::rmse_cm),
                               map_value(row.own_map, &MapFigures::outliers_percent),
@@ -140,8 +140,8 @@ ReportTable claims_table(const std::vector<Claim>& claims, const std::string& pr
     const char* verdict = claim.holds              ? *claim.holds ? "holds" : "does not hold"
                           : claim.evidence.empty() ? "not measured"
                                                    : "cannot be judged";
-    if (claim.holds == false && !claim.guess.empty())
-      evidence += ". Possible reason: " + claim.guess;
+    if (claim.holds == false && !claim.possible_reason.empty())
+      evidence += ". Possible reason: " + claim.possible_reason;
     table.rows.push_back({word(claim.text), word(verdict), word(claim.rule), word(evidence)});
   }
   return table;

@@ -33,7 +33,7 @@ ReportTable timing_table(const Results& results, const std::vector<std::string>&
       std::vector<TableCell> row{word(sensor + ", " + algorithm)};
       bool known = false;
       for (const std::string& mode : modes) {
-        const StudyCells cells(results, reading_of(preset, mode));
+        const StudyCells cells(results, variant_of(preset, mode));
         TableCell cell = figure(cells.median(world, sensor, algorithm, kind.figure));
         if (!cell.value) cell.text = cells.status_text(world, sensor, algorithm);
         known = known || !cell.text.empty();

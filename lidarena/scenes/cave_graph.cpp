@@ -65,8 +65,8 @@ class Swing {
   double long_, short_, long_phase_, short_phase_;
 };
 
-Tunnel wind(const CaveConfig& config, const std::vector<Eigen::Vector3d>& junctions,
-            std::size_t from, std::size_t to, SequentialRandom& random) {
+Tunnel winding_tunnel(const CaveConfig& config, const std::vector<Eigen::Vector3d>& junctions,
+                      std::size_t from, std::size_t to, SequentialRandom& random) {
   const double reach =
       kRoughnessReach * (config.roughness_2m_m + config.roughness_03m_m + config.roughness_005m_m);
   const double radius_min = 0.5 * config.width_min_m + reach;
@@ -97,7 +97,7 @@ Tunnel wind(const CaveConfig& config, const std::vector<Eigen::Vector3d>& juncti
 }
 
 /// Junctions in the order in which the route passes them; the last equals the first.
-std::vector<std::size_t> weave(std::size_t cells) {
+std::vector<std::size_t> route_junctions(std::size_t cells) {
   std::vector<std::size_t> order{junction(0, 0)};
   std::size_t side = 0;
   for (std::size_t rung = 1; rung <= cells; ++rung) {
@@ -114,7 +114,8 @@ std::vector<std::size_t> weave(std::size_t cells) {
 }
 
 /// The centerline between two neighboring junctions, from `from` to `to`.
-std::vector<Eigen::Vector3d> way(const CaveGraph& graph, std::size_t from, std::size_t to) {
+std::vector<Eigen::Vector3d> tunnel_points(const CaveGraph& graph, std::size_t from,
+                                           std::size_t to) {
   for (const Tunnel& tunnel : graph.tunnels) {
     if (tunnel.from == from && tunnel.to == to) return tunnel.points;
     if (tunnel.from == to && tunnel.to == from) {
@@ -138,7 +139,7 @@ CaveGraph make_cave_graph(const CaveConfig& config, std::uint64_t seed) {
   graph.junctions = ladder_junctions(config, random);
   const auto cells = static_cast<std::size_t>(config.loops);
   const auto add = [&](std::size_t from, std::size_t to) {
-    graph.tunnels.push_back(wind(config, graph.junctions, from, to, random));
+    graph.tunnels.push_back(winding_tunnel(config, graph.junctions, from, to, random));
   };
   for (std::size_t i = 0; i <= cells; ++i) add(junction(i, 0), junction(i, 1));
   for (std::size_t i = 0; i < cells; ++i) {
@@ -149,10 +150,10 @@ CaveGraph make_cave_graph(const CaveConfig& config, std::uint64_t seed) {
 }
 
 std::vector<Eigen::Vector3d> cave_route(const CaveGraph& graph) {
-  const std::vector<std::size_t> order = weave(graph.loops.size());
+  const std::vector<std::size_t> order = route_junctions(graph.loops.size());
   std::vector<Eigen::Vector3d> route{graph.junctions[order.front()]};
   for (std::size_t leg = 1; leg < order.size(); ++leg) {
-    const std::vector<Eigen::Vector3d> points = way(graph, order[leg - 1], order[leg]);
+    const std::vector<Eigen::Vector3d> points = tunnel_points(graph, order[leg - 1], order[leg]);
     for (std::size_t i = 1; i + 1 < points.size(); ++i) {
       const bool far = (points[i] - route.back()).norm() >= kRouteSpacing - 0.5 * kPointSpacing;
       const bool room = (points[i] - points.back()).norm() >= 0.6 * kRouteSpacing;

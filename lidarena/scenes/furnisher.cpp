@@ -32,10 +32,10 @@ Pose quarter_turn(int quarters, const Vector3d& position) {
 }
 
 AlignedBox3d box_at(const AlignedBox3d& box, const Pose& pose) {
-  AlignedBox3d turned;
-  turned.extend(pose * box.min());
-  turned.extend(pose * box.max());
-  return turned;
+  AlignedBox3d rotated;
+  rotated.extend(pose * box.min());
+  rotated.extend(pose * box.max());
+  return rotated;
 }
 
 /// The box around an opening, extended by `along` (m) on both sides and by `ahead` (m) to the front
@@ -52,15 +52,15 @@ AlignedBox3d box_around(const Opening& opening, double along, double ahead) {
 }  // namespace
 
 double distance_to_route(const AlignedBox3d& box, const std::vector<Vector3d>& route) {
-  double least = std::numeric_limits<double>::infinity();
+  double nearest = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < route.size(); ++i) {
     const Vector3d leg = route[i] - route[i - 1];
     const int steps = std::max(1, static_cast<int>(std::ceil(leg.norm() / kRouteStep)));
     for (int k = 0; k <= steps; ++k) {
-      least = std::min(least, box.exteriorDistance(Vector3d(route[i - 1] + leg * k / steps)));
+      nearest = std::min(nearest, box.exteriorDistance(Vector3d(route[i - 1] + leg * k / steps)));
     }
   }
-  return least;
+  return nearest;
 }
 
 Furnisher::Furnisher(const HousePlan& plan, const HouseConfig& config, SequentialRandom& random)
@@ -171,12 +171,12 @@ Furnisher::Handle Furnisher::on_top(Handle host, const Piece& piece) {
   const AlignedBox3d bounds = piece.mesh.bounds();
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const Pose turn = quarter_turn(random_.integer(0, 3), Vector3d::Zero());
-    const AlignedBox3d turned = box_at(bounds, turn);
-    const Vector3d room = table.sizes() - turned.sizes() - Vector3d::Constant(0.04);
+    const AlignedBox3d rotated = box_at(bounds, turn);
+    const Vector3d room = table.sizes() - rotated.sizes() - Vector3d::Constant(0.04);
     if (room.head<2>().minCoeff() < 0) continue;
     const Vector2d low = table.min().head<2>() + Vector2d::Constant(0.02);
-    const double x = low.x() + random_.uniform() * room.x() - turned.min().x();
-    const double y = low.y() + random_.uniform() * room.y() - turned.min().y();
+    const double x = low.x() + random_.uniform() * room.x() - rotated.min().x();
+    const double y = low.y() + random_.uniform() * room.y() - rotated.min().y();
     Pose pose = turn;
     pose.translation() = Vector3d(x, y, top);
     const AlignedBox3d box = box_at(bounds, pose);

@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 using shape::box;
-using shape::moved;
 using shape::scaled;
+using shape::translated;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kRail = 0.95;  // m, height of a handrail
@@ -39,7 +39,8 @@ Piece bathtub(Craft& craft) {
            {0.35, 0.5}, {0.32, 0.25}, {0.27, 0.15}, {0.15, 0.12}, {0, 0.12}}) {
     profile.push_back(p);
   }
-  world::TriangleMesh mesh = moved(scaled(shape::lathe(profile, n), {2.1, 1, 1}), {0, 0.41, 0});
+  world::TriangleMesh mesh =
+      translated(scaled(shape::lathe(profile, n), {2.1, 1, 1}), {0, 0.41, 0});
   mesh.append(
       shape::bar({{0.6, 0.04, 0.56}, {0.6, 0.04, 0.75}, {0.6, 0.12, 0.78}, {0.6, 0.16, 0.74}},
                  0.015, craft.fine(14)));
@@ -48,11 +49,11 @@ Piece bathtub(Craft& craft) {
 
 Piece toilet(Craft& craft) {
   world::TriangleMesh mesh =
-      moved(shape::rounded_box({0.38, 0.17, 0.36}, 0.03, craft.fine(14)), {0, 0.09, 0.42});
+      translated(shape::rounded_box({0.38, 0.17, 0.36}, 0.03, craft.fine(14)), {0, 0.09, 0.42});
   const std::vector<Eigen::Vector2d> profile{{0, 0},       {0.12, 0},    {0.1, 0.15},  {0.17, 0.36},
                                              {0.19, 0.4},  {0.19, 0.44}, {0.13, 0.44}, {0.12, 0.4},
                                              {0.07, 0.25}, {0, 0.22}};
-  mesh.append(moved(scaled(shape::lathe(profile, craft.fine(48)), {1, 1.3, 1}), {0, 0.4, 0}));
+  mesh.append(translated(scaled(shape::lathe(profile, craft.fine(48)), {1, 1.3, 1}), {0, 0.4, 0}));
   mesh.append(box({-0.1, 0.02, 0}, {0.1, 0.3, 0.42}));
   return {"toilet", std::move(mesh)};
 }
@@ -61,10 +62,10 @@ Piece basin(Craft& craft) {
   const std::vector<Eigen::Vector2d> profile{{0, 0.68},     {0.1, 0.7},  {0.22, 0.78}, {0.25, 0.86},
                                              {0.235, 0.86}, {0.2, 0.78}, {0.08, 0.73}, {0, 0.725}};
   world::TriangleMesh mesh =
-      moved(scaled(shape::lathe(profile, craft.fine(52)), {1.15, 0.9, 1}), {0, 0.24, 0});
-  mesh.append(
-      moved(shape::lathe({{0, 0}, {0.11, 0}, {0.07, 0.3}, {0.08, 0.7}, {0, 0.7}}, craft.fine(32)),
-            {0, 0.2, 0}));
+      translated(scaled(shape::lathe(profile, craft.fine(52)), {1.15, 0.9, 1}), {0, 0.24, 0});
+  mesh.append(translated(
+      shape::lathe({{0, 0}, {0.11, 0}, {0.07, 0.3}, {0.08, 0.7}, {0, 0.7}}, craft.fine(32)),
+      {0, 0.2, 0}));
   mesh.append(shape::bar({{0, 0.05, 0.85}, {0, 0.05, 0.98}, {0, 0.12, 1.0}, {0, 0.16, 0.97}}, 0.012,
                          craft.fine(14)));
   return {"basin", std::move(mesh)};
@@ -88,9 +89,9 @@ Piece stairs(Craft& craft, double width, double run, double rise, int steps) {
   for (int i = 0; i < steps; ++i) {
     const double y = run * (steps - 1 - i) / steps;
     const double z = rise * (i + 1) / steps;
-    mesh.append(
-        moved(shape::rounded_box({width - 0.06, run / steps + 0.03, kTread}, 0.012, craft.fine(10)),
-              {0, y + 0.5 * run / steps, z - kTread}));
+    mesh.append(translated(
+        shape::rounded_box({width - 0.06, run / steps + 0.03, kTread}, 0.012, craft.fine(10)),
+        {0, y + 0.5 * run / steps, z - kTread}));
   }
   for (const double x : {-half + 0.02, half - 0.02}) {  // stringers
     mesh.append(shape::grid(1, 4, [&](double u, double v) {
@@ -127,7 +128,7 @@ Piece column(Craft& craft, double height) {
                                            {1.5 * r, height},
                                            {0, height}},
                                           craft.fine(40));
-  return {"column", moved(std::move(mesh), {0, 1.6 * r, 0})};
+  return {"column", translated(std::move(mesh), {0, 1.6 * r, 0})};
 }
 
 }  // namespace lidarena::scenes::furniture

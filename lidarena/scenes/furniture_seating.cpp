@@ -8,7 +8,7 @@ namespace lidarena::scenes::furniture {
 namespace {
 
 using Eigen::Vector3d;
-using shape::moved;
+using shape::translated;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -18,7 +18,7 @@ world::TriangleMesh legs(Craft& craft, double width, double depth, double height
   const double inset = 2.5 * radius;
   for (const double x : {-0.5 * width + inset, 0.5 * width - inset}) {
     for (const double y : {inset, depth - inset}) {
-      mesh.append(moved(shape::cylinder(radius, height, craft.fine(16), 4), {x, y, 0}));
+      mesh.append(translated(shape::cylinder(radius, height, craft.fine(16), 4), {x, y, 0}));
     }
   }
   return mesh;
@@ -28,7 +28,8 @@ world::TriangleMesh legs(Craft& craft, double width, double depth, double height
 world::TriangleMesh pad(Craft& craft, const Vector3d& size, double x, double y, double z,
                         double bulge) {
   const double radius = 0.35 * size.minCoeff();
-  return moved(shape::rounded_box(size, radius, craft.fine(18), bulge), {x, y + 0.5 * size.y(), z});
+  return translated(shape::rounded_box(size, radius, craft.fine(18), bulge),
+                    {x, y + 0.5 * size.y(), z});
 }
 
 /// A quilt over a mattress: hangs down at both sides and the foot end, with folds.
@@ -79,15 +80,15 @@ Piece chair(Craft& craft) {
                            0.016, facets));
   }
   for (const double z : {0.62, 0.74, 0.86}) {  // bent slats of the back
-    mesh.append(moved(shape::grid(craft.fine(20), craft.fine(10),
-                                  [&](double u, double v) {
-                                    const double bend = 0.03 * std::sin(kPi * u);
-                                    const double round = 2 * kPi * v;
-                                    return Vector3d(0.36 * (u - 0.5),
-                                                    0.03 - bend + 0.008 * std::cos(round),
-                                                    z + 0.03 * std::sin(round));
-                                  }),
-                      {0, 0.012, 0}));
+    mesh.append(translated(shape::grid(craft.fine(20), craft.fine(10),
+                                       [&](double u, double v) {
+                                         const double bend = 0.03 * std::sin(kPi * u);
+                                         const double round = 2 * kPi * v;
+                                         return Vector3d(0.36 * (u - 0.5),
+                                                         0.03 - bend + 0.008 * std::cos(round),
+                                                         z + 0.03 * std::sin(round));
+                                       }),
+                           {0, 0.012, 0}));
   }
   return {"chair", std::move(mesh)};
 }
@@ -95,7 +96,7 @@ Piece chair(Craft& craft) {
 Piece stool(Craft& craft) {
   const double height = craft.random.uniform(0.45, 0.65);
   world::TriangleMesh mesh =
-      moved(shape::cylinder(0.17, 0.04, craft.fine(36), 3), {0, 0.2, height - 0.04});
+      translated(shape::cylinder(0.17, 0.04, craft.fine(36), 3), {0, 0.2, height - 0.04});
   for (int i = 0; i < 3; ++i) {
     const double angle = 2 * kPi * i / 3 + 0.5;
     const Vector3d out(std::cos(angle), std::sin(angle), 0);

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using shape::moved;
+using shape::translated;
 
 constexpr double kPi = std::numbers::pi;
 
@@ -65,8 +65,8 @@ Piece floor_lamp(Craft& craft) {
   world::TriangleMesh mesh = shape::cylinder(0.14, 0.025, craft.fine(40));
   mesh.append(shape::bar({{0, 0, 0.02}, {0, 0, height - 0.1}}, 0.012, craft.fine(14)));
   mesh.append(shade(craft, 0.22, height - 0.28, 0.13, height));
-  mesh.append(moved(shape::ball(0.04, craft.fine(20)), {0, 0, height - 0.1}));
-  return {"floor lamp", moved(std::move(mesh), {0, 0.25, 0})};
+  mesh.append(translated(shape::ball(0.04, craft.fine(20)), {0, 0, height - 0.1}));
+  return {"floor lamp", translated(std::move(mesh), {0, 0.25, 0})};
 }
 
 Piece table_lamp(Craft& craft) {
@@ -75,17 +75,17 @@ Piece table_lamp(Craft& craft) {
       smooth({{0, 0}, {0.8 * r, 0}, {r, 0.1}, {0.35 * r, 0.2}, {0.01, 0.3}, {0, 0.32}}, 8),
       craft.fine(36));
   mesh.append(shade(craft, 0.15, 0.26, 0.09, 0.44));
-  return {"table lamp", moved(std::move(mesh), {0, 0.16, 0})};
+  return {"table lamp", translated(std::move(mesh), {0, 0.16, 0})};
 }
 
 Piece pendant_lamp(Craft& craft, double drop) {
   const double r = craft.random.uniform(0.16, 0.24);
-  world::TriangleMesh mesh = moved(shape::cylinder(0.05, 0.03, craft.fine(24)), {0, 0, -0.03});
+  world::TriangleMesh mesh = translated(shape::cylinder(0.05, 0.03, craft.fine(24)), {0, 0, -0.03});
   mesh.append(shape::bar({{0, 0, -0.02}, {0, 0, -drop + 0.16}}, 0.004, 6));
   mesh.append(shape::lathe(
       smooth({{r, -drop}, {0.85 * r, -drop + 0.09}, {0.3 * r, -drop + 0.15}, {0, -drop + 0.17}}, 8),
       craft.fine(48)));
-  mesh.append(moved(shape::ball(0.045, craft.fine(20)), {0, 0, -drop + 0.08}));
+  mesh.append(translated(shape::ball(0.045, craft.fine(20)), {0, 0, -drop + 0.08}));
   return {"pendant lamp", std::move(mesh)};
 }
 
@@ -110,13 +110,13 @@ Piece plant(Craft& craft, double height) {
     for (int k = 0; k < 14; ++k) {
       const double share = 0.25 + 0.75 * k / 13;
       const double length = height * craft.random.uniform(0.14, 0.22);
-      mesh.append(moved(leaf(craft, length, 0.4 * length, craft.random.uniform(0, 2 * kPi),
-                             craft.random.uniform(0.3, 1.1)),
-                        foot + share * (tip - foot)));
+      mesh.append(translated(leaf(craft, length, 0.4 * length, craft.random.uniform(0, 2 * kPi),
+                                  craft.random.uniform(0.3, 1.1)),
+                             foot + share * (tip - foot)));
     }
   }
   const double back = -mesh.bounds().min().y();
-  return {"plant", moved(std::move(mesh), {0, back, 0})};
+  return {"plant", translated(std::move(mesh), {0, back, 0})};
 }
 
 Piece vase(Craft& craft) {
@@ -130,7 +130,7 @@ Piece vase(Craft& craft) {
                                                 {0.33 * r, 0.8 * h},
                                                 {0, 0.3 * h}},
                                                8);
-  return {"vase", moved(shape::lathe(profile, craft.fine(40)), {0, r, 0})};
+  return {"vase", translated(shape::lathe(profile, craft.fine(40)), {0, r, 0})};
 }
 
 Piece bowl(Craft& craft) {
@@ -140,10 +140,10 @@ Piece bowl(Craft& craft) {
       craft.fine(44));
   for (int i = 0; i < 4; ++i) {  // fruit
     const double angle = kPi * i / 2 + 0.3;
-    mesh.append(moved(shape::ball(0.035, craft.fine(20)),
-                      {0.4 * r * std::cos(angle), 0.4 * r * std::sin(angle), 0.065}));
+    mesh.append(translated(shape::ball(0.035, craft.fine(20)),
+                           {0.4 * r * std::cos(angle), 0.4 * r * std::sin(angle), 0.065}));
   }
-  return {"bowl", moved(std::move(mesh), {0, r, 0})};
+  return {"bowl", translated(std::move(mesh), {0, r, 0})};
 }
 
 Piece pot(Craft& craft) {
@@ -164,7 +164,7 @@ Piece pot(Craft& craft) {
                             {side * r, 0.03, 0.8 * h}},
                            0.007, 8));
   }
-  return {"pot", moved(std::move(mesh), {0, r, 0})};
+  return {"pot", translated(std::move(mesh), {0, r, 0})};
 }
 
 Piece book_pile(Craft& craft) {
@@ -176,7 +176,7 @@ Piece book_pile(Craft& craft) {
     const double d = craft.random.uniform(0.1, 0.13);
     const world::TriangleMesh book = shape::box({-w, -d, 0}, {w, d, thick});
     const double turn = craft.random.uniform(-0.3, 0.3);
-    mesh.append(moved(shape::turned(book, turn, Vector3d::UnitZ()), {0, 0.16, z}));
+    mesh.append(translated(shape::rotated(book, turn, Vector3d::UnitZ()), {0, 0.16, z}));
     z += thick;
   }
   return {"books", std::move(mesh)};
@@ -196,12 +196,12 @@ Piece basket(Craft& craft, const std::string& kind, double radius, double height
   world::TriangleMesh mesh = shape::cylinder(0.85 * radius, 0.01, n);
   mesh.append(weave(0.85 * radius, radius, 0.0, height));
   mesh.append(weave(0.92 * radius, 0.78 * radius, height, 0.01));
-  return {kind, moved(std::move(mesh), {0, radius + 0.01, 0})};
+  return {kind, translated(std::move(mesh), {0, radius + 0.01, 0})};
 }
 
 Piece toy_ball(Craft& craft) {
   const double r = craft.random.uniform(0.09, 0.16);
-  return {"ball", moved(shape::ball(r, craft.fine(48)), {0, r, r})};
+  return {"ball", translated(shape::ball(r, craft.fine(48)), {0, r, r})};
 }
 
 Piece rug(Craft& craft, double width, double depth) {
@@ -253,17 +253,17 @@ Piece picture(Craft& craft, const std::string& kind, double width, double height
 
 Piece television(Craft& craft) {
   world::TriangleMesh mesh =
-      moved(shape::rounded_box({1.15, 0.05, 0.66}, 0.015, craft.fine(16)), {0, 0.14, 0.06});
+      translated(shape::rounded_box({1.15, 0.05, 0.66}, 0.015, craft.fine(16)), {0, 0.14, 0.06});
   mesh.append(shape::box({-0.03, 0.12, 0.01}, {0.03, 0.15, 0.1}));
-  mesh.append(moved(shape::scaled(shape::cylinder(0.14, 0.015, craft.fine(32)), {1.6, 1, 1}),
-                    {0, 0.14, 0}));
+  mesh.append(translated(shape::scaled(shape::cylinder(0.14, 0.015, craft.fine(32)), {1.6, 1, 1}),
+                         {0, 0.14, 0}));
   return {"television", std::move(mesh)};
 }
 
 Piece coat_rack(Craft& craft) {
   world::TriangleMesh mesh = shape::cylinder(0.2, 0.03, craft.fine(36));
   mesh.append(shape::bar({{0, 0, 0.02}, {0, 0, 1.75}}, 0.018, craft.fine(16)));
-  mesh.append(moved(shape::ball(0.03, craft.fine(18)), {0, 0, 1.76}));
+  mesh.append(translated(shape::ball(0.03, craft.fine(18)), {0, 0, 1.76}));
   const double phase = craft.random.uniform(0, kPi);
   for (int i = 0; i < 5; ++i) {
     const double angle = 2 * kPi * i / 5 + phase;
@@ -280,7 +280,7 @@ Piece coat_rack(Craft& craft) {
     return hook + Vector3d(r * std::cos(angle), 0.7 * r * std::sin(angle), 1.62 - 0.95 * v);
   }));
   const double back = -mesh.bounds().min().y();
-  return {"coat rack", moved(std::move(mesh), {0, back, 0})};
+  return {"coat rack", translated(std::move(mesh), {0, back, 0})};
 }
 
 }  // namespace lidarena::scenes::furniture

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 using shape::box;
-using shape::moved;
+using shape::translated;
 
 constexpr double kPi = std::numbers::pi;
 constexpr double kBoard = 0.02;  // m
@@ -78,11 +78,12 @@ Piece cabinet(Craft& craft, const std::string& kind, const Vector3d& size, int c
     for (int j = 0; j < rows; ++j) {
       const double x = -half + (i + 0.5) * w;
       const double z = kPlinth + j * h;
-      mesh.append(moved(shape::rounded_box({w - kGap, kBoard, h - kGap}, 0.008, craft.fine(8)),
-                        {x, front + 0.5 * kBoard, z + 0.5 * kGap}));
+      mesh.append(translated(shape::rounded_box({w - kGap, kBoard, h - kGap}, 0.008, craft.fine(8)),
+                             {x, front + 0.5 * kBoard, z + 0.5 * kGap}));
       const double side = i % 2 == 0 ? 0.4 : -0.4;
-      mesh.append(moved(shape::ball(0.014, craft.fine(14)),
-                        {x + (rows > 1 && h < 0.5 ? 0 : side * w), size.y() + 0.01, z + 0.6 * h}));
+      mesh.append(
+          translated(shape::ball(0.014, craft.fine(14)),
+                     {x + (rows > 1 && h < 0.5 ? 0 : side * w), size.y() + 0.01, z + 0.6 * h}));
     }
   }
   return {kind, std::move(mesh), size.z() < 1.3 ? size.z() : 0};
@@ -102,7 +103,7 @@ Piece sink(Craft& craft) {
   const std::vector<Eigen::Vector2d> profile{{0, 0.004},    {0.17, 0.006},  {0.2, 0.012},
                                              {0.205, 0.03}, {0.225, 0.035}, {0.23, 0.0}};
   world::TriangleMesh mesh =
-      moved(shape::scaled(shape::lathe(profile, craft.fine(48)), {1.25, 1, 1}), {0, 0.31, 0});
+      translated(shape::scaled(shape::lathe(profile, craft.fine(48)), {1.25, 1, 1}), {0, 0.31, 0});
   std::vector<Vector3d> tap{{0, 0.05, 0}, {0, 0.05, 0.2}};
   for (int i = 1; i <= 12; ++i) {
     const double angle = kPi * i / 12;
@@ -116,13 +117,13 @@ Piece stove(Craft& craft) {
   Piece piece = cabinet(craft, "stove", {0.6, 0.6, 0.9}, 1, 1);
   for (const double x : {-0.14, 0.14}) {
     for (const double y : {0.16, 0.42}) {
-      piece.mesh.append(moved(
+      piece.mesh.append(translated(
           shape::cylinder(craft.random.uniform(0.07, 0.1), 0.012, craft.fine(36)), {x, y, 0.9}));
     }
   }
   for (int i = 0; i < 4; ++i) {
-    piece.mesh.append(moved(
-        shape::turned(shape::cylinder(0.02, 0.025, craft.fine(16)), -kPi / 2, Vector3d::UnitX()),
+    piece.mesh.append(translated(
+        shape::rotated(shape::cylinder(0.02, 0.025, craft.fine(16)), -kPi / 2, Vector3d::UnitX()),
         {-0.21 + 0.14 * i, 0.6, 0.82}));
   }
   piece.mesh.append(handle(craft, {-0.22, 0.6, 0.7}, {0.22, 0.6, 0.7}));
@@ -133,11 +134,11 @@ Piece stove(Craft& craft) {
 Piece fridge(Craft& craft) {
   const double height = craft.random.uniform(1.6, 1.9);
   world::TriangleMesh mesh =
-      moved(shape::rounded_box({0.6, 0.6, height}, 0.02, craft.fine(10)), {0, 0.3, 0});
+      translated(shape::rounded_box({0.6, 0.6, height}, 0.02, craft.fine(10)), {0, 0.3, 0});
   const double split = 0.4 * height;
   for (const auto& [z0, z1] : {std::pair{0.06, split}, std::pair{split + 0.01, height}}) {
     mesh.append(
-        moved(shape::rounded_box({0.6, 0.05, z1 - z0}, 0.02, craft.fine(12)), {0, 0.63, z0}));
+        translated(shape::rounded_box({0.6, 0.05, z1 - z0}, 0.02, craft.fine(12)), {0, 0.63, z0}));
     mesh.append(handle(craft, {0.24, 0.65, z0 + 0.15}, {0.24, 0.65, z1 - 0.15}));
   }
   return {"fridge", std::move(mesh)};
@@ -145,11 +146,11 @@ Piece fridge(Craft& craft) {
 
 Piece washing_machine(Craft& craft) {
   world::TriangleMesh mesh =
-      moved(shape::rounded_box({0.6, 0.58, 0.85}, 0.02, craft.fine(10)), {0, 0.29, 0});
-  mesh.append(moved(ring(craft, 0.17, 0.025), {0, 0.58, 0.42}));
+      translated(shape::rounded_box({0.6, 0.58, 0.85}, 0.02, craft.fine(10)), {0, 0.29, 0});
+  mesh.append(translated(ring(craft, 0.17, 0.025), {0, 0.58, 0.42}));
   mesh.append(
-      moved(shape::scaled(shape::ball(0.16, craft.fine(40)), {1, 0.25, 1}), {0, 0.58, 0.42}));
-  mesh.append(moved(shape::ball(0.03, craft.fine(16)), {0.2, 0.58, 0.76}));
+      translated(shape::scaled(shape::ball(0.16, craft.fine(40)), {1, 0.25, 1}), {0, 0.58, 0.42}));
+  mesh.append(translated(shape::ball(0.03, craft.fine(16)), {0.2, 0.58, 0.76}));
   return {"washing machine", std::move(mesh), 0.85};
 }
 
@@ -157,7 +158,8 @@ Piece front_door(Craft& craft) {
   world::TriangleMesh mesh = box({-0.5, 0, 0}, {0.5, 0.04, 2.1});
   for (const double x : {-0.23, 0.23}) {
     for (const auto& [z, h] : {std::pair{0.15, 0.75}, std::pair{1.05, 0.9}}) {
-      mesh.append(moved(shape::rounded_box({0.34, 0.03, h}, 0.015, craft.fine(12)), {x, 0.04, z}));
+      mesh.append(
+          translated(shape::rounded_box({0.34, 0.03, h}, 0.015, craft.fine(12)), {x, 0.04, z}));
     }
   }
   mesh.append(handle(craft, {0.43, 0.04, 1.02}, {0.32, 0.04, 1.02}));

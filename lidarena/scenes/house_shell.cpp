@@ -142,8 +142,8 @@ world::TriangleMesh build_trims(const Opening& door, const HouseConfig& config) 
   constexpr double kThick = 0.015;  // m
   world::TriangleMesh mesh;
   for (const double side : {-0.5, 0.5}) {
-    mesh.append(shape::moved(frame(hole_of(door), -kTrim, kThick, false),
-                             {0, side * (config.wall_thickness_m + kThick), 0}));
+    mesh.append(shape::translated(frame(hole_of(door), -kTrim, kThick, false),
+                                  {0, side * (config.wall_thickness_m + kThick), 0}));
   }
   mesh.paint(world::materials::kWood);
   return mesh;

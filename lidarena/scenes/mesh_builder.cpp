@@ -152,7 +152,7 @@ std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, d
   return points;
 }
 
-world::TriangleMesh moved(world::TriangleMesh mesh, const Eigen::Vector3d& offset) {
+world::TriangleMesh translated(world::TriangleMesh mesh, const Eigen::Vector3d& offset) {
   for (Eigen::Vector3d& v : mesh.vertices) v += offset;
   return mesh;
 }
@@ -162,7 +162,7 @@ world::TriangleMesh scaled(world::TriangleMesh mesh, const Eigen::Vector3d& scal
   return mesh;
 }
 
-world::TriangleMesh turned(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis) {
+world::TriangleMesh rotated(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis) {
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
   for (Eigen::Vector3d& v : mesh.vertices) v = rotation * v;
   return mesh;

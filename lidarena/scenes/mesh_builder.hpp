@@ -40,8 +40,8 @@ world::TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius,
 std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, double from,
                                  double to, int count);
 
-world::TriangleMesh moved(world::TriangleMesh mesh, const Eigen::Vector3d& offset);
+world::TriangleMesh translated(world::TriangleMesh mesh, const Eigen::Vector3d& offset);
 world::TriangleMesh scaled(world::TriangleMesh mesh, const Eigen::Vector3d& scale);
-world::TriangleMesh turned(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis);
+world::TriangleMesh rotated(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis);
 
 }  // namespace lidarena::scenes::shape

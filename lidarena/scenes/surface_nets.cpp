@@ -145,15 +145,15 @@ std::size_t make_well_composed(SparseField& field) {
     if (!read_corners(field, cell, corners)) continue;
     const unsigned rock = critical_rock(free_corners(corners));
     if (rock == 0) continue;
-    int thinnest = -1;  // the critical rock corner with the smallest depth
+    int shallowest = -1;  // the critical rock corner with the smallest depth
     for (int c = 0; c < 8; ++c) {
       if ((rock >> c & 1) == 0) continue;
-      if (thinnest < 0 ||
-          corners[static_cast<std::size_t>(c)] < corners[static_cast<std::size_t>(thinnest)]) {
-        thinnest = c;
+      if (shallowest < 0 ||
+          corners[static_cast<std::size_t>(c)] < corners[static_cast<std::size_t>(shallowest)]) {
+        shallowest = c;
       }
     }
-    const Eigen::Vector3i sample = cell + corner_offset(thinnest);
+    const Eigen::Vector3i sample = cell + corner_offset(shallowest);
     // Slightly inside free space, so that the crossings do not coincide with the sample.
     *field.find(sample) = static_cast<float>(-0.05 * field.step());
     ++changed;

@@ -9,14 +9,14 @@ BeamTable::BeamTable(const ScanPattern& pattern) : pattern_(pattern) {
   pattern.beams(0, first_);
   const std::uint64_t scans = pattern.repeats_after();
   const std::uint64_t bytes = scans * first_.size() * sizeof(Eigen::Vector3f);
-  if (scans > 1 && bytes <= kMostBytes) slots_ = std::vector<Slot>(scans);
+  if (scans > 1 && bytes <= kMaxBytes) slots_ = std::vector<Slot>(scans);
 }
 
 std::size_t BeamTable::bytes() const {
   return first_.size() * (sizeof(Beam) + slots_.size() * sizeof(Eigen::Vector3f));
 }
 
-bool BeamTable::differs_in_directions_alone(const std::vector<Beam>& beams) const {
+bool BeamTable::differs_only_in_directions(const std::vector<Beam>& beams) const {
   return std::ranges::equal(beams, first_, [](const Beam& a, const Beam& b) {
     return a.dt_ns == b.dt_ns && a.ring == b.ring && a.origin == b.origin;
   });
@@ -31,7 +31,7 @@ std::span<const Beam> BeamTable::beams(std::uint64_t index, std::vector<Beam>& s
   Slot& slot = slots_[index % slots_.size()];
   std::call_once(slot.once, [&] {
     pattern_.beams(index, storage);
-    if (!differs_in_directions_alone(storage)) return;  // not stored: computed on every call
+    if (!differs_only_in_directions(storage)) return;  // not stored: computed on every call
     slot.directions.reserve(storage.size());
     for (const Beam& beam : storage) slot.directions.push_back(beam.direction);
   });

@@ -15,7 +15,7 @@ namespace lidarena::sensor {
 /// returns, whichever thread asks first. Thread safe.
 class BeamTable {
  public:
-  static constexpr std::size_t kMostBytes = 64UL << 20U;  ///< larger tables are not stored
+  static constexpr std::size_t kMaxBytes = 64UL << 20U;  ///< larger tables are not stored
 
   /// Keeps a reference to `pattern`.
   explicit BeamTable(const ScanPattern& pattern);
@@ -32,7 +32,7 @@ class BeamTable {
     std::vector<Eigen::Vector3f> directions;
   };
 
-  bool differs_in_directions_alone(const std::vector<Beam>& beams) const;
+  bool differs_only_in_directions(const std::vector<Beam>& beams) const;
 
   const ScanPattern& pattern_;
   std::vector<Beam> first_;          ///< scan 0

@@ -7,10 +7,10 @@ CastOrder::CastOrder(std::span<const Beam> beams) {
   std::size_t lasers = 1;
   while (lasers < beams.size() && beams[lasers].ring != beams[0].ring) ++lasers;
   if (lasers == beams.size()) lasers = 1;  // the first ring never recurs
-  place_.resize(kTogether * lasers);
-  for (std::size_t firing = 0; firing < kTogether; ++firing) {
+  place_.resize(kPacketSize * lasers);
+  for (std::size_t firing = 0; firing < kPacketSize; ++firing) {
     for (std::size_t laser = 0; laser < lasers; ++laser) {
-      place_[firing * lasers + laser] = static_cast<std::uint32_t>(laser * kTogether + firing);
+      place_[firing * lasers + laser] = static_cast<std::uint32_t>(laser * kPacketSize + firing);
     }
   }
 }

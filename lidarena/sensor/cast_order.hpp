@@ -14,7 +14,7 @@ namespace lidarena::sensor {
 /// laser. So a tile of eight firings of all lasers is cast laser by laser.
 class CastOrder {
  public:
-  static constexpr std::size_t kTogether = 8;
+  static constexpr std::size_t kPacketSize = 8;
 
   /// Finds the number of lasers from a scan's beams: they fire in turn, so the first ring recurs
   /// once all have fired.

@@ -18,7 +18,7 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
   return offsets;
 }
 
-Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles) {
+Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles) {
   Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(axis);
   const double length = left.norm();
   // For a vertical axis "left" is undefined: take y.

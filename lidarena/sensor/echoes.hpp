@@ -26,7 +26,7 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count);
 
 /// Direction of a sub-ray: the unit vector `axis` rotated by the small angles (angles.x, angles.y),
 /// rad, to its left and upwards.
-Eigen::Vector3d turned_aside(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles);
+Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles);
 
 /// Sorts `parts` by range and merges them into pulses, which replace `echoes`, nearest first. A
 /// part belongs to the pulse of the previous part if it lies at most `pulse_length` meters behind

@@ -21,7 +21,7 @@ enum Draw : std::uint32_t {
 };
 
 /// Output of the analog-to-digital converter for `value`.
-Eigen::Vector3d read_out(const Eigen::Vector3d& value, double range, double resolution) {
+Eigen::Vector3d digitized(const Eigen::Vector3d& value, double range, double resolution) {
   Eigen::Vector3d read = value;
   if (resolution > 0.0) read = (value / resolution).array().round() * resolution;
   if (range > 0.0) read = read.cwiseMax(-range).cwiseMin(range);
@@ -34,11 +34,11 @@ ImuSample perfect_imu(const flight::Motion& motion, const Pose& body_from_imu) {
   const Eigen::Vector3d gravity_world(0.0, 0.0, -flight::kGravity);
   const Eigen::Vector3d& rate = motion.angular_rate_body;
   const Eigen::Vector3d arm = body_from_imu.translation();
-  const Eigen::Vector3d from_turning =
+  const Eigen::Vector3d lever_arm_force =
       motion.angular_acceleration_body.cross(arm) + rate.cross(rate.cross(arm));
   const Eigen::Vector3d force_body =
       motion.world_from_body.linear().transpose() * (motion.acceleration_world - gravity_world) +
-      from_turning;
+      lever_arm_force;
   ImuSample sample;
   sample.gyro = body_from_imu.linear().transpose() * rate;
   sample.accel = body_from_imu.linear().transpose() * force_body;
@@ -88,15 +88,16 @@ void Imu::vibrate(const flight::Motion& motion, ImuSample& sample) const {
   const double thrust = (motion.acceleration_world + up).norm() / flight::kGravity;
   for (std::size_t i = 0; i < config_.vibration.size(); ++i) {
     const VibrationTone& tone = config_.vibration[i];
-    const double turns = tone.frequency_hz * to_seconds(sample.stamp);
-    const auto swing = [&](std::uint32_t axis) {
-      return std::sin(2.0 * std::numbers::pi * (turns + random_.uniform(i, 2 * kVibration + axis)));
+    const double cycles = tone.frequency_hz * to_seconds(sample.stamp);
+    const auto wave = [&](std::uint32_t axis) {
+      return std::sin(2.0 * std::numbers::pi *
+                      (cycles + random_.uniform(i, 2 * kVibration + axis)));
     };
     const double gain = tone.grows_with_thrust ? thrust : 1.0;
     sample.accel +=
-        gain * tone.accel_amplitude.cwiseProduct(Eigen::Vector3d(swing(0), swing(1), swing(2)));
+        gain * tone.accel_amplitude.cwiseProduct(Eigen::Vector3d(wave(0), wave(1), wave(2)));
     sample.gyro +=
-        gain * tone.gyro_amplitude.cwiseProduct(Eigen::Vector3d(swing(3), swing(4), swing(5)));
+        gain * tone.gyro_amplitude.cwiseProduct(Eigen::Vector3d(wave(3), wave(4), wave(5)));
   }
 }
 
@@ -124,8 +125,8 @@ ImuSample Imu::measure(const flight::Flight& flight) {
     const Eigen::Vector3d accel =
         accel_response_ * sample.accel +
         (accel_bias_ + config_.accel_noise_density * root_rate * normals(next_, kAccelNoise));
-    sample.gyro = read_out(gyro, config_.gyro_range, config_.gyro_resolution);
-    sample.accel = read_out(accel, config_.accel_range, config_.accel_resolution);
+    sample.gyro = digitized(gyro, config_.gyro_range, config_.gyro_resolution);
+    sample.accel = digitized(accel, config_.accel_range, config_.accel_resolution);
   }
   ++next_;
   return sample;

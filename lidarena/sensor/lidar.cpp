@@ -20,7 +20,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr std::size_t kShotsPerBlock = 1024;
-constexpr std::size_t kShares = 32;  // number of parts that a scan is split into for the threads
+constexpr std::size_t kPartsPerScan =
+    32;  // number of parts that a scan is split into for the threads
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
 constexpr double kRadians = std::numbers::pi / 180.0;
 
@@ -34,7 +35,7 @@ std::uint32_t draw_of(Draw draw, std::size_t echo) {
 /// Distance from a beam's origin at which its ray starts: 0, except in kOfficial. That mode
 /// reproduces a fault of the official plugin: rays start at the minimum range, and the range is
 /// measured from there.
-double start_shift(const SensorConfig& config) {
+double start_offset(const SensorConfig& config) {
   return config.mode == ScanMode::kOfficial ? config.min_range_m : 0.0;
 }
 
@@ -131,31 +132,32 @@ void Lidar::place_rays(Block& block) const {
 }
 
 void Lidar::aim(const PoseAt& pose_at, Block& block) const {
-  const auto shift = static_cast<float>(start_shift(config_));
+  const auto start = static_cast<float>(start_offset(config_));
   const std::size_t split = sub_rays_.size();
   Vector3d position = Vector3d::Zero();
-  Eigen::Matrix3f turn = Eigen::Matrix3f::Identity();  // world_from_lidar, single precision
+  Eigen::Matrix3f rotation = Eigen::Matrix3f::Identity();  // world_from_lidar, single precision
   std::int32_t known_dt = -1;
   for (std::size_t i = 0; i < block.shots.size(); ++i) {
     const Beam& beam = block.shots[i];
     if (beam.dt_ns != known_dt) {  // shots of one instant share the pose
       const Pose world_from_lidar = pose_at(beam.dt_ns);
       position = world_from_lidar.translation();
-      turn = world_from_lidar.linear().cast<float>();
+      rotation = world_from_lidar.linear().cast<float>();
       known_dt = beam.dt_ns;
     }
-    const Vector3f offset = turn * (beam.origin + shift * beam.direction);
+    const Vector3f offset = rotation * (beam.origin + start * beam.direction);
     const Vector3d origin = position + offset.cast<double>();
     if (split == 1) {
-      block.rays[block.places[i]] = {origin, turn * beam.direction};
+      block.rays[block.places[i]] = {origin, rotation * beam.direction};
       continue;
     }
     const Vector3d axis = beam.direction.cast<double>();
     const double spin = 2.0 * std::numbers::pi * random_.uniform(block.first_ray + i, kSpin);
-    const Eigen::Rotation2Dd spun(spin);
+    const Eigen::Rotation2Dd spin_rotation(spin);
     for (std::size_t k = 0; k < split; ++k) {
-      const Vector3d direction = turned_aside(axis, beam_sigma_.cwiseProduct(spun * sub_rays_[k]));
-      block.rays[block.places[i] + k] = {origin, turn * direction.cast<float>()};
+      const Vector3d direction =
+          deflected(axis, beam_sigma_.cwiseProduct(spin_rotation * sub_rays_[k]));
+      block.rays[block.places[i] + k] = {origin, rotation * direction.cast<float>()};
     }
   }
 }
@@ -223,17 +225,17 @@ Vector3f Lidar::reported_direction(const Beam& beam, std::uint64_t ray) const {
   const double sigma = kRadians * config_.noise.angle_noise_deg;
   if (sigma == 0.0) return beam.direction;
   const auto [left, up] = random_.normals(ray, kAngle);
-  return turned_aside(beam.direction.cast<double>(), {sigma * left, sigma * up}).cast<float>();
+  return deflected(beam.direction.cast<double>(), {sigma * left, sigma * up}).cast<float>();
 }
 
 /// Appends the point, and its truth, of the shot's echo `number`.
 void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const {
   const Beam& beam = block.shots[shot];
   const std::uint64_t ray = block.first_ray + shot;
-  const double way = measured_range(echo, ray, number, block) - block.axis_to_origin;
+  const double distance = measured_range(echo, ray, number, block) - block.axis_to_origin;
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
   Point point;
-  point.position = beam.origin + static_cast<float>(way) * reported_direction(beam, ray);
+  point.position = beam.origin + static_cast<float>(distance) * reported_direction(beam, ray);
   point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
   point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
   point.ring = beam.ring;
@@ -242,11 +244,12 @@ void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block
   if (block.truth == nullptr) return;
   const std::size_t place = block.places[shot] + echo.sub_ray;
   const world::Hit& hit = block.hits[place];
-  const double way_to_surface = static_cast<double>(hit.range);
-  const Vector3d to_surface = way_to_surface * block.rays[place].direction.cast<double>();
+  const double distance_to_surface = static_cast<double>(hit.range);
+  const Vector3d to_surface = distance_to_surface * block.rays[place].direction.cast<double>();
   block.truth[block.count - 1] = {
       .position = (block.rays[place].origin + to_surface).cast<float>(),
-      .range = static_cast<float>(block.axis_to_origin + way_to_surface + start_shift(config_)),
+      .range =
+          static_cast<float>(block.axis_to_origin + distance_to_surface + start_offset(config_)),
       .normal = hit.normal,
       .triangle = hit.triangle};
 }
@@ -255,13 +258,13 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
                   Block& block) const {
   place_rays(block);
   aim(world_from_lidar, block);
-  world.cast(block.rays, config_.max_range_m - start_shift(config_), block.hits,
+  world.cast(block.rays, config_.max_range_m - start_offset(config_), block.hits,
              world::RayOrder::kNeighbors);
   block.count = 0;
-  const bool one_sure_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
+  const bool single_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
     block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
-    if (one_sure_echo) {
+    if (single_echo) {
       const auto echo = receive_ray(world, shot, 0, block);
       if (echo) report(shot, *echo, 0, block);
       continue;
@@ -276,26 +279,26 @@ void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lid
                       std::span<const Beam> shots, std::uint64_t first_ray,
                       const Parallel& parallel, std::vector<Point>& points,
                       std::vector<dataset::PointTruth>* truth) const {
-  const auto most = static_cast<std::size_t>(config_.returns.count);  // max. points per shot
-  points.resize(shots.size() * most);
+  const auto max_points = static_cast<std::size_t>(config_.returns.count);  // max. points per shot
+  points.resize(shots.size() * max_points);
   if (truth != nullptr) truth->resize(points.size());
 
   std::vector<std::size_t> counts((shots.size() + shots_per_block_ - 1) / shots_per_block_);
-  const std::size_t blocks_together = std::max<std::size_t>(1, counts.size() / kShares);
+  const std::size_t blocks_together = std::max<std::size_t>(1, counts.size() / kPartsPerScan);
   parallel.for_blocks(counts.size(), blocks_together, [&](std::size_t first, std::size_t last) {
     Block block;
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t begin = i * shots_per_block_;
       block.shots = shots.subspan(begin, std::min(shots_per_block_, shots.size() - begin));
       block.first_ray = first_ray + begin;
-      block.points = points.data() + begin * most;
-      if (truth != nullptr) block.truth = truth->data() + begin * most;
+      block.points = points.data() + begin * max_points;
+      if (truth != nullptr) block.truth = truth->data() + begin * max_points;
       shoot(world, world_from_lidar, block);
       counts[i] = block.count;
     }
   });
-  close_gaps(points, shots_per_block_ * most, counts);
-  if (truth != nullptr) close_gaps(*truth, shots_per_block_ * most, counts);
+  close_gaps(points, shots_per_block_ * max_points, counts);
+  if (truth != nullptr) close_gaps(*truth, shots_per_block_ * max_points, counts);
 }
 
 Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,

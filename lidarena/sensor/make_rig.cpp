@@ -27,8 +27,8 @@ std::string model_name(LidarModel model) {
 std::vector<int> ouster_pixel_shifts(int columns) {
   std::vector<int> shifts;
   for (int row = 0; row < OusterOs0Pattern::kRows; ++row) {
-    const double turn = os0_128_row(row).azimuth_offset / (2.0 * std::numbers::pi);
-    shifts.push_back(static_cast<int>(std::lround(turn * columns)));
+    const double revolutions = os0_128_row(row).azimuth_offset / (2.0 * std::numbers::pi);
+    shifts.push_back(static_cast<int>(std::lround(revolutions * columns)));
   }
   return shifts;
 }

@@ -56,11 +56,11 @@ OusterOs0Pattern::OusterOs0Pattern(int columns, double rate_hz, const std::strin
   }
   beams_.reserve(static_cast<std::size_t>(columns * kRows));
   for (int column = 0; column < columns; ++column) {
-    const double turn = static_cast<double>(column) / columns;
+    const double revolutions = static_cast<double>(column) / columns;
     const auto dt =
-        static_cast<std::int32_t>(std::llround(turn * static_cast<double>(period_.count())));
+        static_cast<std::int32_t>(std::llround(revolutions * static_cast<double>(period_.count())));
     for (int row = 0; row < kRows; ++row) {
-      Beam beam = make_beam(os0_128_row(row), 2.0 * std::numbers::pi * (1.0 - turn));
+      Beam beam = make_beam(os0_128_row(row), 2.0 * std::numbers::pi * (1.0 - revolutions));
       beam.dt_ns = dt;
       beam.ring = static_cast<std::uint16_t>(row);
       beams_.push_back(beam);

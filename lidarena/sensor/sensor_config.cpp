@@ -16,7 +16,7 @@ void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) 
 
 /// Loads the beam table, or makes the path of the ray table absolute, so that the configuration
 /// does not depend on where its file is.
-void take_pattern_file(const std::filesystem::path& file, SensorConfig& sensor) {
+void resolve_pattern_file(const std::filesystem::path& file, SensorConfig& sensor) {
   if (sensor.pattern_file.empty()) return;
   const std::filesystem::path table = file.parent_path() / sensor.pattern_file;
   if (sensor.model == LidarModel::kLivoxCsv) {
@@ -44,7 +44,7 @@ SpinningHead load_spinning_head(const std::filesystem::path& file) {
 
 SensorConfig load_sensor(const std::filesystem::path& file) {
   auto sensor = load_config<SensorConfig>(file);
-  take_pattern_file(file, sensor);
+  resolve_pattern_file(file, sensor);
   if (sensor.name.empty()) sensor.name = file.stem().string();
   if (sensor.min_range_m >= sensor.max_range_m) {
     throw InputError(file.string(), "min_range_m is not below max_range_m");

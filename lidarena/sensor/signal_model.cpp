@@ -79,8 +79,9 @@ double SignalModel::detection_probability(double signal) const {
 double range_sigma(double range_noise_m, const NoiseConfig& noise, double range, double signal) {
   double sigma = range_noise_m;
   if (noise.near_range_noise_m > 0.0) {
-    const double way = (noise.near_until_m - range) / (noise.near_until_m - noise.near_range_m);
-    sigma += (noise.near_range_noise_m - range_noise_m) * std::clamp(way, 0.0, 1.0);
+    const double fraction =
+        (noise.near_until_m - range) / (noise.near_until_m - noise.near_range_m);
+    sigma += (noise.near_range_noise_m - range_noise_m) * std::clamp(fraction, 0.0, 1.0);
   }
   return noise.weak_signal_noise && signal < 1.0 ? sigma / std::sqrt(signal) : sigma;
 }

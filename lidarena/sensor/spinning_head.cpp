@@ -13,13 +13,13 @@ namespace lidarena::sensor {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr int kMostColumns = 100'000;  // fifty times any sensor's; limits memory if mistyped
+constexpr int kMaxColumns = 100'000;  // fifty times any sensor's; limits memory if mistyped
 
-void check(const SpinningHead& table, int columns, double column_us, double turn_us,
+void check(const SpinningHead& table, int columns, double column_us, double revolution_us,
            const std::string& name) {
   if (table.beams.empty()) throw InputError(name, "the beam table has no beams");
   if (columns < 1) throw InputError(name, "columns is not positive", "set columns");
-  if (columns > kMostColumns) throw InputError(name, "there are too many columns per revolution");
+  if (columns > kMaxColumns) throw InputError(name, "there are too many columns per revolution");
   for (std::size_t ring = 0; ring < table.beams.size(); ++ring) {
     const std::string beam = "beam " + std::to_string(ring) + " of the table ";
     if (std::isnan(table.beams[ring].elevation_deg)) {
@@ -30,7 +30,7 @@ void check(const SpinningHead& table, int columns, double column_us, double turn
                        "keep dt_us below the column period");
     }
   }
-  if (column_us * columns > turn_us * (1.0 + 1e-9)) {
+  if (column_us * columns > revolution_us * (1.0 + 1e-9)) {
     throw InputError(name, "the columns take longer than a revolution",
                      "lower columns, column_period_us or rate_hz");
   }
@@ -47,7 +47,7 @@ std::vector<std::size_t> firing_order(const SpinningHead& table) {
 }
 
 /// The beam while the head's azimuth is `head`, rad.
-Beam turned(const HeadBeam& row, double head) {
+Beam beam_at(const HeadBeam& row, double head) {
   const double azimuth = head + row.azimuth_offset_deg * kDegree;
   const double elevation = row.elevation_deg * kDegree;
   Beam beam;
@@ -63,18 +63,18 @@ Beam turned(const HeadBeam& row, double head) {
 SpinningHeadPattern::SpinningHeadPattern(const SpinningHead& table, int columns, double rate_hz,
                                          const std::string& name)
     : period_(from_seconds(1.0 / rate_hz)) {
-  const double turn_us = 1e6 / rate_hz;
+  const double revolution_us = 1e6 / rate_hz;
   const double column_us =
-      table.column_period_us > 0.0 ? table.column_period_us : turn_us / std::max(columns, 1);
-  check(table, columns, column_us, turn_us, name);
-  const double sense = table.clockwise ? -1.0 : 1.0;
+      table.column_period_us > 0.0 ? table.column_period_us : revolution_us / std::max(columns, 1);
+  check(table, columns, column_us, revolution_us, name);
+  const double sign = table.clockwise ? -1.0 : 1.0;
   const std::vector<std::size_t> rings = firing_order(table);
   beams_.reserve(static_cast<std::size_t>(columns) * rings.size());
   for (int column = 0; column < columns; ++column) {
     for (const std::size_t ring : rings) {
       const double us = column * column_us + table.beams[ring].dt_us;
-      const double turn = 2.0 * std::numbers::pi * us / turn_us;
-      Beam beam = turned(table.beams[ring], table.start_azimuth_deg * kDegree + sense * turn);
+      const double angle = 2.0 * std::numbers::pi * us / revolution_us;
+      Beam beam = beam_at(table.beams[ring], table.start_azimuth_deg * kDegree + sign * angle);
       beam.dt_ns = static_cast<std::int32_t>(std::llround(1e3 * us));
       beam.ring = static_cast<std::uint16_t>(ring);
       beams_.push_back(beam);

@@ -28,15 +28,15 @@ StepFlight::StepFlight(const std::array<StampedPose, 3>& poses)
   const Pose& last = poses[2].world_from_body;
   const double before = to_seconds(poses[1].stamp - poses[0].stamp);
   const double after = to_seconds(poses[2].stamp - poses[1].stamp);
-  const Parabola way(before, first.translation() - middle_.translation(), after,
-                     last.translation() - middle_.translation());
-  velocity_ = way.first;
-  acceleration_ = way.second;
+  const Parabola position_fit(before, first.translation() - middle_.translation(), after,
+                              last.translation() - middle_.translation());
+  velocity_ = position_fit.first;
+  acceleration_ = position_fit.second;
   const Eigen::Matrix3d to_middle = middle_.linear().transpose();
-  const Parabola turn(before, so3::log(to_middle * first.linear()), after,
-                      so3::log(to_middle * last.linear()));
-  rate_ = turn.first;
-  angular_acceleration_ = turn.second;
+  const Parabola rotation_fit(before, so3::log(to_middle * first.linear()), after,
+                              so3::log(to_middle * last.linear()));
+  rate_ = rotation_fit.first;
+  angular_acceleration_ = rotation_fit.second;
 }
 
 flight::Motion StepFlight::at(Time t) const {

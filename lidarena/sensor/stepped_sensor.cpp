@@ -81,8 +81,8 @@ void SteppedSensor::cast(const world::Surfaces& world, const StampedPose& pose) 
 /// Casts all shots of the scan from the pose at the stamp.
 void SteppedSensor::cast_frozen(const world::Surfaces& world, const PoseAt& world_from_lidar) {
   const Pose frozen = world_from_lidar(0);
-  const PoseAt stands_still = [&](std::int32_t) { return frozen; };
-  lidar_.measure_part(world, stands_still, shots_, index_ * shots_.size(), scan_.points);
+  const PoseAt constant_pose = [&](std::int32_t) { return frozen; };
+  lidar_.measure_part(world, constant_pose, shots_, index_ * shots_.size(), scan_.points);
   rays_ += shots_.size();
 }
 

@@ -15,25 +15,25 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Time kLook = std::chrono::minutes(1);  // only the first minute is searched
+constexpr Time kSearchDuration = std::chrono::minutes(1);  // only the first minute is searched
 
 /// Rotation of the body during the scan, rad.
-double turn_within(const Scan& scan, const Trajectory& truth) {
+double rotation_during(const Scan& scan, const Trajectory& truth) {
   const auto begin = truth.at(scan.stamp), end = truth.at(end_of(scan));
   if (!begin || !end) return 0.0;
   return so3::angle(begin->linear().transpose() * end->linear());
 }
 
-Scan fastest_turning_scan(dataset::EventSource& events, const std::string& lidar_id,
-                          const Trajectory& truth) {
+Scan scan_with_most_rotation(dataset::EventSource& events, const std::string& lidar_id,
+                             const Trajectory& truth) {
   Scan fastest;
-  double most = -1.0;
+  double max_rotation = -1.0;
   while (const std::optional<dataset::Event> event = events.next()) {
     const Scan* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar_id) continue;
-    if (scan->stamp - truth.begin_time() > kLook) break;
-    if (const double turn = turn_within(*scan, truth); turn > most) {
-      most = turn;
+    if (scan->stamp - truth.begin_time() > kSearchDuration) break;
+    if (const double rotation = rotation_during(*scan, truth); rotation > max_rotation) {
+      max_rotation = rotation;
       fastest = *scan;
     }
   }
@@ -42,7 +42,7 @@ Scan fastest_turning_scan(dataset::EventSource& events, const std::string& lidar
 
 /// The scan in the world frame: each point by the pose at its own instant, or all points by the
 /// pose at the scan's stamp if `skewed`.
-dataset::Cloud laid(const Scan& scan, evaluation::LidarPoses poses, bool skewed) {
+dataset::Cloud scan_in_world(const Scan& scan, evaluation::LidarPoses poses, bool skewed) {
   dataset::Cloud cloud;
   for (const Point& point : scan.points) {
     const Pose* world_from_lidar = poses.at(skewed ? scan.stamp : time_of(scan, point));
@@ -64,10 +64,10 @@ void write_example_scans(const fs::path& dataset, const Parallel& parallel) {
     dataset::ReadOptions read;
     read.sensor = lidar.id;
     const dataset::Dataset scored = open_scored_returns(dataset, read, parallel);
-    const Scan scan = fastest_turning_scan(*scored.events, lidar.id, *truth);
+    const Scan scan = scan_with_most_rotation(*scored.events, lidar.id, *truth);
     for (const bool skewed : {false, true}) {
       dataset::Cloud cloud =
-          laid(scan, evaluation::LidarPoses(*truth, lidar.body_from_lidar), skewed);
+          scan_in_world(scan, evaluation::LidarPoses(*truth, lidar.body_from_lidar), skewed);
       evaluation::map_error(cloud.points, Pose::Identity(), world, parallel, &cloud.distance);
       dataset::write_ply(dataset / (lidar.id + (skewed ? "_scan_skewed.ply" : "_scan.ply")), cloud);
     }

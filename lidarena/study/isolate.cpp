@@ -27,7 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr auto kPollPeriod = std::chrono::milliseconds(20);
-constexpr auto kLookPeriod = std::chrono::milliseconds(250);  // reads all of /proc, hence rarely
+constexpr auto kUsagePeriod = std::chrono::milliseconds(250);  // reads all of /proc, hence rarely
 
 [[noreturn]] void child(const std::function<void()>& work, int reason_fd) {
   std::string reason;
@@ -102,13 +102,13 @@ Usage usage_of_group(int group) {
   return usage;
 }
 
-std::string reason_of_end(int status, const std::string& said) {
+std::string reason_of_end(int status, const std::string& end_message) {
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     return fmt::format("killed by signal {} ({}{})", signal, strsignal(signal),
                        signal == SIGKILL ? ", perhaps out of memory" : "");
   }
-  return said.empty() ? fmt::format("exit code {}", WEXITSTATUS(status)) : said;
+  return end_message.empty() ? fmt::format("exit code {}", WEXITSTATUS(status)) : end_message;
 }
 
 }  // namespace
@@ -155,15 +155,15 @@ void IsolatedWork::read_reason() {
 }
 
 /// A message naming the limit that the work has exceeded; empty if none.
-std::string IsolatedWork::beyond_limits() {
+std::string IsolatedWork::exceeded_limit() {
   const auto now = Clock::now();
   const double seconds = std::chrono::duration<double>(now - begin_).count();
   if (limits_.seconds > 0 && seconds > limits_.seconds) {
     return fmt::format("stopped: not finished within its time limit of {:.0f} s", limits_.seconds);
   }
   if (limits_.memory_mb <= 0 && limits_.stall_seconds <= 0) return {};
-  if (now - last_look_ < kLookPeriod) return {};
-  last_look_ = now;
+  if (now - last_usage_check_ < kUsagePeriod) return {};
+  last_usage_check_ = now;
   const Usage usage = usage_of_group(pid_);
   if (limits_.memory_mb > 0 && usage.resident_mb > limits_.memory_mb) {
     return fmt::format("stopped: it used {:.0f} MB, more than its limit of {:.0f} MB",
@@ -192,7 +192,7 @@ std::optional<IsolatedOutcome> IsolatedWork::poll() {
     if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return IsolatedOutcome{true, ""};
     return IsolatedOutcome{false, reason_of_end(status, reason_)};
   }
-  const std::string passed = beyond_limits();
+  const std::string passed = exceeded_limit();
   if (passed.empty()) return std::nullopt;
   kill(-pid_, SIGKILL);
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {

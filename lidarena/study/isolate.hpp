@@ -42,7 +42,7 @@ class IsolatedWork {
   using Clock = std::chrono::steady_clock;
 
   void read_reason();
-  std::string beyond_limits();
+  std::string exceeded_limit();
 
   int pid_ = -1;
   int reason_fd_ = -1;
@@ -51,7 +51,7 @@ class IsolatedWork {
   std::string reason_;
   double busy_s_ = 0.0;  ///< processor time when it was last seen to advance
   Clock::time_point last_busy_ = begin_;
-  Clock::time_point last_look_ = begin_;
+  Clock::time_point last_usage_check_ = begin_;
 };
 
 /// Runs `work` in a separate process and waits until it ends.

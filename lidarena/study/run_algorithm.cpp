@@ -18,20 +18,20 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kScoredPoints = 400'000;  // enough for a picture 2,000 pixels wide
 
-std::string chosen_lidar(const dataset::Dataset& dataset, const std::string& asked) {
-  if (const LidarInfo* lidar = dataset.rig.find_lidar(asked)) return lidar->id;
+std::string chosen_lidar(const dataset::Dataset& dataset, const std::string& requested) {
+  if (const LidarInfo* lidar = dataset.rig.find_lidar(requested)) return lidar->id;
   std::vector<std::string> ids;
   std::string list;
   for (const LidarInfo& lidar : dataset.rig.lidars) {
     ids.push_back(lidar.id);
     list += (list.empty() ? "" : ", ") + lidar.id;
   }
-  if (asked.empty()) {
+  if (requested.empty()) {
     throw InputError(dataset.path.string(), "has several LiDARs",
                      "choose one with --sensor: " + list);
   }
-  const std::string nearest = nearest_word(asked, ids);
-  throw InputError(dataset.path.string(), "has no LiDAR named '" + asked + "'",
+  const std::string nearest = nearest_word(requested, ids);
+  throw InputError(dataset.path.string(), "has no LiDAR named '" + requested + "'",
                    nearest.empty() ? "it has: " + list : "did you mean '" + nearest + "'?");
 }
 

@@ -70,7 +70,7 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-std::string filled_in(std::string command, const std::string& key, const std::string& value) {
+std::string substitute(std::string command, const std::string& key, const std::string& value) {
   for (std::size_t at = command.find(key); at != std::string::npos;
        at = command.find(key, at + value.size())) {
     command.replace(at, key.size(), value);
@@ -151,10 +151,10 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   log.info("recording for " + program.name);
   const Recording recording = record(program, request, input, parallel);
   std::string command = program.command;
-  command = filled_in(command, "{input}", quoted(fs::absolute(recording.path).string()));
-  command = filled_in(command, "{output}", quoted(fs::absolute(output).string()));
-  command = filled_in(command, "{sensor}", quoted(recording.rig.lidars[0].id));
-  command = filled_in(command, "{threads}", std::to_string(parallel.threads()));
+  command = substitute(command, "{input}", quoted(fs::absolute(recording.path).string()));
+  command = substitute(command, "{output}", quoted(fs::absolute(output).string()));
+  command = substitute(command, "{sensor}", quoted(recording.rig.lidars[0].id));
+  command = substitute(command, "{threads}", std::to_string(parallel.threads()));
   log.info("running " + program.name);
   const Usage used = run_command(program.name, command, out / kProgramLog);
   fs::remove_all(input);

@@ -54,9 +54,9 @@ std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& fligh
 }
 
 /// An event source that owns the scene it simulates.
-class FlownSource : public dataset::EventSource {
+class SimulatedSource : public dataset::EventSource {
  public:
-  FlownSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
+  SimulatedSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
       : scene_(std::move(scene)),
         events_(sensor::simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
                                  parallel)) {}
@@ -94,17 +94,17 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
 /// Writes only the truth of the scored returns.
 class ScoredTruthWriter : public dataset::ScanTruthSink {
  public:
-  ScoredTruthWriter(dataset::ScanTruthSink& writer, std::size_t most)
-      : writer_(writer), most_(most) {}
+  ScoredTruthWriter(dataset::ScanTruthSink& writer, std::size_t max_returns)
+      : writer_(writer), max_returns_(max_returns) {}
   void write(const dataset::ScanTruth& truth) override {
     dataset::ScanTruth scored = truth;
-    evaluation::keep_scored(scored.points, most_);
+    evaluation::keep_scored(scored.points, max_returns_);
     writer_.write(scored);
   }
 
  private:
   dataset::ScanTruthSink& writer_;
-  std::size_t most_;
+  std::size_t max_returns_;
 };
 
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
@@ -120,14 +120,14 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
   std::size_t scans = 0;
   for (const LidarInfo& lidar : sensor::make_rig(scene.sensors).lidars)
     scans = std::max(scans, scene.scan_count(lidar));
-  const std::size_t most = evaluation::scored_returns(scans);
-  ScoredTruthWriter scored_writer(writer, most);
+  const std::size_t max_returns = evaluation::scored_returns(scans);
+  ScoredTruthWriter scored_writer(writer, max_returns);
   dataset::ScanTruthSink* sink = &writer;
   if (request.scored_only) sink = &scored_writer;
   options.truth = request.truth ? sink : nullptr;
   auto events = sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
   if (request.scored_only)
-    events = std::make_unique<evaluation::ScoredEvents>(std::move(events), most);
+    events = std::make_unique<evaluation::ScoredEvents>(std::move(events), max_returns);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -195,12 +195,12 @@ double path_length(const Scene& scene) {
 }
 
 /// What the LiDAR `sensor` hits, found by simulating the flight again.
-class FlownTruth : public dataset::ScanTruthSource, private dataset::ScanTruthSink {
+class SimulatedTruth : public dataset::ScanTruthSource, private dataset::ScanTruthSink {
  public:
-  FlownTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
+  SimulatedTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
       : sensor_(std::move(sensor)) {
     scene->options.truth = this;
-    events_ = std::make_unique<FlownSource>(std::move(scene), parallel);
+    events_ = std::make_unique<SimulatedSource>(std::move(scene), parallel);
   }
   std::optional<dataset::ScanTruth> next() override {
     while (waiting_.empty() && events_->next()) {
@@ -243,7 +243,7 @@ std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& man
 }
 
 /// The manifest of a dataset without measurements, which has to be simulated; null for any other.
-Json manifest_to_fly(const fs::path& folder) {
+Json manifest_to_simulate(const fs::path& folder) {
   const fs::path file = folder / "manifest.json";
   if (!fs::exists(file) || dataset::has_measurements(folder)) return nullptr;
   Json manifest = dataset::read_json(file);
@@ -251,8 +251,8 @@ Json manifest_to_fly(const fs::path& folder) {
 }
 
 /// Opens a dataset without measurements; its events are simulated.
-dataset::Dataset fly_manifest(const fs::path& folder, const Json& manifest,
-                              const std::string& sensor, const Parallel& parallel) {
+dataset::Dataset open_simulated(const fs::path& folder, const Json& manifest,
+                                const std::string& sensor, const Parallel& parallel) {
   std::unique_ptr<Scene> scene = scene_of_manifest(folder, manifest);
   dataset::Dataset dataset;
   dataset.path = folder;
@@ -260,12 +260,12 @@ dataset::Dataset fly_manifest(const fs::path& folder, const Json& manifest,
   dataset.manifest = manifest;
   if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor))
     dataset.scan_count = scene->scan_count(*lidar);
-  dataset.events = std::make_unique<FlownSource>(std::move(scene), parallel);
+  dataset.events = std::make_unique<SimulatedSource>(std::move(scene), parallel);
   return dataset;
 }
 
 /// Where the scored returns of a dataset are: in its folder `scored`, else in the dataset itself.
-fs::path scored_place(const fs::path& dataset) {
+fs::path scored_folder(const fs::path& dataset) {
   const fs::path folder = dataset / kScoredFolder;
   return fs::exists(folder / "manifest.json") ? folder : dataset;
 }
@@ -313,9 +313,9 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
 
 dataset::Dataset open_any_dataset(const fs::path& path, const dataset::ReadOptions& options,
                                   const Parallel& parallel) {
-  const Json manifest = manifest_to_fly(path);
+  const Json manifest = manifest_to_simulate(path);
   return manifest.is_null() ? dataset::open_dataset(path, options)
-                            : fly_manifest(path, manifest, options.sensor, parallel);
+                            : open_simulated(path, manifest, options.sensor, parallel);
 }
 
 void write_scored_returns(const SimulateRequest& request, const fs::path& dataset,
@@ -328,23 +328,23 @@ void write_scored_returns(const SimulateRequest& request, const fs::path& datase
 
 dataset::Dataset open_scored_returns(const fs::path& dataset, const dataset::ReadOptions& options,
                                      const Parallel& parallel) {
-  const fs::path place = scored_place(dataset);
+  const fs::path place = scored_folder(dataset);
   dataset::Dataset scored = open_any_dataset(place, options, parallel);
   if (place != dataset) return scored;  // that folder holds scored returns only
-  const std::size_t most = evaluation::scored_returns(scored.scan_count.value_or(0));
-  scored.events = std::make_unique<evaluation::ScoredEvents>(std::move(scored.events), most);
+  const std::size_t max_returns = evaluation::scored_returns(scored.scan_count.value_or(0));
+  scored.events = std::make_unique<evaluation::ScoredEvents>(std::move(scored.events), max_returns);
   return scored;
 }
 
 std::unique_ptr<dataset::ScanTruthSource> open_scored_truth(const fs::path& dataset,
                                                             const std::string& sensor,
                                                             const Parallel& parallel) {
-  const fs::path place = scored_place(dataset);
-  const Json manifest = manifest_to_fly(place);
+  const fs::path place = scored_folder(dataset);
+  const Json manifest = manifest_to_simulate(place);
   std::unique_ptr<dataset::ScanTruthSource> truth =
       manifest.is_null()
           ? dataset::open_scan_truth(place, sensor)
-          : std::make_unique<FlownTruth>(sensor, scene_of_manifest(place, manifest), parallel);
+          : std::make_unique<SimulatedTruth>(sensor, scene_of_manifest(place, manifest), parallel);
   if (!truth || place != dataset) return truth;
   dataset::ReadOptions options;
   options.sensor = sensor;

@@ -38,7 +38,7 @@ constexpr auto kPollPeriod = std::chrono::milliseconds(50);
 std::string digest_of(const fs::path& file) { return dataset::md5_of(dataset::read_bytes(file)); }
 
 /// True if the stage in `folder` is complete and answers exactly this request.
-bool done_before(const fs::path& folder, const Json& request) {
+bool is_complete(const fs::path& folder, const Json& request) {
   if (!fs::exists(folder / kRequest)) return false;
   try {
     return dataset::read_json(folder / kRequest) == request;
@@ -140,8 +140,8 @@ void record_failure(const fs::path& run, const PlannedRun& cell, const std::stri
 /// scoring a cell.
 struct Stage {
   std::string name;
-  const PlannedRun* cell = nullptr;  ///< null for a flight or its returns
-  bool for_runs_alone = false;       ///< skipped once all cells of the dataset are done
+  const PlannedRun* cell = nullptr;   ///< null for a flight or its returns
+  bool needed_by_cells_only = false;  ///< skipped once all cells of the dataset are done
   std::string dataset;
   fs::path folder;
   Json key;
@@ -175,7 +175,7 @@ class Runner {
     while (!waiting_.empty() || is_busy()) {
       for (Slot& slot : slots_) {
         if (!slot.work) start_next(slot);
-        if (slot.work) look_after(slot);
+        if (slot.work) poll_slot(slot);
       }
       show_progress();
       if (is_busy()) std::this_thread::sleep_for(kPollPeriod);
@@ -224,7 +224,7 @@ class Runner {
     Stage stage;
     stage.name = "returns " + cell.dataset;
     stage.dataset = cell.dataset;
-    stage.for_runs_alone = true;
+    stage.needed_by_cells_only = true;
     stage.folder = out_ / "datasets" / cell.dataset / kScoredFolder;
     stage.key = planned.key;
     stage.work = [request = planned.request, dataset = stage.folder.parent_path()](
@@ -268,21 +268,21 @@ class Runner {
     return std::ranges::any_of(slots_, [](const Slot& slot) { return slot.work != nullptr; });
   }
 
-  bool is_being_flown(const std::string& dataset) const {
+  bool is_being_prepared(const std::string& dataset) const {
     return std::ranges::any_of(slots_, [&](const Slot& slot) {
       return slot.work && slot.stage.cell == nullptr && slot.stage.dataset == dataset;
     });
   }
 
   /// Whether a cell of the dataset is waiting that is not complete.
-  bool has_cells_left(const std::string& dataset) const {
+  bool has_pending_cells(const std::string& dataset) const {
     return std::ranges::any_of(waiting_, [&](const Stage& stage) {
       return stage.cell != nullptr && stage.dataset == dataset &&
-             !done_before(stage.folder, stage.key);
+             !is_complete(stage.folder, stage.key);
     });
   }
 
-  bool is_worked_at(const std::string& dataset) const {
+  bool is_in_progress(const std::string& dataset) const {
     return std::ranges::any_of(slots_, [&](const Slot& slot) {
       return slot.work != nullptr && slot.stage.dataset == dataset;
     });
@@ -292,16 +292,16 @@ class Runner {
   void start_next(Slot& slot) {
     while (true) {
       const auto next = std::ranges::find_if(
-          waiting_, [&](const Stage& stage) { return !is_being_flown(stage.dataset); });
+          waiting_, [&](const Stage& stage) { return !is_being_prepared(stage.dataset); });
       if (next == waiting_.end()) return;
       slot.stage = std::move(*next);
       waiting_.erase(next);
       const Stage& stage = slot.stage;
-      if (broken_.contains(stage.dataset)) {
-        finish(stage, broken_[stage.dataset]);
-      } else if (stage.for_runs_alone && !has_cells_left(stage.dataset)) {
+      if (failed_flights_.contains(stage.dataset)) {
+        finish(stage, failed_flights_[stage.dataset]);
+      } else if (stage.needed_by_cells_only && !has_pending_cells(stage.dataset)) {
         finish(stage, {});
-      } else if (done_before(stage.folder, stage.key)) {
+      } else if (is_complete(stage.folder, stage.key)) {
         outcome_.reused += stage.cell != nullptr ? 1 : 0;
         weight_of_all_ -= stage.weight;  // its time says nothing about the others
         finish(stage, {});
@@ -329,15 +329,15 @@ class Runner {
         limits, slot.cores);
   }
 
-  void look_after(Slot& slot) {
+  void poll_slot(Slot& slot) {
     const auto outcome = slot.work->poll();
     if (!outcome) return;
     slot.work.reset();
     finish(slot.stage, outcome->reason);
-    if (slot.stage.cell != nullptr) tell_time_left();
+    if (slot.stage.cell != nullptr) log_time_left();
   }
 
-  void tell_time_left() {
+  void log_time_left() {
     const double done = weight_of_all_ - weight_left_;
     if (done <= 0.0 || outcome_.runs == cells_) return;
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begin_;
@@ -348,17 +348,17 @@ class Runner {
   void finish(const Stage& stage, const std::string& reason) {
     weight_left_ -= stage.weight;
     if (stage.cell == nullptr) {
-      if (!reason.empty() && stage.for_runs_alone) {
+      if (!reason.empty() && stage.needed_by_cells_only) {
         log_.warn(
             fmt::format("{} failed ({}): simulating again for each scoring", stage.name, reason));
         fs::remove_all(stage.folder);
       } else if (!reason.empty()) {
-        broken_[stage.dataset] = "flight: " + reason;
+        failed_flights_[stage.dataset] = "flight: " + reason;
       }
       return;
     }
     ++outcome_.runs;
-    if (!is_worked_at(stage.dataset) && !has_cells_left(stage.dataset)) {
+    if (!is_in_progress(stage.dataset) && !has_pending_cells(stage.dataset)) {
       fs::remove_all(out_ / "datasets" / stage.dataset / kScoredFolder);
     }
     if (!reason.empty()) {
@@ -384,7 +384,7 @@ class Runner {
   LogSink& log_;
   std::vector<Slot> slots_;
   std::vector<Stage> waiting_;
-  std::map<std::string, std::string> broken_;  ///< datasets whose flight failed, and why
+  std::map<std::string, std::string> failed_flights_;  ///< datasets whose flight failed, and why
   double weight_of_all_ = 0.0, weight_left_ = 0.0;
   std::size_t cells_ = 0;
   std::chrono::steady_clock::time_point begin_;
@@ -395,7 +395,7 @@ class Runner {
 
 StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const fs::path& out,
                        const StudyOptions& options, LogSink& log) {
-  const std::vector<PlannedRun> cells = cells_of(plan(spec, configs), options.shard, configs);
+  const std::vector<PlannedRun> cells = cells_of_shard(plan(spec, configs), options.shard, configs);
   fs::create_directories(out);
   const FolderLock lock(out);
   dataset::write_json(out / "study.json",

@@ -89,9 +89,9 @@ void check_names_differ(const std::vector<PlannedRun>& cells) {
   std::vector<std::string> names;
   for (const PlannedRun& cell : cells) names.push_back(cell.name);
   std::ranges::sort(names);
-  const auto twice = std::ranges::adjacent_find(names);
-  if (twice != names.end()) {
-    throw InputError("study", "plans two runs called " + *twice,
+  const auto duplicate = std::ranges::adjacent_find(names);
+  if (duplicate != names.end()) {
+    throw InputError("study", "plans two runs called " + *duplicate,
                      "scenes, sensors, algorithms and seeds need names that differ");
   }
 }
@@ -144,10 +144,10 @@ Shard parse_shard(const std::string& text) {
     return error == std::errc{} && end == digits.data() + digits.size();
   };
   const std::string_view all = text;
-  const bool fits = slash != std::string::npos && number(all.substr(0, slash), shard.part) &&
-                    number(all.substr(slash + 1), shard.of) && 1 <= shard.part &&
-                    shard.part <= shard.of;
-  if (!fits)
+  const bool is_valid = slash != std::string::npos && number(all.substr(0, slash), shard.part) &&
+                        number(all.substr(slash + 1), shard.of) && 1 <= shard.part &&
+                        shard.part <= shard.of;
+  if (!is_valid)
     throw InputError("--shard " + text, "is not a part of a study", "write K/N, from 1/N to N/N");
   return shard;
 }
@@ -172,8 +172,8 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
           kMegabytesOfRun, kMapMegabytesOfFlightSecond * seconds + kMapMegabytesOfShot * shots};
 }
 
-std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
-                                 const ConfigFolder& configs) {
+std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,
+                                       const ConfigFolder& configs) {
   std::vector<double> middles;  // of each cell, in seconds since the study's start
   double end = 0.0;
   for (const PlannedRun& cell : cells) {

@@ -140,7 +140,7 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 
 /// The cells of a part: consecutive ones, so that few flights are simulated by two parts, and as
 /// many as take about an N-th of the expected time.
-std::vector<PlannedRun> cells_of(const std::vector<PlannedRun>& cells, const Shard& shard,
-                                 const ConfigFolder& configs);
+std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,
+                                       const ConfigFolder& configs);
 
 }  // namespace lidarena::study

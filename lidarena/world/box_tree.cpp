@@ -77,7 +77,7 @@ class Builder {
     const std::span<std::uint32_t> members(order_.data() + first, count);
     AlignedBox3f middles;
     for (const std::uint32_t i : members) middles.extend(Vector3f(boxes_[i].center()));
-    const Cut cut = depth < BoxTree::kCheapestDepth ? cheapest_cut(members, middles) : Cut{};
+    const Cut cut = depth < BoxTree::kSahDepth ? cheapest_cut(members, middles) : Cut{};
     const std::uint32_t left =
         std::isfinite(cut.cost) ? divide(members, middles, cut) : halve(members, middles);
     nodes_[node].first = static_cast<std::uint32_t>(nodes_.size());

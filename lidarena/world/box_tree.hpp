@@ -58,10 +58,11 @@ class BoxTree {
   /// Updates the boxes of the nodes after members have moved; the structure of the tree is kept.
   void refit(std::span<const Eigen::AlignedBox3f> boxes);
 
-  /// Calls `meet(member)` for every member of a leaf whose box the ray enters between the ranges
-  /// `near` and `far`, roughly in order of range. `meet` may reduce `far` to end the search sooner.
-  template <typename Meet>
-  void walk(const BoxTest& ray, double near, const double& far, const Meet& meet) const {
+  /// Calls `on_hit(member)` for every member of a leaf whose box the ray enters between the ranges
+  /// `near` and `far`, roughly in order of range. `on_hit` may reduce `far` to end the search
+  /// sooner.
+  template <typename OnHit>
+  void walk(const BoxTest& ray, double near, const double& far, const OnHit& on_hit) const {
     Stack stack;
     stack.push(nodes_.data(), ray.entry(nodes_[0].box, near, far));
     while (!stack.empty()) {
@@ -73,7 +74,7 @@ class BoxTree {
                         child + 1, ray.entry(child[1].box, near, far));
         continue;
       }
-      for (std::uint32_t i = node->first; i < node->first + node->count; ++i) meet(members_[i]);
+      for (std::uint32_t i = node->first; i < node->first + node->count; ++i) on_hit(members_[i]);
     }
   }
 
@@ -102,8 +103,8 @@ class BoxTree {
 
   /// Down to this depth nodes are split by the surface area heuristic; deeper ones are split into
   /// halves of equal count, which bounds the depth of the tree.
-  static constexpr std::size_t kCheapestDepth = 48;
-  static constexpr std::size_t kMostDepth = kCheapestDepth + 32;
+  static constexpr std::size_t kSahDepth = 48;
+  static constexpr std::size_t kMaxDepth = kSahDepth + 32;
 
  private:
   /// Nodes still to be visited, each with the distance to its box.
@@ -123,7 +124,7 @@ class BoxTree {
     }
 
    private:
-    std::array<std::pair<const Node*, double>, kMostDepth + 2> entries_;
+    std::array<std::pair<const Node*, double>, kMaxDepth + 2> entries_;
     std::size_t size_ = 0;
   };
 

@@ -86,10 +86,10 @@ Bvh::Bvh(const TriangleMesh& mesh)
       center_(mesh.bounds().center()),
       tree_(triangle_boxes(mesh, center_, box_margin(mesh.bounds()))) {}
 
-/// Calls `meet(triangle, range)` for every triangle that the ray hits between the ranges `near` and
-/// `far`, roughly in order of range. `meet` may reduce `far` to end the search sooner.
-template <typename Meet>
-void Bvh::walk(const Ray& ray, double near, double& far, const Meet& meet) const {
+/// Calls `on_hit(triangle, range)` for every triangle that the ray hits between the ranges `near`
+/// and `far`, roughly in order of range. `on_hit` may reduce `far` to end the search sooner.
+template <typename OnHit>
+void Bvh::walk(const Ray& ray, double near, double& far, const OnHit& on_hit) const {
   if (!can_hit(ray)) return;
   const Vector3d direction = ray.direction.cast<double>();
   const TriangleTest triangles(ray.origin, direction);
@@ -97,7 +97,7 @@ void Bvh::walk(const Ray& ray, double near, double& far, const Meet& meet) const
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
     const double range = triangles.range(v[a], v[b], v[c]);
-    if (range >= near && range <= far) meet(triangle, range);
+    if (range >= near && range <= far) on_hit(triangle, range);
   });
 }
 

@@ -31,8 +31,8 @@ class Bvh : public MeshTree {
   std::pair<double, std::uint32_t> first_hit(const Ray& ray, double max_range) const;
 
  private:
-  template <typename Meet>
-  void walk(const Ray& ray, double near, double& far, const Meet& meet) const;
+  template <typename OnHit>
+  void walk(const Ray& ray, double near, double& far, const OnHit& on_hit) const;
 
   const TriangleMesh& mesh_;
   Eigen::Vector3d center_;

@@ -10,9 +10,9 @@ using Eigen::Vector3d;
 
 namespace {
 
-constexpr std::size_t kGroup = 48;           // maximum number of points in a group
-constexpr std::size_t kWorthwhile = 4;       // smaller groups are searched point by point
-constexpr std::size_t kMostTriangles = 160;  // above this number, one search per point is faster
+constexpr std::size_t kMaxGroup = 48;       // maximum number of points in a group
+constexpr std::size_t kMinGroup = 4;        // smaller groups are searched point by point
+constexpr std::size_t kMaxTriangles = 160;  // above this number, one search per point is faster
 
 /// Number of points from the front of the list that fit into a box of edge `size` (m). A point that
 /// is not finite forms a group of its own.
@@ -20,7 +20,7 @@ std::size_t group_length(std::span<const Vector3d> points, double size) {
   if (!points.front().allFinite()) return 1;
   Eigen::AlignedBox3d box(points.front());
   std::size_t length = 1;
-  for (; length < std::min(points.size(), kGroup); ++length) {
+  for (; length < std::min(points.size(), kMaxGroup); ++length) {
     if (!points[length].allFinite()) break;
     box.extend(points[length]);
     if (box.sizes().maxCoeff() > size) break;
@@ -37,16 +37,16 @@ double rounding_at(const Vector3d& center, double radius) {
 
 }  // namespace
 
-void GroupSearch::run(Points points, Answers out) {
+void GroupSearch::run(Points points, Results out) {
   std::size_t begin = 0;
   while (begin < points.size()) {
     const std::size_t length = group_length(points.subspan(begin), group_size_);
-    together(points.subspan(begin, length), out.subspan(begin, length));
+    search_group(points.subspan(begin, length), out.subspan(begin, length));
     begin += length;
   }
 }
 
-void GroupSearch::one_by_one(Points points, Answers out) {
+void GroupSearch::one_by_one(Points points, Results out) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     out[i] = tree_.nearest(points[i], max_distance_, last_);
     if (out[i].valid()) last_ = out[i].triangle;
@@ -56,8 +56,8 @@ void GroupSearch::one_by_one(Points points, Answers out) {
 /// Let y be the surface point nearest to the group's center. For a point p of the group at distance
 /// u(p) from y, the nearest triangle is at most u(p) from p, hence at most u(p) + |p - center| from
 /// the center.
-void GroupSearch::together(Points points, Answers out) {
-  if (points.size() < kWorthwhile) return one_by_one(points, out);
+void GroupSearch::search_group(Points points, Results out) {
+  if (points.size() < kMinGroup) return one_by_one(points, out);
   Eigen::AlignedBox3d box;
   for (const Vector3d& p : points) box.extend(p);
   const Vector3d center = box.center();
@@ -78,8 +78,8 @@ void GroupSearch::together(Points points, Answers out) {
   const double rounding = rounding_at(center, reach);
   if (!gather(center, reach + rounding)) {
     const std::size_t half = points.size() / 2;
-    together(points.first(half), out.first(half));
-    together(points.subspan(half), out.subspan(half));
+    search_group(points.first(half), out.first(half));
+    search_group(points.subspan(half), out.subspan(half));
     return;
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -88,7 +88,7 @@ void GroupSearch::together(Points points, Answers out) {
 }
 
 bool GroupSearch::gather(const Vector3d& center, double radius) {
-  if (!tree_.within(center, radius, kMostTriangles, found_)) return false;
+  if (!tree_.within(center, radius, kMaxTriangles, found_)) return false;
   std::sort(found_.begin(), found_.end(), [](const NearTriangle& a, const NearTriangle& b) {
     return a.distance < b.distance || (a.distance == b.distance && a.index < b.index);
   });
@@ -107,8 +107,9 @@ ClosestPoint GroupSearch::choose(const Vector3d& point, double offset, double ro
   double best2 = max_distance_ * max_distance_;
   double limit = (max_distance_ + rounding) * (max_distance_ + rounding);
   for (std::size_t i = 0; i < found_.size(); ++i) {
-    const double least = found_[i].distance - offset - rounding;
-    if (least > 0.0 && least * least > limit) break;  // all that follow are farther still
+    const double min_distance = found_[i].distance - offset - rounding;
+    if (min_distance > 0.0 && min_distance * min_distance > limit)
+      break;  // all that follow are farther still
     if (frames_[i].squared_distance(point, limit) > limit) continue;
     const std::uint32_t triangle = found_[i].index;
     const auto& [a, b, c] = mesh_.triangles[triangle];

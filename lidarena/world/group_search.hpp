@@ -43,10 +43,10 @@ class GroupSearch {
 
  private:
   using Points = std::span<const Eigen::Vector3d>;
-  using Answers = std::span<ClosestPoint>;
+  using Results = std::span<ClosestPoint>;
 
-  void one_by_one(Points points, Answers out);
-  void together(Points points, Answers out);
+  void one_by_one(Points points, Results out);
+  void search_group(Points points, Results out);
   bool gather(const Eigen::Vector3d& center, double radius);
   ClosestPoint choose(const Eigen::Vector3d& point, double offset, double rounding) const;
 

@@ -75,13 +75,13 @@ Hit MovingWorld::first_hit(const Ray& ray, double max_range) const {
     const Body& body = bodies_[i];
     const Ray local{body.shape_from_world * ray.origin,
                     (body.shape_from_world.linear() * direction).cast<float>()};
-    Shape::Meeting meeting;
-    if (!body.shape->meet(local, far, meeting)) return;
-    const std::uint32_t number = body.number_of(meeting.triangle);
-    if (meeting.range == far && number > hit.triangle) return;
-    far = meeting.range;
+    Shape::Intersection intersection;
+    if (!body.shape->intersect(local, far, intersection)) return;
+    const std::uint32_t number = body.number_of(intersection.triangle);
+    if (intersection.range == far && number > hit.triangle) return;
+    far = intersection.range;
     hit.triangle = number;
-    normal = body.world_from_shape.linear() * meeting.normal;
+    normal = body.world_from_shape.linear() * intersection.normal;
   });
   if (!hit.valid()) return hit;
   hit.range = static_cast<float>(far);

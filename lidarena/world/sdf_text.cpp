@@ -10,14 +10,14 @@ namespace lidarena::world {
 
 namespace {
 
-constexpr std::array<std::string_view, 16> kUnseen{"actor",    "atmosphere",
-                                                   "audio",    "audio_source",
-                                                   "gui",      "inertial",
-                                                   "light",    "magnetic_field",
-                                                   "material", "physics",
-                                                   "plugin",   "scene",
-                                                   "sensor",   "spherical_coordinates",
-                                                   "state",    "wind"};
+constexpr std::array<std::string_view, 16> kNonGeometric{"actor",    "atmosphere",
+                                                         "audio",    "audio_source",
+                                                         "gui",      "inertial",
+                                                         "light",    "magnetic_field",
+                                                         "material", "physics",
+                                                         "plugin",   "scene",
+                                                         "sensor",   "spherical_coordinates",
+                                                         "state",    "wind"};
 
 struct Tag {
   std::string_view name;  ///< empty for comments and CDATA sections
@@ -66,11 +66,11 @@ std::optional<std::size_t> end_of_element(std::string_view text, const Tag& open
 
 }  // namespace
 
-std::string without_unseen_elements(std::string sdf_text) {
+std::string without_non_geometric_elements(std::string sdf_text) {
   std::size_t at = 0;
   while (const auto tag = next_tag(sdf_text, at)) {
     at = tag->end;
-    if (!tag->opens || std::ranges::find(kUnseen, tag->name) == kUnseen.end()) continue;
+    if (!tag->opens || std::ranges::find(kNonGeometric, tag->name) == kNonGeometric.end()) continue;
     const auto end = end_of_element(sdf_text, *tag);
     if (!end) continue;
     for (std::size_t i = tag->begin; i < *end; ++i) {

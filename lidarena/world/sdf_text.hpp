@@ -9,6 +9,6 @@ namespace lidarena::world {
 /// <material>, <state> and others are overwritten by blanks; line breaks are kept. Strict SDF
 /// readers reject a whole world for a color out of range in one of these; Gazebo Classic does not.
 /// An element that is not closed is kept, so that the parser reports it.
-std::string without_unseen_elements(std::string sdf_text);
+std::string without_non_geometric_elements(std::string sdf_text);
 
 }  // namespace lidarena::world

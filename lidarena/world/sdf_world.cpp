@@ -81,7 +81,7 @@ class SdfLoader {
 
  private:
   sdf::Root parse();
-  void judge(const sdf::Errors& errors);
+  void check_errors(const sdf::Errors& errors);
   void add_world(const sdf::World& world);
   void add_model(const sdf::Model& model, const Pose& world_from_model);
   void add_link(const sdf::Link& link, const Pose& world_from_link, const std::string& name);
@@ -90,7 +90,7 @@ class SdfLoader {
   void add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape, const std::string& name);
   const std::vector<MeshPart>& parts_of(const fs::path& mesh_file);
   Pose resolved(const sdf::SemanticPose& pose, const std::string& name) const;
-  void miss(const std::string& what) { ++missing_[what]; }
+  void add_missing(const std::string& what) { ++missing_[what]; }
   void report_missing();
 
   fs::path file_;
@@ -112,7 +112,7 @@ sdf::Root SdfLoader::parse() {
   const FindFile find = [this](const std::string& uri) -> std::string {
     const auto path = folders_.find(uri, fs::absolute(file_).parent_path());
     if (path) return path->string();
-    if (uri != "model://sun") miss(uri);
+    if (uri != "model://sun") add_missing(uri);
     return {};
   };
   sdf::ParserConfig config;
@@ -120,7 +120,7 @@ sdf::Root SdfLoader::parse() {
   const GlobalFindFile for_nested_includes(find);
   sdf::Console::Instance()->SetQuiet(true);  // its messages are also returned as errors
   sdf::Root root;
-  judge(root.LoadSdfString(without_unseen_elements(text.str()), config));
+  check_errors(root.LoadSdfString(without_non_geometric_elements(text.str()), config));
   if (root.WorldCount() == 0 && root.Model() == nullptr) {
     throw InputError(file_.string(), "contains neither an SDF world nor an SDF model");
   }
@@ -129,7 +129,7 @@ sdf::Root SdfLoader::parse() {
 
 /// Throws (or warns, if `allow_missing`) on errors of sdformat. It omits a model with errors from
 /// the world, so most errors mean that something is missing from the world.
-void SdfLoader::judge(const sdf::Errors& errors) {
+void SdfLoader::check_errors(const sdf::Errors& errors) {
   for (const sdf::Error& error : errors) {
     switch (error.Code()) {
       case sdf::ErrorCode::LINK_INERTIA_INVALID:  // irrelevant to shapes
@@ -216,8 +216,8 @@ void SdfLoader::add_shape(const Shape& shape, const Pose& world_from_link,
     add_mesh(*mesh, placement, name);
   } else if (geometry->Element() && geometry->Element()->GetFirstElement() &&
              geometry->Element()->GetFirstElement()->GetName() != "empty") {
-    miss("the <" + geometry->Element()->GetFirstElement()->GetName() + "> of " + name +
-         " (this kind of shape is not supported)");
+    add_missing("the <" + geometry->Element()->GetFirstElement()->GetName() + "> of " + name +
+                " (this kind of shape is not supported)");
   }
 }
 
@@ -240,7 +240,7 @@ void SdfLoader::add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape,
   const fs::path base =
       defined_in.is_absolute() ? defined_in.parent_path() : fs::absolute(file_).parent_path();
   const auto mesh_file = folders_.find(shape.Uri(), base);
-  if (!mesh_file) return miss(shape.Uri() + " of " + name);
+  if (!mesh_file) return add_missing(shape.Uri() + " of " + name);
   TriangleMesh chosen;
   for (const MeshPart& part : parts_of(*mesh_file)) {
     const bool is_wanted =
@@ -248,7 +248,7 @@ void SdfLoader::add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape,
     if (is_wanted) chosen.append(part.surface);
   }
   if (!shape.Submesh().empty() && chosen.empty()) {
-    return miss("the submesh '" + shape.Submesh() + "' in " + shape.Uri() + " of " + name);
+    return add_missing("the submesh '" + shape.Submesh() + "' in " + shape.Uri() + " of " + name);
   }
   const Eigen::Vector3d scale = to_eigen(shape.Scale());
   Pose placement = world_from_shape;

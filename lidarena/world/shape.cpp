@@ -33,13 +33,13 @@ class Sphere final : public Shape {
   AlignedBox3d bounds() const override {
     return {Vector3d::Constant(-radius_), Vector3d::Constant(radius_)};
   }
-  bool meet(const Ray& ray, double far, Meeting& meeting) const override {
+  bool intersect(const Ray& ray, double far, Intersection& intersection) const override {
     const Vector3d direction = ray.direction.cast<double>();
     const Roots roots(direction.squaredNorm(), direction.dot(ray.origin),
                       ray.origin.squaredNorm() - radius_ * radius_);
     for (const double range : {roots.first, roots.second}) {
       if (!(range >= 0.0 && range <= far)) continue;
-      meeting = {range, (ray.origin + range * direction) / radius_, 0};
+      intersection = {range, (ray.origin + range * direction) / radius_, 0};
       return true;
     }
     return false;
@@ -56,14 +56,14 @@ class Cylinder final : public Shape {
     const Vector3d corner(radius_, radius_, half_);
     return {-corner, corner};
   }
-  bool meet(const Ray& ray, double far, Meeting& meeting) const override {
+  bool intersect(const Ray& ray, double far, Intersection& intersection) const override {
     const Vector3d direction = ray.direction.cast<double>();
     double nearest = far;
     bool met = false;
     const auto take = [&](double range, const Vector3d& normal) {
       if (!(range >= 0.0 && range <= nearest)) return;
       nearest = range;
-      meeting = {range, normal, 0};
+      intersection = {range, normal, 0};
       met = true;
     };
     const auto d = direction.head<2>();
@@ -96,10 +96,10 @@ class Plane final : public Shape {
   AlignedBox3d bounds() const override {
     return {Vector3d(-kInfinity, -kInfinity, 0.0), Vector3d(kInfinity, kInfinity, 0.0)};
   }
-  bool meet(const Ray& ray, double far, Meeting& meeting) const override {
+  bool intersect(const Ray& ray, double far, Intersection& intersection) const override {
     const double range = -ray.origin.z() / static_cast<double>(ray.direction.z());
     if (!(range >= 0.0 && range <= far)) return false;
-    meeting = {range, Vector3d::UnitZ(), 0};
+    intersection = {range, Vector3d::UnitZ(), 0};
     return true;
   }
 };
@@ -108,10 +108,10 @@ class Mesh final : public Shape {
  public:
   explicit Mesh(TriangleMesh mesh) : mesh_(std::move(mesh)) {}
   AlignedBox3d bounds() const override { return mesh_.bounds(); }
-  bool meet(const Ray& ray, double far, Meeting& meeting) const override {
+  bool intersect(const Ray& ray, double far, Intersection& intersection) const override {
     const auto [range, triangle] = tree_.first_hit(ray, far);
     if (triangle == Hit::kNone) return false;
-    meeting = {range, mesh_.cross(triangle).normalized(), triangle};
+    intersection = {range, mesh_.cross(triangle).normalized(), triangle};
     return true;
   }
   const TriangleMesh& mesh() const { return mesh_; }

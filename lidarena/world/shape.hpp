@@ -16,7 +16,7 @@ namespace lidarena::world {
 class Shape {
  public:
   /// First intersection of a ray with the body.
-  struct Meeting {
+  struct Intersection {
     double range = 0.0;                                 ///< m
     Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< unit, of either orientation
     std::uint32_t triangle = 0;                         ///< index in a mesh; otherwise 0
@@ -26,7 +26,7 @@ class Shape {
   /// Bounding box; infinite along the axes along which the shape is infinite.
   virtual Eigen::AlignedBox3d bounds() const = 0;
   /// Returns false when the ray does not intersect the body within `far` meters.
-  virtual bool meet(const Ray& ray, double far, Meeting& meeting) const = 0;
+  virtual bool intersect(const Ray& ray, double far, Intersection& intersection) const = 0;
 };
 
 using ShapePtr = std::shared_ptr<const Shape>;

@@ -103,12 +103,12 @@ void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hit
 
 bool World::visible(const Vector3d& a, const Vector3d& b) const {
   constexpr double kFloatEpsilon = std::numeric_limits<float>::epsilon();
-  const Vector3d way = b - a;
-  const double length = way.norm();
+  const Vector3d offset = b - a;
+  const double length = offset.norm();
   const double reach = std::max((a - impl_->center).lpNorm<Eigen::Infinity>(), length);
   const double slack = 16.0 * kFloatEpsilon * (impl_->half_extent + reach);
   if (length <= 2.0 * slack) return true;
-  return !impl_->tree->occluded({a, (way / length).cast<float>()}, slack, length - slack);
+  return !impl_->tree->occluded({a, (offset / length).cast<float>()}, slack, length - slack);
 }
 
 namespace {

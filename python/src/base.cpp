@@ -54,8 +54,8 @@ Trajectory make_trajectory(const Stamps& stamps, const Matrices& poses) {
 
 /// A strided view of one member of every pose.
 template <class Offset>
-py::array look(const py::object& self, std::vector<py::ssize_t> shape,
-               std::vector<py::ssize_t> strides, const py::dtype& type, Offset offset) {
+py::array strided_view(const py::object& self, std::vector<py::ssize_t> shape,
+                       std::vector<py::ssize_t> strides, const py::dtype& type, Offset offset) {
   const auto poses = self.cast<const Trajectory&>().poses();
   shape.insert(shape.begin(), static_cast<py::ssize_t>(poses.size()));
   strides.insert(strides.begin(), sizeof(StampedPose));
@@ -72,26 +72,26 @@ void bind_trajectory(py::module_& m) {
       .def_property_readonly(
           "stamps",
           [](const py::object& self) {
-            return look(self, {}, {}, py::dtype::of<std::int64_t>(),
-                        [](const StampedPose& p) -> const void* { return &p.stamp; });
+            return strided_view(self, {}, {}, py::dtype::of<std::int64_t>(),
+                                [](const StampedPose& p) -> const void* { return &p.stamp; });
           },
           "(N,) int64, ns; a view")
       .def_property_readonly(
           "poses",
           [=](const py::object& self) {
-            return look(self, {4, 4}, {kDouble, 4 * kDouble}, py::dtype::of<double>(),
-                        [](const StampedPose& p) -> const void* {
-                          return p.world_from_body.matrix().data();
-                        });
+            return strided_view(self, {4, 4}, {kDouble, 4 * kDouble}, py::dtype::of<double>(),
+                                [](const StampedPose& p) -> const void* {
+                                  return p.world_from_body.matrix().data();
+                                });
           },
           "(N, 4, 4) float64, world_from_body; a view")
       .def_property_readonly(
           "positions",
           [=](const py::object& self) {
-            return look(self, {3}, {kDouble}, py::dtype::of<double>(),
-                        [](const StampedPose& p) -> const void* {
-                          return p.world_from_body.matrix().data() + 12;
-                        });
+            return strided_view(self, {3}, {kDouble}, py::dtype::of<double>(),
+                                [](const StampedPose& p) -> const void* {
+                                  return p.world_from_body.matrix().data() + 12;
+                                });
           },
           "(N, 3) float64, m; a view")
       .def(

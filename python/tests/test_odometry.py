@@ -12,7 +12,7 @@ import pytest
 import lidarena
 
 
-class Knowing(lidarena.Odometry):
+class TruthOdometry(lidarena.Odometry):
     """Returns the true poses, which must come out unchanged."""
 
     def __init__(self, flight):
@@ -69,7 +69,7 @@ def test_an_unfinished_dataset_does_not_look_whole(tmp_path, sensor):
 
 
 def test_a_python_odometry_is_run_and_scored(recorded, room, flight):
-    odometry = Knowing(flight)
+    odometry = TruthOdometry(flight)
     result = lidarena.run(odometry, lidarena.open_dataset(recorded))
     assert result.summary["scans"] == len(odometry.scans) == 10
     assert odometry.samples > 150
@@ -110,10 +110,10 @@ def test_our_odometry_follows_the_flight(recorded, flight):
 
 def test_events_may_come_from_any_iterable(recorded, flight):
     events = list(lidarena.open_dataset(recorded))
-    by_list = lidarena.run(Knowing(flight), events)
+    by_list = lidarena.run(TruthOdometry(flight), events)
     assert by_list.summary["scans"] == 10
     with pytest.raises(lidarena.InputError, match="neither a Scan nor an ImuSample"):
-        lidarena.run(Knowing(flight), [("livox_mid360", 5)])
+        lidarena.run(TruthOdometry(flight), [("livox_mid360", 5)])
 
 
 def test_trajectories_are_views_and_survive_files(tmp_path, flight):

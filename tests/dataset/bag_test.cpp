@@ -180,8 +180,8 @@ TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
   const std::string bytes = file_text(file_);
   const std::vector<Copy> whole = sample_messages();
   SequentialRandom random(7);
-  int noticed = 0;
-  int complaints = 0;
+  int detected = 0;
+  int info_errors = 0;
   constexpr int kTrials = 400;
   for (int i = 0; i < kTrials; ++i) {
     std::string damaged = bytes;
@@ -191,18 +191,18 @@ TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
     fs::remove(file_);
     write_file(file_, damaged);
     const Reading reading = read_all(file_);
-    noticed += reading.error.empty() ? 0 : 1;
+    detected += reading.error.empty() ? 0 : 1;
     if (GetParam() == BagCompression::kLz4) {
       ASSERT_TRUE(is_part_of(reading.messages, whole)) << "trial " << i;
     }
     try {
       read_bag_info(file_);
     } catch (const InputError&) {
-      ++complaints;
+      ++info_errors;
     }
   }
-  EXPECT_LT(complaints, noticed);  // only a damaged bag header makes read_bag_info() throw
-  EXPECT_GT(noticed, kTrials / 10);
+  EXPECT_LT(info_errors, detected);  // only a damaged bag header makes read_bag_info() throw
+  EXPECT_GT(detected, kTrials / 10);
 }
 
 INSTANTIATE_TEST_SUITE_P(Compressions, BagFiles,
@@ -213,15 +213,15 @@ INSTANTIATE_TEST_SUITE_P(Compressions, BagFiles,
 
 TEST(Bags, OfOtherKindsAreNamed) {
   const TemporaryFolder folder;
-  const auto complaint = [&](std::string_view bytes) {
+  const auto error_message = [&](std::string_view bytes) {
     const fs::path file = folder.path() / "b.bag";
     fs::remove(file);
     write_file(file, bytes);
     return input_error([&] { BagReader reader(file); });
   };
-  EXPECT_THAT(complaint("#ROSBAG V1.2\nxxxxxxx"), HasSubstr("not of version 2.0"));
-  EXPECT_THAT(complaint("PK\x03\x04 something else"), HasSubstr("is not a ROS 1 bag"));
-  EXPECT_THAT(complaint("#ROSBAG V2.0\n"), HasSubstr("cut off"));
+  EXPECT_THAT(error_message("#ROSBAG V1.2\nxxxxxxx"), HasSubstr("not of version 2.0"));
+  EXPECT_THAT(error_message("PK\x03\x04 something else"), HasSubstr("is not a ROS 1 bag"));
+  EXPECT_THAT(error_message("#ROSBAG V2.0\n"), HasSubstr("cut off"));
   EXPECT_THAT(input_error([&] { BagReader reader(folder.path() / "none.bag"); }),
               HasSubstr("cannot be opened"));
 }
@@ -275,10 +275,10 @@ TEST(Bags, OfADatasetThatWasCutGiveTheEventsBefore) {
   Dataset dataset = open_dataset(file);
   EXPECT_THAT(dataset.notes, testing::Contains(HasSubstr("is cut off after")));
   std::size_t scans = 0;
-  const std::string complaint = input_error([&] {
+  const std::string error_message = input_error([&] {
     while (auto event = dataset.events->next()) scans += std::holds_alternative<Scan>(event->data);
   });
-  EXPECT_THAT(complaint, HasSubstr("is cut off after"));
+  EXPECT_THAT(error_message, HasSubstr("is cut off after"));
   EXPECT_GT(scans, 5U);
   EXPECT_LT(scans, 40U);
 }

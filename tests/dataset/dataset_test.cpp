@@ -20,7 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::HasSubstr;
 
-ReadOptions only(const std::string& sensor) {
+ReadOptions only_sensor(const std::string& sensor) {
   ReadOptions options;
   options.sensor = sensor;
   return options;
@@ -230,7 +230,7 @@ TEST_F(DatasetFolder, OneLidarOfSeveralCanBeAskedFor) {
   }
   out.close();
   const Pose mounted = make_pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(1, 2, 3));
-  ReadOptions options = only("os0");
+  ReadOptions options = only_sensor("os0");
   options.body_from_lidar = mounted;
   Dataset dataset = open_dataset(folder_, options);
   ASSERT_EQ(dataset.rig.lidars.size(), 1U);
@@ -241,7 +241,7 @@ TEST_F(DatasetFolder, OneLidarOfSeveralCanBeAskedFor) {
       EXPECT_EQ(event.sensor_id, "os0");
     }
   }
-  EXPECT_THROW(open_dataset(folder_, only("os1")), InputError);
+  EXPECT_THROW(open_dataset(folder_, only_sensor("os1")), InputError);
   options.sensor.clear();  // ambiguous: body_from_lidar with two LiDARs
   EXPECT_THROW(open_dataset(folder_, options), InputError);
   EXPECT_FALSE(open_dataset(folder_).scan_count.has_value());
@@ -304,8 +304,8 @@ TEST(ForeignMcap, AnotherTopicCanBeNamed) {
   const TemporaryFolder folder;
   const fs::path file = folder.path() / "other.mcap";
   write_foreign(file, sample::events(3, 50));
-  EXPECT_EQ(open_dataset(file, only("/map")).rig.lidars.at(0).id, "map");
-  EXPECT_THROW(open_dataset(file, only("/none")), InputError);
+  EXPECT_EQ(open_dataset(file, only_sensor("/map")).rig.lidars.at(0).id, "map");
+  EXPECT_THROW(open_dataset(file, only_sensor("/none")), InputError);
 }
 
 TEST(ForeignMcap, AFolderOfRosbag2IsOpenedByItsFile) {

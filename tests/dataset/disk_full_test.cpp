@@ -24,7 +24,7 @@ using testing::HasSubstr;
 
 /// The error message of `action`, run in a separate process with a file size limit of `bytes`.
 template <class Action>
-std::string complaint_with_files_up_to(std::size_t bytes, const fs::path& report, Action&& action) {
+std::string error_with_file_size_limit(std::size_t bytes, const fs::path& report, Action&& action) {
   const pid_t child = ::fork();
   if (child == 0) {
     ::signal(SIGXFSZ, SIG_IGN);  // so that write() fails, as on a full disk
@@ -53,16 +53,17 @@ class FullDisk : public testing::TestWithParam<DatasetFormat> {
 TEST_P(FullDisk, LeavesNothingThatLooksWhole) {
   const bool is_recording = GetParam() == DatasetFormat::kMcap || GetParam() == DatasetFormat::kBag;
   // Room for some chunks of a bag, for two of five chunks of an MCAP file, for no complete sweep.
-  const std::size_t room = GetParam() == DatasetFormat::kBag    ? 2'500'000
-                           : GetParam() == DatasetFormat::kMcap ? 5'000'000
-                                                                : 100'000;
-  const std::string complaint = complaint_with_files_up_to(room, folder_.path() / "report", [&] {
-    DatasetWriter out(path_, sample::rig(), {.format = GetParam()});
-    for (const Event& event : sample::events(24, 16'000)) out.write(event);
-    out.close();
-  });
-  EXPECT_THAT(complaint, HasSubstr("cannot be written"));
-  EXPECT_THAT(complaint, HasSubstr(path_.string()));
+  const std::size_t file_size_limit = GetParam() == DatasetFormat::kBag    ? 2'500'000
+                                      : GetParam() == DatasetFormat::kMcap ? 5'000'000
+                                                                           : 100'000;
+  const std::string error_message =
+      error_with_file_size_limit(file_size_limit, folder_.path() / "report", [&] {
+        DatasetWriter out(path_, sample::rig(), {.format = GetParam()});
+        for (const Event& event : sample::events(24, 16'000)) out.write(event);
+        out.close();
+      });
+  EXPECT_THAT(error_message, HasSubstr("cannot be written"));
+  EXPECT_THAT(error_message, HasSubstr(path_.string()));
   EXPECT_FALSE(fs::exists(path_ / "manifest.json"));
   EXPECT_THAT(input_error([&] { open_dataset(path_); }), HasSubstr("unfinished"));
   if (!is_recording) return;

@@ -88,7 +88,7 @@ Reading read_sample(const std::filesystem::path& file) {
 }
 
 /// Number of messages of `part` that are not in `whole`, or not in its order.
-std::size_t strangers(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
+std::size_t count_unexpected(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
   std::size_t count = 0;
   auto next = whole.begin();
   for (const Copy& message : part) {
@@ -129,7 +129,7 @@ TEST_P(McapFiles, AFileCutAnywhereIsReadUpToTheCutAndSaysSo) {
   write_sample(file_, GetParam());
   const std::string whole = file_text(file_);
   const std::vector<Copy> expected = sample_messages();
-  std::size_t most = 0;
+  std::size_t max_messages = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     rewrite(file_, std::string_view(whole).substr(0, size));
     const Reading reading = read_sample(file_);
@@ -141,10 +141,11 @@ TEST_P(McapFiles, AFileCutAnywhereIsReadUpToTheCutAndSaysSo) {
       EXPECT_THAT(reading.error, HasSubstr("byte " + std::to_string(size)));
     }
     ASSERT_TRUE(is_beginning_of(reading.messages, expected)) << "cut after " << size;
-    EXPECT_GE(reading.messages.size(), most);  // a longer part has at least as many messages
-    most = reading.messages.size();
+    EXPECT_GE(reading.messages.size(),
+              max_messages);  // a longer part has at least as many messages
+    max_messages = reading.messages.size();
   }
-  EXPECT_EQ(most, expected.size());
+  EXPECT_EQ(max_messages, expected.size());
 }
 
 // Every byte is covered by a checksum or by a rule. The messages of a chunk are never returned
@@ -161,9 +162,9 @@ TEST_P(McapFiles, AFlippedBitAnywhereIsNoticed) {
     rewrite(file_, damaged);
     const Reading reading = read_sample(file_);
     EXPECT_NE(reading.error, "") << "byte " << at << " of " << whole.size();
-    const std::size_t strange = strangers(reading.messages, expected);
-    EXPECT_LE(strange, 1U) << "byte " << at;
-    if (strange > 0) {
+    const std::size_t unexpected = count_unexpected(reading.messages, expected);
+    EXPECT_LE(unexpected, 1U) << "byte " << at;
+    if (unexpected > 0) {
       EXPECT_THAT(reading.error, HasSubstr("the data section's checksum (CRC) is wrong"));
     }
   }
@@ -183,7 +184,7 @@ TEST_P(McapFiles, SeededDamageOfSeveralBytesNeverCrashesTheReader) {
     rewrite(file_, damaged);
     const Reading reading = read_sample(file_);
     EXPECT_NE(reading.error, "") << seed;
-    EXPECT_LE(strangers(reading.messages, sample_messages()), 8U) << seed;
+    EXPECT_LE(count_unexpected(reading.messages, sample_messages()), 8U) << seed;
     try {
       read_mcap_info(file_);
     } catch (const InputError&) {

@@ -42,7 +42,7 @@ class RecordedTrajectory : public ::testing::TestWithParam<const char*> {
     for (const double value : {x, 2.0, -1.0, 0.0, 0.6, 0.0, 0.8}) message.put(value);
     out.write(topic, pose(i).stamp, pose(i).stamp, message.bytes());
   }
-  std::string refusal(const std::string& topic = {}) const {
+  std::string error_message(const std::string& topic = {}) const {
     try {
       read_recorded_trajectory(file_, topic);
     } catch (const InputError& error) {
@@ -79,8 +79,9 @@ TEST_P(RecordedTrajectory, OfSeveralTopicsOneIsToBeChosen) {
   for (int i = 0; i < 5; ++i) put_odometry(*out, odometry, i);
   for (int i = 0; i < 7; ++i) put_pose_stamped(*out, mocap, i, i);
   out->close();
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("several topics with poses"), HasSubstr("/mocap/pose")));
-  EXPECT_THAT(refusal("/slam/pose"), HasSubstr("no poses on topic '/slam/pose'"));
+  EXPECT_THAT(error_message(),
+              AllOf(HasSubstr("several topics with poses"), HasSubstr("/mocap/pose")));
+  EXPECT_THAT(error_message("/slam/pose"), HasSubstr("no poses on topic '/slam/pose'"));
   const FramedTrajectory read = read_recorded_trajectory(file_, "/mocap/pose");
   ASSERT_EQ(read.trajectory.size(), 7U);
   EXPECT_EQ(read.world, "odom");
@@ -96,7 +97,7 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
     put_pose_stamped(*out, topic, 1, std::nan(""));
     out->close();
   }
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("/pose message 2"), HasSubstr("not finite")));
+  EXPECT_THAT(error_message(), AllOf(HasSubstr("/pose message 2"), HasSubstr("not finite")));
   {
     auto out = create();
     const auto topic = out->add_topic("/odometry", ros::kOdometry);
@@ -104,7 +105,7 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
     put_odometry(*out, topic, 1);
     out->close();
   }
-  EXPECT_THAT(refusal(), AllOf(HasSubstr("/odometry message 2"), HasSubstr("repeats")));
+  EXPECT_THAT(error_message(), AllOf(HasSubstr("/odometry message 2"), HasSubstr("repeats")));
   {
     auto out = create();
     const auto topic = out->add_topic("/imu", ros::kImu);
@@ -113,7 +114,7 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
     out->write(topic, 1s, 1s, message.bytes());
     out->close();
   }
-  EXPECT_THAT(refusal(), HasSubstr("has no topic with poses"));
+  EXPECT_THAT(error_message(), HasSubstr("has no topic with poses"));
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, RecordedTrajectory, ::testing::Values(".mcap", ".bag"),
@@ -134,12 +135,12 @@ TEST_F(FramesOfText, AreNamedByACommentBeforeTheFirstRow) {
   EXPECT_EQ(ours.world, "world");
   EXPECT_EQ(ours.body, "body");
   EXPECT_EQ(read("#map_from_os_lidar\n1.0 0 0 0 0 0 0 1\n").body, "os_lidar");
-  const FramedTrajectory silent = read("# time x y z\n1.0 0 0 0 0 0 0 1\n# a_from_b\n");
-  EXPECT_EQ(silent.world + silent.body, "");
+  const FramedTrajectory unnamed = read("# time x y z\n1.0 0 0 0 0 0 0 1\n# a_from_b\n");
+  EXPECT_EQ(unnamed.world + unnamed.body, "");
 }
 
 TEST_F(FramesOfText, StampsInOtherUnitsAreRecognized) {
-  const auto refusal = [&](const char* stamp) {
+  const auto error_message = [&](const char* stamp) {
     try {
       read(std::string(stamp) + " 0 0 0 0 0 0 1\n");
     } catch (const InputError& error) {
@@ -147,11 +148,12 @@ TEST_F(FramesOfText, StampsInOtherUnitsAreRecognized) {
     }
     return std::string();
   };
-  EXPECT_THAT(refusal("1700000000000000000"), AllOf(HasSubstr(":1"), HasSubstr("nanoseconds")));
-  EXPECT_THAT(refusal("1700000000000000"), HasSubstr("microseconds"));
-  EXPECT_THAT(refusal("1700000000000"), HasSubstr("milliseconds"));
-  EXPECT_THAT(refusal("1.7e18"), HasSubstr("nanoseconds"));
-  EXPECT_EQ(refusal("1700000000.5"), "");
+  EXPECT_THAT(error_message("1700000000000000000"),
+              AllOf(HasSubstr(":1"), HasSubstr("nanoseconds")));
+  EXPECT_THAT(error_message("1700000000000000"), HasSubstr("microseconds"));
+  EXPECT_THAT(error_message("1700000000000"), HasSubstr("milliseconds"));
+  EXPECT_THAT(error_message("1.7e18"), HasSubstr("nanoseconds"));
+  EXPECT_EQ(error_message("1700000000.5"), "");
 }
 
 }  // namespace

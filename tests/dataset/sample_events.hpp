@@ -59,8 +59,8 @@ inline ImuSample imu(int index) {
 
 inline StampedPose truth(int index) {
   const double t = 0.005 * index;
-  const Eigen::Quaterniond turn(Eigen::AngleAxisd(0.1 * t, Eigen::Vector3d::UnitZ()));
-  return {kStart + index * kImuPeriod, make_pose(turn, Eigen::Vector3d(t, 2.0 * t, 1.5))};
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(0.1 * t, Eigen::Vector3d::UnitZ()));
+  return {kStart + index * kImuPeriod, make_pose(rotation, Eigen::Vector3d(t, 2.0 * t, 1.5))};
 }
 
 /// `scans` scans with the IMU samples around them, in the order that EventSource guarantees.

@@ -347,10 +347,10 @@ TEST(RealSweeps, Vlp16StampsItsPointsInAbsoluteSeconds) {
 TEST(RealSweeps, Qt64AndPjlabKeepTheirRingsAndTimes) {
   const auto qt64 = shared_data("lidar/qt64_static");
   LIDARENA_NEEDS(qt64);
-  const auto turn = all_scans(open_sweep_folder(qt64));
-  ASSERT_EQ(turn.size(), 1U);
-  EXPECT_EQ(turn[0].points.size(), 65'511U);
-  EXPECT_NEAR(to_seconds(end_of(turn[0]) - turn[0].stamp), 0.1, 1e-3);
+  const auto qt64_scans = all_scans(open_sweep_folder(qt64));
+  ASSERT_EQ(qt64_scans.size(), 1U);
+  EXPECT_EQ(qt64_scans[0].points.size(), 65'511U);
+  EXPECT_NEAR(to_seconds(end_of(qt64_scans[0]) - qt64_scans[0].stamp), 0.1, 1e-3);
   const auto pjlab = shared_data("lidar/pjlab_lidar2imu");
   LIDARENA_NEEDS(pjlab);
   const auto sweep = all_scans(open_sweep_folder(pjlab));

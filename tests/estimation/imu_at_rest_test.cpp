@@ -53,26 +53,26 @@ TEST(ImuAtRest, TheAttitudeAndTheBiasesBehindTheSamplesComeBack) {
           statistics(samples_of(gyro_bias, (kGravity + bias) / unit * up, 1e-3, 1e-2 / unit));
       const double scale = accel_scale_of(imu, kGravity);
       EXPECT_EQ(scale, unit);
-      EXPECT_TRUE(stands(imu, kGravity, scale));
-      EXPECT_LT((upright(imu.mean_accel) - lean).norm(), 1e-13);
+      EXPECT_TRUE(is_at_rest(imu, kGravity, scale));
+      EXPECT_LT((level_rotation(imu.mean_accel) - lean).norm(), 1e-13);
       EXPECT_LT((imu.mean_gyro - gyro_bias).norm(), 1e-15);
-      EXPECT_LT((accel_bias_along(imu, kGravity, scale) - bias * up).norm(), 1e-13);
+      EXPECT_LT((accel_bias_along_gravity(imu, kGravity, scale) - bias * up).norm(), 1e-13);
     }
   }
 }
 
 TEST(ImuAtRest, ABiasAcrossGravityLooksLikeALean) {
   const ImuStatistics imu = statistics(samples_of(Vector3d::Zero(), {0.1, 0.0, kGravity}));
-  EXPECT_NEAR(so3::angle(upright(imu.mean_accel)), std::atan(0.1 / kGravity), 1e-13);
-  EXPECT_NEAR(accel_bias_along(imu, kGravity, 1.0).norm(), std::hypot(0.1, kGravity) - kGravity,
-              1e-13);
+  EXPECT_NEAR(so3::angle(level_rotation(imu.mean_accel)), std::atan(0.1 / kGravity), 1e-13);
+  EXPECT_NEAR(accel_bias_along_gravity(imu, kGravity, 1.0).norm(),
+              std::hypot(0.1, kGravity) - kGravity, 1e-13);
 }
 
 TEST(ImuAtRest, UprightTurnsAnyDirectionToZWithoutYaw) {
   for (const Vector3d& up :
        {Vector3d(0, 0, 1), Vector3d(0, 0, -1), Vector3d(1, 0, 0), Vector3d(-1, 0, 0),
         Vector3d(0, 1, 0), Vector3d(0.3, -0.2, 9.7), Vector3d(-4.0, 5.0, -6.0)}) {
-    const Eigen::Matrix3d rotation = upright(up);
+    const Eigen::Matrix3d rotation = level_rotation(up);
     EXPECT_LT((rotation * up.normalized() - Vector3d::UnitZ()).norm(), 1e-14) << up.transpose();
     EXPECT_NEAR(rotation(1, 0), 0.0, 1e-15) << "the body's x axis stays in the x-z plane";
     EXPECT_GT(rotation(0, 0), -1e-15) << "and points forward";
@@ -82,7 +82,7 @@ TEST(ImuAtRest, UprightTurnsAnyDirectionToZWithoutYaw) {
 TEST(ImuAtRest, WhatMovesOrIsTooShortDoesNotStand) {
   const Vector3d up(0.0, 0.0, kGravity);
   const auto standing = [](const std::vector<ImuSample>& samples) {
-    return stands(statistics(samples), kGravity, 1.0);
+    return is_at_rest(statistics(samples), kGravity, 1.0);
   };
   const Vector3d none = Vector3d::Zero();
   EXPECT_TRUE(standing(samples_of(none, up, 0.015, 0.15)));

@@ -73,11 +73,11 @@ TEST(ImuBuffer, ASilenceIsAGap) {
 TEST(ImuBuffer, ForgettingChangesNoLaterAnswer) {
   const ImuBuffer all = ramp();
   ImuBuffer some = all;
-  some.forget_before(ms(42.0));
+  some.remove_before(ms(42.0));
   EXPECT_LT(some.memory_bytes(), all.memory_bytes());
   EXPECT_EQ(turn(some.between(ms(42.0), ms(80.0))), turn(all.between(ms(42.0), ms(80.0))));
   EXPECT_EQ(some.samples(ms(42.0), ms(80.0)).size(), 8U);
-  some.forget_before(ms(500.0));
+  some.remove_before(ms(500.0));
   EXPECT_FALSE(some.empty()) << "the last sample is used for all later times";
 }
 

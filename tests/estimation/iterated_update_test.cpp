@@ -19,7 +19,7 @@ namespace {
 using State = InertialState;
 
 /// A LiDAR point that lies on the plane normal . x = offset in the world.
-struct Seen {
+struct PlanePoint {
   Eigen::Vector3d point;
   Eigen::Vector3d normal;
   double offset = 0.0;
@@ -32,10 +32,11 @@ Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
 }
 
 /// Points in all directions from a LiDAR at `truth`, each with `sigma` m of noise across its plane.
-std::vector<Seen> look_around(const State& truth, SequentialRandom& random, double sigma) {
-  std::vector<Seen> seen;
+std::vector<PlanePoint> simulate_points(const State& truth, SequentialRandom& random,
+                                        double sigma) {
+  std::vector<PlanePoint> seen;
   for (int i = 0; i < 60; ++i) {
-    Seen one;
+    PlanePoint one;
     one.point = random_vector(random, 4.0);
     one.normal = random_vector(random, 1.0).normalized();
     one.offset = one.normal.dot(truth.world_from_lidar() * one.point) + sigma * random.normal();
@@ -44,9 +45,9 @@ std::vector<Seen> look_around(const State& truth, SequentialRandom& random, doub
   return seen;
 }
 
-NormalEquations<kPointDof> equations(const std::vector<Seen>& seen, const State& state) {
+NormalEquations<kPointDof> equations(const std::vector<PlanePoint>& seen, const State& state) {
   NormalEquations<kPointDof> sum;
-  for (const Seen& one : seen) {
+  for (const PlanePoint& one : seen) {
     const Eigen::Vector3d in_imu = state.imu_from_lidar * one.point;
     const Eigen::Vector3d c = state.rotation().transpose() * one.normal;
     Eigen::Matrix<double, 1, kPointDof> row;
@@ -74,10 +75,11 @@ State::Matrix some_covariance(SequentialRandom& random, double sigma) {
 }
 
 /// -log of the posterior, up to a constant.
-double cost(const Belief& prior, const std::vector<Seen>& seen, double variance, const State& x) {
+double cost(const StateEstimate& prior, const std::vector<PlanePoint>& seen, double variance,
+            const State& x) {
   const State::Vector moved = minus(x, prior.state);
   double sum = 0.5 * moved.dot(prior.covariance.ldlt().solve(moved));
-  for (const Seen& one : seen) {
+  for (const PlanePoint& one : seen) {
     const double r = one.normal.dot(x.world_from_lidar() * one.point) - one.offset;
     sum += 0.5 * r * r / variance;
   }
@@ -89,17 +91,17 @@ TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
   for (int round = 0; round < 10; ++round) {
     constexpr double kVariance = 1e-4;
     const State truth = some_state(random);
-    Belief prior;
+    StateEstimate prior;
     prior.covariance = some_covariance(random, 0.1);
     State::Vector error;
     for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = 0.1 * random.normal();
     prior.state = plus(truth, error);
-    const auto seen = look_around(truth, random, 0.01);
+    const auto seen = simulate_points(truth, random, 0.01);
     const auto updated =
         iterated_update(prior, [&](const State& x, bool) { return equations(seen, x); },
                         {.max_iterations = 20, .tolerance = 1e-12, .variance = kVariance});
     EXPECT_EQ(updated.points.count, seen.size());
-    const State& x = updated.belief.state;
+    const State& x = updated.estimate.state;
     const double best = cost(prior, seen, kVariance, x);
     for (Eigen::Index i = 0; i < State::kDof; ++i) {
       constexpr double kStep = 1e-4;
@@ -116,7 +118,7 @@ TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
 TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
   // Only the position is measured, along three directions: the textbook gain, with an H of 3 rows.
   SequentialRandom random(6, 1);
-  Belief prior;
+  StateEstimate prior;
   prior.covariance = some_covariance(random, 0.1);
   const Eigen::Vector3d measured(0.3, -0.2, 0.1);
   constexpr double kVariance = 0.01;
@@ -137,22 +139,22 @@ TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
       prior.covariance.topLeftCorner<3, 3>() + kVariance * Eigen::Matrix3d::Identity();
   const Eigen::Matrix<double, State::kDof, 3> gain = cross * innovation.inverse();
   const State::Vector step = gain * measured;
-  EXPECT_LT(minus(updated.belief.state, plus(prior.state, step)).norm(), 1e-12);
+  EXPECT_LT(minus(updated.estimate.state, plus(prior.state, step)).norm(), 1e-12);
   const State::Matrix covariance = prior.covariance - gain * cross.transpose();
   const State::Matrix a = transport(prior.state, step);
-  EXPECT_LT((updated.belief.covariance - a * covariance * a.transpose()).norm(), 1e-12);
+  EXPECT_LT((updated.estimate.covariance - a * covariance * a.transpose()).norm(), 1e-12);
 }
 
 TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
   SequentialRandom random(7, 1);
   const State truth = some_state(random);
-  const auto seen = look_around(truth, random, 0.0);
+  const auto seen = simulate_points(truth, random, 0.0);
   std::vector<bool> searched;
   const auto residuals = [&](const State& x, bool search) {
     searched.push_back(search);
     return equations(seen, x);
   };
-  Belief prior;
+  StateEstimate prior;
   prior.state = truth;  // nothing to correct: converged at once, and again after the search
   EXPECT_TRUE(iterated_update(prior, residuals, {}).converged);
   EXPECT_EQ(searched, (std::vector<bool>{true, true}));
@@ -170,14 +172,14 @@ TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
 }
 
 TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
-  Belief prior;
+  StateEstimate prior;
   prior.state.position() = {1.0, 2.0, 3.0};
   prior.covariance *= 0.1;
   const auto updated =
       iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
   EXPECT_EQ(updated.points.count, 0U);
-  EXPECT_EQ(updated.belief.state.position(), prior.state.position());
-  EXPECT_EQ(updated.belief.covariance, prior.covariance);
+  EXPECT_EQ(updated.estimate.state.position(), prior.state.position());
+  EXPECT_EQ(updated.estimate.covariance, prior.covariance);
 }
 
 /// Errors of the filter after one second of motion: an initial state drawn from the prior, an IMU
@@ -188,11 +190,11 @@ std::pair<double, double> normalized_errors(std::uint64_t seed) {
   constexpr double kSigma = 0.02;
   const ImuNoise noise{2e-3, 2e-2, 1e-3, 1e-2};
   SequentialRandom random(seed, 9);
-  Belief belief;
-  belief.covariance = some_covariance(random, 0.03);
+  StateEstimate estimate;
+  estimate.covariance = some_covariance(random, 0.03);
   State::Vector drawn;
   for (Eigen::Index i = 0; i < drawn.size(); ++i) drawn[i] = random.normal();
-  State truth = plus(belief.state, belief.covariance.llt().matrixL() * drawn);
+  State truth = plus(estimate.state, estimate.covariance.llt().matrixL() * drawn);
   for (int i = 1; i <= 200; ++i) {
     const double t = kStep * i;
     const Eigen::Vector3d rate(0.5 * std::sin(5.0 * t), 0.3, std::cos(4.0 * t));
@@ -201,20 +203,22 @@ std::pair<double, double> normalized_errors(std::uint64_t seed) {
     const Eigen::Vector3d gyro = rate + random_vector(random, noise.gyro_density * white);
     const Eigen::Vector3d accel = force + random_vector(random, noise.accel_density * white);
     propagate(truth, rate, force, kStep, Integration::kSecondOrder);
-    truth.nav.bias.gyro += random_vector(random, noise.gyro_walk * std::sqrt(kStep));
-    truth.nav.bias.accel += random_vector(random, noise.accel_walk * std::sqrt(kStep));
-    const State::Matrix f = propagate(belief.state, gyro, accel, kStep, Integration::kSecondOrder);
-    belief.covariance = f * belief.covariance * f.transpose() + step_noise(noise, kStep);
+    truth.nav.bias.gyro += random_vector(random, noise.gyro_bias_walk * std::sqrt(kStep));
+    truth.nav.bias.accel += random_vector(random, noise.accel_bias_walk * std::sqrt(kStep));
+    const State::Matrix f =
+        propagate(estimate.state, gyro, accel, kStep, Integration::kSecondOrder);
+    estimate.covariance = f * estimate.covariance * f.transpose() + step_noise(noise, kStep);
     if (i % 20 != 0) continue;
-    const auto seen = look_around(truth, random, kSigma);
-    belief = iterated_update(belief, [&](const State& x, bool) { return equations(seen, x); },
-                             {.max_iterations = 5, .tolerance = 1e-9, .variance = kSigma * kSigma})
-                 .belief;
+    const auto seen = simulate_points(truth, random, kSigma);
+    estimate =
+        iterated_update(estimate, [&](const State& x, bool) { return equations(seen, x); },
+                        {.max_iterations = 5, .tolerance = 1e-9, .variance = kSigma * kSigma})
+            .estimate;
   }
-  const State::Vector error = minus(truth, belief.state);
-  const Eigen::Matrix<double, 6, 6> pose = belief.covariance.topLeftCorner<6, 6>();
+  const State::Vector error = minus(truth, estimate.state);
+  const Eigen::Matrix<double, 6, 6> pose = estimate.covariance.topLeftCorner<6, 6>();
   return {error.head<6>().dot(pose.ldlt().solve(error.head<6>())),
-          error.dot(belief.covariance.ldlt().solve(error))};
+          error.dot(estimate.covariance.ldlt().solve(error))};
 }
 
 TEST(IteratedUpdate, IsConsistentWhenTheNoiseIsAsItIsTold) {
@@ -237,7 +241,7 @@ TEST(IteratedUpdate, IsConsistentWhenTheNoiseIsAsItIsTold) {
 
 TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
   SequentialRandom random(8, 1);
-  Belief prior;
+  StateEstimate prior;
   prior.covariance = some_covariance(random, 0.2);
   prior.state.nav.velocity = {0.1, -0.2, 0.05};
   constexpr double kSigma = 0.03;
@@ -249,7 +253,7 @@ TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
   gradient.segment<3>(State::kVelocity) = prior.state.nav.velocity / (kSigma * kSigma);
   const State::Vector step = -information.inverse() * gradient;
 
-  const Belief updated = zero_velocity_update(prior, kSigma);
+  const StateEstimate updated = zero_velocity_update(prior, kSigma);
   EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
   const State::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
@@ -258,7 +262,7 @@ TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
 
 TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
   SequentialRandom random(9, 1);
-  Belief prior;
+  StateEstimate prior;
   prior.covariance = some_covariance(random, 0.2);
   prior.state.position() = {1.0, 2.0, 3.0};
   prior.state.rotation() = so3::exp({0.1, -0.2, 0.7});
@@ -272,7 +276,7 @@ TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
   const State::Vector step = information.inverse() * weight.cwiseProduct(off);
 
   const Pose measured = plus(prior.state, off).world_from_imu();
-  const Belief updated = pose_update(prior, measured, kShift, kTurn);
+  const StateEstimate updated = pose_update(prior, measured, kShift, kTurn);
   EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
   const State::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);

@@ -197,7 +197,7 @@ TEST(Preintegration, TheCovarianceIsThatOfManyNoisyRuns) {
   const double five_sigma = 5.0 * std::sqrt(2.0 / kRuns);
   EXPECT_LT((whitened - Eigen::Matrix<double, 9, 9>::Identity()).cwiseAbs().maxCoeff(), five_sigma);
   EXPECT_NEAR(clean.covariance()(NavState::kGyroBias, NavState::kGyroBias),
-              kNoise.gyro_walk * kNoise.gyro_walk * kSteps * kDt, 1e-18);
+              kNoise.gyro_bias_walk * kNoise.gyro_bias_walk * kSteps * kDt, 1e-18);
 }
 
 }  // namespace

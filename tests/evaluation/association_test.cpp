@@ -54,16 +54,16 @@ TEST(Association, TrajectoriesThatNeverMeetHaveNothingInCommon) {
 
 TEST(PoseBetween, IsTheInterpolationExceptAcrossAGap) {
   const Trajectory t = with_gap(sample(tour, 100ms, 5s), 2s, 3s);
-  const Time bracket = max_bracket(t);
-  EXPECT_EQ(bracket, Time(150ms));
-  EXPECT_TRUE(pose_between(t, 1234ms, bracket)->isApprox(*t.at(1234ms)));
-  EXPECT_TRUE(pose_between(t, 2s, bracket).has_value());
-  EXPECT_FALSE(pose_between(t, 2s + Time{1}, bracket).has_value());
-  EXPECT_FALSE(pose_between(t, 3s - Time{1}, bracket).has_value());
-  EXPECT_TRUE(pose_between(t, 3s, bracket).has_value());
-  EXPECT_TRUE(pose_between(t, 5s, bracket).has_value());
-  EXPECT_FALSE(pose_between(t, 5s + Time{1}, bracket).has_value());
-  EXPECT_FALSE(pose_between(Trajectory(), 1s, bracket).has_value());
+  const Time gap_limit = gap_limit_of(t);
+  EXPECT_EQ(gap_limit, Time(150ms));
+  EXPECT_TRUE(pose_between(t, 1234ms, gap_limit)->isApprox(*t.at(1234ms)));
+  EXPECT_TRUE(pose_between(t, 2s, gap_limit).has_value());
+  EXPECT_FALSE(pose_between(t, 2s + Time{1}, gap_limit).has_value());
+  EXPECT_FALSE(pose_between(t, 3s - Time{1}, gap_limit).has_value());
+  EXPECT_TRUE(pose_between(t, 3s, gap_limit).has_value());
+  EXPECT_TRUE(pose_between(t, 5s, gap_limit).has_value());
+  EXPECT_FALSE(pose_between(t, 5s + Time{1}, gap_limit).has_value());
+  EXPECT_FALSE(pose_between(Trajectory(), 1s, gap_limit).has_value());
 }
 
 }  // namespace

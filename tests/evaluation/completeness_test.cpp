@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using listed::Truths;
 
-const Parallel kTwo(2);
+const Parallel kTwoThreads(2);
 
 /// Hits on the floor z = 0 for x in [0, length], |y| < 1, one per centimeter, from above.
 Truths hits_on_floor(double length) {
@@ -43,7 +43,7 @@ TEST(PointGrid, FindsTheNearestWithinReachAsALookAtAllPointsDoes) {
   }
   points[7].x() = std::numeric_limits<float>::quiet_NaN();
   for (const double cell : {0.05, 0.2, 0.5}) {
-    const PointGrid grid(points, cell, 0.2, kTwo);
+    const PointGrid grid(points, cell, 0.2, kTwoThreads);
     int none = 0;
     for (int i = 0; i < 500; ++i) {
       const double x = random.uniform(-1.3, 1.3), y = random.uniform(-1.3, 1.3);
@@ -71,7 +71,7 @@ TEST(ObservedSurface, FreeSpaceIsWhereTheRaysCameFromHoweverTrianglesAreWound) {
     const world::World world(mesh);
     Truths truths = hits_on_floor(2.0);
     truths.scans[0].points.push_back({Vector3f(0, 0, 0.5F), 1.0F, Vector3f(0, 0, 1), 0});
-    const ObservedSurface seen = observe(truths, world, kTwo);
+    const ObservedSurface seen = observe(truths, world, kTwoThreads);
     EXPECT_EQ(seen.returns, 200U * 200U + 1U);
     EXPECT_EQ(seen.off_mesh, 1U);  // the added point is not on the floor
     EXPECT_EQ(seen.hits.size(), 100U * 100U);
@@ -89,11 +89,11 @@ TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
   for (dataset::PointTruth& hit : truths.scans[0].points) {
     if (hit.position.y() > hit.position.x() && turned++ % 2 == 0) hit.normal = -hit.normal;
   }
-  const ObservedSurface both = observe(truths, world, kTwo);
+  const ObservedSurface both = observe(truths, world, kTwoThreads);
   EXPECT_EQ(both.free_side[0], FreeSide::kFront);
   EXPECT_EQ(both.free_side[1], FreeSide::kUnknown);
   Truths none;
-  EXPECT_EQ(observe(none, world, kTwo).free_side[0], FreeSide::kUnknown);
+  EXPECT_EQ(observe(none, world, kTwoThreads).free_side[0], FreeSide::kUnknown);
 }
 
 class Events : public dataset::EventSource {
@@ -130,7 +130,7 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
     }
     source.events.push_back({"front", std::move(scan)});
   }
-  const ObservedSurface seen = observe(source, "front", body_from_lidar, truth, world, kTwo);
+  const ObservedSurface seen = observe(source, "front", body_from_lidar, truth, world, kTwoThreads);
   EXPECT_EQ(seen.off_mesh, 0U);
   EXPECT_GT(seen.hits.size(), 10000U);
   for (const Vector3f& hit : seen.hits) {  // on a wall, although the returns have 3 cm of noise
@@ -160,8 +160,8 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
   }
   const world::World world(mesh);
   Truths truths = hits_on_floor(4.0);
-  const ObservedSurface seen = observe(truths, world, kTwo);
-  const SurfaceSamples samples = seen_samples(world, seen, kTwo);
+  const ObservedSurface seen = observe(truths, world, kTwoThreads);
+  const SurfaceSamples samples = seen_samples(world, seen, kTwoThreads);
   EXPECT_NEAR(samples.area_m2(), 8.0, 0.02);  // 0.25 %
   const auto coarse = std::count_if(samples.offsets.begin(), samples.offsets.end(),
                                     [](const Vector3f& p) { return p.x() < 0.0F; });
@@ -179,7 +179,8 @@ TEST(SeenSamples, AreAsManyAsTheSeenAreaAndEquallyDenseOnLargeAndSmallTriangles)
 TEST(SeenSamples, AreOfWhatWasSeenAndNotOfTheWholeMesh) {
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(3.0);
-  const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
+  const SurfaceSamples samples =
+      seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   // 3 x 2 m, and a margin of up to 2 cm around it
   EXPECT_GT(samples.area_m2(), 6.0 - 0.05);
   EXPECT_LT(samples.area_m2(), 3.04 * 2.04 + 0.05);
@@ -188,18 +189,20 @@ TEST(SeenSamples, AreOfWhatWasSeenAndNotOfTheWholeMesh) {
 struct Scored {
   std::vector<Vector3f> map;
   const world::World& world;
-  MortonOrder order = morton_order(map, kTwo);
+  MortonOrder order = morton_order(map, kTwoThreads);
   Pose mesh_from_map = Pose::Identity();
-  std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwo);
+  std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwoThreads);
   Completeness rate(const SurfaceSamples& samples) const {
-    return completeness(samples, completeness_grid(map, kTwo), scores, mesh_from_map, world, kTwo);
+    return completeness(samples, completeness_grid(map, kTwoThreads), scores, mesh_from_map, world,
+                        kTwoThreads);
   }
 };
 
 TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(4.0);
-  const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
+  const SurfaceSamples samples =
+      seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
   for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points)
     map.push_back(hit.position);
@@ -218,7 +221,8 @@ TEST(Completeness, FollowsTheLimits) {
   // A full map 7 cm above the floor: nothing within 5 cm, everything within 10.
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
-  const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
+  const SurfaceSamples samples =
+      seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
   for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
     map.push_back(hit.position + Vector3f(0, 0, 0.07F));
@@ -235,21 +239,23 @@ TEST(Completeness, FollowsTheLimits) {
 TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
-  const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
+  const SurfaceSamples samples =
+      seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   SequentialRandom random(83);
   const Pose mesh_from_map = flights::random_pose(random, 3.0);
   std::vector<Vector3f> map;
   for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
     map.push_back((mesh_from_map.inverse() * hit.position.cast<double>()).cast<float>());
   }
-  const Scored scored{map, world, morton_order(map, kTwo), mesh_from_map};
+  const Scored scored{map, world, morton_order(map, kTwoThreads), mesh_from_map};
   EXPECT_EQ(scored.rate(samples).rows[0].recall_percent, 100.0);
 }
 
 TEST(Completeness, WithoutAMapOrWithoutSamplesIsZeroNotNaN) {
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(1.0);
-  const SurfaceSamples samples = seen_samples(world, observe(truths, world, kTwo), kTwo);
+  const SurfaceSamples samples =
+      seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   EXPECT_EQ((Scored{{}, world}.rate(samples).rows[3].recall_percent), 0.0);
   EXPECT_EQ((Scored{{{0, 0, 0}}, world}.rate({}).rows[3].recall_percent), 0.0);
 }

@@ -23,7 +23,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Parallel kTwo(2);
+const Parallel kTwoThreads(2);
 const Vector3d kHalf(1.6, 1.2, 0.8);
 
 /// Hits on all walls of the room except within 5 cm of the corners, from inside.
@@ -52,7 +52,7 @@ struct Room {
   SeenSurface seen = [this] {
     Truths truths;
     truths.scans.push_back(hits);
-    return make_seen_surface({observe(truths, world, kTwo), {}}, world, kTwo);
+    return make_seen_surface({observe(truths, world, kTwoThreads), {}}, world, kTwoThreads);
   }();
 
   /// The hits, each `before` meters in front of the wall, in a frame that differs by `offset`.
@@ -68,7 +68,8 @@ struct Room {
 
 TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
   const Room room;
-  const Json m = evaluate_map(room.map(0.03), room.truth, room.truth, room.world, kTwo, &room.seen);
+  const Json m =
+      evaluate_map(room.map(0.03), room.truth, room.truth, room.world, kTwoThreads, &room.seen);
   for (const char* gauge : {"first_pose", "se3", "robust"}) {
     const Json& g = m[gauge];
     EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << gauge;
@@ -104,7 +105,8 @@ TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
   const Room room;
   // the trajectory is correct, the map is 20 cm and 1 degree off
   const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));
-  const Json m = evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwo);
+  const Json m =
+      evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwoThreads);
   EXPECT_GT(m["se3"]["distance"]["rmse_m"], 0.05);
   EXPECT_LT(m["robust"]["distance"]["rmse_m"], 0.001);
   EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);
@@ -117,7 +119,7 @@ TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const std::vector<Vector3f>& map :
        {std::vector<Vector3f>{}, std::vector<Vector3f>(5, Vector3f(nan, 0, 0))}) {
-    const Json m = evaluate_map(map, room.truth, room.truth, room.world, kTwo, &room.seen);
+    const Json m = evaluate_map(map, room.truth, room.truth, room.world, kTwoThreads, &room.seen);
     EXPECT_EQ(m["se3"]["points"], 0);
     EXPECT_EQ(m["se3"]["invalid_points"], map.size());
     EXPECT_FALSE(m["se3"].contains("distance"));

@@ -20,7 +20,7 @@ using flights::sample;
 Pose two_hovers(double t) { return level({std::clamp(t - 5.0, 0.0, 10.0), 0, 2}); }
 
 HoverJitter jitter_of(const Trajectory& estimate, const Trajectory& truth) {
-  return hover_jitter(matched_poses(estimate, truth), max_bracket(estimate));
+  return hover_jitter(matched_poses(estimate, truth), gap_limit_of(estimate));
 }
 
 TEST(HoverJitter, IsTheNoiseOfTheHoversWhateverTheFlightBetweenAndTheFrame) {

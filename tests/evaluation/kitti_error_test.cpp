@@ -53,7 +53,7 @@ TEST(KittiError, RotationIsTheAnglePerMeter) {
 }
 
 TEST(KittiError, TheLadderOfShortLengthsFollowsTheSameRule) {
-  const KittiError error = kitti_error(drive(60, 1.01), drive(60), kLadder_m);
+  const KittiError error = kitti_error(drive(60, 1.01), drive(60), kRpeLengths_m);
   ASSERT_EQ(error.lengths.size(), 6U);
   EXPECT_NEAR(error.lengths[0].translation_percent, 2.0, 1e-9);  // 2 m for 1 m: 1 is not beyond 1
   EXPECT_EQ(error.lengths[5].pieces, 1U);                        // 51 m, only from 0 m

@@ -25,7 +25,7 @@ using ::testing::HasSubstr;
 const Pose kArm = make_pose(so3::exp({0.1, -0.2, 0.3}), Vector3d(0.25, -0.10, 0.15));
 
 /// A perfect estimate of another frame of the body, in its own world frame.
-Trajectory of_the_sensor(const Trajectory& truth, const Pose& body_from_estimate) {
+Trajectory sensor_estimate(const Trajectory& truth, const Pose& body_from_estimate) {
   SequentialRandom random(11);
   const Pose elsewhere = flights::random_pose(random, 5.0);
   return mapped(truth, [&](const StampedPose& pose) {
@@ -35,7 +35,7 @@ Trajectory of_the_sensor(const Trajectory& truth, const Pose& body_from_estimate
 
 TEST(MovedToBody, UndoesTheArmExactly) {
   const Trajectory truth = sample(tour, 10ms, 20s);
-  const Trajectory sensor = of_the_sensor(truth, kArm);
+  const Trajectory sensor = sensor_estimate(truth, kArm);
   const Trajectory body = moved_to_body(sensor, kArm);
   EXPECT_GT(relative_pose_error(sensor, truth).translation_m.rmse, 0.1);
   EXPECT_LT(relative_pose_error(body, truth).translation_m.max, 1e-9);
@@ -47,7 +47,7 @@ TEST(MovedToBody, UndoesTheArmExactly) {
 
 TEST(LeverArm, OfAPerfectEstimateIsFoundToRounding) {
   const Trajectory truth = sample(tour, 10ms, 20s);
-  const auto arm = find_lever_arm(of_the_sensor(truth, kArm), truth);
+  const auto arm = find_lever_arm(sensor_estimate(truth, kArm), truth);
   ASSERT_TRUE(arm);
   EXPECT_LT((arm->body_from_estimate.matrix() - kArm.matrix()).cwiseAbs().maxCoeff(), 1e-6);
   EXPECT_LT(arm->misfit_m, 1e-9);
@@ -59,7 +59,7 @@ TEST(LeverArm, OfAPerfectEstimateIsFoundToRounding) {
 TEST(LeverArm, AHalfTurnOfTheMountingIsFoundToo) {
   const Pose camera = make_pose(so3::exp({0, 0, 3.14}) * so3::exp({-1.57, 0, 0}), {0.1, 0, 0});
   const Trajectory truth = sample(tour, 10ms, 20s);
-  const auto arm = find_lever_arm(of_the_sensor(truth, camera), truth);
+  const auto arm = find_lever_arm(sensor_estimate(truth, camera), truth);
   ASSERT_TRUE(arm);
   EXPECT_LT((arm->body_from_estimate.matrix() - camera.matrix()).cwiseAbs().maxCoeff(), 1e-6);
 }
@@ -68,7 +68,7 @@ TEST(LeverArm, OfANoisyEstimateLiesWithinItsSigmas) {
   SequentialRandom random(12);
   const Trajectory truth = sample(tour, 10ms, 60s);
   const Trajectory slow = sample(tour, 100ms, 60s);
-  const Trajectory sensor = mapped(of_the_sensor(slow, kArm), [&](const StampedPose& pose) {
+  const Trajectory sensor = mapped(sensor_estimate(slow, kArm), [&](const StampedPose& pose) {
     const Vector3d move(random.normal(), random.normal(), random.normal());
     const Vector3d turn(random.normal(), random.normal(), random.normal());
     return pose.world_from_body * make_pose(so3::exp(0.002 * turn), 0.01 * move);
@@ -107,7 +107,7 @@ TEST(LeverArm, AFlightThatOnlyYawsDoesNotShowTheHeight) {
     return make_pose(so3::exp({0, 0, 0.5 * t}), Vector3d(t, std::sin(t), 1.0));
   };
   const Trajectory truth = sample(carousel, 10ms, 20s);
-  const auto arm = find_lever_arm(of_the_sensor(truth, level({0.2, 0.1, 0.4})), truth);
+  const auto arm = find_lever_arm(sensor_estimate(truth, level({0.2, 0.1, 0.4})), truth);
   ASSERT_TRUE(arm);
   EXPECT_NEAR(arm->body_from_estimate.translation().x(), 0.2, 1e-4);
   EXPECT_NEAR(arm->body_from_estimate.translation().y(), 0.1, 1e-4);
@@ -116,7 +116,7 @@ TEST(LeverArm, AFlightThatOnlyYawsDoesNotShowTheHeight) {
 
 TEST(LeverArm, AFlightThatDoesNotTurnShowsNone) {
   const Trajectory line = sample([](double t) { return level({t, 0, 0}); }, 100ms, 20s);
-  EXPECT_FALSE(find_lever_arm(of_the_sensor(line, kArm), line).has_value());
+  EXPECT_FALSE(find_lever_arm(sensor_estimate(line, kArm), line).has_value());
   EXPECT_FALSE(find_lever_arm(Trajectory(), line).has_value());
   EXPECT_FALSE(find_lever_arm(line, Trajectory()).has_value());
 }

@@ -18,13 +18,13 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-const Parallel kTwo(2);
+const Parallel kTwoThreads(2);
 
 struct Scored {
   std::vector<Vector3f> map;
   world::World world;
-  MortonOrder order = morton_order(map, kTwo);
-  std::vector<PointScore> scores = score_points(map, order, Pose::Identity(), world, kTwo);
+  MortonOrder order = morton_order(map, kTwoThreads);
+  std::vector<PointScore> scores = score_points(map, order, Pose::Identity(), world, kTwoThreads);
   MapError error = map_error(order, scores, map.size());
 };
 
@@ -139,7 +139,7 @@ TEST(Ghosting, ThicknessOfANoisyFloorIsItsQuantileRange) {
   const Scored s{
       points_off_floor(200000, 2.0, [&](SequentialRandom& r) { return sigma * r.normal(); }),
       world::World(meshes::plane(10.0))};
-  const Ghosting g = ghosting(s.scores, s.world, kTwo);
+  const Ghosting g = ghosting(s.scores, s.world, kTwoThreads);
   EXPECT_EQ(g.patches, 400U);  // 4 x 4 m in squares of 20 cm, 500 points each
   // 2 x 1.645 sigma. A quantile of 500 values has a standard error of 2.11 sigma / sqrt(500), hence
   // the mean range of 400 patches 0.007 sigma; and quantiles of 500 values are biased by -0.7 %
@@ -161,7 +161,7 @@ TEST(Ghosting,
   EXPECT_NEAR(s.error.outliers_percent, 0.062, 0.03);
   // sqrt(sigma^2 + 0.1 x 15^2): not more than for a bad sensor
   EXPECT_NEAR(s.error.distance_m.rmse, std::hypot(sigma, 0.15 * std::sqrt(0.1)), 0.001);
-  const Ghosting g = ghosting(s.scores, s.world, kTwo);
+  const Ghosting g = ghosting(s.scores, s.world, kTwoThreads);
   EXPECT_EQ(g.patches, 1600U);
   // a patch of 125 points has 12.5 +- 3.4 ghost points; fewer than 7 are less than 5 % (3 of 100
   // patches), and with few ghost points one or two in the valley are too many
@@ -177,8 +177,8 @@ TEST(Ghosting, WindingDoesNotMatter) {
       points_off_floor(100000, 4.0, [](SequentialRandom& r) { return 0.1 + 0.01 * r.normal(); });
   const Scored straight{map, world::World(meshes::plane(10.0))};
   const Scored wound{map, world::World(mixed)};
-  const Ghosting expected = ghosting(straight.scores, straight.world, kTwo);
-  const Ghosting found = ghosting(wound.scores, wound.world, kTwo);
+  const Ghosting expected = ghosting(straight.scores, straight.world, kTwoThreads);
+  const Ghosting found = ghosting(wound.scores, wound.world, kTwoThreads);
   EXPECT_EQ(expected.double_patches, 0U);
   EXPECT_EQ(found.double_patches, 0U);
   EXPECT_EQ(found.thickness_m.mean, expected.thickness_m.mean);

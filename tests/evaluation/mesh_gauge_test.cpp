@@ -20,7 +20,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Parallel kTwo(2);
+const Parallel kTwoThreads(2);
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A furnished room of 8 x 6 x 3 m.
@@ -66,7 +66,7 @@ std::vector<Vector3f> as_map(const std::vector<Vector3d>& points, const Pose& ma
 
 double rmse(const std::vector<Vector3f>& map, const Pose& mesh_from_map,
             const world::World& world) {
-  return map_error(map, mesh_from_map, world, kTwo).distance_m.rmse;
+  return map_error(map, mesh_from_map, world, kTwoThreads).distance_m.rmse;
 }
 
 TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
@@ -77,7 +77,7 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
     const Pose moved = make_pose(so3::exp(size * 3.0 * kDegree * Vector3d(0.6, -0.5, 0.62)),
                                  size * Vector3d(0.2, -0.15, 0.1));
     const std::vector<Vector3f> map = as_map(points, moved);
-    const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwo);
+    const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
     ASSERT_TRUE(a.determined()) << a.refusal;
     EXPECT_EQ(a.agreeing_starts, MeshAlignment::kStarts);
     EXPECT_THAT(a.frozen, IsEmpty());
@@ -100,7 +100,7 @@ TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
   const double before = rmse(map, Pose::Identity(), world);
   // half of the area are the two side walls: 20 cm / sqrt(2) there; elsewhere only noise
   EXPECT_GT(before, 0.08);
-  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwo);
+  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
   const double after = rmse(map, a.mesh_from_map, world);
   EXPECT_GT(after, 0.9 * before);
@@ -116,7 +116,7 @@ TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
   }
   const Pose moved = make_pose(so3::exp(Vector3d(0.01, 0.005, -0.01)), Vector3d(0.4, 0.1, -0.08));
   const std::vector<Vector3f> map = as_map(points, moved);
-  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwo);
+  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
   EXPECT_THAT(a.frozen, ElementsAre(HasSubstr("translation along (1.00,")));
   EXPECT_LT(a.eigenvalues[0], 1e-4);
@@ -134,7 +134,8 @@ TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
     if (p.head<2>().norm() < 10.0) points.push_back(p);
   }
   const Pose moved = make_pose(so3::exp(Vector3d(0.02, -0.01, 0)), Vector3d(0, 0, 0.1));
-  const MeshAlignment a = align_to_mesh(as_map(points, moved), Pose::Identity(), world, kTwo);
+  const MeshAlignment a =
+      align_to_mesh(as_map(points, moved), Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
   ASSERT_EQ(a.frozen.size(), 3U);
   EXPECT_THAT(a.frozen[0], HasSubstr("translation along"));
@@ -149,16 +150,17 @@ TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
   const world::World world(meshes::box(Vector3d(4, 3, 1.5)));
   const std::vector<Vector3d> elsewhere = points_on(meshes::box(Vector3d(15, 11, 6)), 20000, 0.01);
   const MeshAlignment a =
-      align_to_mesh(as_map(elsewhere, Pose::Identity()), Pose::Identity(), world, kTwo);
+      align_to_mesh(as_map(elsewhere, Pose::Identity()), Pose::Identity(), world, kTwoThreads);
   EXPECT_FALSE(a.determined());
   EXPECT_THAT(a.refusal, HasSubstr("% of the map's points lie within 20 cm"));
 }
 
 TEST(MeshGauge, AHandfulOfPointsAndAnEmptyMapAreRefused) {
   const world::World world(room());
-  EXPECT_THAT(align_to_mesh({}, Pose::Identity(), world, kTwo).refusal, HasSubstr("only 0 voxels"));
+  EXPECT_THAT(align_to_mesh({}, Pose::Identity(), world, kTwoThreads).refusal,
+              HasSubstr("only 0 voxels"));
   const std::vector<Vector3f> few(50, Vector3f(4, 0, 0));
-  EXPECT_FALSE(align_to_mesh(few, Pose::Identity(), world, kTwo).determined());
+  EXPECT_FALSE(align_to_mesh(few, Pose::Identity(), world, kTwoThreads).determined());
 }
 
 TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
@@ -166,7 +168,7 @@ TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
   std::vector<Vector3d> points = points_on(world.mesh(), 20000, 0.01);
   for (std::size_t i = 0; i < points.size(); i += 5) points[i] += Vector3d(0.3, 0.3, 0.2);
   const std::vector<Vector3f> map = as_map(points, flights::level({0.1, 0.05, -0.1}));
-  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwo);
+  const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
   const Vector3d left = a.mesh_from_map.translation() + Vector3d(0.1, 0.05, -0.1);
   EXPECT_LT(left.norm(), 0.005);

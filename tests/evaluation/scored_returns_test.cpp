@@ -64,9 +64,9 @@ TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
   }
   truths->scans.push_back(truth);
 
-  constexpr std::size_t kMost = 20'000;
-  ScoredEvents scored(std::make_unique<ScoredEvents>(std::move(events), kMost), kMost);
-  ScoredTruth hits(std::make_unique<ScoredTruth>(std::move(truths), kMost), kMost);
+  constexpr std::size_t kMaxReturns = 20'000;
+  ScoredEvents scored(std::make_unique<ScoredEvents>(std::move(events), kMaxReturns), kMaxReturns);
+  ScoredTruth hits(std::make_unique<ScoredTruth>(std::move(truths), kMaxReturns), kMaxReturns);
   EXPECT_TRUE(std::holds_alternative<ImuSample>(scored.next()->data));
   const Scan scan = std::get<Scan>(scored.next()->data);
   const dataset::ScanTruth hit = *hits.next();

@@ -88,7 +88,7 @@ TEST(RelativePoseError, BetweenPosesNothingIsTakenAcrossAGap) {
 TEST(RelativePoseError, OnePercentOfScaleIsOneCentimeterPerMeter) {
   const Trajectory truth = sample(line, 10ms, 20s);
   const Trajectory estimate = sample([](double t) { return level({1.01 * t, 0, 0}); }, 100ms, 20s);
-  for (const double length : kLadder_m) {
+  for (const double length : kRpeLengths_m) {
     const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
     EXPECT_EQ(rpe.total, static_cast<std::size_t>(20.0 / length));
     EXPECT_EQ(rpe.used, rpe.total);
@@ -340,7 +340,7 @@ TEST(RelativePoseError, ADriftThatGrowsWithTheSquareOfTimeGrowsAlongTheLadder) {
         return level({t + 0.5 * a * t * t, 0, 0});
       },
       100ms, 100s);
-  for (const double length : kLadder_m) {
+  for (const double length : kRpeLengths_m) {
     const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
     EXPECT_EQ(rpe.used, static_cast<std::size_t>(100.0 / length));
     const double last = 100.0 - length;

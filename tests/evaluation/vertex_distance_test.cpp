@@ -19,13 +19,14 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using ::testing::HasSubstr;
 
-const Parallel kTwo(2);
+const Parallel kTwoThreads(2);
 
 VertexDistance distance_of(const std::vector<Vector3f>& map, const world::World& world,
                            const Pose& mesh_from_map, double edge) {
-  const MortonOrder order = morton_order(map, kTwo);
-  const std::vector<PointScore> scores = score_points(map, order, mesh_from_map, world, kTwo);
-  return vertex_distance(map, order, scores, mesh_from_map, world, kTwo, edge);
+  const MortonOrder order = morton_order(map, kTwoThreads);
+  const std::vector<PointScore> scores =
+      score_points(map, order, mesh_from_map, world, kTwoThreads);
+  return vertex_distance(map, order, scores, mesh_from_map, world, kTwoThreads, edge);
 }
 
 Vector3d random_point(SequentialRandom& random, double half) {
@@ -146,10 +147,11 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
   EXPECT_FALSE(json.contains("rmse_m"));
   // the limit itself is allowed
   const world::World small(meshes::plane(0.9));
-  const MortonOrder order = morton_order(map, kTwo);
+  const MortonOrder order = morton_order(map, kTwoThreads);
   const auto with = [&](std::uint64_t most) {
-    const auto scores = score_points(map, order, Pose::Identity(), small, kTwo);
-    return vertex_distance(map, order, scores, Pose::Identity(), small, kTwo, 0.05, most).refusal;
+    const auto scores = score_points(map, order, Pose::Identity(), small, kTwoThreads);
+    return vertex_distance(map, order, scores, Pose::Identity(), small, kTwoThreads, 0.05, most)
+        .refusal;
   };
   EXPECT_EQ(with(754), "");
   EXPECT_THAT(with(753),

@@ -26,7 +26,7 @@ class StagedFlight final : public Flight {
 
 TEST(Figures, LivelyIsTheShareOfTimeThatIsFastOrTurnsQuickly) {
   const FlightFigures figures = figures_of(StagedFlight{});
-  EXPECT_NEAR(figures.lively_share, 0.3, 1e-3);  // samples are 1 ms apart
+  EXPECT_NEAR(figures.fast_share, 0.3, 1e-3);  // samples are 1 ms apart
   EXPECT_EQ(figures.max_speed, 3.0);
   EXPECT_EQ(figures.max_angular_rate, 2.0);
 }

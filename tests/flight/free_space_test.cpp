@@ -67,7 +67,7 @@ TEST(FreeSpace, TakesLargerCellsWhereThereWouldBeTooMany) {
   const FreeSpace space(rooms(), {1, 1, 1.2}, {0.4, 0.5}, 0.02, 20'000, Parallel(2));
   EXPECT_LE(space.cells().size(), 20'000U);
   EXPECT_GT(space.cells().size(), 2'000U);
-  EXPECT_GT(space.cell_m(), 0.02);
+  EXPECT_GT(space.voxel_size_m(), 0.02);
 }
 
 TEST(FreeSpace, IsEmptyAtAStartInAWallOrOutsideTheBox) {
@@ -107,14 +107,14 @@ TEST(FreeSpace, AWayLeadsFromNeighborToNeighborThroughTheDoor) {
       far = static_cast<std::int32_t>(i);
     }
   }
-  const auto way = space.way(0, far);
-  ASSERT_EQ(way.front(), 0);
-  ASSERT_EQ(way.back(), far);
-  for (std::size_t i = 1; i < way.size(); ++i) {
-    const auto& next = space.cells()[static_cast<std::size_t>(way[i - 1])].next;
-    ASSERT_NE(std::find(next.begin(), next.end(), way[i]), next.end());
-    const Vector3d a = space.cells()[static_cast<std::size_t>(way[i - 1])].point;
-    const Vector3d b = space.cells()[static_cast<std::size_t>(way[i])].point;
+  const auto path = space.path(0, far);
+  ASSERT_EQ(path.front(), 0);
+  ASSERT_EQ(path.back(), far);
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const auto& next = space.cells()[static_cast<std::size_t>(path[i - 1])].next;
+    ASSERT_NE(std::find(next.begin(), next.end(), path[i]), next.end());
+    const Vector3d a = space.cells()[static_cast<std::size_t>(path[i - 1])].point;
+    const Vector3d b = space.cells()[static_cast<std::size_t>(path[i])].point;
     for (double s = 0.0; s <= 1.0; s += 0.25) {
       ASSERT_GE(rooms().closest_point(a + s * (b - a)).distance, 0.39);
     }

@@ -89,7 +89,7 @@ void expect_aggressive(const Scene& scene, const std::string& name) {
   EXPECT_GT(figures.max_speed, 3.0);
   EXPECT_GT(figures.max_angular_rate, 200.0 * std::numbers::pi / 180.0);
   EXPECT_GT(figures.max_tilt, 25.0 * std::numbers::pi / 180.0);
-  EXPECT_GE(figures.lively_share, 0.2);
+  EXPECT_GE(figures.fast_share, 0.2);
 }
 
 TEST_P(OwnWorlds, AreFlownAlongTheirRoutesBrisklyAndAggressively) {

@@ -31,7 +31,7 @@ double apart(const Pose& a, const Pose& b) { return (a.translation() - b.transla
 TEST(Icp, LaysPlanesOnPlanes) {
   const Pair pair = corner();
   const Pose guess = pair.truth * make_pose(so3::exp({0.01, -0.02, 0.1}), {0.3, -0.3, 0.1});
-  LoopConfig config = careful_loops();
+  LoopConfig config = conservative_loops();
   const IcpResult result = align_clouds(pair.source, pair.target, guess, config, Parallel(1));
   EXPECT_TRUE(result.converged);
   // Noise of 1 cm per point, over about a thousand points on each wall, gives far below 1 mm. But
@@ -58,7 +58,7 @@ TEST(Icp, LaysPointsOnPoints) {
 TEST(Icp, AFarCloudHasNothingToHold) {
   const Pair pair = corner();
   const IcpResult result = align_clouds(pair.source, pair.target, places::standing(500.0, 0.0, 0.0),
-                                        careful_loops(), Parallel(1));
+                                        conservative_loops(), Parallel(1));
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.overlap, 0.0);
 }
@@ -77,8 +77,8 @@ TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
   target.build(walls);
   const places::Points source = places::seen_from(Pose::Identity(), walls, 8.0, 3);
   const IcpResult result =
-      align_clouds(source, target, Pose::Identity(), careful_loops(), Parallel(1));
-  EXPECT_LT(result.constraint, careful_loops().min_constraint);
+      align_clouds(source, target, Pose::Identity(), conservative_loops(), Parallel(1));
+  EXPECT_LT(result.constraint, conservative_loops().min_constraint);
 }
 
 }  // namespace

@@ -8,21 +8,22 @@
 namespace lidarena::loop {
 namespace {
 
-PlaceDescriptor at(double meters, double turn, std::uint64_t seed) {
+PlaceDescriptor at(double meters, double rotation_rad, std::uint64_t seed) {
   static const places::Points world = places::ring_corridor();
   const Pose pose = places::around_the_block(meters);
-  return describe(
-      places::seen_from(pose * make_pose(so3::exp({0, 0, turn}), Eigen::Vector3d::Zero().eval()),
-                        world, 15.0, seed),
-      15.0);
+  return describe(places::seen_from(pose * make_pose(so3::exp({0, 0, rotation_rad}),
+                                                     Eigen::Vector3d::Zero().eval()),
+                                    world, 15.0, seed),
+                  15.0);
 }
 
 TEST(PlaceDescriptor, TheSamePlaceLooksTheSameAndTellsTheTurn) {
   for (const double sectors : {0.0, 1.0, 7.0, -12.0, 29.0}) {
-    const double turn = sectors * 2.0 * std::acos(-1.0) / PlaceDescriptor::kSectors;
-    const Resemblance found = compare(at(13.0, 0.0, 1), at(13.0, turn, 2));
+    const double rotation_rad = sectors * 2.0 * std::acos(-1.0) / PlaceDescriptor::kSectors;
+    const Resemblance found = compare(at(13.0, 0.0, 1), at(13.0, rotation_rad, 2));
     EXPECT_LT(found.distance, 0.1) << "noise moves points across borders of cells";
-    EXPECT_NEAR(found.turn, turn, 1e-9) << "the second place was seen rotated by it";
+    EXPECT_NEAR(found.rotation_rad, rotation_rad, 1e-9)
+        << "the second place was seen rotated by it";
   }
 }
 

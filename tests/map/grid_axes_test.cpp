@@ -31,18 +31,18 @@ double seen_at(std::size_t count, GridAxes axes) {
   return sum / static_cast<double>(means.size());
 }
 
-TEST(GridAxes, AScanIsSeenWhereAMapOfManyIsOnlyIfTheGridIsAskew) {
+TEST(GridAxes, AScanIsSeenWhereAMapOfManyIsOnlyIfTheGridIsRotated) {
   constexpr std::size_t kScan = 3000, kMap = 100'000;  // about 2 and 60 points per cell
   EXPECT_GT(std::abs(seen_at(kScan, GridAxes::kParallel) - seen_at(kMap, GridAxes::kParallel)),
             3e-3);
   // standard error: 2 cm / sqrt(3000) = 0.4 mm
-  EXPECT_NEAR(seen_at(kScan, GridAxes::kAskew), seen_at(kMap, GridAxes::kAskew), 1.2e-3);
-  EXPECT_NEAR(seen_at(kMap, GridAxes::kAskew), 0.21, 1e-3);
+  EXPECT_NEAR(seen_at(kScan, GridAxes::kRotated), seen_at(kMap, GridAxes::kRotated), 1.2e-3);
+  EXPECT_NEAR(seen_at(kMap, GridAxes::kRotated), 0.21, 1e-3);
 }
 
 TEST(GridAxes, AreARotationFarFromTheFramesAxes) {
-  EXPECT_EQ(grid_turn(GridAxes::kParallel), Eigen::Matrix3d::Identity());
-  const Eigen::Matrix3d turn = grid_turn(GridAxes::kAskew);
+  EXPECT_EQ(grid_from_points(GridAxes::kParallel), Eigen::Matrix3d::Identity());
+  const Eigen::Matrix3d turn = grid_from_points(GridAxes::kRotated);
   EXPECT_TRUE(turn.isUnitary(1e-12));
   EXPECT_GT(turn.determinant(), 0.0);
   EXPECT_LT(turn.cwiseAbs().maxCoeff(), std::cos(0.4))

@@ -18,7 +18,7 @@ class SlowPoints {
  public:
   void insert(const Eigen::Vector3f& point) { points_.push_back(point); }
 
-  bool insert_thinned(const Eigen::Vector3f& point, float voxel) {
+  bool insert_downsampled(const Eigen::Vector3f& point, float voxel) {
     const auto cell = [voxel](const Eigen::Vector3f& p) -> Eigen::Vector3f {
       return (p / voxel).array().floor();
     };
@@ -116,7 +116,7 @@ TEST(KdTree, DoesAsAListDoesUnderRandomOperations) {
         tree.insert(point);
         slow.insert(point);
       } else if (choice < 0.6) {
-        ASSERT_EQ(tree.insert_thinned(point, 0.5F), slow.insert_thinned(point, 0.5F)) << i;
+        ASSERT_EQ(tree.insert_downsampled(point, 0.5F), slow.insert_downsampled(point, 0.5F)) << i;
       } else if (choice < 0.62 || slow.size() > 600) {
         const Eigen::Vector3f half = half_side * random_point(random, 0.6F).cwiseAbs();
         const Eigen::AlignedBox3f box(point - half, point + half);

@@ -183,10 +183,10 @@ TEST(VoxelHashMap, FlatCellsKnowTheirPlaneAndOthersNone) {
 
 TEST(VoxelHashMap, CellsOfFewPointsOrOfALineHaveNoShape) {
   VoxelHashMap map({.voxel_size = 1.0, .max_points = 4096, .plane_thinness = 0.2});
-  const auto shapeless = [&](float x) {
+  const auto degenerate = [&](float x) {
     const auto found = map.nearest({x + 0.5F, 0.5F, 0.5F}, 1.0F);
     EXPECT_TRUE(found);
-    return found.shapeless;
+    return found.degenerate;
   };
   const auto points = random_points(20, 0.3);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -197,16 +197,16 @@ TEST(VoxelHashMap, CellsOfFewPointsOrOfALineHaveNoShape) {
     map.insert(middle + Eigen::Vector3f(6.0F + p.x(), p.y(), 0.1F * p.z()));         // a plane
     map.insert(middle + Eigen::Vector3f(9.0F, 0.0F, 0.0F) + p);                      // a ball
   }
-  EXPECT_TRUE(shapeless(0.0F));
-  EXPECT_TRUE(shapeless(3.0F));
-  EXPECT_FALSE(shapeless(6.0F));
-  EXPECT_FALSE(shapeless(9.0F));
+  EXPECT_TRUE(degenerate(0.0F));
+  EXPECT_TRUE(degenerate(3.0F));
+  EXPECT_FALSE(degenerate(6.0F));
+  EXPECT_FALSE(degenerate(9.0F));
   map.insert(random_points(20, 0.4).front().array() + 0.5F);
   map.insert(Eigen::Vector3f(0.1F, 0.9F, 0.2F));
-  EXPECT_FALSE(shapeless(0.0F)) << "six points are enough";
+  EXPECT_FALSE(degenerate(0.0F)) << "six points are enough";
   VoxelHashMap without({.voxel_size = 1.0});
   without.insert(Eigen::Vector3f(0.5F, 0.5F, 0.5F));
-  EXPECT_FALSE(without.nearest({0.5F, 0.5F, 0.5F}, 1.0F).shapeless) << "planes are not fitted";
+  EXPECT_FALSE(without.nearest({0.5F, 0.5F, 0.5F}, 1.0F).degenerate) << "planes are not fitted";
 }
 
 TEST(VoxelHashMap, ACellThatLosesItsShapeLosesItsPlaneAndFreedPlanesServeAgain) {

@@ -54,16 +54,16 @@ TEST(VoxelSums, WhatComesAndGoesLeavesNothingBehind) {
   for (std::size_t newest = 0; newest < parts.size(); ++newest) {
     sums.add(parts[newest]);
     if (newest - oldest == 4) sums.remove(parts[oldest++]);
-    VoxelSums anew(0.2);
-    for (std::size_t i = oldest; i <= newest; ++i) anew.add(parts[i]);
-    EXPECT_EQ(sorted(sums.means()), sorted(anew.means())) << newest;
+    VoxelSums rebuilt(0.2);
+    for (std::size_t i = oldest; i <= newest; ++i) rebuilt.add(parts[i]);
+    EXPECT_EQ(sorted(sums.means()), sorted(rebuilt.means())) << newest;
   }
   VoxelSums cleared = sums;
   cleared.clear();
   cleared.add(parts[oldest]);
-  VoxelSums anew(0.2);
-  anew.add(parts[oldest]);
-  EXPECT_EQ(cleared.means(), anew.means());
+  VoxelSums rebuilt(0.2);
+  rebuilt.add(parts[oldest]);
+  EXPECT_EQ(cleared.means(), rebuilt.means());
   while (oldest < parts.size()) sums.remove(parts[oldest++]);
   EXPECT_EQ(sums.size(), 0U);
   EXPECT_TRUE(sums.means().empty());

@@ -51,9 +51,9 @@ TEST(FastLio2Start, GravityAndBiasComeFromTheMeans) {
   EXPECT_TRUE(start.still);
   EXPECT_EQ(start.accel_scale, 1.0);
   const Eigen::Vector3d down = so3::exp({0.1, -0.2, 0.0}).transpose() * Eigen::Vector3d(0, 0, -1);
-  EXPECT_LT((start.belief.state.gravity.normalized() - down).norm(), 2e-3);
-  EXPECT_NEAR(start.belief.state.gravity.norm(), 9.80665, 1e-9);
-  EXPECT_NEAR(start.belief.state.nav.bias.gyro.x(), 0.01, 1e-3);
+  EXPECT_LT((start.estimate.state.gravity.normalized() - down).norm(), 2e-3);
+  EXPECT_NEAR(start.estimate.state.gravity.norm(), 9.80665, 1e-9);
+  EXPECT_NEAR(start.estimate.state.nav.bias.gyro.x(), 0.01, 1e-3);
 }
 
 TEST(FastLio2Start, AccelerationsInGAreRecognized) {
@@ -77,7 +77,7 @@ TEST(FastLio2Start, AnAccelerometersBiasIsNotTakenForMotion) {
     const Eigen::Vector3d up = tilt.transpose() * Eigen::Vector3d::UnitZ();
     const std::vector<ImuSample> samples = standing_with(bias * up);
     const estimation::InertialState state =
-        start_from(samples, Pose::Identity(), config).belief.state;
+        start_from(samples, Pose::Identity(), config).estimate.state;
     // The mean of 20 samples with 0.01 m/s^2 of noise: 4.5 sigma.
     EXPECT_LT((state.nav.bias.accel - bias * up).norm(), 0.01);
     StillDetector detector;
@@ -89,9 +89,9 @@ TEST(FastLio2Start, AnAccelerometersBiasIsNotTakenForMotion) {
 TEST(FastLio2Start, ShakingIsNotStanding) {
   const Start start = start_from(standing(1.0, 0.1), Pose::Identity(), improved_config());
   EXPECT_FALSE(start.still);
-  EXPECT_EQ(start.belief.state.nav.bias.gyro, Eigen::Vector3d::Zero().eval());
-  EXPECT_GT(start.belief.covariance(estimation::InertialState::kVelocity,
-                                    estimation::InertialState::kVelocity),
+  EXPECT_EQ(start.estimate.state.nav.bias.gyro, Eigen::Vector3d::Zero().eval());
+  EXPECT_GT(start.estimate.covariance(estimation::InertialState::kVelocity,
+                                      estimation::InertialState::kVelocity),
             1.0);
 }
 
@@ -218,11 +218,12 @@ TEST(FastLio2Planes, TheVarianceIsThatOfManyFits) {
     const Neighbors exact = cross(kLength, width, 0.0, random);
     const auto plane =
         estimation::fit_plane(map::columns_of(exact), estimation::PlaneFit::kPrincipal, 0.1);
-    const double told = plane_variance(exact, *plane, kSigma * kSigma);
+    const double predicted_variance = plane_variance(exact, *plane, kSigma * kSigma);
     const double tilt = kSigma * kSigma / (2.0 * width * width);
-    EXPECT_NEAR(told, kSigma * kSigma / 5.0 + tilt * kLength * kLength, 1e-3 * told);
+    EXPECT_NEAR(predicted_variance, kSigma * kSigma / 5.0 + tilt * kLength * kLength,
+                1e-3 * predicted_variance);
     // 4000 squares give a variance to 2.2 %; the rest is the second order of the fit.
-    EXPECT_NEAR(squares / kFits, told, 0.1 * told) << "width " << width;
+    EXPECT_NEAR(squares / kFits, predicted_variance, 0.1 * predicted_variance) << "width " << width;
   }
 }
 

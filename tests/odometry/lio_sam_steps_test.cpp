@@ -119,19 +119,19 @@ TEST(LioSamFeatures, TheFarSideOfAJumpIsBarred) {
   Config config;
   config.occluded_points = 3;
   config.grazing_share = 0.5;
-  const auto barred = barred_points(row_of({8, 8, 8, 8, 8, 5, 5, 5, 9, 9, 9, 9, 9}), config);
+  const auto excluded = non_edge_points(row_of({8, 8, 8, 8, 8, 5, 5, 5, 9, 9, 9, 9, 9}), config);
   const std::vector<bool> expected{false, false, true, true, true,  false, false,
                                    false, true,  true, true, false, false};
-  EXPECT_EQ(barred, expected);
+  EXPECT_EQ(excluded, expected);
 }
 
 TEST(LioSamFeatures, AGrazingPointIsBarred) {
   Config config;
   config.occluded_points = 0;
-  const auto barred = barred_points(row_of({5.0F, 5.2F, 5.4F, 5.6F, 5.62F}), config);
-  EXPECT_TRUE(barred[1]) << "a difference of 0.2 m to both sides is 4 %";
-  EXPECT_TRUE(barred[2]);
-  EXPECT_FALSE(barred[3]) << "smooth to one side";
+  const auto excluded = non_edge_points(row_of({5.0F, 5.2F, 5.4F, 5.6F, 5.62F}), config);
+  EXPECT_TRUE(excluded[1]) << "a difference of 0.2 m to both sides is 4 %";
+  EXPECT_TRUE(excluded[2]);
+  EXPECT_FALSE(excluded[3]) << "smooth to one side";
 }
 
 TEST(LioSamFeatures, TheCornersOfARoomAreItsEdges) {

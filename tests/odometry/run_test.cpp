@@ -139,7 +139,7 @@ TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
   Walker walker;
   ListSource source(ten_scans());
   LogSink sink;
-  const RunResult result = run(walker, source, {.map_voxel_m = 4.0}, sink);
+  const RunResult result = run(walker, source, {.map_voxel_size_m = 4.0}, sink);
   // x from 1 to 10 is in the cells 0 to 3, 4 to 7 and 8 to 11, at y = 0 and y = 5
   EXPECT_EQ(result.files.map.points,
             (std::vector<Eigen::Vector3f>{

@@ -37,7 +37,7 @@ def kind_of(file):
             "beams": "beams"}[folder]
 
 
-def refused(kind, document, why):
+def check_rejected(kind, document, why):
     assert not schema(kind).is_valid(document), f"{kind}: {why} is not rejected"
 
 
@@ -48,16 +48,16 @@ for file in sorted(CONFIGS.rglob("*.yaml")):
         sys.exit(f"{file}: {error.json_path}: {error.message}")
     wrong = copy.deepcopy(document)
     wrong["no_such_key"] = 1
-    refused(kind_of(file), wrong, "an unknown key")
+    check_rejected(kind_of(file), wrong, "an unknown key")
     checked += 1
 assert checked > 25, checked
 
-refused("sensor", {"max_range_m": "far"}, "text instead of a number")
-refused("sensor", {"mode": "rollin"}, "a word that is not allowed")
-refused("sensor", {"rate_hz": 0}, "a value out of range")
-refused("sensor", {"imu": {"rate_hz": -5}}, "a value out of range in a nested group")
-refused("study", {"seeds": [1, -2]}, "a list element out of range")
-refused("flight", {"waypoints": [[1, 2]]}, "a point with two coordinates")
+check_rejected("sensor", {"max_range_m": "far"}, "text instead of a number")
+check_rejected("sensor", {"mode": "rollin"}, "a word that is not allowed")
+check_rejected("sensor", {"rate_hz": 0}, "a value out of range")
+check_rejected("sensor", {"imu": {"rate_hz": -5}}, "a value out of range in a nested group")
+check_rejected("study", {"seeds": [1, -2]}, "a list element out of range")
+check_rejected("flight", {"waypoints": [[1, 2]]}, "a point with two coordinates")
 
 algorithms = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], check=True,
                                        capture_output=True, text=True).stdout)

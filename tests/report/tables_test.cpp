@@ -132,9 +132,9 @@ TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
   const Claim lost = about("KISS-ICP's Cave map");
   EXPECT_FALSE(lost.holds);
   EXPECT_THAT(lost.evidence, testing::ElementsAre(HasSubstr("tracking lost with both sensors")));
-  const Claim cure = about("improves the Cave map");
-  EXPECT_FALSE(cure.holds);
-  EXPECT_THAT(cure.evidence, testing::Each(HasSubstr("nothing to improve")));
+  const Claim improves = about("improves the Cave map");
+  EXPECT_FALSE(improves.holds);
+  EXPECT_THAT(improves.evidence, testing::Each(HasSubstr("nothing to improve")));
   const Claim diverged = about("ten times the outliers");
   EXPECT_FALSE(diverged.holds);
   EXPECT_THAT(diverged.evidence, testing::Each(HasSubstr("ct_icp diverged")));
@@ -274,10 +274,10 @@ TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
   EXPECT_EQ(found[0].sensor + found[0].algorithm, "deargood");
   EXPECT_EQ(found[1].sensor + found[1].algorithm, "cheapgood");
   EXPECT_EQ(found[2].algorithm, "slow");
-  EXPECT_FALSE(found[2].is_in_time());
-  EXPECT_NEAR(found[2].busy.value(), 1.2, 1e-12);
+  EXPECT_FALSE(found[2].is_real_time());
+  EXPECT_NEAR(found[2].period_share.value(), 1.2, 1e-12);
   EXPECT_EQ(found[3].algorithm, "lost");
-  EXPECT_FALSE(found[3].keeps_track());
+  EXPECT_FALSE(found[3].keeps_tracking());
   const ReportSection section = decision_section(results);
   EXPECT_THAT(section.text,
               HasSubstr("mine: use the dear with good: its map has an RMSE of 1.5 cm"));
@@ -302,7 +302,7 @@ TEST(Decision, AMapThatLiesElsewhereIsALostTrack) {
   results.rows[0].reprojected_map->outliers_percent = 99.0;
   const std::vector<Candidate> found = candidates(results, "mine");
   EXPECT_EQ(found[0].algorithm, "good");
-  EXPECT_FALSE(found[1].keeps_track());
+  EXPECT_FALSE(found[1].keeps_tracking());
   const ReportTable table = decision_section(results).tables.at(0);
   EXPECT_EQ(table.rows.at(1).at(1).text, "tracking lost in 1 of 1");
   EXPECT_EQ(table.rows.at(1).at(2).text, "900");
@@ -322,7 +322,7 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
   results.rows = {tried("cheap", "good", 3.0, 40.0), tried("cheap", "good", 9.0, 40.0)};
   results.rows[0].mode = "rolling";
   results.rows[1].mode = "official";
-  EXPECT_THAT(readings_of(results),
+  EXPECT_THAT(variants_of(results),
               ::testing::ElementsAre("improved-rolling", "improved-official"));
   const StudyCells cells(results, "improved-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);

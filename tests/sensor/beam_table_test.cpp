@@ -51,16 +51,16 @@ TEST(BeamTable, ManyThreadsMayAskForTheSameScanAtOnce) {
 }
 
 /// A pattern whose firing times differ from scan to scan.
-class WanderingPattern : public ScanPattern {
+class VaryingPattern : public ScanPattern {
  public:
-  explicit WanderingPattern(std::uint64_t repeats) : repeats_(repeats) {}
+  explicit VaryingPattern(std::uint64_t repeats) : repeats_(repeats) {}
   Time period() const override { return std::chrono::milliseconds(100); }
   std::size_t beams_per_scan() const override { return 16; }
   std::uint64_t repeats_after() const override { return repeats_; }
   void beams(std::uint64_t index, std::vector<Beam>& out) const override {
     out.assign(16, Beam{Eigen::Vector3f::UnitX(), 0, 0, Eigen::Vector3f::Zero()});
-    const std::uint64_t turn = repeats_ == 0 ? index : index % repeats_;
-    for (Beam& beam : out) beam.dt_ns = static_cast<std::int32_t>(turn);
+    const std::uint64_t phase = repeats_ == 0 ? index : index % repeats_;
+    for (Beam& beam : out) beam.dt_ns = static_cast<std::int32_t>(phase);
   }
 
  private:
@@ -69,7 +69,7 @@ class WanderingPattern : public ScanPattern {
 
 TEST(BeamTable, KeepsNothingOfPatternsThatDoNotRepeatAndAsksAgainWhereTimesDiffer) {
   for (const std::uint64_t repeats : {0U, 5U}) {
-    const WanderingPattern pattern(repeats);
+    const VaryingPattern pattern(repeats);
     const BeamTable table(pattern);
     std::vector<Beam> storage, expected;
     for (const std::uint64_t index : {3U, 4U, 8U, 3U}) {

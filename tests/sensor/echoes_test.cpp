@@ -79,8 +79,8 @@ TEST(SubRays, HaveTheProfilesSpreadAlikeInBothDirections) {
 
 TEST(SubRays, AreTurnedAsideByTheAnglesAsked) {
   for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(-0.6, 0.64, 0.48), Vector3d(0, 0, 1)}) {
-    const Vector3d left = turned_aside(axis, {1e-3, 0.0});
-    const Vector3d up = turned_aside(axis, {0.0, 1e-3});
+    const Vector3d left = deflected(axis, {1e-3, 0.0});
+    const Vector3d up = deflected(axis, {0.0, 1e-3});
     EXPECT_NEAR(std::atan2(left.cross(axis).norm(), left.dot(axis)), 1e-3, 1e-9);
     EXPECT_NEAR(std::atan2(up.cross(axis).norm(), up.dot(axis)), 1e-3, 1e-9);
     EXPECT_NEAR((left - axis).dot(up - axis), 0.0, 1e-9);

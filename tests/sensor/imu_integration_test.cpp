@@ -32,8 +32,8 @@ struct Rate {
 };
 
 Rate rate_of(const State& s, const ImuSample& imu) {
-  const Quaterniond turning(0.0, imu.gyro.x(), imu.gyro.y(), imu.gyro.z());
-  return {0.5 * (s.attitude * turning).coeffs(),
+  const Quaterniond rate_quaternion(0.0, imu.gyro.x(), imu.gyro.y(), imu.gyro.z());
+  return {0.5 * (s.attitude * rate_quaternion).coeffs(),
           s.attitude.normalized() * imu.accel - Vector3d(0, 0, flight::kGravity), s.velocity};
 }
 
@@ -64,8 +64,8 @@ State runge_kutta(State s, const ImuSample* imu, double h) {
 State midpoint(State s, const ImuSample* imu, double h) {
   for (int i = 0; i < 2; ++i) {
     const double dt = h / 2;
-    const Vector3d turn = dt / 2 * (imu[i].gyro + imu[i + 1].gyro);
-    const Quaterniond next = s.attitude * Quaterniond(so3::exp(turn));
+    const Vector3d rotation = dt / 2 * (imu[i].gyro + imu[i + 1].gyro);
+    const Quaterniond next = s.attitude * Quaterniond(so3::exp(rotation));
     const Vector3d acceleration = (s.attitude * imu[i].accel + next * imu[i + 1].accel) / 2 -
                                   Vector3d(0, 0, flight::kGravity);
     s.position += dt * s.velocity + dt * dt / 2 * acceleration;
@@ -78,13 +78,13 @@ State midpoint(State s, const ImuSample* imu, double h) {
 using Method = State (*)(State, const ImuSample*, double);
 
 /// Error at the end of `flight` of the integral of an IMU's samples.
-struct Miss {
+struct EndError {
   double position_m;
   double angle_deg;
 };
 
-Miss integrate(const flight::Flight& flight, const Pose& body_from_imu, double rate_hz,
-               Method method) {
+EndError integrate(const flight::Flight& flight, const Pose& body_from_imu, double rate_hz,
+                   Method method) {
   ImuConfig config;
   config.rate_hz = rate_hz;
   Imu imu(config, body_from_imu, "test", 1, false);
@@ -112,11 +112,11 @@ Miss integrate(const flight::Flight& flight, const Pose& body_from_imu, double r
 const Pose kMount = testing::tilted_pose({0.2, -0.1, 0.3}, 0.5, -1.0, 2.0);
 
 TEST(ImuIntegration, GivesBackAFlightInClosedForm) {
-  const Miss miss = integrate(testing::SwingingFlight(10.0), kMount, 4000, runge_kutta);
+  const EndError error = integrate(testing::SwingingFlight(10.0), kMount, 4000, runge_kutta);
   // The error of the method is of order h^4 = 6e-14 per second, for motions with periods of
   // seconds.
-  EXPECT_LT(miss.position_m, 1e-8);
-  EXPECT_LT(miss.angle_deg, 1e-7);
+  EXPECT_LT(error.position_m, 1e-8);
+  EXPECT_LT(error.angle_deg, 1e-7);
 }
 
 /// One minute of aggressive flight through a hall.
@@ -130,9 +130,9 @@ std::unique_ptr<flight::Flight> aggressive_minute() {
 }
 
 TEST(ImuIntegration, GivesBackAMinuteOfAggressiveFlight) {
-  const Miss miss = integrate(*aggressive_minute(), kMount, 4000, runge_kutta);
-  EXPECT_LT(miss.position_m, 1e-3);  // 8e-9 measured, the rounding error
-  EXPECT_LT(miss.angle_deg, 1e-4);   // 8e-11 measured
+  const EndError error = integrate(*aggressive_minute(), kMount, 4000, runge_kutta);
+  EXPECT_LT(error.position_m, 1e-3);  // 8e-9 measured, the rounding error
+  EXPECT_LT(error.angle_deg, 1e-4);   // 8e-11 measured
 }
 
 // The pieces of the spline join smoothly up to the second derivative of the rate and the third of
@@ -143,9 +143,9 @@ TEST(ImuIntegration, ConvergesAtTheMethodsOrder) {
   const auto flight = aggressive_minute();
   for (const auto& [method, order] :
        {std::pair<Method, double>{midpoint, 2.0}, {runge_kutta, 4.0}}) {
-    Miss coarse = integrate(*flight, kMount, 100, method);
+    EndError coarse = integrate(*flight, kMount, 100, method);
     for (const double rate : {200.0, 400.0, 800.0}) {
-      const Miss fine = integrate(*flight, kMount, rate, method);
+      const EndError fine = integrate(*flight, kMount, rate, method);
       // The next term of the error is smaller by (body rate * step)^2, about (5 rad/s / 50 Hz)^2.
       EXPECT_NEAR(std::log2(coarse.position_m / fine.position_m), order, 0.05) << rate << " Hz";
       EXPECT_NEAR(std::log2(coarse.angle_deg / fine.angle_deg), order, 0.05) << rate << " Hz";

@@ -108,9 +108,9 @@ TEST(Imu, TheSameSeedGivesTheSameSamplesAndAnotherSeedOrNameOthers) {
   Imu other_name(noisy(), Pose::Identity(), "two", 3, true);
   for (int k = 0; k < 100; ++k) {
     const ImuSample sample = a.measure(flight);
-    const ImuSample twin = b.measure(flight);
-    EXPECT_EQ(sample.gyro, twin.gyro);
-    EXPECT_EQ(sample.accel, twin.accel);
+    const ImuSample other = b.measure(flight);
+    EXPECT_EQ(sample.gyro, other.gyro);
+    EXPECT_EQ(sample.accel, other.accel);
     EXPECT_EQ(sample.stamp, std::chrono::milliseconds(5 * k));
     EXPECT_NE(sample.gyro, other_seed.measure(flight).gyro);
     EXPECT_NE(sample.gyro, other_name.measure(flight).gyro);
@@ -145,7 +145,7 @@ TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
   config.accel_scale_error = 0.01;
   const int units = 500;
   double on_diagonal = 0.0;
-  double beside = 0.0;
+  double off_diagonal = 0.0;
   double accel_scale = 0.0;
   for (int unit = 0; unit < units; ++unit) {
     Eigen::Matrix3d response;
@@ -161,11 +161,11 @@ TEST(Imu, EachUnitHasItsOwnScaleErrorsAndLeaningAxes) {
     }
     response -= Eigen::Matrix3d::Identity();
     on_diagonal += response.diagonal().squaredNorm();
-    beside += response.squaredNorm() - response.diagonal().squaredNorm();
+    off_diagonal += response.squaredNorm() - response.diagonal().squaredNorm();
   }
   const auto error = [](int draws) { return 4.0 / std::sqrt(2.0 * draws); };  // four sigma
   EXPECT_NEAR(std::sqrt(on_diagonal / (3 * units)) / 0.004, 1.0, error(3 * units));
-  EXPECT_NEAR(std::sqrt(beside / (6 * units)) / 0.002, 1.0, error(6 * units));
+  EXPECT_NEAR(std::sqrt(off_diagonal / (6 * units)) / 0.002, 1.0, error(6 * units));
   EXPECT_NEAR(std::sqrt(accel_scale / units) / 0.01, 1.0, error(units));
 }
 

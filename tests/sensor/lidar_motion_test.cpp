@@ -35,9 +35,9 @@ Worst worst_error(const flight::Flight& flight, int scans) {
       const Pose exact = flight.pose_at(stamp + Time{dt}) * kMount;
       const Pose cubic = motion.at(dt);
       const double position = (cubic.translation() - exact.translation()).norm();
-      const double turn = (cubic.linear() - exact.linear()).norm();
+      const double rotation = (cubic.linear() - exact.linear()).norm();
       worst.position = std::max(worst.position, position);
-      worst.at_100_m = std::max(worst.at_100_m, position + 100.0 * turn);
+      worst.at_100_m = std::max(worst.at_100_m, position + 100.0 * rotation);
     }
   }
   return worst;

@@ -113,7 +113,7 @@ TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
   EXPECT_EQ(scan.points.size(), 2000U);
   const double worst = worst_range_error(
       lidar, scan, flight, config.body_from_lidar, 3,
-      [&](const Vector3d& o, const Vector3d& d) { return slow_cast(mesh, o, d); });
+      [&](const Vector3d& o, const Vector3d& d) { return brute_force_cast(mesh, o, d); });
   EXPECT_LT(worst, kTolerance);
 }
 

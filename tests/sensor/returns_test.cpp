@@ -146,9 +146,9 @@ TEST(Returns, EchoesDropOutAsOftenAsTheReceiverMissesThem) {
   for (const auto& [distance, reflectivity] :
        {std::pair{40.0, 0.1}, {60.0, 0.8}, {30.0, 0.04}, {10.0, 0.5}}) {
     const world::World world(painted(wall_mesh(distance), reflectivity));
-    SensorConfig keen = config;
-    keen.noise.dropouts = false;
-    const Measured all = measure(make_lidar(keen), world);
+    SensorConfig without_dropouts = config;
+    without_dropouts.noise.dropouts = false;
+    const Measured all = measure(make_lidar(without_dropouts), world);
     double expected = 0.0, variance = 0.0;
     for (std::size_t i = 0; i < all.truth.size(); ++i) {
       const double signal =
@@ -261,21 +261,21 @@ SensorConfig wide_beam(int sub_rays) {
 
 constexpr double kSigma =
     0.3 / 2.3548200450309493 * std::numbers::pi / 180.0;  // rad, from the beam width
-const std::vector<double> kAside{-2.5 * kSigma, -kSigma, -0.3 * kSigma, 0.0,
-                                 0.5 * kSigma,  kSigma,  3.0 * kSigma};
+const std::vector<double> kOffsets{-2.5 * kSigma, -kSigma, -0.3 * kSigma, 0.0,
+                                   0.5 * kSigma,  kSigma,  3.0 * kSigma};
 
 TEST(Returns, ABeamOnAnEdgeMixesTheTwoRangesByTheShareThatFallsOnEach) {
   const double far = 5.3;  // within a pulse of the plate
   const world::World world = edge_world(far);
-  const Lidar lidar(wide_beam(64), std::make_unique<FixedPattern>(kAside, 400), "x", 1, true);
+  const Lidar lidar(wide_beam(64), std::make_unique<FixedPattern>(kOffsets, 400), "x", 1, true);
   const Measured measured = measure(lidar, world);
-  ASSERT_EQ(measured.scan.points.size(), 400 * kAside.size());
+  ASSERT_EQ(measured.scan.points.size(), 400 * kOffsets.size());
   std::map<int, double> mean;
   for (const Point& point : measured.scan.points) {
     mean[point.ring] += point.position.cast<double>().norm() / 400.0;
   }
-  for (std::size_t i = 0; i < kAside.size(); ++i) {
-    const double on_plate = 0.5 * std::erfc(-kAside[i] / kSigma / std::numbers::sqrt2);
+  for (std::size_t i = 0; i < kOffsets.size(); ++i) {
+    const double on_plate = 0.5 * std::erfc(-kOffsets[i] / kSigma / std::numbers::sqrt2);
     const double near_signal = on_plate / (5.0 * 5.0);
     const double far_signal = (1.0 - on_plate) / (far * far);
     const double expected = (near_signal * 5.0 + far_signal * far) / (near_signal + far_signal);
@@ -288,7 +288,7 @@ TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
   const world::World world = edge_world(9.0);
   SensorConfig config = wide_beam(64);
   config.returns.count = 2;
-  const Lidar lidar(config, std::make_unique<FixedPattern>(kAside, 400), "x", 1, true);
+  const Lidar lidar(config, std::make_unique<FixedPattern>(kOffsets, 400), "x", 1, true);
   const Measured measured = measure(lidar, world);
   std::map<int, double> near_share;
   for (std::size_t i = 0; i < measured.scan.points.size(); ++i) {
@@ -299,8 +299,8 @@ TEST(Returns, ABeamOnAnEdgeAPulseApartGivesTwoEchoesOfTheirShares) {
     // Default reflectivity 50 % (Material{}); 255 is white.
     if (is_near) near_share[point.ring] += static_cast<double>(point.intensity) / 127.5 / 400.0;
   }
-  for (std::size_t i = 0; i < kAside.size(); ++i) {
-    const double expected = 0.5 * std::erfc(-kAside[i] / kSigma / std::numbers::sqrt2);
+  for (std::size_t i = 0; i < kOffsets.size(); ++i) {
+    const double expected = 0.5 * std::erfc(-kOffsets[i] / kSigma / std::numbers::sqrt2);
     EXPECT_NEAR(near_share[static_cast<int>(i)], expected, 0.5 / 64) << i;
   }
 }
@@ -309,12 +309,12 @@ TEST(Returns, TheChoiceOfEchoesIsTheSensors) {
   const world::World world = edge_world(9.0);
   // Most of the beam misses the plate, but the wall is farther: with the square law the signals of
   // plate and wall are as 0.31 / 25 to 0.69 / 81, so the plate is stronger.
-  const std::vector<double> aside{-0.5 * kSigma};
+  const std::vector<double> offsets{-0.5 * kSigma};
   const auto xs = [&](EchoChoice choice, int count) {
     SensorConfig config = wide_beam(64);
     config.returns.choice = choice;
     config.returns.count = count;
-    const Lidar lidar(config, std::make_unique<FixedPattern>(aside, 1), "x", 1, true);
+    const Lidar lidar(config, std::make_unique<FixedPattern>(offsets, 1), "x", 1, true);
     std::vector<int> out;
     const Scan scan = measure(lidar, world).scan;
     for (std::size_t i = 0; i < scan.points.size(); ++i) {
@@ -400,8 +400,8 @@ TEST(Returns, WithoutNoiseAllPartsTogetherAreTheGeometry) {
   const SwingingFlight flight(2.0);
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const SensorConfig noisy = with_everything(config);
-    const Lidar silenced(noisy, make_pattern(noisy), noisy.name, 1, false);
-    EXPECT_TRUE(same(silenced.measure(world, flight, 3, kOneThread),
+    const Lidar without_noise(noisy, make_pattern(noisy), noisy.name, 1, false);
+    EXPECT_TRUE(same(without_noise.measure(world, flight, 3, kOneThread),
                      make_lidar(config).measure(world, flight, 3, kOneThread)));
   }
 }

@@ -37,7 +37,7 @@ double azimuth_deg(const Beam& beam) {
   return degrees(std::atan2(beam.direction.y(), beam.direction.x()));
 }
 /// Difference of two angles, -180..180.
-double apart(double a_deg, double b_deg) { return std::remainder(a_deg - b_deg, 360.0); }
+double angle_difference(double a_deg, double b_deg) { return std::remainder(a_deg - b_deg, 360.0); }
 
 TEST(Vlp16, FiresItsLasersInTheMakersOrderAndTimes) {
   const auto beams = scan_of("velodyne_vlp16");
@@ -51,7 +51,7 @@ TEST(Vlp16, FiresItsLasersInTheMakersOrderAndTimes) {
     ASSERT_EQ(beams[i].ring, static_cast<int>(order[laser] + 15) / 2);
     ASSERT_NEAR(beams[i].dt_ns, 1e3 * us, 0.5);
     // The head rotates while it fires: 36 deg in 10 ms, clockwise from x.
-    ASSERT_NEAR(apart(azimuth_deg(beams[i]), -360.0 * us / 1e5), 0.0, 2e-5);
+    ASSERT_NEAR(angle_difference(azimuth_deg(beams[i]), -360.0 * us / 1e5), 0.0, 2e-5);
   }
   EXPECT_LT(beams.back().dt_ns, 100'000'000);
   EXPECT_NEAR(beams.front().origin.z(), 0.0112,
@@ -69,10 +69,12 @@ TEST(Os164, HasSixtyFourRowsInFourPixelColumns) {
     ASSERT_EQ(beams[i].ring, row);
     ASSERT_NEAR(beams[i].dt_ns, 97'656.25 * column, 0.51);
     ASSERT_NEAR(elevation_deg(beams[i]), 16.611 - 0.5273 * row, 1e-4);
-    ASSERT_NEAR(apart(azimuth_deg(beams[i]), encoder - clockwise_deg[row % 4]), 0.0, 2e-5);
-    ASSERT_NEAR(beams[i].origin.norm(), 0.015806, 1e-8);
-    ASSERT_NEAR(apart(degrees(std::atan2(beams[i].origin.y(), beams[i].origin.x())), encoder), 0.0,
+    ASSERT_NEAR(angle_difference(azimuth_deg(beams[i]), encoder - clockwise_deg[row % 4]), 0.0,
                 2e-5);
+    ASSERT_NEAR(beams[i].origin.norm(), 0.015806, 1e-8);
+    ASSERT_NEAR(
+        angle_difference(degrees(std::atan2(beams[i].origin.y(), beams[i].origin.x())), encoder),
+        0.0, 2e-5);
   }
   EXPECT_NEAR(elevation_deg(beams[63]), -16.61, 0.005);
 }
@@ -90,7 +92,8 @@ TEST(SpinningHead, TurnsEitherWayFromWhereItStarts) {
   EXPECT_EQ(pattern.period(), std::chrono::milliseconds(50));
   ASSERT_EQ(beams.size(), 4U);
   for (int i = 0; i < 4; ++i) {
-    EXPECT_NEAR(apart(azimuth_deg(beams[static_cast<std::size_t>(i)]), 35.0 + 90.0 * i), 0.0, 1e-5);
+    EXPECT_NEAR(angle_difference(azimuth_deg(beams[static_cast<std::size_t>(i)]), 35.0 + 90.0 * i),
+                0.0, 1e-5);
     EXPECT_EQ(beams[static_cast<std::size_t>(i)].dt_ns, 12'500'000 * i);
   }
 }

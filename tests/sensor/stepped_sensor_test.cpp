@@ -48,14 +48,14 @@ std::vector<dataset::Event> all_of(dataset::EventSource& source) {
   return events;
 }
 
-/// `most`: maximum difference of points, m.
-void expect_same_scan(const Scan& a, const Scan& b, double most) {
+/// `max_difference`: maximum difference of points, m.
+void expect_same_scan(const Scan& a, const Scan& b, double max_difference) {
   EXPECT_EQ(a.stamp, b.stamp);
   EXPECT_EQ(a.timed, b.timed);
   ASSERT_EQ(a.points.size(), b.points.size());
   for (std::size_t i = 0; i < a.points.size(); ++i) {
     const Point &p = a.points[i], &q = b.points[i];
-    ASSERT_LT((p.position - q.position).norm(), most) << i;
+    ASSERT_LT((p.position - q.position).norm(), max_difference) << i;
     EXPECT_NEAR(p.intensity, q.intensity, 1e-2);
     EXPECT_EQ(p.dt_ns, q.dt_ns);
     EXPECT_EQ(p.ring, q.ring);
@@ -89,9 +89,9 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
       const auto& other = std::get<ImuSample>(expected[i].data);
       EXPECT_EQ(sample.stamp, other.stamp);
       // the first instant is at the edge of its parabola: error of a third derivative times h
-      const double most = sample.stamp == Time{0} ? 2e-2 : 1e-5;
-      EXPECT_LT((sample.gyro - other.gyro).norm(), most) << to_seconds(sample.stamp);
-      EXPECT_LT((sample.accel - other.accel).norm(), most) << to_seconds(sample.stamp);
+      const double max_difference = sample.stamp == Time{0} ? 2e-2 : 1e-5;
+      EXPECT_LT((sample.gyro - other.gyro).norm(), max_difference) << to_seconds(sample.stamp);
+      EXPECT_LT((sample.accel - other.accel).norm(), max_difference) << to_seconds(sample.stamp);
     }
   }
 }

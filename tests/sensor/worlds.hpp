@@ -50,8 +50,8 @@ inline world::TriangleMesh sphere_mesh(double radius, int levels) {
 }
 
 /// First hit by trying every triangle in double precision; infinity when there is none.
-inline double slow_cast(const world::TriangleMesh& mesh, const Eigen::Vector3d& origin,
-                        const Eigen::Vector3d& direction) {
+inline double brute_force_cast(const world::TriangleMesh& mesh, const Eigen::Vector3d& origin,
+                               const Eigen::Vector3d& direction) {
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& [a, b, c] : mesh.triangles) {
     Eigen::Matrix3d columns;

@@ -239,7 +239,7 @@ TEST(Plan, ShardsShareTheCellsAmongThem) {
   std::vector<std::string> names;
   for (const char* shard : {"1/3", "2/3", "3/3"}) {
     double seconds = 0.0;
-    for (const PlannedRun& cell : cells_of(cells, parse_shard(shard), configs())) {
+    for (const PlannedRun& cell : cells_of_shard(cells, parse_shard(shard), configs())) {
       names.push_back(cell.name);
       seconds += estimate(cell, configs()).seconds;
     }

@@ -38,7 +38,7 @@ HIDDEN = {
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')
 
 
-def breaches(root: pathlib.Path):
+def violations(root: pathlib.Path):
     for file in sorted((root / "lidarena").rglob("*.[hc]pp")):
         parts = file.relative_to(root / "lidarena").parts
         module = parts[0]
@@ -70,7 +70,7 @@ def breaches(root: pathlib.Path):
 
 def main():
     root = pathlib.Path(__file__).resolve().parents[2]
-    found = list(breaches(root))
+    found = list(violations(root))
     print("\n".join(found) if found else "no include rule is violated")
     return 1 if found else 0
 

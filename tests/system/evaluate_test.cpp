@@ -160,20 +160,20 @@ TEST_F(Evaluate, CompatEvoGivesItsFiguresAndItsRefusals) {
 
 TEST_F(Evaluate, BadFilesAreOneClearMessageEach) {
   write_tum("truth.tum", tour, 100);
-  const auto says = [&](const std::string& text) {
+  const auto error_for = [&](const std::string& text) {
     write("bad.txt", text);
     return refusal("--trajectory bad.txt --truth truth.tum");
   };
-  EXPECT_THAT(says(""), HasSubstr("bad.txt: holds no pose"));
-  EXPECT_THAT(says("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n"),
+  EXPECT_THAT(error_for(""), HasSubstr("bad.txt: holds no pose"));
+  EXPECT_THAT(error_for("0 0 0 0 0 0 0 1\n1 nan 0 0 0 0 0 1\n"),
               AllOf(HasSubstr("bad.txt:2"), HasSubstr("not finite")));
-  EXPECT_THAT(says("0 0 0 0 0 0 0 1\n1 0 inf 0 0 0 0 1\n"), HasSubstr("not finite"));
-  EXPECT_THAT(says("0 0 0 0 0 0 0 0\n"), HasSubstr("norm is 0, not 1"));
-  EXPECT_THAT(says("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"), HasSubstr("repeats"));
-  EXPECT_THAT(says("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), HasSubstr("earlier"));
-  EXPECT_THAT(says("1700000000000000000 0 0 0 0 0 0 1\n"), HasSubstr("nanoseconds"));
-  EXPECT_THAT(says("1 0 0 0 0 2 0 0 0 0 1 0\n"), HasSubstr("not a rotation"));
-  EXPECT_THAT(says("1 2 3\n"), HasSubstr("columns"));
+  EXPECT_THAT(error_for("0 0 0 0 0 0 0 1\n1 0 inf 0 0 0 0 1\n"), HasSubstr("not finite"));
+  EXPECT_THAT(error_for("0 0 0 0 0 0 0 0\n"), HasSubstr("norm is 0, not 1"));
+  EXPECT_THAT(error_for("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"), HasSubstr("repeats"));
+  EXPECT_THAT(error_for("2 0 0 0 0 0 0 1\n1 0 0 0 0 0 0 1\n"), HasSubstr("earlier"));
+  EXPECT_THAT(error_for("1700000000000000000 0 0 0 0 0 0 1\n"), HasSubstr("nanoseconds"));
+  EXPECT_THAT(error_for("1 0 0 0 0 2 0 0 0 0 1 0\n"), HasSubstr("not a rotation"));
+  EXPECT_THAT(error_for("1 2 3\n"), HasSubstr("columns"));
   EXPECT_THAT(refusal("--trajectory truth.tum --truth none.tum"), HasSubstr("no such file"));
   write("one.tum", "1 0 0 0 0 0 0 1\n");
   EXPECT_THAT(refusal("--trajectory truth.tum --truth one.tum"), HasSubstr("a single pose"));

@@ -53,8 +53,8 @@ struct Picture {
 class ViewInBrowser : public Cli {
  protected:
   void SetUp() override {
-    const std::string lacking = lacking_to_browse();
-    if (!lacking.empty()) GTEST_SKIP() << "skipped: " << lacking;
+    const std::string missing = missing_for_browser();
+    if (!missing.empty()) GTEST_SKIP() << "skipped: " << missing;
     floor_ = write("floor.ply", floor_ply());
     const Outcome made = call("view " + floor_ + " --out page.html");
     if (made.err.find("has no interactive view") != std::string::npos) {
@@ -63,7 +63,7 @@ class ViewInBrowser : public Cli {
     ASSERT_EQ(made.exit_code, 0) << made.err;
   }
   /// What this machine lacks to show a page with WebGL (tried with a small page); empty if nothing.
-  std::string lacking_to_browse() {
+  std::string missing_for_browser() {
     if (std::system("command -v chromium >/dev/null") != 0) {
       return "chromium is not installed";
     }

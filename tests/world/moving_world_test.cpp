@@ -205,8 +205,10 @@ TEST(MovingWorld, WithoutShapesNothingIsHit) {
 
 TEST(Shape, FromWithinAndFarAwayRangesAreExact) {
   const auto range = [](const ShapePtr& shape, const Vector3d& origin, const Vector3d& direction) {
-    Shape::Meeting meeting;
-    return shape->meet({origin, direction.cast<float>()}, 1e9, meeting) ? meeting.range : -1.0;
+    Shape::Intersection intersection;
+    return shape->intersect({origin, direction.cast<float>()}, 1e9, intersection)
+               ? intersection.range
+               : -1.0;
   };
   EXPECT_DOUBLE_EQ(range(make_sphere(2.0), {0.5, 0, 0}, {1, 0, 0}), 1.5);
   EXPECT_DOUBLE_EQ(range(make_sphere(2.0), {3, 0, 0}, {1, 0, 0}), -1.0);

@@ -14,7 +14,7 @@
 namespace lidarena {
 namespace {
 
-constexpr float kSame = 1e-4F;  // m
+constexpr float kTolerance = 1e-4F;  // m
 
 struct Measurements {
   std::map<Time, Scan> scans;
@@ -36,7 +36,7 @@ Measurements read(const char* path) {
 }
 
 struct Differences {
-  std::size_t scans = 0, points = 0, same = 0, moved = 0, alone = 0;
+  std::size_t scans = 0, points = 0, same = 0, moved = 0, unmatched = 0;
   double worst_of_same = 0.0, sum_of_same = 0.0;
 };
 
@@ -52,13 +52,13 @@ void compare(Scan a, Scan b, Differences& d) {
   auto q = b.points.begin();
   while (p != a.points.end() && q != b.points.end()) {
     if (key(*p) != key(*q)) {
-      ++d.alone;
+      ++d.unmatched;
       key(*p) < key(*q) ? ++p : ++q;
       continue;
     }
     const float apart = (p->position - q->position).norm();
     ++d.points;
-    if (apart <= kSame) {
+    if (apart <= kTolerance) {
       ++d.same;
       d.sum_of_same += static_cast<double>(apart);
       d.worst_of_same = std::max(d.worst_of_same, static_cast<double>(apart));
@@ -68,7 +68,7 @@ void compare(Scan a, Scan b, Differences& d) {
     ++p;
     ++q;
   }
-  d.alone += static_cast<std::size_t>((a.points.end() - p) + (b.points.end() - q));
+  d.unmatched += static_cast<std::size_t>((a.points.end() - p) + (b.points.end() - q));
 }
 
 int main_of(const char* first, const char* second) {
@@ -90,12 +90,12 @@ int main_of(const char* first, const char* second) {
   fmt::print(
       "{} scans, {} points of the same shots: {} within {} m (mean {:.2e}, largest {:.2e}), {} "
       "farther apart; {} shots with a return in only one dataset\n",
-      d.scans, d.points, d.same, kSame, d.sum_of_same / static_cast<double>(d.same),
-      d.worst_of_same, d.moved, d.alone);
+      d.scans, d.points, d.same, kTolerance, d.sum_of_same / static_cast<double>(d.same),
+      d.worst_of_same, d.moved, d.unmatched);
   fmt::print(
       "{} IMU samples: angular rates within {:.2e} rad/s, accelerations within {:.2e} m/s^2\n",
       samples, gyro, accel);
-  return d.points > 0 && 1000 * (d.moved + d.alone) <= d.points ? 0 : 1;
+  return d.points > 0 && 1000 * (d.moved + d.unmatched) <= d.points ? 0 : 1;
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
     auto engine = boost::dynamic_pointer_cast<::gazebo::physics::RayShape>(
         world_->Physics()->CreateShape("ray", ::gazebo::physics::CollisionPtr()));
     const Pose pose = to_pose(link->WorldPose());
-    std::size_t both = 0, neither = 0, ours_alone = 0, theirs_alone = 0;
+    std::size_t both = 0, neither = 0, only_ours = 0, only_theirs = 0;
     double worst = 0.0, sum = 0.0;
     for (const sensor::Beam& beam : beams_) {
       const Eigen::Vector3d direction =
@@ -90,8 +90,8 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
       engine->GetIntersection(range, entity);
       const bool theirs = !entity.empty() && range < kMaxRange - kMinRange;
       neither += !theirs && !hit.valid();
-      ours_alone += hit.valid() && !theirs;
-      theirs_alone += theirs && !hit.valid();
+      only_ours += hit.valid() && !theirs;
+      only_theirs += theirs && !hit.valid();
       if (!theirs || !hit.valid()) continue;
       ++both;
       const double difference = std::abs(range - static_cast<double>(hit.range));
@@ -99,13 +99,13 @@ class ComparePlugin : public ::gazebo::WorldPlugin {
       worst = std::max(worst, difference);
     }
     const bool fails =
-        worst > config_.tolerance || ours_alone + theirs_alone > 0 || both < beams_.size() / 10;
+        worst > config_.tolerance || only_ours + only_theirs > 0 || both < beams_.size() / 10;
     failed_ = failed_ || fails;
     std::printf(
         "COMPARE t %.3f s, sensor at %.2f %.2f %.2f: %zu rays, both hit %zu, neither %zu, "
         "only ours %zu, only the engine's %zu, mean difference %.2e m, largest %.2e m: %s\n",
         world_->SimTime().Double(), pose.translation().x(), pose.translation().y(),
-        pose.translation().z(), beams_.size(), both, neither, ours_alone, theirs_alone,
+        pose.translation().z(), beams_.size(), both, neither, only_ours, only_theirs,
         both > 0 ? sum / static_cast<double>(both) : 0.0, worst, fails ? "FAILED" : "ok");
   }
 

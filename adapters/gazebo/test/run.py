@@ -30,8 +30,8 @@ def bumpy_shell(file, rows=100, columns=200):
     with open(file, "w") as out:
         for i in range(rows + 1):
             for j in range(columns):
-                polar, turn = math.pi * i / rows, 2 * math.pi * j / columns
-                r = 9 + 0.6 * math.sin(7 * polar) * math.cos(9 * turn)
+                polar, azimuth = math.pi * i / rows, 2 * math.pi * j / columns
+                r = 9 + 0.6 * math.sin(7 * polar) * math.cos(9 * azimuth)
                 out.write(f"v {r * math.sin(polar) * math.cos(turn):.6f} "
                           f"{r * math.sin(polar) * math.sin(turn):.6f} {r * math.cos(polar):.6f}\n")
         for i in range(rows):

@@ -125,8 +125,8 @@ struct OusterImage {
 /// Origin (m) of the beams fired `t_ns` after the start of the scan: off the rotation axis, in the
 /// direction in which the head then points.
 Eigen::Vector3d ouster_beam_origin(std::int64_t t_ns, const LidarInfo& lidar) {
-  const double turn = static_cast<double>(t_ns) * 1e-9 * lidar.rate_hz;
-  const double encoder = 2.0 * M_PI * (1.0 - turn);
+  const double revolutions = static_cast<double>(t_ns) * 1e-9 * lidar.rate_hz;
+  const double encoder = 2.0 * M_PI * (1.0 - revolutions);
   return lidar.beam_origin_m * Eigen::Vector3d(std::cos(encoder), std::sin(encoder), 0.0);
 }
 

@@ -16,14 +16,14 @@ bool is_livox_type(std::string_view type) {
 }
 
 Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
-  constexpr std::size_t kLeastPointBytes = 19;  // without padding, which the last point lacks
+  constexpr std::size_t kMinPointBytes = 19;  // without padding, which the last point lacks
   MessageReader in(message, place, encoding);
   Scan scan;
   scan.stamp = ros::get_header(in).stamp;
   in.get<std::uint64_t>();  // timebase: header.stamp again, or the sensor's own clock
   in.get<std::uint32_t>();  // point_num: the sequence has its own length
   for (int i = 0; i < 4; ++i) in.get<std::uint8_t>();  // lidar_id, rsvd[3]
-  const std::uint32_t count = in.get_length(kLeastPointBytes);
+  const std::uint32_t count = in.get_length(kMinPointBytes);
   scan.points.reserve(count);
   for (std::uint32_t i = 0; i < count; ++i) {
     const auto offset_time = in.get<std::uint32_t>();

@@ -31,7 +31,7 @@ const std::vector<PointField>& own_fields(bool timed) {
       {"ring", 20, FieldType::kUint16}, {"echo", 22, FieldType::kUint8}};
   return timed ? kTimed : kUntimed;
 }
-constexpr std::size_t kPaddingAt = 23;
+constexpr std::size_t kPaddingOffset = 23;
 
 std::size_t size_of(FieldType type) {
   constexpr std::array<std::size_t, 9> kSizes{0, 1, 1, 2, 2, 4, 4, 4, 8};
@@ -244,7 +244,8 @@ void put_cloud(const Scan& scan, std::string_view place, MessageWriter& out) {
   const std::span<std::byte> data =
       put_layout(1, scan.points.size(), sizeof(Point), own_fields(scan.timed), out);
   if (!data.empty()) std::memcpy(data.data(), scan.points.data(), data.size());
-  for (std::size_t at = kPaddingAt; at < data.size(); at += sizeof(Point)) data[at] = std::byte{0};
+  for (std::size_t at = kPaddingOffset; at < data.size(); at += sizeof(Point))
+    data[at] = std::byte{0};
   out.put(std::uint8_t{1});  // is_dense: no point is invalid
 }
 
@@ -272,8 +273,8 @@ PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
   PointCloud2 cloud;
   cloud.height = in.get<std::uint32_t>();
   cloud.width = in.get<std::uint32_t>();
-  constexpr std::size_t kLeastFieldBytes = 13;
-  cloud.fields.resize(in.get_length(kLeastFieldBytes));
+  constexpr std::size_t kMinFieldBytes = 13;
+  cloud.fields.resize(in.get_length(kMinFieldBytes));
   for (PointField& field : cloud.fields) {
     field.name = in.get_string();
     field.offset = in.get<std::uint32_t>();

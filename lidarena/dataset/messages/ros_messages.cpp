@@ -46,8 +46,8 @@ Pose get_pose(MessageReader& in) {
 void put_header(Time stamp, std::string_view frame_id, MessageWriter& out) {
   const auto seconds = std::chrono::floor<std::chrono::seconds>(stamp);
   const bool is_ros1 = out.encoding() == Encoding::kRos1;  // has unsigned seconds
-  const std::int64_t least = is_ros1 ? 0 : std::numeric_limits<std::int32_t>::min();
-  if (seconds.count() > std::numeric_limits<std::int32_t>::max() || seconds.count() < least) {
+  const std::int64_t min_seconds = is_ros1 ? 0 : std::numeric_limits<std::int32_t>::min();
+  if (seconds.count() > std::numeric_limits<std::int32_t>::max() || seconds.count() < min_seconds) {
     throw InputError(frame_id, "a time does not fit into the 32-bit seconds of ROS messages");
   }
   if (is_ros1) out.put(std::uint32_t{0});  // seq
@@ -145,8 +145,8 @@ void encode_transforms(std::span<const StampedTransform> transforms, MessageWrit
 std::vector<StampedTransform> decode_transforms(Bytes message, std::string_view place,
                                                 Encoding encoding) {
   MessageReader in(message, place, encoding);
-  constexpr std::size_t kLeastBytes = 7 * sizeof(double);
-  std::vector<StampedTransform> transforms(in.get_length(kLeastBytes));
+  constexpr std::size_t kMinTransformBytes = 7 * sizeof(double);
+  std::vector<StampedTransform> transforms(in.get_length(kMinTransformBytes));
   for (StampedTransform& transform : transforms) {
     MessageHeader header = get_header(in);
     transform.stamp = header.stamp;

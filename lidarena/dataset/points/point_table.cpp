@@ -32,10 +32,10 @@ const Column* PointTable::find(std::initializer_list<std::string_view> names) co
 
 const Column& PointTable::require(std::string_view name) const {
   if (const Column* column = find({name})) return *column;
-  std::string there;
-  for (const Column& column : columns) there += (there.empty() ? "" : " ") + column.name;
+  std::string existing;
+  for (const Column& column : columns) existing += (existing.empty() ? "" : " ") + column.name;
   throw InputError(file, fmt::format("has no field '{}'", name),
-                   fmt::format("points need x, y, z; it has: {}", there));
+                   fmt::format("points need x, y, z; it has: {}", existing));
 }
 
 double PointTable::number(const Column& column, std::size_t row) const {

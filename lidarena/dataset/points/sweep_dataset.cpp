@@ -27,9 +27,9 @@ namespace layout {
 fs::path sweep_path(const fs::path& folder, const std::string& lidar_id, DatasetFormat format,
                     std::size_t index) {
   const std::string number = fmt::format("{:06}", index);
-  const fs::path home = folder / lidar_id;
-  if (format == DatasetFormat::kKitti) return home / "velodyne" / (number + ".bin");
-  return home / (number + (format == DatasetFormat::kPly ? ".ply" : ".pcd"));
+  const fs::path sensor_folder = folder / lidar_id;
+  if (format == DatasetFormat::kKitti) return sensor_folder / "velodyne" / (number + ".bin");
+  return sensor_folder / (number + (format == DatasetFormat::kPly ? ".ply" : ".pcd"));
 }
 
 fs::path hits_path(const fs::path& folder, const std::string& lidar_id, std::size_t index) {
@@ -125,7 +125,7 @@ class SweepDatasetSource final : public EventSource {
     while (true) {
       if (auto event = merge_.pop()) return event;
       if (finished_) return std::nullopt;
-      read_on();
+      read_next();
     }
   }
 
@@ -139,7 +139,7 @@ class SweepDatasetSource final : public EventSource {
   }
 
   /// Pushes the next IMU sample, or the next scan if it ends before that sample.
-  void read_on() {
+  void read_next() {
     ImuRows* imu = nullptr;
     for (ImuRows& candidate : imus_) {
       if (candidate.empty()) continue;

@@ -15,7 +15,7 @@ namespace lidarena::dataset {
 namespace {
 
 /// Float times beyond this are nanoseconds: as seconds they would be after the year 2286.
-constexpr double kLastSeconds = 1e10;
+constexpr double kMaxSeconds = 1e10;
 
 /// Reads times of points: absolute ns, or ns from the sweep's stamp.
 class TimeReader {
@@ -27,7 +27,7 @@ class TimeReader {
   std::int64_t at(std::size_t row) const {
     if (is_integer(column_.type)) return table_.integer(column_, row);
     const double value = table_.number(column_, row);
-    const bool in_ns = std::abs(value) > kLastSeconds;
+    const bool in_ns = std::abs(value) > kMaxSeconds;
     if (!(std::abs(value) < (in_ns ? 9e18 : 9e9))) {
       throw InputError(table_.file, fmt::format("point {} has the time {}", row + 1, value),
                        "times are seconds or nanoseconds");

@@ -143,9 +143,9 @@ std::string layout_of(const std::vector<fs::path>& files, const ReadOptions& opt
       fmt::format("choose one with --layout {}", fmt::join(raw_layouts(), "|")));
 }
 
-/// Mean sweep rate (Hz) by the stamps; `otherwise` if they do not give one.
-double mean_rate(const std::vector<Time>& stamps, double otherwise) {
-  if (stamps.size() < 2 || stamps.back() <= stamps.front()) return otherwise;
+/// Mean sweep rate (Hz) by the stamps; `fallback` if they do not give one.
+double mean_rate(const std::vector<Time>& stamps, double fallback) {
+  if (stamps.size() < 2 || stamps.back() <= stamps.front()) return fallback;
   return static_cast<double>(stamps.size() - 1) / to_seconds(stamps.back() - stamps.front());
 }
 
@@ -204,7 +204,7 @@ Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
 }
 
 /// The folder that holds the sweeps: `path`, or velodyne/ in it.
-fs::path sweep_home(const fs::path& path) {
+fs::path folder_of_sweeps(const fs::path& path) {
   const fs::path velodyne = path / "velodyne";
   return fs::is_directory(velodyne) && sweeps_in(path).empty() ? velodyne : path;
 }
@@ -232,7 +232,7 @@ bool natural_less(std::string_view a, std::string_view b) {
 
 bool has_sweeps(const fs::path& path) {
   if (fs::is_regular_file(path)) return is_sweep_name(path);
-  return fs::is_directory(path) && !sweeps_in(sweep_home(path)).empty();
+  return fs::is_directory(path) && !sweeps_in(folder_of_sweeps(path)).empty();
 }
 
 Dataset open_sweep_folder(const fs::path& path, const ReadOptions& options) {
@@ -240,7 +240,7 @@ Dataset open_sweep_folder(const fs::path& path, const ReadOptions& options) {
   if (!fs::is_directory(path)) {
     throw InputError(path.string(), "there is no such folder", "check the path");
   }
-  const auto files = sweeps_in(sweep_home(path));
+  const auto files = sweeps_in(folder_of_sweeps(path));
   if (files.empty()) {
     throw InputError(path.string(), "holds no sweep", "give a folder of .pcd, .ply or .bin files");
   }

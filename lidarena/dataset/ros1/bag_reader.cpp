@@ -58,7 +58,7 @@ struct BagReader::Impl {
   ByteReader chunk{Bytes{}};        ///< unread rest of the current chunk
 
   std::map<std::uint32_t, std::size_t> connections;  ///< id -> index in met.topics
-  RecordingInfo met;
+  RecordingInfo contents;
 
   std::string at(std::uint64_t byte) const { return fmt::format("{}: byte {}", place, byte); }
   [[noreturn]] void cut_off() const;
@@ -98,14 +98,14 @@ BagReader::Impl::Impl(const std::filesystem::path& file)
 
 void BagReader::Impl::cut_off() const {
   throw InputError(at(file_size),
-                   fmt::format("the bag is cut off after {} messages", met.message_count),
+                   fmt::format("the bag is cut off after {} messages", contents.message_count),
                    "the messages before this byte are intact; the recording was stopped, copied in "
                    "part, or the disk was full");
 }
 
 void BagReader::Impl::damaged(std::string_view what) const {
   throw InputError(at(record_offset),
-                   fmt::format("{} (after {} messages)", what, met.message_count),
+                   fmt::format("{} (after {} messages)", what, contents.message_count),
                    "the messages before this byte are intact; copy the file again");
 }
 
@@ -147,12 +147,12 @@ void BagReader::Impl::read_bag_header() {
 void BagReader::Impl::add_connection(const Fields& fields, Bytes description) {
   const auto id = fields.number<std::uint32_t>("conn");
   const std::string topic = fields.text("topic");
-  const auto [entry, is_new] = connections.try_emplace(id, met.topics.size());
+  const auto [entry, is_new] = connections.try_emplace(id, contents.topics.size());
   if (is_new) {
-    met.topics.push_back({topic, ros::ros2_name(Fields(description).text("type")), "ros1", 0});
-  } else if (met.topics[entry->second].topic != topic) {
+    contents.topics.push_back({topic, ros::ros2_name(Fields(description).text("type")), "ros1", 0});
+  } else if (contents.topics[entry->second].topic != topic) {
     damaged(fmt::format("connection {} is declared for both {} and {}", id,
-                        met.topics[entry->second].topic, topic));
+                        contents.topics[entry->second].topic, topic));
   }
 }
 
@@ -170,7 +170,7 @@ void BagReader::Impl::open_chunk(const Fields& fields) {
   }
   if (records.size() != size) damaged("the chunk's size differs from the stated size");
   chunk = ByteReader(records);
-  ++met.chunk_count;
+  ++contents.chunk_count;
 }
 
 RecordedMessage BagReader::Impl::message(const Fields& fields, Bytes content) {
@@ -179,10 +179,10 @@ RecordedMessage BagReader::Impl::message(const Fields& fields, Bytes content) {
     damaged("a message belongs to a connection that was never declared");
   }
   const Time time = fields.time("time");
-  met.start = met.message_count == 0 ? time : std::min(met.start, time);
-  met.end = std::max(met.end, time);
-  ++met.message_count;
-  RecordedTopic& topic = met.topics[connection->second];
+  contents.start = contents.message_count == 0 ? time : std::min(contents.start, time);
+  contents.end = std::max(contents.end, time);
+  ++contents.message_count;
+  RecordedTopic& topic = contents.topics[connection->second];
   ++topic.message_count;
   return {topic.topic, topic.type, Encoding::kRos1, time, content};
 }
@@ -217,11 +217,11 @@ void BagReader::Impl::check_end() const {
     throw InputError(at(file_size),
                      fmt::format("the bag was never closed: it has no index and may lack messages "
                                  "after the {} it holds",
-                                 met.message_count),
+                                 contents.message_count),
                      "these messages are intact; 'rosbag reindex' makes a complete bag of them");
   }
   if (chunk_infos < chunk_count || connections.size() < connection_count) cut_off();
-  if (met.chunk_count != chunk_count || messages_indexed != met.message_count) {
+  if (contents.chunk_count != chunk_count || messages_indexed != contents.message_count) {
     damaged(
         fmt::format("the index counts {} messages in {} chunks", messages_indexed, chunk_count));
   }
@@ -261,7 +261,7 @@ std::optional<RecordedMessage> BagReader::next() {
   return std::nullopt;
 }
 
-RecordingInfo BagReader::info() const { return impl_->met; }
+RecordingInfo BagReader::info() const { return impl_->contents; }
 
 bool is_bag(std::string_view beginning) { return beginning.starts_with("#ROSBAG V"); }
 

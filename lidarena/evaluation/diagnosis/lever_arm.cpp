@@ -20,10 +20,10 @@ using se3::Vector6;
 using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6>;
 
 constexpr std::size_t kMinMotions = 10;
-constexpr double kMinTurn_rad = 0.0175;  // RMS over 1 s; with less, no arm is observable
+constexpr double kMinRotation_rad = 0.0175;  // RMS over 1 s; with less, no arm is observable
 constexpr int kIterations = 20;
-constexpr double kStep = 1e-6;      // of the numeric derivatives, m and rad
-constexpr double kSettled = 1e-10;  // steps below end the iteration, m and rad
+constexpr double kStep = 1e-6;            // of the numeric derivatives, m and rad
+constexpr double kStepTolerance = 1e-10;  // steps below end the iteration, m and rad
 // Keeps unobservable directions at their initial values; relative to the largest diagonal element
 // of the Hessian, hence negligible for the others.
 constexpr double kDamping = 1e-9;
@@ -86,7 +86,7 @@ Pose solve(const std::vector<MotionPair>& motions, Pose x, Weights w) {
     const Jacobian j = derivatives(motions, x, w);
     const Vector6 d = -damped(j).ldlt().solve(j.transpose() * residuals(motions, x, w));
     x = moved(x, d);
-    if (d.norm() < kSettled) break;
+    if (d.norm() < kStepTolerance) break;
   }
   return x;
 }
@@ -99,7 +99,7 @@ Vector6 sigma_at(const std::vector<MotionPair>& motions, const Pose& x, Weights 
   return (variance * inverse.diagonal()).cwiseSqrt();
 }
 
-double rms_turn(const std::vector<MotionPair>& motions) {
+double rms_rotation(const std::vector<MotionPair>& motions) {
   double sum = 0.0;
   for (const MotionPair& motion : motions) sum += std::pow(so3::angle(motion.truth.linear()), 2);
   return std::sqrt(sum / static_cast<double>(motions.size()));
@@ -119,7 +119,7 @@ Trajectory moved_to_body(const Trajectory& estimate, const Pose& body_from_estim
 
 std::optional<LeverArm> find_lever_arm(const Trajectory& estimate, const Trajectory& truth) {
   const std::vector<MotionPair> motions = motion_pairs(estimate, truth);
-  if (motions.size() < kMinMotions || rms_turn(motions) < kMinTurn_rad) return std::nullopt;
+  if (motions.size() < kMinMotions || rms_rotation(motions) < kMinRotation_rad) return std::nullopt;
   Pose x = make_pose(mounting_of(motions), Eigen::Vector3d::Zero());
   x = solve(motions, x, {});
   const Weights weights = weights_at(motions, x);
@@ -135,19 +135,19 @@ std::optional<LeverArm> find_lever_arm(const Trajectory& estimate, const Traject
 
 std::string warning_of(const LeverArm& arm) {
   const Eigen::Vector3d t = arm.body_from_estimate.translation();
-  const Eigen::Vector3d turn = so3::log(arm.body_from_estimate.linear());
+  const Eigen::Vector3d rotation_vector = so3::log(arm.body_from_estimate.linear());
   const auto beyond = [&](const Eigen::Vector3d& value, Eigen::Index first) {
     for (Eigen::Index i = 0; i < 3; ++i) {
       if (std::abs(value[i]) > 3.0 * arm.sigma[first + i] + 0.01) return true;
     }
     return false;
   };
-  if (!beyond(t, 0) && !beyond(turn, 3)) return {};
+  if (!beyond(t, 0) && !beyond(rotation_vector, 3)) return {};
   if (2.0 * arm.misfit_m > arm.misfit_without_m) return {};
   return fmt::format(
       "the estimate seems to be of another frame of the body, {:.3g} m away and rotated by {:.3g} "
       "deg (not corrected): if so, give --lever body_from_estimate",
-      t.norm(), turn.norm() * 180.0 / std::numbers::pi);
+      t.norm(), rotation_vector.norm() * 180.0 / std::numbers::pi);
 }
 
 }  // namespace lidarena::evaluation

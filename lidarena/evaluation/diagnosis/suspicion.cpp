@@ -15,7 +15,7 @@ namespace lidarena::evaluation {
 namespace {
 
 constexpr double kSameLength = 1.5;  // the durations may differ by up to this factor
-constexpr double kClearly_rad = 0.035;
+constexpr double kMinMisfit_rad = 0.035;
 
 struct Unit {
   double per_second;
@@ -54,9 +54,9 @@ Trajectory reordered(const Trajectory& trajectory) {
 double misfit(const std::vector<MotionPair>& motions, const Eigen::Matrix3d& body_from_estimate) {
   double sum = 0.0;
   for (const MotionPair& motion : motions) {
-    const Eigen::Matrix3d turn =
+    const Eigen::Matrix3d rotation =
         body_from_estimate * motion.estimate.linear() * body_from_estimate.transpose();
-    sum += std::pow(so3::angle(motion.truth.linear().transpose() * turn), 2);
+    sum += std::pow(so3::angle(motion.truth.linear().transpose() * rotation), 2);
   }
   return motions.empty() ? 0.0 : std::sqrt(sum / static_cast<double>(motions.size()));
 }
@@ -100,7 +100,7 @@ std::string suspect_times(const Trajectory& estimate, const Trajectory& truth) {
 
 std::string suspect_quaternion_order(const Trajectory& estimate, const Trajectory& truth) {
   const double as_read = misfit_as_read(estimate, truth);
-  if (as_read < kClearly_rad) return {};
+  if (as_read < kMinMisfit_rad) return {};
   const auto suspect = [&](double in_the_other_order, const char* whose) -> std::string {
     if (in_the_other_order > 0.5 * as_read) return {};
     return fmt::format("the {}'s quaternions look like w x y z but were read as x y z w", whose);

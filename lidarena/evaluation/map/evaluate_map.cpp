@@ -16,9 +16,10 @@
 namespace lidarena::evaluation {
 namespace {
 
-/// No more than `most` points of the map: every k-th point.
-std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std::size_t most) {
-  const std::size_t stride = std::max<std::size_t>(1, (map.size() + most - 1) / most);
+/// No more than `max_points` points of the map: every k-th point.
+std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
+                                       std::size_t max_points) {
+  const std::size_t stride = std::max<std::size_t>(1, (map.size() + max_points - 1) / max_points);
   std::vector<Eigen::Vector3f> sample;
   sample.reserve(map.size() / stride + 1);
   for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
@@ -28,12 +29,14 @@ std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map, std
 /// Maximum number of points of a map that are scored; more take longer without changing the
 /// numbers. For a failed map, far from the mesh, each search takes a hundred times as long, and the
 /// numbers only show that it has failed, so fewer points are scored.
-std::size_t most_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
-                        const world::World& world, const Parallel& parallel) {
-  constexpr std::size_t kMost = 2'000'000, kMostOfLost = 200'000, kLook = 10'000;
-  constexpr double kLost_percent = 95.0;  // beyond 20 cm
-  const MapError look = map_error(sample_of(map, kLook), mesh_from_map, world, parallel);
-  return look.outliers_percent > kLost_percent ? kMostOfLost : kMost;
+std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
+                              const world::World& world, const Parallel& parallel) {
+  constexpr std::size_t kMaxPoints = 2'000'000, kMaxPointsOfFailed = 200'000,
+                        kPreviewPoints = 10'000;
+  constexpr double kFailed_percent = 95.0;  // beyond 20 cm
+  const MapError preview =
+      map_error(sample_of(map, kPreviewPoints), mesh_from_map, world, parallel);
+  return preview.outliers_percent > kFailed_percent ? kMaxPointsOfFailed : kMaxPoints;
 }
 
 /// A map and what is computed once from it for all gauges.
@@ -46,9 +49,9 @@ struct Subject {
   MortonOrder order;
   std::optional<PointGrid> grid;  ///< if completeness is computed
 
-  Subject(std::span<const Eigen::Vector3f> points, std::size_t most, const world::World& mesh,
+  Subject(std::span<const Eigen::Vector3f> points, std::size_t max_points, const world::World& mesh,
           const Parallel& workers, const SeenSurface* surface, const IdentifiedMap* with_hits)
-      : map(sample_of(points, most)),
+      : map(sample_of(points, max_points)),
         world(mesh),
         parallel(workers),
         seen(surface),
@@ -102,9 +105,9 @@ Json measure_robust(const Subject& subject, const Pose& start, const Pose& first
 }
 
 /// Diagonal (m) of the box that holds the middle 98 % of each coordinate.
-double diagonal_of_most(std::span<const Eigen::Vector3f> map) {
-  constexpr std::size_t kLook = 100'000;
-  const std::size_t stride = std::max<std::size_t>(1, map.size() / kLook);
+double robust_diagonal(std::span<const Eigen::Vector3f> map) {
+  constexpr std::size_t kPreviewPoints = 100'000;
+  const std::size_t stride = std::max<std::size_t>(1, map.size() / kPreviewPoints);
   Eigen::Vector3d sizes = Eigen::Vector3d::Zero();
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<double> values;
@@ -137,8 +140,8 @@ Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estima
                   const Trajectory& truth, const world::World& world, const Parallel& parallel,
                   const SeenSurface* seen, const IdentifiedMap* identified) {
   const Alignment rigid = align(estimate, truth, Gauge::kSe3);
-  const Subject subject(map, most_points(map, rigid.truth_from_estimate, world, parallel), world,
-                        parallel, seen, identified);
+  const Subject subject(map, max_scored_points(map, rigid.truth_from_estimate, world, parallel),
+                        world, parallel, seen, identified);
   Json json = Json::object();
   std::optional<Pose> first_pose, start;
   for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
@@ -169,7 +172,7 @@ std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map,
   if (invalid > 0) {
     warnings.push_back(fmt::format("{} of {} points are not finite", invalid, map.size()));
   }
-  const double map_m = diagonal_of_most(map);
+  const double map_m = robust_diagonal(map);
   const double mesh_m = world.mesh().bounds().diagonal().norm();
   if (map_m > 0.0 && mesh_m > kSuspicious * map_m) {
     warnings.push_back(fmt::format(

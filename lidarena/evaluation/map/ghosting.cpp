@@ -87,20 +87,21 @@ Sheets split_sheets(std::span<const float> sorted_heights) {
   for (std::size_t k = 1; k < sorted_heights.size(); ++k) {
     low.add(sorted_heights[k - 1]);
     const Moments high = all - low;
-    const double apart = high.mean() - low.mean();
-    const double between = low.count * high.count * apart * apart;
+    const double mean_difference = high.mean() - low.mean();
+    const double between = low.count * high.count * mean_difference * mean_difference;
     if (between <= best_between) continue;
     best_between = between;
-    best.separation_m = apart;
+    best.separation_m = mean_difference;
     best.middle_m = 0.5 * (high.mean() + low.mean());
     best.smaller_share = std::min(low.count, high.count) / all.count;
     const double spread = std::sqrt(0.5 * (low.variance() + high.variance()));
-    best.ashman_d = spread > 0.0 ? apart / spread : std::numeric_limits<double>::infinity();
+    best.ashman_d =
+        spread > 0.0 ? mean_difference / spread : std::numeric_limits<double>::infinity();
   }
   const double smaller = best.smaller_share * all.count;
-  best.are_two = best.separation_m > Ghosting::kLeastApart_m &&
-                 best.ashman_d > Ghosting::kLeastSeparation &&
-                 best.smaller_share >= Ghosting::kLeastShare && smaller >= Ghosting::kLeastInPart &&
+  best.are_two = best.separation_m > Ghosting::kMinMeanDistance_m &&
+                 best.ashman_d > Ghosting::kMinAshmanD &&
+                 best.smaller_share >= Ghosting::kMinShare && smaller >= Ghosting::kMinInPart &&
                  points_near_middle(sorted_heights, best) < Ghosting::kValley * smaller;
   return best;
 }
@@ -117,7 +118,7 @@ Ghosting ghosting(std::span<const PointScore> scores, const world::World& world,
     for (; end < entries.size() && entries[end].same_patch(entries[begin]); ++end) {
       heights.push_back(entries[end].height);
     }
-    if (heights.size() < Ghosting::kLeastPoints) continue;
+    if (heights.size() < Ghosting::kMinPoints) continue;
     thickness.push_back(quantile_of_sorted(heights, 0.95) - quantile_of_sorted(heights, 0.05));
     const Sheets sheets = split_sheets(heights);
     if (sheets.are_two) separation.push_back(sheets.separation_m);

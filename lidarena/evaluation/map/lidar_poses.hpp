@@ -15,7 +15,7 @@ class LidarPoses {
   LidarPoses(const Trajectory& trajectory, const Pose& body_from_lidar)
       : trajectory_(trajectory),
         body_from_lidar_(body_from_lidar),
-        bracket_(max_bracket(trajectory)) {}
+        gap_limit_(gap_limit_of(trajectory)) {}
 
   /// World from LiDAR at `t`; nullptr outside the trajectory and in its gaps.
   const Pose* at(Time t) {
@@ -27,14 +27,14 @@ class LidarPoses {
   void look_up(Time t) {
     known_ = true;
     stamp_ = t;
-    const std::optional<Pose> world_from_body = pose_between(trajectory_, t, bracket_);
+    const std::optional<Pose> world_from_body = pose_between(trajectory_, t, gap_limit_);
     has_pose_ = world_from_body.has_value();
     if (has_pose_) pose_ = *world_from_body * body_from_lidar_;
   }
 
   const Trajectory& trajectory_;
   Pose body_from_lidar_;
-  Time bracket_;
+  Time gap_limit_;
   bool known_ = false;
   Time stamp_{0};
   bool has_pose_ = false;

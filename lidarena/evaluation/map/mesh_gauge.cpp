@@ -30,14 +30,14 @@ using Matrix6d = Eigen::Matrix<double, 6, 6>;
 constexpr double kVoxel_m = 0.10;            // gives equal areas equal weight
 constexpr std::size_t kPoints = 50'000;      // 2 cm of noise average to 0.1 mm
 constexpr std::size_t kStartPoints = 3'000;  // enough to see where a start converges
-constexpr std::size_t kLeastPoints = 100;
+constexpr std::size_t kMinPoints = 100;
 constexpr double kTrim = 0.95;  // share of the points that are used, nearest first
-constexpr double kStartMove_m = 0.20;
-constexpr double kStartTurn_rad = 2.0 * std::numbers::pi / 180.0;
-constexpr double kLeastScale_m = 0.01;  // of the kernel; ranges are not more accurate
-constexpr double kReach_m = 1.0;        // farther points have no match
-constexpr double kWorse = 1.5;          // cost ratio, see fit_from
-constexpr int kMostIterations = 40;     // per scale
+constexpr double kStartTranslation_m = 0.20;
+constexpr double kStartRotation_rad = 2.0 * std::numbers::pi / 180.0;
+constexpr double kMinScale_m = 0.01;   // of the kernel; ranges are not more accurate
+constexpr double kReach_m = 1.0;       // farther points have no match
+constexpr double kMaxCostRatio = 1.5;  // cost ratio, see fit_from
+constexpr int kMaxIterations = 40;     // per scale
 
 /// Smaller steps end the iteration at one scale.
 struct Tolerance {
@@ -149,7 +149,7 @@ estimation::NormalEquations<6> equations_of(const Matches& matches, const TwistF
 }
 
 /// The Gauss-Newton step without its components along unobservable directions.
-Vector6d held_step(const estimation::NormalEquations<6>& equations, Vector6d& eigenvalues) {
+Vector6d observable_step(const estimation::NormalEquations<6>& equations, Vector6d& eigenvalues) {
   const double weight = static_cast<double>(equations.count);
   const Eigen::SelfAdjointEigenSolver<Matrix6d> solver(equations.hessian / weight);
   eigenvalues = solver.eigenvalues();
@@ -175,18 +175,17 @@ struct Fit {
 /// Iterates with one scale of the kernel (m), or with the residuals' own when none is given.
 void descend(const Points& points, std::optional<double> fixed_scale, const Tolerance& tolerance,
              const world::World& world, const Parallel& parallel, Fit& fit) {
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     const double reach = fixed_scale.value_or(kReach_m);
     Matches matches = match(points, fit.pose, reach, world, parallel);
     if (fixed_scale == kScales.front()) matches.gate = reach;  // no trimming at the first scale
-    const double scale =
-        fixed_scale.value_or(std::max(kLeastScale_m, 3.0 * 1.4826 * matches.median));
+    const double scale = fixed_scale.value_or(std::max(kMinScale_m, 3.0 * 1.4826 * matches.median));
     const TwistFrame frame(points, fit.pose);
     const estimation::NormalEquations<6> equations =
         equations_of(matches, frame, scale, world, parallel);
-    if (equations.count < kLeastPoints / 2) return;
+    if (equations.count < kMinPoints / 2) return;
     fit.hessian = equations.hessian / static_cast<double>(equations.count);
-    const Vector6d step = held_step(equations, fit.eigenvalues);
+    const Vector6d step = observable_step(equations, fit.eigenvalues);
     const Vector3d turn = frame.rad_per_m * step.tail<3>();
     fit.pose = moved_by(step.head<3>(), turn, frame, fit.pose);
     ++fit.iterations;
@@ -209,17 +208,17 @@ void rate(const Points& points, const world::World& world, const Parallel& paral
   fit.inlier_share = static_cast<double>(inliers) / n;
 }
 
-/// Fits with up to `most_scales` scales. A narrower kernel may align one part of a bent map with
+/// Fits with up to `max_scales` scales. A narrower kernel may align one part of a bent map with
 /// the mesh and ignore the rest; a result whose total cost is clearly higher is not kept.
-Fit fit_from(const Pose& start, std::size_t most_scales, const Points& points,
+Fit fit_from(const Pose& start, std::size_t max_scales, const Points& points,
              const world::World& world, const Parallel& parallel) {
   Fit fit;
   fit.pose = start;
-  while (fit.scales < most_scales) {
+  while (fit.scales < max_scales) {
     Fit next = fit;
     descend(points, kScales[fit.scales], kCoarse, world, parallel, next);
     rate(points, world, parallel, next);
-    if (next.cost > kWorse * fit.cost) return fit;
+    if (next.cost > kMaxCostRatio * fit.cost) return fit;
     fit = next;
     ++fit.scales;
   }
@@ -232,15 +231,16 @@ std::vector<Pose> starts_around(const Pose& start, const Points& points) {
   const std::vector<Vector3d> corners{{1, 1, 1}, {1, -1, -1}, {-1, 1, -1}, {-1, -1, 1}};
   std::vector<Pose> starts{start};
   for (std::size_t k = 0; k < corners.size(); ++k) {
-    const Vector3d turn = kStartTurn_rad * corners[(k + 1) % corners.size()].normalized();
-    starts.push_back(
-        moved_by(kStartMove_m * corners[k].normalized(), turn, TwistFrame(points, start), start));
+    const Vector3d turn = kStartRotation_rad * corners[(k + 1) % corners.size()].normalized();
+    starts.push_back(moved_by(kStartTranslation_m * corners[k].normalized(), turn,
+                              TwistFrame(points, start), start));
   }
   return starts;
 }
 
 /// RMS motion (m) of the points from one pose to the other along observable directions.
-double apart(const Pose& a, const Pose& b, const Points& points, const Matrix6d& hessian) {
+double rms_motion_between(const Pose& a, const Pose& b, const Points& points,
+                          const Matrix6d& hessian) {
   const TwistFrame frame(points, a);
   Vector6d twist;
   twist << (b * points.centroid - a * points.centroid),
@@ -264,8 +264,8 @@ struct Starts {
 };
 
 /// Iterates from all starts; if their results differ, again with one narrow scale less.
-Starts narrowest_that_agree(const Pose& start, const Points& points, const world::World& world,
-                            const Parallel& parallel) {
+Starts narrowest_agreeing_fit(const Pose& start, const Points& points, const world::World& world,
+                              const Parallel& parallel) {
   Starts result;
   result.scales = kScales.size();
   while (true) {
@@ -278,7 +278,8 @@ Starts narrowest_that_agree(const Pose& start, const Points& points, const world
     const auto cheaper = [](const Fit& a, const Fit& b) { return a.cost < b.cost; };
     const Fit& best = *std::min_element(fits.begin(), fits.end(), cheaper);
     const auto agrees = [&](const Fit& fit) {
-      return apart(fit.pose, best.pose, points, best.hessian) < MeshAlignment::kAgree_m;
+      return rms_motion_between(fit.pose, best.pose, points, best.hessian) <
+             MeshAlignment::kAgree_m;
     };
     result.agreeing = static_cast<int>(std::count_if(fits.begin(), fits.end(), agrees));
     // prefer the given start, because its result keeps the unobservable directions of the start
@@ -298,7 +299,8 @@ std::string named(const char* what, Vector3d axis) {
 
 /// Names the unobservable directions: translations, then rotations that stay unobservable when the
 /// points may also translate (Schur complement).
-std::vector<std::string> names_of_frozen(const Matrix6d& hessian, const Matrix3d& rad_per_m) {
+std::vector<std::string> unobservable_directions(const Matrix6d& hessian,
+                                                 const Matrix3d& rad_per_m) {
   std::vector<std::string> names;
   const Matrix3d tt = hessian.topLeftCorner<3, 3>();
   const Matrix3d tr = hessian.topRightCorner<3, 3>();
@@ -324,7 +326,7 @@ std::vector<std::string> names_of_frozen(const Matrix6d& hessian, const Matrix3d
 }
 
 std::string refusal_of(const MeshAlignment& alignment) {
-  if (alignment.inlier_share < MeshAlignment::kLeastInliers) {
+  if (alignment.inlier_share < MeshAlignment::kMinInliers) {
     return fmt::format("only {:.0f} % of the map's points lie within 20 cm of the mesh",
                        100.0 * alignment.inlier_share);
   }
@@ -342,12 +344,12 @@ MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& st
   MeshAlignment alignment;
   alignment.mesh_from_map = start;
   const std::vector<std::uint32_t> chosen = map::first_of_each_voxel(map, kVoxel_m);
-  if (chosen.size() < kLeastPoints) {
+  if (chosen.size() < kMinPoints) {
     alignment.refusal = fmt::format("only {} voxels of 10 cm to align", chosen.size());
     return alignment;
   }
   const Points few = every(kStartPoints, map, chosen);
-  const Starts starts = narrowest_that_agree(start, few, world, parallel);
+  const Starts starts = narrowest_agreeing_fit(start, few, world, parallel);
   alignment.agreeing_starts = starts.agreeing;
 
   const Points many = every(kPoints, map, chosen);
@@ -360,7 +362,7 @@ MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& st
   alignment.iterations = starts.iterations + fit.iterations;
   alignment.inlier_share = fit.inlier_share;
   alignment.eigenvalues = fit.eigenvalues;
-  alignment.frozen = names_of_frozen(fit.hessian, TwistFrame(many, fit.pose).rad_per_m);
+  alignment.frozen = unobservable_directions(fit.hessian, TwistFrame(many, fit.pose).rad_per_m);
   alignment.moved_m = (fit.pose * many.centroid - start * many.centroid).norm();
   alignment.turned_rad = so3::angle(fit.pose.linear() * start.linear().transpose());
   alignment.refusal = refusal_of(alignment);

@@ -14,9 +14,9 @@ namespace lidarena::evaluation {
 
 /// The gauge "robust": alignment of the map with the mesh itself, and how well it is determined.
 struct MeshAlignment {
-  static constexpr int kStarts = 5;         ///< starting poses: the given one and four around it
-  static constexpr double kAgree_m = 0.02;  ///< results agree below this RMS motion of the map
-  static constexpr double kLeastInliers = 0.5;    ///< share within 20 cm; refused below this
+  static constexpr int kStarts = 5;           ///< starting poses: the given one and four around it
+  static constexpr double kAgree_m = 0.02;    ///< results agree below this RMS motion of the map
+  static constexpr double kMinInliers = 0.5;  ///< share within 20 cm; refused below this
   static constexpr double kUnobservable = 0.003;  ///< limit for `eigenvalues`
   Pose mesh_from_map = Pose::Identity();
   std::string refusal;     ///< empty when the transform is reliable

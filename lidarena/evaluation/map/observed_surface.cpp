@@ -140,8 +140,9 @@ ObservedSurface observe(dataset::EventSource& events, const std::string& lidar_i
       const Vector3d position = *world_from_lidar * point.position.cast<double>();
       if (!observation.is_new(position)) continue;
       const Vector3d origin = world_from_lidar->translation();
-      const Vector3d way = position - origin;
-      batch.push_back({{origin, way.normalized().cast<float>()}, way.norm()});
+      const Vector3d sensor_to_point = position - origin;
+      batch.push_back(
+          {{origin, sensor_to_point.normalized().cast<float>()}, sensor_to_point.norm()});
     }
     if (batch.size() < kBatch) continue;
     add_rays(batch, world, parallel, observation);

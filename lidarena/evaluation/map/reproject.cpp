@@ -10,10 +10,11 @@
 namespace lidarena::evaluation {
 
 dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
-                         const Pose& body_from_lidar, const Trajectory& estimate, double voxel_m,
-                         ReprojectionCounts* counts, std::vector<ReturnOrigin>* origins) {
+                         const Pose& body_from_lidar, const Trajectory& estimate,
+                         double voxel_size_m, ReprojectionCounts* counts,
+                         std::vector<ReturnOrigin>* origins) {
   LidarPoses poses(estimate, body_from_lidar);
-  map::PointMap map(voxel_m);
+  map::PointMap map(voxel_size_m);
   dataset::Cloud cloud;
   ReprojectionCounts seen;
   std::uint32_t scans = 0;

@@ -32,7 +32,7 @@ struct ReturnOrigin {
 /// of the estimate. `origins`, if given, receives one entry per point of the map.
 dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
                          const Pose& body_from_lidar, const Trajectory& estimate,
-                         double voxel_m = 0.02, ReprojectionCounts* counts = nullptr,
+                         double voxel_size_m = 0.02, ReprojectionCounts* counts = nullptr,
                          std::vector<ReturnOrigin>* origins = nullptr);
 
 }  // namespace lidarena::evaluation

@@ -8,14 +8,14 @@ namespace lidarena::evaluation {
 std::optional<dataset::Event> ScoredEvents::next() {
   std::optional<dataset::Event> event = source_->next();
   if (event) {
-    if (auto* scan = std::get_if<Scan>(&event->data)) keep_scored(scan->points, most_);
+    if (auto* scan = std::get_if<Scan>(&event->data)) keep_scored(scan->points, max_count_);
   }
   return event;
 }
 
 std::optional<dataset::ScanTruth> ScoredTruth::next() {
   std::optional<dataset::ScanTruth> truth = source_->next();
-  if (truth) keep_scored(truth->points, most_);
+  if (truth) keep_scored(truth->points, max_count_);
   return truth;
 }
 

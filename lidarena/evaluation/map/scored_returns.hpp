@@ -27,46 +27,46 @@ inline std::size_t scored_returns(std::size_t scans) {
 }
 
 /// The stride k of scoring every k-th point of a scan of `points` points, so that no more than
-/// `most` are scored: 1, or an odd number, so that no row of a spinning sensor is skipped (its
+/// `max_count` are scored: 1, or an odd number, so that no row of a spinning sensor is skipped (its
 /// columns have a power of two of points).
-inline std::size_t scoring_stride(std::size_t points, std::size_t most) {
-  const std::size_t stride = (points + most - 1) / most;
+inline std::size_t scoring_stride(std::size_t points, std::size_t max_count) {
+  const std::size_t stride = (points + max_count - 1) / max_count;
   return stride <= 1 ? 1 : stride | 1U;
 }
 
 /// Removes the returns that are not scored and keeps the order. Keeps the same returns of a scan
 /// and of its truth.
 template <class P>
-void keep_scored(std::vector<P>& points, std::size_t most) {
-  const std::size_t stride = scoring_stride(points.size(), most);
+void keep_scored(std::vector<P>& points, std::size_t max_count) {
+  const std::size_t stride = scoring_stride(points.size(), max_count);
   if (stride == 1) return;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < points.size(); i += stride) points[kept++] = points[i];
   points.resize(kept);
 }
 
-/// The events of `source` with only the scored returns, up to `most` per scan.
+/// The events of `source` with only the scored returns, up to `max_count` per scan.
 class ScoredEvents : public dataset::EventSource {
  public:
-  ScoredEvents(std::unique_ptr<dataset::EventSource> source, std::size_t most)
-      : source_(std::move(source)), most_(most) {}
+  ScoredEvents(std::unique_ptr<dataset::EventSource> source, std::size_t max_count)
+      : source_(std::move(source)), max_count_(max_count) {}
   std::optional<dataset::Event> next() override;
 
  private:
   std::unique_ptr<dataset::EventSource> source_;
-  std::size_t most_;
+  std::size_t max_count_;
 };
 
 /// The true hits of these returns.
 class ScoredTruth : public dataset::ScanTruthSource {
  public:
-  ScoredTruth(std::unique_ptr<dataset::ScanTruthSource> source, std::size_t most)
-      : source_(std::move(source)), most_(most) {}
+  ScoredTruth(std::unique_ptr<dataset::ScanTruthSource> source, std::size_t max_count)
+      : source_(std::move(source)), max_count_(max_count) {}
   std::optional<dataset::ScanTruth> next() override;
 
  private:
   std::unique_ptr<dataset::ScanTruthSource> source_;
-  std::size_t most_;
+  std::size_t max_count_;
 };
 
 }  // namespace lidarena::evaluation

@@ -30,7 +30,7 @@ SignedDistance signed_distance(std::span<const PointScore> scores,
   for (const PointScore& score : scores) {
     const double height = score.height;
     const auto side = static_cast<double>(free_side[score.triangle]);
-    if (side == 0.0 || std::abs(height) < SignedDistance::kLeastCosine * score.distance) {
+    if (side == 0.0 || std::abs(height) < SignedDistance::kMinCosine * score.distance) {
       ++result.without;
       continue;
     }

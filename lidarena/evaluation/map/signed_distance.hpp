@@ -26,7 +26,7 @@ struct SignedDistance {
   static constexpr std::size_t kBins = 40;
   /// A point whose direction from its nearest triangle is more than 60 degrees off the normal is
   /// beside an edge; that triangle does not determine on which side it lies.
-  static constexpr double kLeastCosine = 0.5;
+  static constexpr double kMinCosine = 0.5;
   std::size_t points = 0;   ///< number of points with a sign
   std::size_t without = 0;  ///< beside an edge, or nearest to a triangle whose free side is unknown
   double mean_m = 0.0, median_m = 0.0, p5_m = 0.0, p95_m = 0.0;  ///< 0 when there are no points

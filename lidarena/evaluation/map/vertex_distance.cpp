@@ -44,8 +44,8 @@ std::uint64_t count_subdivided(const world::TriangleMesh& mesh, double edge) {
     const double n = pieces_of(mesh, triangle, edge);
     count += 0.5 * (n + 1.0) * (n + 2.0) - 3.0;  // without its corners
   }
-  constexpr double kMost = 1e18;
-  return static_cast<std::uint64_t>(std::min(count, kMost));
+  constexpr double kMaxCount = 1e18;
+  return static_cast<std::uint64_t>(std::min(count, kMaxCount));
 }
 
 std::vector<Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, double edge,
@@ -74,16 +74,16 @@ std::vector<Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, doubl
 VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder& order,
                                std::span<const PointScore> scores, const Pose& mesh_from_map,
                                const world::World& world, const Parallel& parallel, double edge,
-                               std::uint64_t most) {
+                               std::uint64_t max_vertices) {
   VertexDistance result;
   result.edge_m = edge;
   result.vertices = count_subdivided(world.mesh(), edge);
-  if (result.vertices > most) {
+  if (result.vertices > max_vertices) {
     result.refusal = fmt::format(
         "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the limit of {:g} "
         "million",
         100.0 * edge, 1e-6 * static_cast<double>(result.vertices),
-        1e-6 * static_cast<double>(most));
+        1e-6 * static_cast<double>(max_vertices));
     return result;
   }
   const Vector3d origin = center_of(world);

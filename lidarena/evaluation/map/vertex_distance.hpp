@@ -32,7 +32,7 @@ std::vector<Eigen::Vector3f> subdivided_vertices(const world::TriangleMesh& mesh
 /// has a distance of up to 0.58 edges.
 struct VertexDistance {
   static constexpr double kEdge_m = 0.05;
-  static constexpr std::uint64_t kMostVertices = 20'000'000;  ///< needs about 1.4 GB temporarily
+  static constexpr std::uint64_t kMaxVertices = 20'000'000;  ///< needs about 1.4 GB temporarily
   /// Points of a failed map lie far outside the mesh, where thousands of vertices are almost as
   /// near as the nearest and the search is slow. Beyond this many edges (1 m) the distance to the
   /// surface is used instead. It is too small by no more than 1/120 edge (0.42 mm), because a
@@ -46,12 +46,12 @@ struct VertexDistance {
 
 /// Distances of the points of `order` (of `map`), moved by `mesh_from_map`, to their exact nearest
 /// vertices (k-d tree); `scores` are the scores of these points. Points beyond kFarEdges count with
-/// their distance to the surface. Refused for meshes that need more than `most` vertices.
+/// their distance to the surface. Refused for meshes that need more than `max_vertices` vertices.
 /// Bit-identical for any number of threads.
 VertexDistance vertex_distance(std::span<const Eigen::Vector3f> map, const MortonOrder& order,
                                std::span<const PointScore> scores, const Pose& mesh_from_map,
                                const world::World& world, const Parallel& parallel,
                                double edge = VertexDistance::kEdge_m,
-                               std::uint64_t most = VertexDistance::kMostVertices);
+                               std::uint64_t max_vertices = VertexDistance::kMaxVertices);
 
 }  // namespace lidarena::evaluation

@@ -17,7 +17,7 @@ constexpr double kMinSpread_m = 0.01;
 // an uncertainty of (position error) / (width), more than a radian for 1 cm in 10 m.
 constexpr double kMinWidthOfLength = 1e-3;
 // With a larger tilt of the z axis a heading-only fit is wrong by more than 3.5 cm per meter.
-constexpr double kLeans_rad = 0.035;
+constexpr double kMaxTilt_rad = 0.035;
 
 /// Means and cross covariance C = mean (q - q_mean) (p - p_mean)^T of truth q and estimate p.
 struct Moments {
@@ -72,8 +72,8 @@ std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
     return fmt::format("the flight is a line ({:.2g} m wide, {:.2g} m long): roll undetermined",
                        width, length);
   }
-  const Eigen::Matrix2d level = m.cross.topLeftCorner<2, 2>();
-  const double turned = std::hypot(level(1, 0) - level(0, 1), level.trace());
+  const Eigen::Matrix2d horizontal = m.cross.topLeftCorner<2, 2>();
+  const double turned = std::hypot(horizontal(1, 0) - horizontal(0, 1), horizontal.trace());
   if (gauge == Gauge::kPosYaw && std::sqrt(turned) < kMinSpread_m) {
     return "the positions do not spread horizontally: heading undetermined";
   }
@@ -129,7 +129,7 @@ Alignment align(std::span<const PosePair> pairs, Gauge gauge) {
         make_pose(fit.rotation, m.truth_mean - fit.rotation * m.estimate_mean);
   } else {
     alignment.truth_from_estimate = fit_position_and_yaw(m);
-    if (se3_determined && alignment.tilt_rad > kLeans_rad) {
+    if (se3_determined && alignment.tilt_rad > kMaxTilt_rad) {
       alignment.warning = fmt::format(
           "the estimate's z axis is tilted by {:.1f} deg: a heading-only fit needs a vertical one",
           alignment.tilt_rad * 180.0 / M_PI);

@@ -13,11 +13,11 @@ double rate_hz(const Trajectory& trajectory) {
 
 /// Part of the truth's time span that lies between consecutive estimates without a gap, s.
 double covered_s(const Trajectory& estimate, const Trajectory& truth) {
-  const Time bracket = max_bracket(estimate);
+  const Time gap_limit = gap_limit_of(estimate);
   Time covered{0};
   const auto poses = estimate.poses();
   for (std::size_t i = 1; i < poses.size(); ++i) {
-    if (poses[i].stamp - poses[i - 1].stamp > bracket) continue;
+    if (poses[i].stamp - poses[i - 1].stamp > gap_limit) continue;
     const Time from = std::max(poses[i - 1].stamp, truth.begin_time());
     const Time to = std::min(poses[i].stamp, truth.end_time());
     covered += std::max(Time{0}, to - from);
@@ -40,25 +40,25 @@ Time median_period(const Trajectory& trajectory) {
   return *middle;
 }
 
-Time max_bracket(const Trajectory& trajectory) { return median_period(trajectory) * 3 / 2; }
+Time gap_limit_of(const Trajectory& trajectory) { return median_period(trajectory) * 3 / 2; }
 
-std::optional<Pose> pose_between(const Trajectory& trajectory, Time t, Time bracket) {
+std::optional<Pose> pose_between(const Trajectory& trajectory, Time t, Time gap_limit) {
   const std::size_t next = trajectory.upper_bound(t);
   const auto poses = trajectory.poses();
   if (next == 0) return std::nullopt;
   if (poses[next - 1].stamp == t) return poses[next - 1].world_from_body;
-  if (next == poses.size() || poses[next].stamp - poses[next - 1].stamp > bracket) {
+  if (next == poses.size() || poses[next].stamp - poses[next - 1].stamp > gap_limit) {
     return std::nullopt;
   }
   return trajectory.at(t);
 }
 
 std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory& truth) {
-  const Time bracket = max_bracket(truth);
+  const Time gap_limit = gap_limit_of(truth);
   std::vector<PosePair> pairs;
   for (const StampedPose& pose : estimate.poses()) {
-    const std::optional<Pose> there = pose_between(truth, pose.stamp, bracket);
-    if (there) pairs.push_back({pose.stamp, *there, pose.world_from_body});
+    const std::optional<Pose> true_pose = pose_between(truth, pose.stamp, gap_limit);
+    if (true_pose) pairs.push_back({pose.stamp, *true_pose, pose.world_from_body});
   }
   return pairs;
 }

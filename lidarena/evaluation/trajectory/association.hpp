@@ -29,10 +29,10 @@ Time median_period(const Trajectory& trajectory);
 
 /// 1.5 median periods: two consecutive poses farther apart than this have a gap between them,
 /// across which nothing is interpolated.
-Time max_bracket(const Trajectory& trajectory);
+Time gap_limit_of(const Trajectory& trajectory);
 
-/// Trajectory::at, but empty inside gaps longer than `bracket`.
-std::optional<Pose> pose_between(const Trajectory& trajectory, Time t, Time bracket);
+/// Trajectory::at, but empty inside gaps longer than `gap_limit`.
+std::optional<Pose> pose_between(const Trajectory& trajectory, Time t, Time gap_limit);
 
 /// Poses of truth and estimate at one instant.
 struct PosePair {

@@ -159,8 +159,8 @@ void check_delta(const EvoOptions& o) {
   if (o.unit == EvoUnit::kFrames && o.delta != std::floor(o.delta)) {
     throw InputError(kPlace, fmt::format("delta is {}, not a whole number of frames", o.delta));
   }
-  const double half_turn = o.unit == EvoUnit::kDegrees ? 180.0 : std::numbers::pi;
-  if ((o.unit == EvoUnit::kDegrees || o.unit == EvoUnit::kRadians) && o.delta > half_turn) {
+  const double max_delta = o.unit == EvoUnit::kDegrees ? 180.0 : std::numbers::pi;
+  if ((o.unit == EvoUnit::kDegrees || o.unit == EvoUnit::kRadians) && o.delta > max_delta) {
     throw InputError(kPlace, "delta is more than 180 degrees");
   }
 }
@@ -284,13 +284,13 @@ IndexPairs evo_association(const Trajectory& reference, const Trajectory& estima
   const bool estimate_is_longer = estimate.size() > reference.size();
   const std::vector<double> q = seconds_of(reference);
   const std::vector<double> p = seconds_of(estimate);
-  const std::vector<double>& few = estimate_is_longer ? q : p;
-  std::vector<double> many = estimate_is_longer ? p : q;
-  for (double& t : many) t += estimate_is_longer ? offset_s : -offset_s;
+  const std::vector<double>& shorter = estimate_is_longer ? q : p;
+  std::vector<double> longer = estimate_is_longer ? p : q;
+  for (double& t : longer) t += estimate_is_longer ? offset_s : -offset_s;
   IndexPairs pairs;
-  for (std::size_t i = 0; i < few.size() && !many.empty(); ++i) {
-    const std::size_t j = nearest(many, few[i]);
-    if (!(std::abs(many[j] - few[i]) <= max_difference_s)) continue;
+  for (std::size_t i = 0; i < shorter.size() && !longer.empty(); ++i) {
+    const std::size_t j = nearest(longer, shorter[i]);
+    if (!(std::abs(longer[j] - shorter[i]) <= max_difference_s)) continue;
     pairs.push_back(estimate_is_longer ? std::pair{i, j} : std::pair{j, i});
   }
   return pairs;

@@ -6,8 +6,8 @@
 namespace lidarena::evaluation {
 namespace {
 
-bool hovers(const PosePair& a, const PosePair& b, Time bracket) {
-  if (b.stamp - a.stamp > bracket) return false;
+bool hovers(const PosePair& a, const PosePair& b, Time gap_limit) {
+  if (b.stamp - a.stamp > gap_limit) return false;
   const double meters = (b.truth.translation() - a.truth.translation()).norm();
   return meters < HoverJitter::kSpeed_mps * to_seconds(b.stamp - a.stamp);
 }
@@ -28,12 +28,12 @@ double sum_of_squares(std::span<const PosePair> hover) {
 
 }  // namespace
 
-HoverJitter hover_jitter(std::span<const PosePair> pairs, Time bracket) {
+HoverJitter hover_jitter(std::span<const PosePair> pairs, Time gap_limit) {
   HoverJitter jitter;
   double squares = 0.0;
   for (std::size_t begin = 0, end = 0; begin < pairs.size(); begin = end) {
     end = begin + 1;
-    while (end < pairs.size() && hovers(pairs[end - 1], pairs[end], bracket)) ++end;
+    while (end < pairs.size() && hovers(pairs[end - 1], pairs[end], gap_limit)) ++end;
     const double seconds = to_seconds(pairs[end - 1].stamp - pairs[begin].stamp);
     if (seconds < HoverJitter::kMin_s) continue;
     squares += sum_of_squares(pairs.subspan(begin, end - begin));

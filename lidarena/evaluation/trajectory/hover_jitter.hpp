@@ -17,9 +17,9 @@ struct HoverJitter {
   double rms_m = 0.0;  ///< of the position error about its mean over each hover
 };
 
-/// `pairs` of one flight, sorted by time; a time step longer than `bracket` ends a hover.
+/// `pairs` of one flight, sorted by time; a time step longer than `gap_limit` ends a hover.
 /// Independent of both world frames: within each hover the estimate is rotated into the truth's
 /// frame by the hover's first pose.
-HoverJitter hover_jitter(std::span<const PosePair> pairs, Time bracket);
+HoverJitter hover_jitter(std::span<const PosePair> pairs, Time gap_limit);
 
 }  // namespace lidarena::evaluation

@@ -17,15 +17,15 @@ constexpr std::size_t kMaxPairs = 1000;
 std::vector<MotionPair> motion_pairs(const Trajectory& estimate, const Trajectory& truth) {
   const auto poses = estimate.poses();
   const std::size_t stride = poses.size() / kMaxPairs + 1;
-  const Time longest = kPiece + max_bracket(estimate);
-  const Time bracket = max_bracket(truth);
+  const Time longest = kPiece + gap_limit_of(estimate);
+  const Time gap_limit = gap_limit_of(truth);
   std::vector<MotionPair> pairs;
   for (std::size_t i = 0, j = 0; i < poses.size(); i += stride) {
     while (j < poses.size() && poses[j].stamp < poses[i].stamp + kPiece) ++j;
     if (j == poses.size()) break;
     if (poses[j].stamp - poses[i].stamp > longest) continue;
-    const std::optional<Pose> a = pose_between(truth, poses[i].stamp, bracket);
-    const std::optional<Pose> b = pose_between(truth, poses[j].stamp, bracket);
+    const std::optional<Pose> a = pose_between(truth, poses[i].stamp, gap_limit);
+    const std::optional<Pose> b = pose_between(truth, poses[j].stamp, gap_limit);
     if (!a || !b) continue;
     pairs.push_back(
         {a->inverse() * *b, poses[i].world_from_body.inverse() * poses[j].world_from_body});

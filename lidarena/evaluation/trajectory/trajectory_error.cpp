@@ -43,9 +43,9 @@ std::vector<TimeSpan> pieces_of_time(TimeSpan span, double segment_s, double ste
 }
 
 /// The motion over a piece, in the frame of its start; empty when an end lies in a gap.
-std::optional<Pose> motion_over(const Trajectory& trajectory, TimeSpan piece, Time bracket) {
-  const std::optional<Pose> a = pose_between(trajectory, piece.begin, bracket);
-  const std::optional<Pose> b = pose_between(trajectory, piece.end, bracket);
+std::optional<Pose> motion_over(const Trajectory& trajectory, TimeSpan piece, Time gap_limit) {
+  const std::optional<Pose> a = pose_between(trajectory, piece.begin, gap_limit);
+  const std::optional<Pose> b = pose_between(trajectory, piece.end, gap_limit);
   if (!a || !b) return std::nullopt;
   return a->inverse() * *b;
 }
@@ -65,14 +65,14 @@ Time nearest_stamp(const Trajectory& estimate, Time t) {
 RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
                         const std::vector<TimeSpan>& pieces,
                         const std::function<double(const TimeSpan&)>& factor = nullptr) {
-  const Time estimate_bracket = max_bracket(estimate);
-  const Time truth_bracket = max_bracket(truth);
+  const Time estimate_gap_limit = gap_limit_of(estimate);
+  const Time truth_gap_limit = gap_limit_of(truth);
   RelativePoseError rpe;
   std::vector<double> translations;
   std::vector<double> rotations;
   for (const TimeSpan& piece : pieces) {
-    const std::optional<Pose> q = motion_over(truth, piece, truth_bracket);
-    const std::optional<Pose> p = motion_over(estimate, piece, estimate_bracket);
+    const std::optional<Pose> q = motion_over(truth, piece, truth_gap_limit);
+    const std::optional<Pose> p = motion_over(estimate, piece, estimate_gap_limit);
     if (!q || !p) continue;
     const Pose error = q->inverse() * *p;
     const double by = factor ? factor(piece) : 1.0;
@@ -111,11 +111,11 @@ RelativePoseError relative_pose_error_at_poses(const Trajectory& estimate, const
   require_positive(segment_m, "segment_m");
   const ArcLength arc(truth, common_span(estimate, truth));
   const std::vector<TimeSpan> exact = pieces_of_path(arc, segment_m, segment_m);
-  const Time bracket = max_bracket(estimate);
+  const Time gap_limit = gap_limit_of(estimate);
   std::vector<TimeSpan> pieces;
   for (const TimeSpan& piece : exact) {
-    if (!pose_between(estimate, piece.begin, bracket) ||
-        !pose_between(estimate, piece.end, bracket))
+    if (!pose_between(estimate, piece.begin, gap_limit) ||
+        !pose_between(estimate, piece.end, gap_limit))
       continue;
     const TimeSpan moved{nearest_stamp(estimate, piece.begin), nearest_stamp(estimate, piece.end)};
     if (moved.begin < moved.end) pieces.push_back(moved);

@@ -35,7 +35,7 @@ struct RelativePoseError {
 };
 
 /// Piece lengths for which the RPE is reported; the paper uses 1 m.
-inline constexpr std::array kLadder_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
+inline constexpr std::array kRpeLengths_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
 
 /// Error per `segment_m` of path. Arc length is measured on the truth within the common time span;
 /// ends are interpolated in both trajectories; a piece with an end in a gap is dropped. Throws

@@ -9,9 +9,9 @@ namespace lidarena::odometry::ct_icp {
 
 namespace {
 
-constexpr double kDistinct = 0.8;            // minimum planarity of a plane, linearity of a line
+constexpr double kMinDistinctness = 0.8;     // minimum planarity of a plane, linearity of a line
 constexpr double kDistributionWeight = 0.1;  // of a neighborhood that is neither
-constexpr double kThinnest = 0.02;           // m, minimum deviation of a distribution: range noise
+constexpr double kMinDeviation = 0.02;       // m, minimum deviation of a distribution: range noise
 
 Eigen::Vector3d anchor_of(std::span<const map::Neighbor> neighbors, const Eigen::Vector3d& mean,
                           PlanePoint plane_point) {
@@ -69,16 +69,16 @@ estimation::ElasticMatch plane_match(const Neighborhood& neighborhood,
 estimation::ElasticMatch shape_match(const Neighborhood& neighborhood) {
   estimation::ElasticMatch match;
   match.anchor = neighborhood.anchor;
-  if (neighborhood.planarity > kDistinct) {
+  if (neighborhood.planarity > kMinDistinctness) {
     match.shape.row(0) = neighborhood.normal;
     match.weight = neighborhood.planarity * neighborhood.planarity;
-  } else if (neighborhood.linearity > kDistinct) {
+  } else if (neighborhood.linearity > kMinDistinctness) {
     match.rows = 3;
     match.shape = Eigen::Matrix3d::Identity() - neighborhood.line * neighborhood.line.transpose();
     match.weight = neighborhood.linearity * neighborhood.linearity;
   } else {
     // Deviations along the axes, scaled so that the smallest one is in meters, as for a plane.
-    const Eigen::Vector3d deviations = neighborhood.eigenvalues.cwiseSqrt().cwiseMax(kThinnest);
+    const Eigen::Vector3d deviations = neighborhood.eigenvalues.cwiseSqrt().cwiseMax(kMinDeviation);
     Eigen::Matrix3d axes;
     axes << neighborhood.normal, neighborhood.line.cross(neighborhood.normal), neighborhood.line;
     match.rows = 3;

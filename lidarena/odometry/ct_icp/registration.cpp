@@ -13,7 +13,7 @@ namespace lidarena::odometry::ct_icp {
 
 namespace {
 
-constexpr std::size_t kMostNeighbors = 64;
+constexpr std::size_t kMaxNeighbors = 64;
 constexpr std::size_t kGrain = 64;  // keypoints per task: about 0.2 ms of work
 
 /// A keypoint's neighborhood and its position (m, world) when it was searched.
@@ -71,7 +71,7 @@ class Matcher {
   }
 
   std::optional<Neighborhood> search(const Eigen::Vector3f& position) const {
-    std::array<map::Neighbor, kMostNeighbors> room;
+    std::array<map::Neighbor, kMaxNeighbors> room;
     const std::span near(room.data(), static_cast<std::size_t>(config_.max_neighbors));
     const auto radius = static_cast<float>(config_.search_radius_m);
     const std::size_t count = map_.nearest(position, radius, near);

@@ -20,7 +20,7 @@ Config improved(const LidarInfo& lidar) {
   config.min_range_m = std::max(0.3, lidar.min_range_m);
   config.deskew_first_instant = true;
   config.scan_voxel_size_m = 0.2;
-  config.grid_axes = map::GridAxes::kAskew;
+  config.grid_axes = map::GridAxes::kRotated;
   config.max_scan_points = 4000;
   config.map_voxel_size_m = 0.2;
   config.plane_fit = estimation::PlaneFit::kPrincipal;

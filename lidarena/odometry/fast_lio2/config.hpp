@@ -62,18 +62,17 @@ struct Config {
   bool hold_first_pose = false;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"scan_voxel_m", "scan_voxel_size_m"},
-      {"map_voxel_m", "map_voxel_size_m"},
-      {"max_points", "max_scan_points"},
-      {"max_neighbour_m", "max_neighbor_distance_m"},
-      {"plane_thickness_m", "max_plane_thickness_m"},
-      {"second_order", "second_order_integration"},
-      {"tell_clipping", "detect_saturation"},
-      {"least_agreement", "min_inlier_share"},
-      {"init_samples", "initialization_samples"},
-      {"zero_velocity", "zero_velocity_updates"},
-      {"still_scans_mapped", "standing_scans_mapped"}};
+  static constexpr RenamedKey renamed_keys[] = {{"scan_voxel_m", "scan_voxel_size_m"},
+                                                {"map_voxel_m", "map_voxel_size_m"},
+                                                {"max_points", "max_scan_points"},
+                                                {"max_neighbour_m", "max_neighbor_distance_m"},
+                                                {"plane_thickness_m", "max_plane_thickness_m"},
+                                                {"second_order", "second_order_integration"},
+                                                {"tell_clipping", "detect_saturation"},
+                                                {"least_agreement", "min_inlier_share"},
+                                                {"init_samples", "initialization_samples"},
+                                                {"zero_velocity", "zero_velocity_updates"},
+                                                {"still_scans_mapped", "standing_scans_mapped"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -82,25 +81,25 @@ struct Config {
     v("deskew_first_instant", self.deskew_first_instant, "",
       "also de-skew the points of the scan's first instant, when a spinning sensor fires a whole "
       "column; the published program leaves them unchanged");
-    v("scan_voxel_size_m", self.scan_voxel_size_m, "m", "voxel size in which a scan's points are averaged",
-      above(0));
+    v("scan_voxel_size_m", self.scan_voxel_size_m, "m",
+      "voxel size in which a scan's points are averaged", above(0));
     v("grid_axes", self.grid_axes, "",
       "axes of the scan's grid in the LiDAR's frame and of the map's in the world: parallel, or "
-      "askew, which keeps walls from being parallel to the cells (not in the published program)");
+      "rotated, which keeps walls from being parallel to the cells (not in the published program)");
     v("max_scan_points", self.max_scan_points, "",
       "upper limit on the averaged points of a scan, taken evenly from all; bounds the time of a "
       "scan",
       at_least(100));
-    v("map_voxel_size_m", self.map_voxel_size_m, "m", "voxel size of the map, which keeps one point per cell",
-      above(0));
+    v("map_voxel_size_m", self.map_voxel_size_m, "m",
+      "voxel size of the map, which keeps one point per cell", above(0));
     v("max_iterations", self.max_iterations, "",
       "maximum number of iterations of the filter's update", at_least(0));
     v("convergence", self.convergence, "m, rad, m/s, ...", "largest step of a converged update",
       above(0));
     v("point_variance_m2", self.point_variance_m2, "m^2",
       "variance of a point's distance from its plane", above(0));
-    v("max_neighbor_distance_m", self.max_neighbor_distance_m, "m", "maximum distance of the fifth neighbor",
-      above(0));
+    v("max_neighbor_distance_m", self.max_neighbor_distance_m, "m",
+      "maximum distance of the fifth neighbor", above(0));
     v("max_plane_thickness_m", self.max_plane_thickness_m, "m",
       "maximum distance of a neighbor from the plane fitted to all", above(0));
     v("plane_fit", self.plane_fit, "", "unit_offset, or principal (not in the published program)");
@@ -134,8 +133,8 @@ struct Config {
       "after fifteen such scans in a row the status is diverged; 0: never, as in the published "
       "program",
       between(0, 1));
-    v("initialization_samples", self.initialization_samples, "", "number of IMU samples for the initialization",
-      at_least(2));
+    v("initialization_samples", self.initialization_samples, "",
+      "number of IMU samples for the initialization", at_least(2));
     v("skip_first_scan", self.skip_first_scan, "", "do not use the first scan and its IMU samples");
     v("always_scale_accel", self.always_scale_accel, "",
       "scale accelerations so that their mean at the start equals gravity; false: only if they are "

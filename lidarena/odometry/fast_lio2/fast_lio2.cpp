@@ -13,11 +13,11 @@ namespace {
 
 using State = estimation::InertialState;
 
-constexpr double kStillSpeedSigma = 0.01;  // m/s, of the zero velocity at a standstill
-constexpr double kStillShiftSigma = 1e-4;  // m, of the held first pose
-constexpr double kStillTurnSigma = 1e-5;   // rad, likewise
-constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
-constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
+constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
+constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
+constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
+constexpr int kLostScans = 15;        // in a row that contradict the map: tracking is lost
+constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
 
 /// At most `most` of the points, at even intervals of their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
@@ -38,7 +38,7 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
                    Parallel parallel)
     : config_(config),
       body_from_imu_(imu.body_from_imu),
-      map_from_start_(map::grid_turn(config.grid_axes)),
+      map_from_start_(map::grid_from_points(config.grid_axes)),
       world_from_map_(body_from_imu_ * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
                                                  Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
@@ -46,10 +46,10 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       map_window_(config.map_radius_m),
-      sweep_(from_seconds(1.0 / lidar.rate_hz)) {}
+      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult FastLio2::register_scan(const Scan& scan) {
-  const Time end = end_of_sweep(scan);
+  const Time end = scan_end(scan);
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = imu_.samples(
       integrated_until_ ? *integrated_until_ + Time{1} : Time::min(), end);  // since the last scan
@@ -61,18 +61,19 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
         end, scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
   }
 
-  const State predicted = belief_.state;
+  const State predicted = estimate_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(map::voxel_means(points, config_.scan_voxel_size_m, config_.grid_axes), config_.max_scan_points);
+      evenly(map::voxel_means(points, config_.scan_voxel_size_m, config_.grid_axes),
+             config_.max_scan_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
-      belief_, std::ref(residuals),
+      estimate_, std::ref(residuals),
       {config_.max_iterations, config_.convergence, config_.point_variance_m2});
-  belief_ = update.belief;
-  const bool still =
-      config_.zero_velocity_updates && still_.observe(estimation::statistics(samples), predicted,
-                                              belief_.state.position(), config_, accel_scale_);
+  estimate_ = update.estimate;
+  const bool still = config_.zero_velocity_updates &&
+                     still_.observe(estimation::statistics(samples), predicted,
+                                    estimate_.state.position(), config_, accel_scale_);
   if (still) stand();
   has_moved_ = has_moved_ || !still;
 
@@ -90,9 +91,9 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
                       {"still", still ? 1.0 : 0.0}});
 }
 
-Time FastLio2::end_of_sweep(const Scan& scan) {
-  if (scan.timed && !scan.points.empty()) sweep_ = end_of(scan) - scan.stamp;
-  return scan.timed ? scan.stamp + sweep_ : scan.stamp;
+Time FastLio2::scan_end(const Scan& scan) {
+  if (scan.timed && !scan.points.empty()) scan_duration_ = end_of(scan) - scan.stamp;
+  return scan.timed ? scan.stamp + scan_duration_ : scan.stamp;
 }
 
 std::vector<estimation::ImuInterval> FastLio2::intervals_until(Time end) {
@@ -100,7 +101,7 @@ std::vector<estimation::ImuInterval> FastLio2::intervals_until(Time end) {
   const Time begin = silent ? end : integrated_until_.value_or(imu_.first_stamp());
   std::vector<estimation::ImuInterval> intervals = imu_.between(begin, end);
   if (!silent) integrated_until_ = end;
-  imu_.forget_before(end);
+  imu_.remove_before(end);
   longest_gap_s_ = estimation::longest_gap_s(intervals);
   saturated_ = estimation::count_saturated(intervals);
   return intervals;
@@ -110,13 +111,14 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
   const bool skip = first_scan_ && config_.skip_first_scan;
   first_scan_ = false;
   if (!skip) start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
-  if (start_samples_.size() < static_cast<std::size_t>(config_.initialization_samples)) return false;
+  if (start_samples_.size() < static_cast<std::size_t>(config_.initialization_samples))
+    return false;
   const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
-  belief_ = begin.belief;
-  belief_.state.rotation() = map_from_start_ * belief_.state.rotation();
-  belief_.state.gravity = map_from_start_ * belief_.state.gravity;
+  estimate_ = begin.estimate;
+  estimate_.state.rotation() = map_from_start_ * estimate_.state.rotation();
+  estimate_.state.gravity = map_from_start_ * estimate_.state.gravity;
   accel_scale_ = begin.accel_scale;
-  first_pose_ = belief_.state.world_from_imu();
+  first_pose_ = estimate_.state.world_from_imu();
   started_ = true;
   imu_.set_accel_scale(accel_scale_);
   start_samples_ = {};
@@ -124,13 +126,14 @@ bool FastLio2::start(const std::vector<ImuSample>& samples) {
 }
 
 void FastLio2::stand() {
-  belief_ = estimation::zero_velocity_update(belief_, kStillSpeedSigma);
+  estimate_ = estimation::zero_velocity_update(estimate_, kStillSpeedSigma);
   if (!config_.hold_first_pose || has_moved_) return;
-  belief_ = estimation::pose_update(belief_, first_pose_, kStillShiftSigma, kStillTurnSigma);
+  estimate_ =
+      estimation::pose_update(estimate_, first_pose_, kStillTranslationSigma, kStillRotationSigma);
 }
 
 void FastLio2::predict(const std::vector<estimation::ImuInterval>& intervals) {
-  State& state = belief_.state;
+  State& state = estimate_.state;
   track_.clear();
   const estimation::Integration integration = config_.second_order_integration
                                                   ? estimation::Integration::kSecondOrder
@@ -146,8 +149,8 @@ void FastLio2::predict(const std::vector<estimation::ImuInterval>& intervals) {
                       interval.gyro - state.nav.bias.gyro});
     const State::Matrix f =
         estimation::propagate(state, interval.gyro, accel, interval.seconds(), integration);
-    belief_.covariance = f * belief_.covariance * f.transpose() +
-                         estimation::step_noise(noise_over(interval), interval.seconds());
+    estimate_.covariance = f * estimate_.covariance * f.transpose() +
+                           estimation::step_noise(noise_over(interval), interval.seconds());
   }
   state.rotation() = orthonormal(state.rotation());
   state.imu_from_lidar.linear() = orthonormal(state.imu_from_lidar.linear());
@@ -175,7 +178,7 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
     if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
   }
   std::vector<Eigen::Vector3f> at_end = estimation::deskew(
-      used, track_, belief_.state.imu_from_lidar, belief_.state.world_from_imu(), parallel_);
+      used, track_, estimate_.state.imu_from_lidar, estimate_.state.world_from_imu(), parallel_);
   for (std::size_t i = 0; !config_.deskew_first_instant && i < at_end.size(); ++i) {
     if (used.points[i].dt_ns == 0) at_end[i] = used.points[i].position;
   }
@@ -184,7 +187,7 @@ std::vector<Eigen::Vector3f> FastLio2::preprocess(const Scan& scan) const {
 
 void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
                         const PlaneResiduals& residuals) {
-  const Pose world_from_lidar = belief_.state.world_from_lidar();
+  const Pose world_from_lidar = estimate_.state.world_from_lidar();
   add_scan(transformed(world_from_lidar, points),
            map_.empty() ? std::vector<Match>{} : residuals.matches(),
            static_cast<float>(config_.map_voxel_size_m), map_);
@@ -193,7 +196,7 @@ void FastLio2::grow_map(const std::vector<Eigen::Vector3f>& points,
 
 ScanStatus FastLio2::status_of(const estimation::IteratedUpdate& update,
                                const PlaneResiduals& residuals) {
-  const State& state = belief_.state;
+  const State& state = estimate_.state;
   if (!state.position().allFinite() || !state.rotation().allFinite() ||
       !(state.nav.velocity.norm() < estimation::kMaxPlausibleSpeed)) {
     return ScanStatus::kDiverged;
@@ -222,7 +225,7 @@ ScanResult FastLio2::refused_scan() {
 ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
                                  std::map<std::string, double> counters) {
   ScanResult result;
-  result.estimate = {end, body_pose(belief_.state.world_from_imu())};
+  result.estimate = {end, body_pose(estimate_.state.world_from_imu())};
   result.status = status;
   if (started_) result.covariance = body_covariance();
   counters["imu_gap_s"] = longest_gap_s_;
@@ -240,18 +243,18 @@ Pose FastLio2::body_pose(const Pose& map_from_imu) const {
 }
 
 Eigen::Matrix<double, 6, 6> FastLio2::body_covariance() const {
-  const State& state = belief_.state;
+  const State& state = estimate_.state;
   const Pose imu_from_body = body_from_imu_.inverse();
   Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
   by_state.topLeftCorner<3, 3>() = world_from_map_.linear();
   by_state.topRightCorner<3, 3>() =
       -world_from_map_.linear() * state.rotation() * so3::hat(imu_from_body.translation());
   by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
-  return by_state * belief_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
+  return by_state * estimate_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
 }
 
 void FastLio2::publish(std::span<const Eigen::Vector3f> points) {
-  registered_scan_ = transformed(world_from_map_ * belief_.state.world_from_lidar(), points);
+  registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
   if (!config_.keep_all_scans) return;
   for (const Eigen::Vector3f& p : registered_scan_) archive_.push_back({p.x(), p.y(), p.z()});
 }

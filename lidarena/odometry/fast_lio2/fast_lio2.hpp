@@ -37,7 +37,7 @@ class FastLio2 : public Odometry {
 
  private:
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
-  Time end_of_sweep(const Scan& scan);
+  Time scan_end(const Scan& scan);
   /// IMU intervals since the end of the last scan, or since the first sample.
   std::vector<estimation::ImuInterval> intervals_until(Time end);
   /// Collects samples and initializes once there are enough; returns whether it has.
@@ -76,8 +76,8 @@ class FastLio2 : public Odometry {
   bool started_ = false;
   double accel_scale_ = 1.0;
 
-  estimation::Belief
-      belief_;  ///< state and covariance at the end of the last scan, in the map's frame
+  estimation::StateEstimate
+      estimate_;  ///< state and covariance at the end of the last scan, in the map's frame
   estimation::ImuTrack track_;
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
@@ -87,7 +87,7 @@ class FastLio2 : public Odometry {
   map::KdTree map_;
   MapWindow map_window_;
 
-  Time sweep_;  ///< duration of the last scan that had points
+  Time scan_duration_;  ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
   /// A point as stored in the published program's buffer (48 bytes).

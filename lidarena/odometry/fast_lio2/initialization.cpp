@@ -9,11 +9,11 @@ namespace {
 using State = estimation::InertialState;
 
 // Maximum values at a standstill.
-constexpr double kStillDrift = 0.03;  // m
-constexpr double kStillSpeed = 0.05;  // m/s
+constexpr double kMaxStillDistance = 0.03;  // m
+constexpr double kMaxStillSpeed = 0.05;     // m/s
 // Of a scan's mean IMU readings minus those expected at rest: detects the first acceleration.
-constexpr double kRestRate = 0.005;  // rad/s
-constexpr double kRestForce = 0.05;  // m/s^2
+constexpr double kMaxStillRate = 0.005;  // rad/s
+constexpr double kMaxStillForce = 0.05;  // m/s^2
 
 void set_sigma(State::Matrix& covariance, State::Block block, int size, double sigma) {
   covariance.diagonal().segment(block, size).setConstant(sigma * sigma);
@@ -50,15 +50,16 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lid
   Start start;
   start.accel_scale = config.always_scale_accel ? config.gravity / imu.mean_accel.norm()
                                                 : estimation::accel_scale_of(imu, config.gravity);
-  start.still = estimation::stands(imu, config.gravity, start.accel_scale);
-  State& state = start.belief.state;
+  start.still = estimation::is_at_rest(imu, config.gravity, start.accel_scale);
+  State& state = start.estimate.state;
   state.gravity = -config.gravity * imu.mean_accel.normalized();
   if (start.still || config.initial_sigma > 0.0) state.nav.bias.gyro = imu.mean_gyro;
   if (start.still && !config.always_scale_accel)  // else the scale contains it
-    state.nav.bias.accel = estimation::accel_bias_along(imu, config.gravity, start.accel_scale);
+    state.nav.bias.accel =
+        estimation::accel_bias_along_gravity(imu, config.gravity, start.accel_scale);
   state.imu_from_lidar.linear() = imu_from_lidar.linear();
   state.imu_from_lidar.translation() = imu_from_lidar.translation();
-  start.belief.covariance = covariance_of(config, start.still);
+  start.estimate.covariance = covariance_of(config, start.still);
   return start;
 }
 
@@ -68,11 +69,11 @@ bool StillDetector::observe(const estimation::ImuStatistics& imu,
                             double accel_scale) {
   const Eigen::Vector3d at_rest =
       predicted.nav.bias.accel - predicted.rotation().transpose() * predicted.gravity;
-  const bool is_still = estimation::stands(imu, config.gravity, accel_scale) &&
-                        (imu.mean_gyro - predicted.nav.bias.gyro).norm() < kRestRate &&
-                        (accel_scale * imu.mean_accel - at_rest).norm() < kRestForce &&
-                        predicted.nav.velocity.norm() < kStillSpeed &&
-                        (scans_ == 0 || (position - anchor_).norm() < kStillDrift);
+  const bool is_still = estimation::is_at_rest(imu, config.gravity, accel_scale) &&
+                        (imu.mean_gyro - predicted.nav.bias.gyro).norm() < kMaxStillRate &&
+                        (accel_scale * imu.mean_accel - at_rest).norm() < kMaxStillForce &&
+                        predicted.nav.velocity.norm() < kMaxStillSpeed &&
+                        (scans_ == 0 || (position - anchor_).norm() < kMaxStillDistance);
   if (is_still && scans_ == 0) anchor_ = position;
   scans_ = is_still ? scans_ + 1 : 0;
   return is_still;

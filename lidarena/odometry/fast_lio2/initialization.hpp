@@ -12,7 +12,7 @@ namespace lidarena::odometry::fast_lio2 {
 
 /// Result of the initialization.
 struct Start {
-  estimation::Belief belief;
+  estimation::StateEstimate estimate;
   double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
 };

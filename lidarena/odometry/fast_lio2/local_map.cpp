@@ -31,7 +31,7 @@ void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>&
     const Insertion insertion =
         matches.empty() ? Insertion::kThinned : insertion_of(points[i], matches[i], voxel);
     if (insertion == Insertion::kPlain) map.insert(points[i]);
-    if (insertion == Insertion::kThinned) map.insert_thinned(points[i], voxel);
+    if (insertion == Insertion::kThinned) map.insert_downsampled(points[i], voxel);
   }
 }
 

@@ -51,9 +51,9 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
   if (times.timed) scan_duration_ = times.last - times.first;
   registered_scan_.clear();
   ScanResult result;
-  const bool calm = poses_.size() < static_cast<std::size_t>(config_.initial_scans);
-  const bool whole = calm || threshold_.sigma() <= config_.slice_above_m;
-  scan_motion_share_ = calm ? 0.0 : config_.scan_motion_share;
+  const bool in_start = poses_.size() < static_cast<std::size_t>(config_.initial_scans);
+  const bool whole = in_start || threshold_.sigma() <= config_.slice_above_m;
+  scan_motion_share_ = in_start ? 0.0 : config_.scan_motion_share;
   for (const Scan& slice : sliced(scan, whole ? 1 : config_.slices))
     append(register_slice(slice), result);
   poses_.push_back(result.estimate);
@@ -72,13 +72,14 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
 
   const double sigma = threshold_.sigma();
   const Pose guess = map_from_lidar_ * predicted_motion(times);
-  const Registration found = registered(keypoints, departure(times, before), guess);
+  const Registration found = registered(keypoints, previous_pose(times, before), guess);
   const Pose& pose = found.map_from_lidar;
   threshold_.observe(guess, pose, mean_range(keypoints.positions));
 
   const ScanStatus status = status_of(found, points.size());
   const se3::Vector6 twist =
-      points.deskewed() ? before : twist_towards(pose, departure(times, before), scan_motion_share_);
+      points.deskewed() ? before
+                        : twist_towards(pose, previous_pose(times, before), scan_motion_share_);
   if (config_.redeskew_first_scan && map_.empty()) first_points_ = map_points;
   map_.insert(transformed(pose, deskewed(map_points, twist, parallel_)));
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
@@ -98,24 +99,25 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
           motion_within(times, twist)};
 }
 
-Registration KissIcp::registered(const TimedPoints& keypoints, const Departure& departure,
+Registration KissIcp::registered(const TimedPoints& keypoints, const PreviousPose& previous_pose,
                                  const Pose& guess) {
   const double sigma = threshold_.sigma();
   const auto register_from = [&](const Pose& start) {
-    return register_points(keypoints, map_, departure, start, sigma, scan_motion_share_, config_,
-                           parallel_);
+    return register_points(keypoints, map_, previous_pose, start, sigma, scan_motion_share_,
+                           config_, parallel_);
   };
   const Registration found = register_from(guess);
   if (first_points_.size() == 0 || found.matches == 0) return found;
   const TimedPoints first = std::exchange(first_points_, {});
   if (first.deskewed()) return found;
-  const se3::Vector6 twist = twist_towards(found.map_from_lidar, departure, 1.0);
+  const se3::Vector6 twist = twist_towards(found.map_from_lidar, previous_pose, 1.0);
   map_ = map::VoxelHashMap(map_options(config_));
-  map_.insert(transformed(departure.map_from_lidar, deskewed(first, twist, parallel_)));
+  map_.insert(transformed(previous_pose.map_from_lidar, deskewed(first, twist, parallel_)));
   return register_from(found.map_from_lidar);
 }
 
-Departure KissIcp::departure(const estimation::ScanTimes& times, const se3::Vector6& before) const {
+PreviousPose KissIcp::previous_pose(const estimation::ScanTimes& times,
+                                    const se3::Vector6& before) const {
   return {map_from_lidar_, instant_ ? to_seconds(reference_of(times) - *instant_) : 0.0, before};
 }
 

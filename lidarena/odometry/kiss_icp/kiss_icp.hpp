@@ -34,13 +34,13 @@ class KissIcp : public Odometry {
   ScanResult register_slice(const Scan& slice);
   /// Calls register_points from the predicted pose. With redeskew_first_scan, the second scan first
   /// replaces the first one in the map by its de-skewed points.
-  Registration registered(const TimedPoints& keypoints, const Departure& departure,
+  Registration registered(const TimedPoints& keypoints, const PreviousPose& previous_pose,
                           const Pose& guess);
   Time reference_of(const estimation::ScanTimes& times) const {
     return pose_time(times, config_.pose_instant);
   }
   /// The previous pose of the lidar, with the twist `before` up to it.
-  Departure departure(const estimation::ScanTimes& times, const se3::Vector6& before) const;
+  PreviousPose previous_pose(const estimation::ScanTimes& times, const se3::Vector6& before) const;
   /// Predicted motion of the lidar since the previous pose, with constant velocity.
   Pose predicted_motion(const estimation::ScanTimes& times) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
@@ -58,7 +58,8 @@ class KissIcp : public Odometry {
   map::VoxelHashMap map_;     ///< in the lidar's frame at its first pose
   TimedPoints first_points_;  ///< of the first scan, kept until the second one de-skews it
   AdaptiveThreshold threshold_;
-  double scan_motion_share_ = 0.0;  ///< the configured value, 0 during the first initial_scans scans
+  double scan_motion_share_ =
+      0.0;  ///< the configured value, 0 during the first initial_scans scans
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< of the lidar, between the last two scans

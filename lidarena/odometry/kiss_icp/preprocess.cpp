@@ -59,7 +59,7 @@ TimedPoints preprocess(const Scan& scan, const estimation::ScanTimes& times,
 }
 
 TimedPoints thin(const TimedPoints& points, double voxel_size, const map::Thinning& thinning) {
-  const auto indices = map::thinned_indices(points.positions, voxel_size, thinning);
+  const auto indices = map::downsampled_indices(points.positions, voxel_size, thinning);
   TimedPoints thinned;
   thinned.positions.reserve(indices.size());
   for (const std::uint32_t i : indices) thinned.positions.push_back(points.positions[i]);

@@ -64,25 +64,27 @@ PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d
   return residual;
 }
 
-se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
+se3::Vector6 twist_towards(const Pose& map_from_lidar, const PreviousPose& previous_pose,
                            double scan_motion_share) {
-  if (departure.seconds <= 0.0) return departure.twist;
+  if (previous_pose.seconds <= 0.0) return previous_pose.twist;
   const se3::Vector6 own =
-      se3::log(departure.map_from_lidar.inverse() * map_from_lidar) / departure.seconds;
-  return scan_motion_share * own + (1.0 - scan_motion_share) * departure.twist;
+      se3::log(previous_pose.map_from_lidar.inverse() * map_from_lidar) / previous_pose.seconds;
+  return scan_motion_share * own + (1.0 - scan_motion_share) * previous_pose.twist;
 }
 
 Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
-                             const Departure& departure, const Pose& guess, double sigma,
-                             double scan_motion_share, const Config& config, const Parallel& parallel) {
+                             const PreviousPose& previous_pose, const Pose& guess, double sigma,
+                             double scan_motion_share, const Config& config,
+                             const Parallel& parallel) {
   Registration result{guess};
   if (map.empty()) return result;
   const auto radius = static_cast<float>(3.0 * sigma);
   const double kernel = kernel_of(sigma * config.kernel_fraction, config);
-  const double share_per_second = departure.seconds > 0.0 ? scan_motion_share / departure.seconds : 0.0;
+  const double share_per_second =
+      previous_pose.seconds > 0.0 ? scan_motion_share / previous_pose.seconds : 0.0;
   Pose& pose = result.map_from_lidar;
   while (result.iterations < config.max_iterations) {
-    result.twist = twist_towards(pose, departure, scan_motion_share);
+    result.twist = twist_towards(pose, previous_pose, scan_motion_share);
     const MovingFrame frame(pose, result.twist, keypoints, share_per_second);
     const auto add_match = [&](std::size_t i, estimation::NormalEquations<6>& equations) {
       const auto [map_from_instant, share] = frame.at(i);
@@ -102,7 +104,7 @@ Registration register_points(const TimedPoints& keypoints, const map::VoxelHashM
         return;
       }
       const auto [error, jacobian] = point_to_point(point, match.point.cast<double>(), center);
-      const double weight = match.shapeless ? config.degenerate_cell_weight : 1.0;
+      const double weight = match.degenerate ? config.degenerate_cell_weight : 1.0;
       equations.add<3>(share * jacobian, error,
                        weight * kernel_weight(error.squaredNorm(), kernel));
     };

@@ -22,7 +22,7 @@ PointResidual point_to_point(const Eigen::Vector3d& point, const Eigen::Vector3d
                              const Eigen::Vector3d& center);
 
 /// The pose previous to the scan's.
-struct Departure {
+struct PreviousPose {
   Pose map_from_lidar = Pose::Identity();
   double seconds = 0.0;                       ///< from that pose's instant to this one's
   se3::Vector6 twist = se3::Vector6::Zero();  ///< m/s, rad/s, of the lidar up to that pose
@@ -40,12 +40,13 @@ struct Registration {
 /// iteration with twist_towards() the current estimate; their Jacobians are scaled by the share of
 /// the pose increment that this gives to their instants.
 Registration register_points(const TimedPoints& keypoints, const map::VoxelHashMap& map,
-                             const Departure& departure, const Pose& guess, double sigma,
-                             double scan_motion_share, const Config& config, const Parallel& parallel);
+                             const PreviousPose& previous_pose, const Pose& guess, double sigma,
+                             double scan_motion_share, const Config& config,
+                             const Parallel& parallel);
 
-/// Twist within a scan that ends at `map_from_lidar`: `scan_motion_share` times the mean twist since
-/// `departure`, plus (1 - `scan_motion_share`) times the twist before it.
-se3::Vector6 twist_towards(const Pose& map_from_lidar, const Departure& departure,
+/// Twist within a scan that ends at `map_from_lidar`: `scan_motion_share` times the mean twist
+/// since `previous_pose`, plus (1 - `scan_motion_share`) times the twist before it.
+se3::Vector6 twist_towards(const Pose& map_from_lidar, const PreviousPose& previous_pose,
                            double scan_motion_share);
 
 }  // namespace lidarena::odometry::kiss_icp

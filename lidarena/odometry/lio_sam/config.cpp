@@ -58,7 +58,7 @@ Config improved(const LidarInfo& lidar) {
   config.plane_fit = estimation::PlaneFit::kPrincipal;
   config.max_plane_thickness_m = 0.06;
   config.surface_voxel_size_m = 0.15;
-  config.grid_axes = map::GridAxes::kAskew;
+  config.grid_axes = map::GridAxes::kRotated;
   config.degeneracy = Degeneracy::kShare;
   config.keyframe_translation_m = 1.0;
   config.keyframe_rotation_rad = 0.2;
@@ -74,7 +74,7 @@ Config improved(const LidarInfo& lidar) {
   config.min_translation_sigma_m = 5e-3;
   config.point_sigma_m = 0.1;
   config.smoothed_pose = true;
-  config.loop = loop::careful_loops();
+  config.loop = loop::conservative_loops();
   return config;
 }
 

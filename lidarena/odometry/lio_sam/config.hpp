@@ -85,26 +85,25 @@ struct Config {
   loop::LoopConfig loop;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"smoothness_neighbours", "smoothness_neighbors"},
-      {"edge_leaf_m", "edge_voxel_size_m"},
-      {"surface_leaf_m", "surface_voxel_size_m"},
-      {"turn_tolerance_rad", "convergence_rotation_rad"},
-      {"shift_tolerance_m", "convergence_translation_m"},
-      {"search_step_m", "reassociation_distance_m"},
-      {"plane_thickness_m", "max_plane_thickness_m"},
-      {"keyframe_distance_m", "keyframe_translation_m"},
-      {"keyframe_angle_rad", "keyframe_rotation_rad"},
-      {"keyframe_age_s", "keyframe_interval_s"},
-      {"submap_density_m", "submap_keyframe_spacing_m"},
-      {"level_start", "gravity_aligned_start"},
-      {"gyro_noise", "gyro_noise_density"},
-      {"accel_noise", "accel_noise_density"},
-      {"gyro_walk", "gyro_bias_walk"},
-      {"accel_walk", "accel_bias_walk"},
-      {"turn_sigma_rad", "min_rotation_sigma_rad"},
-      {"shift_sigma_m", "min_translation_sigma_m"},
-      {"fused_pose", "smoothed_pose"}};
+  static constexpr RenamedKey renamed_keys[] = {{"smoothness_neighbours", "smoothness_neighbors"},
+                                                {"edge_leaf_m", "edge_voxel_size_m"},
+                                                {"surface_leaf_m", "surface_voxel_size_m"},
+                                                {"turn_tolerance_rad", "convergence_rotation_rad"},
+                                                {"shift_tolerance_m", "convergence_translation_m"},
+                                                {"search_step_m", "reassociation_distance_m"},
+                                                {"plane_thickness_m", "max_plane_thickness_m"},
+                                                {"keyframe_distance_m", "keyframe_translation_m"},
+                                                {"keyframe_angle_rad", "keyframe_rotation_rad"},
+                                                {"keyframe_age_s", "keyframe_interval_s"},
+                                                {"submap_density_m", "submap_keyframe_spacing_m"},
+                                                {"level_start", "gravity_aligned_start"},
+                                                {"gyro_noise", "gyro_noise_density"},
+                                                {"accel_noise", "accel_noise_density"},
+                                                {"gyro_walk", "gyro_bias_walk"},
+                                                {"accel_walk", "accel_bias_walk"},
+                                                {"turn_sigma_rad", "min_rotation_sigma_rad"},
+                                                {"shift_sigma_m", "min_translation_sigma_m"},
+                                                {"fused_pose", "smoothed_pose"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -136,12 +135,12 @@ struct Config {
       "points whose range differs from that of both neighbors by more than this share are excluded "
       "as edges",
       above(0));
-    v("edge_voxel_size_m", self.edge_voxel_size_m, "m", "voxel size in which edge points are averaged",
-      above(0));
-    v("surface_voxel_size_m", self.surface_voxel_size_m, "m", "voxel size in which surface points are averaged",
-      above(0));
+    v("edge_voxel_size_m", self.edge_voxel_size_m, "m",
+      "voxel size in which edge points are averaged", above(0));
+    v("surface_voxel_size_m", self.surface_voxel_size_m, "m",
+      "voxel size in which surface points are averaged", above(0));
     v("grid_axes", self.grid_axes, "",
-      "axes of those grids: parallel to the LiDAR's frame and the world, or askew, which keeps "
+      "axes of those grids: parallel to the LiDAR's frame and the world, or rotated, which keeps "
       "walls from being parallel to the cells (not in the published program)");
     v("min_edges", self.min_edges, "", "a scan with fewer edge points is not registered",
       at_least(0));
@@ -151,7 +150,8 @@ struct Config {
       at_least(1));
     v("convergence_rotation_rad", self.convergence_rotation_rad, "rad",
       "the registration has converged when its step is smaller in rotation ...", above(0));
-    v("convergence_translation_m", self.convergence_translation_m, "m", "... and in translation", above(0));
+    v("convergence_translation_m", self.convergence_translation_m, "m", "... and in translation",
+      above(0));
     v("reassociation_distance_m", self.reassociation_distance_m, "m",
       "after a smaller step the correspondences are kept; 0: they are searched in each iteration",
       at_least(0));
@@ -189,13 +189,14 @@ struct Config {
       "factor on the data sheet's noise densities (not in the published program); 0: the next four "
       "values are used",
       at_least(0));
-    v("gyro_noise_density", self.gyro_noise_density, "rad/s/sqrt(Hz)", "noise density of the gyro", above(0));
-    v("accel_noise_density", self.accel_noise_density, "m/s^2/sqrt(Hz)", "noise density of the accelerometer",
+    v("gyro_noise_density", self.gyro_noise_density, "rad/s/sqrt(Hz)", "noise density of the gyro",
       above(0));
+    v("accel_noise_density", self.accel_noise_density, "m/s^2/sqrt(Hz)",
+      "noise density of the accelerometer", above(0));
     v("gyro_bias_walk", self.gyro_bias_walk, "rad/s^2/sqrt(Hz)", "random walk of the gyro's bias",
       at_least(0));
-    v("accel_bias_walk", self.accel_bias_walk, "m/s^3/sqrt(Hz)", "random walk of the accelerometer's bias",
-      at_least(0));
+    v("accel_bias_walk", self.accel_bias_walk, "m/s^3/sqrt(Hz)",
+      "random walk of the accelerometer's bias", at_least(0));
     v("max_imu_gap_s", self.max_imu_gap_s, "s",
       "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
     v("min_rotation_sigma_rad", self.min_rotation_sigma_rad, "rad",

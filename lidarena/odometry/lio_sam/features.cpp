@@ -9,15 +9,15 @@
 namespace lidarena::odometry::lio_sam {
 namespace {
 
-constexpr int kAdjacent = 10;     // columns: points farther apart are not neighbors
-constexpr float kJump = 0.3F;     // m, range difference of neighbors that indicates occlusion
-constexpr int kSectors = 6;       // per row
-constexpr int kSuppressed = 5;    // points on each side of an edge that cannot be edges
-constexpr std::size_t kRows = 8;  // per task
+constexpr int kAdjacent = 10;           // columns: points farther apart are not neighbors
+constexpr float kOcclusionJump = 0.3F;  // m, range difference of neighbors that indicates occlusion
+constexpr int kSectors = 6;             // per row
+constexpr int kSuppressed = 5;          // points on each side of an edge that cannot be edges
+constexpr std::size_t kRows = 8;        // per task
 
 using Flags = std::vector<bool>;
 
-void bar(Flags& flags, int first, int count) {
+void exclude(Flags& flags, int first, int count) {
   const int size = static_cast<int>(flags.size());
   for (int i = std::max(first, 0); i < std::min(first + count, size); ++i)
     flags[static_cast<std::size_t>(i)] = true;
@@ -52,7 +52,7 @@ std::vector<int> candidates(const std::vector<float>& rough, int begin, int end,
 }
 
 Flags edges_of(std::span<const Pixel> row, const Config& config) {
-  Flags barred = barred_points(row, config);
+  Flags excluded = non_edge_points(row, config);
   const std::vector<float> rough = roughness(row, config);
   Flags edges(row.size(), false);
   const int margin = config.smoothness_neighbors;
@@ -62,12 +62,12 @@ Flags edges_of(std::span<const Pixel> row, const Config& config) {
     const int end = margin + usable * (sector + 1) / kSectors;
     int count = 0;
     for (const int i : candidates(rough, begin, end, config)) {
-      if (barred[static_cast<std::size_t>(i)]) continue;
+      if (excluded[static_cast<std::size_t>(i)]) continue;
       if (count++ == config.edges_per_sector) break;
       edges[static_cast<std::size_t>(i)] = true;
-      barred[static_cast<std::size_t>(i)] = true;
-      suppress(row, barred, i, 1);
-      suppress(row, barred, i, -1);
+      excluded[static_cast<std::size_t>(i)] = true;
+      suppress(row, excluded, i, 1);
+      suppress(row, excluded, i, -1);
     }
   }
   return edges;
@@ -75,22 +75,23 @@ Flags edges_of(std::span<const Pixel> row, const Config& config) {
 
 }  // namespace
 
-std::vector<bool> barred_points(std::span<const Pixel> row, const Config& config) {
-  Flags barred(row.size(), false);
+std::vector<bool> non_edge_points(std::span<const Pixel> row, const Config& config) {
+  Flags excluded(row.size(), false);
   const int size = static_cast<int>(row.size());
   const auto range = [&](int i) { return row[static_cast<std::size_t>(i)].range; };
   const auto column = [&](int i) { return row[static_cast<std::size_t>(i)].column; };
   for (int i = 1; i + 1 < size; ++i) {
     if (column(i + 1) - column(i) < kAdjacent) {
       const float jump = range(i + 1) - range(i);
-      if (jump < -kJump) bar(barred, i + 1 - config.occluded_points, config.occluded_points);
-      if (jump > kJump) bar(barred, i + 1, config.occluded_points);
+      if (jump < -kOcclusionJump)
+        exclude(excluded, i + 1 - config.occluded_points, config.occluded_points);
+      if (jump > kOcclusionJump) exclude(excluded, i + 1, config.occluded_points);
     }
     const auto grazing = static_cast<float>(config.grazing_share) * range(i);
     if (std::abs(range(i - 1) - range(i)) > grazing && std::abs(range(i + 1) - range(i)) > grazing)
-      barred[static_cast<std::size_t>(i)] = true;
+      excluded[static_cast<std::size_t>(i)] = true;
   }
-  return barred;
+  return excluded;
 }
 
 std::vector<float> roughness(std::span<const Pixel> row, const Config& config) {

@@ -17,7 +17,7 @@ struct Features {
 
 /// Points of a row that cannot be edges because they are not seen as edges from elsewhere: the far
 /// side of a range jump, and surfaces at a grazing angle. One flag per pixel.
-std::vector<bool> barred_points(std::span<const Pixel> row, const Config& config);
+std::vector<bool> non_edge_points(std::span<const Pixel> row, const Config& config);
 
 /// Squared sum (m^2) of the differences between the neighbors' ranges and a point's own; 0 near the
 /// row's ends.

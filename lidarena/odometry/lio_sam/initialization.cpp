@@ -35,16 +35,16 @@ Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_im
   const estimation::ImuStatistics imu = estimation::statistics(samples);
   Start start;
   start.accel_scale = estimation::accel_scale_of(imu, config.gravity);
-  start.still = estimation::stands(imu, config.gravity, start.accel_scale);
+  start.still = estimation::is_at_rest(imu, config.gravity, start.accel_scale);
   estimation::InertialStart& inertial = start.inertial;
   inertial.gravity = {0.0, 0.0, -config.gravity};
   Pose world_from_body = Pose::Identity();
   if (config.gravity_aligned_start) {
-    world_from_body.linear() = estimation::upright(body_from_imu.linear() * imu.mean_accel);
+    world_from_body.linear() = estimation::level_rotation(body_from_imu.linear() * imu.mean_accel);
     if (start.still) {
       inertial.state.bias.gyro = imu.mean_gyro;
       inertial.state.bias.accel =
-          estimation::accel_bias_along(imu, config.gravity, start.accel_scale);
+          estimation::accel_bias_along_gravity(imu, config.gravity, start.accel_scale);
     }
     inertial.covariance = covariance_of(start.still);
     inertial.gravity_sigma = start.still ? config.gravity_sigma_rad : kMovingTilt;

@@ -18,7 +18,8 @@ constexpr double kMaxBias = 1.0;             // m/s^2, rad/s; likewise
 
 estimation::ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
   if (config.imu_noise_factor > 0.0) return estimation::noise_of(imu, config.imu_noise_factor);
-  return {config.gyro_noise_density, config.accel_noise_density, config.gyro_bias_walk, config.accel_bias_walk};
+  return {config.gyro_noise_density, config.accel_noise_density, config.gyro_bias_walk,
+          config.accel_bias_walk};
 }
 
 Pose rotation_of(const Pose& pose) {
@@ -35,13 +36,13 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       noise_(configured_noise(imu, config)),
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
-      sweep_(from_seconds(1.0 / lidar.rate_hz)),
+      scan_duration_(from_seconds(1.0 / lidar.rate_hz)),
       pending_(estimation::ImuBias{}, noise_),
       submap_(config),
       closer_(config.loop, parallel_) {}
 
 ScanResult LioSam::register_scan(const Scan& scan) {
-  const Time end = end_of_sweep(scan);
+  const Time end = scan_end(scan);
   const ScanStatus unused =
       scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing;
   if (!started_ && !start(scan.stamp, end))
@@ -74,19 +75,19 @@ ScanResult LioSam::register_scan(const Scan& scan) {
   return finish_scan(scan.stamp, world_from_lidar, status, std::move(counters));
 }
 
-Time LioSam::end_of_sweep(const Scan& scan) {
-  if (scan.timed && !scan.points.empty()) sweep_ = end_of(scan) - scan.stamp;
-  return scan.timed ? scan.stamp + sweep_ : scan.stamp;
+Time LioSam::scan_end(const Scan& scan) {
+  if (scan.timed && !scan.points.empty()) scan_duration_ = end_of(scan) - scan.stamp;
+  return scan.timed ? scan.stamp + scan_duration_ : scan.stamp;
 }
 
 bool LioSam::start(Time stamp, Time end) {
-  imu_.forget_before(end - kStartMemory);
+  imu_.remove_before(end - kStartMemory);
   const std::vector<ImuSample> samples = imu_.samples(end - kStartMemory, end);
   if (samples.size() < kStartSamples) return false;
   const Start begin = start_from(samples, body_from_imu_, config_);
   smoother_.start(begin.inertial);
   accel_scale_ = begin.accel_scale;
-  pending_ = nothing_yet();
+  pending_ = empty_preintegration();
   integrated_until_ = stamp;
   odom_from_lidar_ = begin.inertial.state.world_from_imu * imu_from_lidar_;
   world_from_lidar_ = odom_from_lidar_;
@@ -103,7 +104,7 @@ LioSam::Prediction LioSam::predict(Time stamp, Time end) {
   const estimation::NavState& last = smoother_.latest();
   integrate(imu_.between(integrated_until_, stamp), last, pending_, nullptr);
   integrated_until_ = std::max(integrated_until_, stamp);
-  imu_.forget_before(stamp);
+  imu_.remove_before(stamp);
   const estimation::NavState now = pending_.predict(last, smoother_.gravity());
   const Pose last_from_now = last.world_from_imu.inverse() * now.world_from_imu;
 
@@ -145,13 +146,14 @@ std::vector<Eigen::Vector3f> LioSam::deskewed(const Scan& scan,
   if (config_.deskew_translation)
     return estimation::deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu,
                               parallel_);
-  estimation::ImuTrack turning = prediction.track;  // rotation about the LiDAR, without translation
-  for (estimation::ImuStep& step : turning) {
+  estimation::ImuTrack rotation_track =
+      prediction.track;  // rotation about the LiDAR, without translation
+  for (estimation::ImuStep& step : rotation_track) {
     step.world_from_imu = rotation_of(step.world_from_imu);
     step.velocity.setZero();
     step.acceleration.setZero();
   }
-  return estimation::deskew(scan, turning, rotation_of(imu_from_lidar_),
+  return estimation::deskew(scan, rotation_track, rotation_of(imu_from_lidar_),
                             rotation_of(prediction.track_from_imu), parallel_);
 }
 
@@ -187,18 +189,20 @@ void LioSam::fuse(Registration& found) {
     found.map_from_lidar = orthonormalized(odom_from_world.inverse() * odom_from_lidar_);
   }
   world_from_lidar_ = found.map_from_lidar;
-  pending_ = nothing_yet();
+  pending_ = empty_preintegration();
 }
 
 estimation::PoseMeasurement::Information LioSam::information_of(const Registration& found,
                                                                 const Pose& odom_from_imu) const {
   using Matrix6 = estimation::PoseMeasurement::Information;
   const auto squared = [](double x) { return x * x; };
-  Matrix6 least = Matrix6::Zero();  // covariance
+  Matrix6 min_covariance = Matrix6::Zero();  // covariance
   const bool all_or_nothing = config_.point_sigma_m <= 0.0 && found.degenerate_directions > 0;
-  least.diagonal().head<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.min_rotation_sigma_rad));
-  least.diagonal().tail<3>().setConstant(all_or_nothing ? 1.0 : squared(config_.min_translation_sigma_m));
-  if (config_.point_sigma_m <= 0.0) return least.inverse();
+  min_covariance.diagonal().head<3>().setConstant(
+      all_or_nothing ? 1.0 : squared(config_.min_rotation_sigma_rad));
+  min_covariance.diagonal().tail<3>().setConstant(
+      all_or_nothing ? 1.0 : squared(config_.min_translation_sigma_m));
+  if (config_.point_sigma_m <= 0.0) return min_covariance.inverse();
 
   // Jacobian of the errors of the registered LiDAR pose by those of the IMU's pose.
   const Eigen::Matrix3d world_from_odom =
@@ -210,7 +214,7 @@ estimation::PoseMeasurement::Information LioSam::information_of(const Registrati
   by_imu.bottomRightCorner<3, 3>() = world_from_odom;
   const Matrix6 points =
       by_imu.transpose() * found.points.hessian * by_imu / squared(config_.point_sigma_m);
-  return points * (Matrix6::Identity() + least * points).inverse();
+  return points * (Matrix6::Identity() + min_covariance * points).inverse();
 }
 
 void LioSam::restart_if_failed() {

@@ -49,7 +49,7 @@ class LioSam : public Odometry {
   };
 
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
-  Time end_of_sweep(const Scan& scan);
+  Time scan_end(const Scan& scan);
   /// Initializes if there are enough IMU samples; returns whether it has.
   bool start(Time stamp, Time end);
   bool is_due(Time stamp) const;
@@ -75,7 +75,9 @@ class LioSam : public Odometry {
                          std::map<std::string, double> counters);
   ScanResult result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
                        std::map<std::string, double> counters) const;
-  estimation::Preintegration nothing_yet() const { return {smoother_.latest().bias, noise_}; }
+  estimation::Preintegration empty_preintegration() const {
+    return {smoother_.latest().bias, noise_};
+  }
 
   Config config_;
   Pose body_from_imu_;
@@ -87,7 +89,7 @@ class LioSam : public Odometry {
   estimation::ImuBuffer imu_;
   bool started_ = false;
   double accel_scale_ = 1.0;
-  Time sweep_;  ///< duration of the last scan that had points
+  Time scan_duration_;  ///< duration of the last scan that had points
 
   estimation::InertialSmoother smoother_;  ///< in the odometry frame, which has no jumps from loops
   estimation::Preintegration pending_;     ///< since the smoother's last state

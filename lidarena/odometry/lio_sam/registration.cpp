@@ -11,13 +11,13 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kPlaneRatio = 0.05;        // minimum spread of a plane's narrow side / wide side
-constexpr float kMaxNeighbor = 1.0F;        // m, maximum distance of the fifth neighbor
-constexpr double kLineRatio = 3.0;          // minimum spread along a line / across it
-constexpr double kLeastWeight = 0.1;        // minimum weight of a match
-constexpr std::size_t kLeastMatches = 50;   // fewer do not determine a pose
-constexpr double kLeastEigenvalue = 100.0;  // of J^T J, LIO-SAM's value
-constexpr double kLeastShare = 0.003;       // minimum share of a direction; isotropic: 1/6
+constexpr double kMinPlaneRatio = 0.05;   // minimum spread of a plane's narrow side / wide side
+constexpr float kMaxNeighbor = 1.0F;      // m, maximum distance of the fifth neighbor
+constexpr double kMinLineRatio = 3.0;     // minimum spread along a line / across it
+constexpr double kMinWeight = 0.1;        // minimum weight of a match
+constexpr std::size_t kMinMatches = 50;   // fewer do not determine a pose
+constexpr double kMinEigenvalue = 100.0;  // of J^T J, LIO-SAM's value
+constexpr double kMinShare = 0.003;       // minimum share of a direction; isotropic: 1/6
 
 PointResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
                              double weight) {
@@ -66,14 +66,14 @@ class Matcher {
         lines_(features.edges.size()),
         planes_(features.surfaces.size()) {}
 
-  PoseEquations equations(const Pose& pose, bool anew) {
-    if (anew) {
+  PoseEquations equations(const Pose& pose, bool search_again) {
+    if (search_again) {
       search(features_.edges, map_.edges, pose, parallel_, fit_line, lines_);
       search(
           features_.surfaces, map_.surfaces, pose, parallel_,
           [&](const Neighbors& near) {
             return estimation::fit_plane(map::columns_of(near), config_.plane_fit,
-                                         config_.max_plane_thickness_m, kPlaneRatio);
+                                         config_.max_plane_thickness_m, kMinPlaneRatio);
           },
           planes_);
     }
@@ -102,7 +102,7 @@ double lever_of(const std::vector<Eigen::Vector3f>& points) {
 
 std::optional<Line> fit_line(const Neighbors& points) {
   const estimation::PrincipalAxes principal = estimation::principal_axes(map::columns_of(points));
-  if (!(principal.spread[2] > kLineRatio * principal.spread[1])) return std::nullopt;
+  if (!(principal.spread[2] > kMinLineRatio * principal.spread[1])) return std::nullopt;
   return Line{principal.center, principal.axes.col(2)};
 }
 
@@ -113,7 +113,7 @@ std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& li
   const Vector3d away = from_center - line.direction.dot(from_center) * line.direction;
   const double distance = away.norm();
   const double weight = 1.0 - 0.9 * distance;
-  if (weight <= kLeastWeight || distance == 0.0) return std::nullopt;
+  if (weight <= kMinWeight || distance == 0.0) return std::nullopt;
   return residual_along(away / distance, distance, arm, weight);
 }
 
@@ -122,7 +122,7 @@ std::optional<PointResidual> surface_residual(const Vector3d& point, const estim
   const Vector3d arm = map_from_lidar.linear() * point;
   const double distance = plane.normal.dot(arm + map_from_lidar.translation()) + plane.offset;
   const double weight = 1.0 - 0.9 * std::abs(distance) / std::sqrt(point.norm());
-  if (!(weight > kLeastWeight)) return std::nullopt;
+  if (!(weight > kMinWeight)) return std::nullopt;
   return residual_along(plane.normal, distance, arm, weight);
 }
 
@@ -130,17 +130,17 @@ Degenerate find_degenerate(const PoseEquations& equations, double lever, Degener
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   using Matrix6 = Eigen::Matrix<double, 6, 6>;
   Vector6 unit = Vector6::Ones();  // scale of each error that makes them comparable
-  double least = kLeastEigenvalue;
+  double threshold = kMinEigenvalue;
   if (rule == Degeneracy::kShare) {
     unit.head<3>().setConstant(1.0 / lever);
-    least = kLeastShare * static_cast<double>(equations.count);
+    threshold = kMinShare * static_cast<double>(equations.count);
   }
   const Matrix6 scaled = unit.asDiagonal() * equations.hessian * unit.asDiagonal();
   const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
   Degenerate result;
   Matrix6 kept = Matrix6::Zero();
   for (Eigen::Index i = 0; i < 6; ++i) {
-    if (solver.eigenvalues()[i] < least) {
+    if (solver.eigenvalues()[i] < threshold) {
       ++result.directions;
     } else {
       kept += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
@@ -158,18 +158,18 @@ Registration register_features(const Features& features, const FeatureMap& map, 
   Matcher matcher(features, map, config, parallel);
   Degenerate degenerate;
   const double lever = lever_of(features.surfaces);
-  double shift = 1.0;
+  double step_size = 1.0;
   while (result.iterations < config.max_iterations && !result.converged) {
     const PoseEquations points =
-        matcher.equations(result.map_from_lidar, shift > config.reassociation_distance_m);
-    if (points.count < kLeastMatches) break;
+        matcher.equations(result.map_from_lidar, step_size > config.reassociation_distance_m);
+    if (points.count < kMinMatches) break;
     if (result.iterations == 0) degenerate = find_degenerate(points, lever, config.degeneracy);
     const Eigen::Matrix<double, 6, 1> step = degenerate.observed * points.solve();
     result.map_from_lidar.linear() = so3::exp(step.head<3>()) * result.map_from_lidar.linear();
     result.map_from_lidar.translation() += step.tail<3>();
     result.points = points;
     result.degenerate_directions = degenerate.directions;
-    shift = step.tail<3>().norm() + lever * step.head<3>().norm();
+    step_size = step.tail<3>().norm() + lever * step.head<3>().norm();
     result.converged = step.head<3>().norm() < config.convergence_rotation_rad &&
                        step.tail<3>().norm() < config.convergence_translation_m;
     ++result.iterations;

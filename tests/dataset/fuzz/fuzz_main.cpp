@@ -11,7 +11,7 @@
 
 namespace {
 
-const lidarena::fuzz::Target& tried() {
+const lidarena::fuzz::Target& tested_target() {
   static const lidarena::fuzz::Target& kTarget = lidarena::fuzz::target(LIDARENA_FUZZ_TARGET);
   return kTarget;
 }
@@ -23,14 +23,15 @@ extern "C" int LLVMFuzzerInitialize(int* argc, char*** argv) {
   for (int i = 1; i < *argc; ++i) {
     const fs::path folder = (*argv)[i];
     if (!fs::is_directory(folder) || !fs::is_empty(folder)) continue;
-    for (std::size_t k = 0; k < tried().corpus.size(); ++k) {
-      std::ofstream(folder / ("sound_" + std::to_string(k)), std::ios::binary) << tried().corpus[k];
+    for (std::size_t k = 0; k < tested_target().corpus.size(); ++k) {
+      std::ofstream(folder / ("sound_" + std::to_string(k)), std::ios::binary)
+          << tested_target().corpus[k];
     }
   }
   return 0;
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  tried().read({reinterpret_cast<const char*>(data), size});
+  tested_target().read({reinterpret_cast<const char*>(data), size});
   return 0;
 }

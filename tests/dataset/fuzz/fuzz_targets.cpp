@@ -40,7 +40,7 @@ std::string text_of(Bytes bytes) {
 
 /// Runs `read`, which may throw InputError.
 template <class Read>
-void tolerant(Read&& read) {
+void ignore_input_errors(Read&& read) {
   try {
     read();
   } catch (const InputError&) {
@@ -55,9 +55,9 @@ void drain(EventSource& source) {
 
 /// Calls every function that reads a dataset.
 void read_dataset(const fs::path& path) {
-  tolerant([&] { drain(*open_dataset(path).events); });
-  tolerant([&] { load_truth(path); });
-  tolerant([&] {
+  ignore_input_errors([&] { drain(*open_dataset(path).events); });
+  ignore_input_errors([&] { load_truth(path); });
+  ignore_input_errors([&] {
     if (const auto truth = open_scan_truth(path)) {
       while (truth->next()) {
       }
@@ -142,8 +142,8 @@ Target clouds(const char* ending) {
                             "z\nend_header\n3 1 2 3\n1 2 3\n4 5 6\n");
   return {ending, corpus, [file](std::string_view bytes) {
             written(file, bytes);
-            tolerant([&] { read_cloud(file); });
-            tolerant([&] { read_sweep(file, Time{5}); });
+            ignore_input_errors([&] { read_cloud(file); });
+            ignore_input_errors([&] { read_sweep(file, Time{5}); });
           }};
 }
 
@@ -153,7 +153,7 @@ Target raw_sweeps() {
   return {"bin", {text_of(file)}, [file](std::string_view bytes) {
             written(file, bytes);
             for (const std::string& layout : raw_layouts()) {
-              tolerant([&] { read_sweep(file, Time{5}, layout); });
+              ignore_input_errors([&] { read_sweep(file, Time{5}, layout); });
             }
           }};
 }
@@ -172,9 +172,9 @@ Target trajectories() {
       "0,0\n1403636580843555648,1,2,3.5,0.9999,0.01,0,0\n");
   return {"trajectory", corpus, [file](std::string_view bytes) {
             written(file, bytes);
-            tolerant([&] { read_trajectory(file); });
-            tolerant([&] { read_times(file); });
-            tolerant([&] { read_imu_text(file); });
+            ignore_input_errors([&] { read_trajectory(file); });
+            ignore_input_errors([&] { read_times(file); });
+            ignore_input_errors([&] { read_imu_text(file); });
           }};
 }
 
@@ -200,7 +200,7 @@ Target configurations() {
            "body_from_lidar: [0, 0, 0.1, 0, 0, 0, 1]\nimus: []\n",
            "? [body_frame, lidars]\n: a list as a key\n"},
           [](std::string_view bytes) {
-            tolerant([&] {
+            ignore_input_errors([&] {
               Rig rig;
               read_config(ConfigNode::parse(std::string(bytes), "fuzz"), rig);
             });
@@ -236,13 +236,13 @@ Target messages() {
   return {"messages", corpus, [](std::string_view text) {
             const Bytes bytes = std::as_bytes(std::span(text));
             for (const Encoding encoding : {Encoding::kCdr, Encoding::kRos1}) {
-              tolerant([&] { ros::decode_scan(bytes, "fuzz", encoding); });
-              tolerant([&] { ros::decode_imu(bytes, "fuzz", encoding); });
-              tolerant([&] { ros::decode_odometry(bytes, "fuzz", encoding); });
-              tolerant([&] { ros::decode_transforms(bytes, "fuzz", encoding); });
-              tolerant([&] { ros::decode_scan_truth(bytes, "fuzz", encoding); });
-              tolerant([&] { ros::decode_string(bytes, "fuzz", encoding); });
-              tolerant([&] { decode_livox(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_scan(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_imu(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_odometry(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_transforms(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_scan_truth(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { ros::decode_string(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { decode_livox(bytes, "fuzz", encoding); });
             }
           }};
 }

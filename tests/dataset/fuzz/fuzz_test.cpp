@@ -15,7 +15,7 @@ namespace lidarena::dataset::fuzz {
 namespace {
 
 /// Duration of the test of each reader, s; set by LIDARENA_FUZZ_SECONDS.
-double seconds_each() {
+double seconds_per_reader() {
   const char* wanted = std::getenv("LIDARENA_FUZZ_SECONDS");
   return wanted == nullptr ? 0.2 : std::atof(wanted);
 }
@@ -78,14 +78,15 @@ class Mutations {
 class Readers : public testing::TestWithParam<const char*> {};
 
 TEST_P(Readers, RefuseBrokenInputOrReadItButNeverFail) {
-  const Target& tried = target(GetParam());
-  for (const std::string& sound : tried.corpus) ASSERT_NO_THROW(tried.read(sound));
-  Mutations mutations(tried.corpus);
-  const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds_each());
+  const Target& tested_target = target(GetParam());
+  for (const std::string& valid : tested_target.corpus) ASSERT_NO_THROW(tested_target.read(valid));
+  Mutations mutations(tested_target.corpus);
+  const auto end =
+      std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds_per_reader());
   int count = 0;
   for (; std::chrono::steady_clock::now() < end; ++count) {
     const std::string broken = mutations.next();
-    ASSERT_NO_THROW(tried.read(broken)) << "mutation " << count;
+    ASSERT_NO_THROW(tested_target.read(broken)) << "mutation " << count;
   }
   RecordProperty("mutations", count);
   EXPECT_GT(count, 0);

@@ -187,11 +187,12 @@ TEST(Registration, TheTwistIsTheShareOfTheOwnMotionAndTheRestOfThatBefore) {
   const Vector6 own = vector6(1.0, 0.2, 0.0, 0.0, 0.3, 2.0);
   const Vector6 before = vector6(0.5, 0.0, 0.1, 0.1, 0.0, 1.0);
   const Pose departed = pose_of(1, 2, 3, 0.1, 0.2, 0.3);
-  const Departure departure{departed, 0.2, before};
+  const PreviousPose previous_pose{departed, 0.2, before};
   const Pose arrived = departed * se3::exp(0.2 * own);
-  EXPECT_LT((twist_towards(arrived, departure, 1.0) - own).norm(), 1e-12);
-  EXPECT_LT((twist_towards(arrived, departure, 0.0) - before).norm(), 1e-12);
-  EXPECT_LT((twist_towards(arrived, departure, 0.75) - (0.75 * own + 0.25 * before)).norm(), 1e-12);
+  EXPECT_LT((twist_towards(arrived, previous_pose, 1.0) - own).norm(), 1e-12);
+  EXPECT_LT((twist_towards(arrived, previous_pose, 0.0) - before).norm(), 1e-12);
+  EXPECT_LT((twist_towards(arrived, previous_pose, 0.75) - (0.75 * own + 0.25 * before)).norm(),
+            1e-12);
   EXPECT_EQ(twist_towards(arrived, {departed, 0.0, before}, 1.0), before) << "no time has passed";
 }
 
@@ -301,9 +302,9 @@ TEST(Registration, KeypointsAtThePosesInstantAreTheSameMovingOrNot) {
   Config config;
   config.sensor_centered = true;
   const std::vector<float> all_at_it(points.size(), 0.0F);
-  const Departure departure{pose_of(1, 2, 3, 0, 0, 1), 0.1, Vector6::Zero()};
-  const auto moving =
-      register_points({points, all_at_it}, map, departure, shift, 0.5, 1.0, config, Parallel(1));
+  const PreviousPose previous_pose{pose_of(1, 2, 3, 0, 0, 1), 0.1, Vector6::Zero()};
+  const auto moving = register_points({points, all_at_it}, map, previous_pose, shift, 0.5, 1.0,
+                                      config, Parallel(1));
   const auto still = register_still(points, map, shift, 0.5, config);
   EXPECT_LT((moving.map_from_lidar.matrix() - still.map_from_lidar.matrix()).norm(), 1e-12);
 }

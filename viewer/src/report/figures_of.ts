@@ -134,8 +134,8 @@ function memory(data: ReportData, world: string): Figure | null {
   };
 }
 
-const LEAST_ERROR_CM = 0.1; // where the logarithmic scale begins
-const onLogScale = (cm: number | null) => (cm === null ? null : Math.max(cm, LEAST_ERROR_CM));
+const MIN_ERROR_CM = 0.1; // where the logarithmic scale begins
+const onLogScale = (cm: number | null) => (cm === null ? null : Math.max(cm, MIN_ERROR_CM));
 
 /**
  * Error of the path over time, one panel per sensor, one line per algorithm; logarithmic, so that a
@@ -160,7 +160,7 @@ function drift(data: ReportData, world: string): Figure | null {
       legend: { top: 22, left: 50, data: algorithms, textStyle: { fontSize: 11 } },
       grid: cells,
       xAxis: cells.map((_, i) => valueAxis(i, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel: { fontSize: 10, color: FAINT, formatter: (v: number) => v.toFixed(0) } })),
-      yAxis: cells.map((_, i) => valueAxis(i, "cm", { type: "log", nameGap: 34, min: LEAST_ERROR_CM })),
+      yAxis: cells.map((_, i) => valueAxis(i, "cm", { type: "log", nameGap: 34, min: MIN_ERROR_CM })),
       series: first.map((run) => ({
         type: "line", name: label(run), xAxisIndex: sensors.indexOf(run.sensor), yAxisIndex: sensors.indexOf(run.sensor), symbol: "none",
         lineStyle: { width: 1.3 }, color: RUN_COLORS[algorithms.indexOf(label(run)) % RUN_COLORS.length],
@@ -225,7 +225,7 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
       xAxis: { ...valueAxis(0, axis, { nameGap: 26 }), type: "log" },
       yAxis: { ...valueAxis(0, "RPE, cm per m", { nameGap: 36 }), type: "log" },
       series: [
-        { type: "line", step: "end", symbol: "none", silent: true, lineStyle: { color: "#9aa3ad", width: 1, type: "dashed" }, data: unbeaten(runs.map((r) => [r[key]!, r.rpe_cm_per_m!])) },
+        { type: "line", step: "end", symbol: "none", silent: true, lineStyle: { color: "#9aa3ad", width: 1, type: "dashed" }, data: paretoFront(runs.map((r) => [r[key]!, r.rpe_cm_per_m!])) },
         ...algorithms.map((algorithm, i) => ({
           type: "scatter", name: algorithm, symbolSize: 10, itemStyle: { color: RUN_COLORS[i % RUN_COLORS.length], opacity: 0.85 },
           data: runs.filter((run) => label(run) === algorithm).map((run) => ({
@@ -239,7 +239,7 @@ function pareto(data: ReportData, key: "cpu_share" | "memory_mb", id: string, ax
 }
 
 /** The points for which no other is smaller in both coordinates, sorted by the first. */
-export function unbeaten(points: number[][]): number[][] {
+export function paretoFront(points: number[][]): number[][] {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   let best = Infinity;
   return sorted.filter(([, y]) => (y < best ? ((best = y), true) : false));

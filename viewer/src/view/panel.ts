@@ -94,7 +94,7 @@ export class Panel {
       const step = Math.max((high[a] - low[a]) / 200, 1e-3);
       return slider(`${axis} ${end ? "to" : "from"}`, { min: low[a], max: high[a], step, value: cut[end][a], shown }, (value) => {
         cut[end][a] = value;
-        this.change({ cut: opened(cut, low, high) });
+        this.change({ cut: withoutBoundLimits(cut, low, high) });
       }).element;
     }));
   }
@@ -276,7 +276,7 @@ export class Panel {
  * The cut without limits where its ends are at the bounds, so that outliers beyond the bounds stay
  * visible.
  */
-function opened(cut: [Vec3, Vec3], low: Vec3, high: Vec3): [Vec3, Vec3] | null {
+function withoutBoundLimits(cut: [Vec3, Vec3], low: Vec3, high: Vec3): [Vec3, Vec3] | null {
   const eps = [0, 1, 2].map((a) => (high[a] - low[a]) / 150);
   const from = cut[0].map((v, a) => (v <= low[a] + eps[a] ? -1e9 : v)) as Vec3;
   const to = cut[1].map((v, a) => (v >= high[a] - eps[a] ? 1e9 : v)) as Vec3;

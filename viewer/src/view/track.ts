@@ -13,7 +13,7 @@ export class Track {
   private marker = new THREE.Group();
   private positions: Float32Array;
   private times: Float32Array;
-  private turns: Float32Array;
+  private orientations: Float32Array;
   readonly errors: Float32Array | null;
   private readonly color: string;
 
@@ -24,7 +24,7 @@ export class Track {
     const column = (begin: number, width: number) => new Float32Array(bytes, 4 * n * begin, n * width);
     this.positions = column(0, 3);
     this.times = column(3, 1);
-    this.turns = column(4, 4);
+    this.orientations = column(4, 4);
     this.errors = header.has_error ? column(8, 1) : null;
     const geometry = new THREE.BufferGeometry();
     geometry.setAttribute("position", new THREE.BufferAttribute(this.positions, 3));
@@ -45,7 +45,7 @@ export class Track {
     if (!this.marker.visible) return;
     const i = end - 1;
     this.marker.position.fromArray(this.positions, 3 * i);
-    this.marker.quaternion.fromArray(this.turns, 4 * i);
+    this.marker.quaternion.fromArray(this.orientations, 4 * i);
   }
 
   /** Colors the line by its error, 0 ... `full` meters; null restores the single color. */

@@ -9,8 +9,8 @@ import type { BlockSource, SceneHeader, Vec3 } from "./scene";
 import { Surface, type SurfaceLook } from "./surface";
 import { Track } from "./track";
 
-const RESTING_MS = 250;         // all points are drawn this long after the last camera motion
-const MOVING_FRAME_MS = 60;     // target duration of a frame during camera motion
+const REST_MS_BEFORE_FULL_DRAW = 250;         // all points are drawn this long after the last camera motion
+const TARGET_FRAME_MS = 60;     // target duration of a frame during camera motion
 const SOFTWARE_BUDGET = 1_000_000;
 const DEFAULT_BUDGET = 4_000_000;
 const PICK_RADIUS_PX = 8;
@@ -255,7 +255,7 @@ export class View {
 
   private moved() {
     this.lastMove = performance.now();
-    window.setTimeout(() => this.invalidate(), RESTING_MS + 10);
+    window.setTimeout(() => this.invalidate(), REST_MS_BEFORE_FULL_DRAW + 10);
     this.invalidate();
   }
 
@@ -280,7 +280,7 @@ export class View {
 
   render() {
     const begin = performance.now();
-    const moving = begin - this.lastMove < RESTING_MS;
+    const moving = begin - this.lastMove < REST_MS_BEFORE_FULL_DRAW;
     const { clientWidth: width, clientHeight: height } = this.container;
     const sides = this.split ? 2 : 1;
     this.renderer.setScissorTest(false);
@@ -341,7 +341,7 @@ export class View {
   }
 
   private adapt(frame_ms: number) {
-    const factor = Math.min(Math.max(MOVING_FRAME_MS / Math.max(frame_ms, 1), 0.5), 1.25);
+    const factor = Math.min(Math.max(TARGET_FRAME_MS / Math.max(frame_ms, 1), 0.5), 1.25);
     this.movingBudget = Math.min(Math.max(this.movingBudget * factor, 50_000), this.budget);
   }
 
