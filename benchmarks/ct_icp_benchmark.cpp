@@ -12,7 +12,7 @@
 #include "lidarena/odometry/ct_icp/neighborhood.hpp"
 #include "lidarena/odometry/ct_icp/registration.hpp"
 
-namespace lidarena::ct_icp {
+namespace lidarena::odometry::ct_icp {
 namespace {
 
 /// Points of a scan at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
@@ -39,7 +39,8 @@ const Config& config() {
 
 const map::VoxelHashMap& map() {
   static const map::VoxelHashMap filled = [] {
-    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel, config().map.min_point_spacing_m});
+    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel,
+                            config().map.min_point_spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();
@@ -125,7 +126,8 @@ void insert_scan(benchmark::State& state) {
   const auto frame =
       thin(scan_of(20'000, 3), config().sampling.scan_voxel_size_m, map::VoxelRounding::kFloor);
   map::VoxelHashMap grown = [] {
-    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel, config().map.min_point_spacing_m});
+    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel,
+                            config().map.min_point_spacing_m});
     for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
     return made;
   }();
@@ -137,4 +139,4 @@ void insert_scan(benchmark::State& state) {
 BENCHMARK(insert_scan)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace lidarena::ct_icp
+}  // namespace lidarena::odometry::ct_icp

@@ -16,7 +16,7 @@
 #include "lidarena/estimation/least_squares.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
 
-namespace lidarena::kiss_icp {
+namespace lidarena::odometry::kiss_icp {
 namespace {
 
 using Eigen::Vector3d;
@@ -225,4 +225,4 @@ BENCHMARK(build_nanoflann)->Unit(benchmark::kMillisecond);
 #endif
 
 }  // namespace
-}  // namespace lidarena::kiss_icp
+}  // namespace lidarena::odometry::kiss_icp

@@ -14,7 +14,7 @@
 #include "lidarena/odometry/lio_sam/range_image.hpp"
 #include "lidarena/odometry/lio_sam/registration.hpp"
 
-namespace lidarena::lio_sam {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Eigen::Vector3d;
@@ -190,4 +190,4 @@ BENCHMARK(register_scan)->ArgName("spinning")->Arg(0)->Arg(1)->Unit(kUnit);
 BENCHMARK(verify_loop)->ArgName("spinning")->Arg(0)->Arg(1)->Unit(kUnit);
 
 }  // namespace
-}  // namespace lidarena::lio_sam
+}  // namespace lidarena::odometry::lio_sam

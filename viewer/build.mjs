@@ -62,8 +62,8 @@ function asCpp() {
     const text = readFileSync(path.join(out, file), "utf8").replace(/<\/script/gi, "<\\/script");
     return `  if (name == "${file}") {\n    static const char text[] =\n${literal(text)};\n    return {text, sizeof(text) - 1};\n  }`;
   });
-  return `// Made by viewer/build.mjs.\n#include "lidarena/report/web_bundle.hpp"\n\nnamespace lidarena {\n\n` +
-    `std::string_view web_bundle(std::string_view name) {\n${entries.join("\n")}\n  return {};\n}\n\n}  // namespace lidarena\n`;
+  return `// Made by viewer/build.mjs.\n#include "lidarena/report/web_bundle.hpp"\n\nnamespace lidarena::report {\n\n` +
+    `std::string_view web_bundle(std::string_view name) {\n${entries.join("\n")}\n  return {};\n}\n\n}  // namespace lidarena::report\n`;
 }
 
 function escaped(text) {

@@ -80,7 +80,8 @@ int study_verb(const Common& common, const StudyRequest& request) {
   Console console(common.quiet);
   const std::string& out = request.out;
   const study::StudyOutcome outcome = study::run_study(spec, configs, out, options, console);
-  const report::ReportFiles report = report::write_report({out}, out, console);
+  const report::ReportFiles report =
+      report::write_report({out}, out, Parallel(common.threads), console);
   if (common.json) {
     print_json({{"study", out},
                 {"runs", outcome.runs},
@@ -109,7 +110,8 @@ int report_verb(const Common& common, const ReportRequest& request) {
   Console console(common.quiet);
   const std::filesystem::path out =
       request.out.empty() ? request.folders.front() : std::filesystem::path(request.out);
-  const report::ReportFiles report = report::write_report(request.folders, out, console);
+  const report::ReportFiles report =
+      report::write_report(request.folders, out, Parallel(common.threads), console);
   if (common.json) {
     print_json({{"report", report.page.string()}});
   } else {

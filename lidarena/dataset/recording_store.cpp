@@ -31,7 +31,7 @@ RecordingOptions recording_options(const Rig& rig, const RecordedSensors& sensor
 Driver driver_of(const std::string& id, const Rig& rig, const WriteOptions& options) {
   if (options.dialect == Dialect::kSi) return Driver::kUnknown;
   const auto lidar = std::ranges::find(rig.lidars, id, &LidarInfo::id);
-  return lidar == rig.lidars.end() ? Driver::kUnknown : lidarena::driver_of(*lidar);
+  return lidar == rig.lidars.end() ? Driver::kUnknown : dataset::driver_of(*lidar);
 }
 
 /// The topics from which the measurements are read back: for a Livox in Dialect::kDriver, its

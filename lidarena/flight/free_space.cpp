@@ -88,7 +88,7 @@ bool join(const world::World& world, double minimum, const Grid& grid, const Vec
 
 FreeSpace::FreeSpace(const world::World& world, const Vector3d& start, const Distances& distances,
                      double voxel_size_m, std::size_t max_voxels, const Parallel& parallel)
-    : distances_(distances), cell_m_(kCoarseFactor * voxel_size_m) {
+    : distances_(distances), voxel_size_m_(kCoarseFactor * voxel_size_m) {
   const bool is_small = explore(world, start, max_voxels, parallel);
   const double expected = static_cast<double>(cells_.size()) * std::pow(kCoarseFactor, 3);
   const double excess = expected / static_cast<double>(max_voxels);

@@ -103,14 +103,22 @@ MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, cons
           to_json(config)};
 }
 
+/// The default preset for a LiDAR of which nothing is known: the defaults in the schema. (Ranges
+/// follow the LiDAR's.)
+template <class Maker>
+typename Maker::Config default_config(const AlgorithmInfo& info) {
+  return Maker::preset(info.presets.front(), LidarInfo{});
+}
+
 template <class Maker>
 Json schema(const AlgorithmInfo& info) {
-  return schema_document(info.name + ": " + info.summary, typename Maker::Config{});
+  return schema_document(info.name + ": " + info.summary, default_config<Maker>(info));
 }
 
 template <class Maker>
 Json schema_with_loop(const AlgorithmInfo& info) {
-  return schema_document(info.name + ": " + info.summary, LoopedConfig<typename Maker::Config>{});
+  const LoopedConfig<typename Maker::Config> config{default_config<Maker>(info), {}};
+  return schema_document(info.name + ": " + info.summary, config);
 }
 
 struct Algorithm {

@@ -43,7 +43,8 @@ void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesys
 }  // namespace
 
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
-                         const std::filesystem::path& folder, LogSink& log) {
+                         const std::filesystem::path& folder, const Parallel& parallel,
+                         LogSink& log) {
   std::vector<Results> parts;
   for (const std::filesystem::path& part : folders) parts.push_back(read_results(part));
   const Results results = merged(std::move(parts));
@@ -64,8 +65,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
                  : "SVG files of the figures are left out: they need Node.js; the page has them");
   }
   write_pictures(pictures, folder / "figures");
-  dataset::write_text_file(files.page,
-                           html_page(results, sections, pictures, data, Parallel(), log));
+  dataset::write_text_file(files.page, html_page(results, sections, pictures, data, parallel, log));
   files.text_table = results_text(results);
   return files;
 }

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lidarena/base/log.hpp"
+#include "lidarena/base/parallel.hpp"
 
 namespace lidarena::report {
 
@@ -20,6 +21,6 @@ struct ReportFiles {
 /// one report. Pictures of runs without clouds are left out. Throws InputError if a folder holds no
 /// results.
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
-                         const std::filesystem::path& out, LogSink& log);
+                         const std::filesystem::path& out, const Parallel& parallel, LogSink& log);
 
 }  // namespace lidarena::report

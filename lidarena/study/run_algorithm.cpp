@@ -110,7 +110,7 @@ std::optional<evaluation::RayTruth> ray_truth(const fs::path& path, const std::s
 
 }  // namespace
 
-Json to_json(const odometry::RunSummary& summary) {
+Json summary_json(const odometry::RunSummary& summary) {
   Json statuses = Json::object();
   for (const auto& [status, count] : summary.statuses)
     statuses[odometry::to_string(status)] = count;
@@ -161,7 +161,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
                            {"status", result.summary.diverged ? "diverged" : "ok"},
                            {"reason", result.summary.reason},
                            {"made_on", made_on()},
-                           {"summary", to_json(result.summary)}};
+                           {"summary", summary_json(result.summary)}};
   dataset::write_run(out, result.files);
   return result.summary;
 }

@@ -21,7 +21,7 @@ struct RunRequest {
 };
 
 /// A run's summary as written to its manifest.
-Json to_json(const odometry::RunSummary& summary);
+Json summary_json(const odometry::RunSummary& summary);
 /// Where a run's times were measured: processor, cores, memory, version of lidarena.
 Json made_on();
 

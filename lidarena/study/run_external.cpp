@@ -192,7 +192,7 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
       {"processor_seconds", used.processor_s},
       {"peak_mb", used.peak_mb},
       {"made_on", made_on()},
-      {"summary", to_json(summary)}};
+      {"summary", summary_json(summary)}};
   dataset::write_run(out, files);
   fs::remove_all(output);
   return summary;

@@ -60,7 +60,7 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    summary = study::to_json(study::run_algorithm(request, out, Parallel(threads), log));
+    summary = study::summary_json(study::run_algorithm(request, out, Parallel(threads), log));
   }
   return to_python(summary);
 }

@@ -22,6 +22,7 @@ using ::testing::HasSubstr;
 struct Inner {
   double voxel_size_m = 0.5;
   int count = 3;
+  static constexpr RenamedKey renamed_keys[] = {{"leaf_m", "voxel_size_m"}};
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("voxel_size_m", self.voxel_size_m, "m", "edge of a cell", above(0));
@@ -149,6 +150,11 @@ TEST(Config, ARigSurvivesItsJson) {
   EXPECT_EQ(back.find_lidar("")->body_from_lidar.translation().z(), 0.1);
   EXPECT_EQ(back.imus.at(0).rate_hz, 200);
   EXPECT_EQ(back.find_lidar("os0"), nullptr);
+}
+
+TEST(Config, AFormerKeyIsRefusedWithTheNewOne) {
+  EXPECT_THAT(error_of("inner:\n  leaf_m: 0.3\n"),
+              AllOf(HasSubstr("test.yaml:2"), HasSubstr("'leaf_m'"), HasSubstr("'voxel_size_m'")));
 }
 
 }  // namespace

@@ -39,7 +39,7 @@ bool is_same(const Event& a, const Event& b) {
   const auto& other = std::get<Scan>(b.data);
   return scan.stamp == other.stamp &&
          std::ranges::equal(scan.points, other.points,
-                            [](const Point& p, const Point& q) { return is_same(p, q); });
+                            [](const Point& p, const Point& q) { return dataset::is_same(p, q); });
 }
 
 void check_sample(const char* file) {
@@ -57,18 +57,18 @@ void check_sample(const char* file) {
 
 int main(int argc, char** argv) try {
   if (argc == 3 && std::string_view(argv[1]) == "check") {
-    lidarena::check_sample(argv[2]);
+    lidarena::dataset::check_sample(argv[2]);
     return 0;
   }
   if (argc < 2 || argc > 4) {
     std::fputs("usage: write_recording_sample FOLDER [mcap|bag [driver]] or check FILE\n", stderr);
     return 2;
   }
-  lidarena::WriteOptions options;
+  lidarena::dataset::WriteOptions options;
   if (argc > 2 && std::string_view(argv[2]) == "bag")
-    options.format = lidarena::DatasetFormat::kBag;
-  if (argc == 4) options.dialect = lidarena::Dialect::kDriver;
-  lidarena::write_sample(argv[1], options);
+    options.format = lidarena::dataset::DatasetFormat::kBag;
+  if (argc == 4) options.dialect = lidarena::dataset::Dialect::kDriver;
+  lidarena::dataset::write_sample(argv[1], options);
   return 0;
 } catch (const std::exception& error) {
   std::fprintf(stderr, "%s\n", error.what());

@@ -126,13 +126,13 @@ TEST(InertialState, FreeFallAndATurnInClosedForm) {
   EXPECT_LT((state.rotation() - so3::exp({0.0, 0.0, 0.5})).norm(), 1e-9);
 
   State first_order;
-  first_order.velocity = {1.0, 0.0, 2.0};
+  first_order.nav.velocity = {1.0, 0.0, 2.0};
   for (int i = 0; i < 200; ++i) {
     propagate(first_order, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), dt,
               Integration::kFirstOrder);
   }
   // The sum of v dt with v at the beginning of each step differs from the integral by g T dt / 2.
-  EXPECT_NEAR(first_order.position.z(), 2.0 - 0.5 * g + 0.5 * g * dt, 1e-9);
+  EXPECT_NEAR(first_order.position().z(), 2.0 - 0.5 * g + 0.5 * g * dt, 1e-9);
 }
 
 TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {

@@ -63,7 +63,7 @@ State some_state(SequentialRandom& random) {
   State state;
   state.position() = random_vector(random, 2.0);
   state.rotation() = so3::exp(random_vector(random, 1.0));
-  state.imu_from_lidar.translation() = {0.01, 0.02, -0.04};
+  state.imu_from_lidar.translation() = Eigen::Vector3d(0.01, 0.02, -0.04);
   return state;
 }
 
@@ -173,7 +173,7 @@ TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
 
 TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   StateEstimate prior;
-  prior.state.position() = {1.0, 2.0, 3.0};
+  prior.state.position() = Eigen::Vector3d(1.0, 2.0, 3.0);
   prior.covariance *= 0.1;
   const auto updated =
       iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
@@ -264,7 +264,7 @@ TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
   SequentialRandom random(9, 1);
   StateEstimate prior;
   prior.covariance = some_covariance(random, 0.2);
-  prior.state.position() = {1.0, 2.0, 3.0};
+  prior.state.position() = Eigen::Vector3d(1.0, 2.0, 3.0);
   prior.state.rotation() = so3::exp({0.1, -0.2, 0.7});
   constexpr double kShift = 0.03, kTurn = 0.01;
   State::Vector off = State::Vector::Zero();

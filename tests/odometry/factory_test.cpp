@@ -55,6 +55,29 @@ TEST(OdometryFactory, OverridesWinOverTheFileAndTheFileOverThePreset) {
   EXPECT_EQ(config.at("max_range_m"), 100.0);
 }
 
+TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
+  const Json kiss = algorithm_schema("kiss_icp").at("properties");
+  EXPECT_EQ(kiss.at("max_iterations").at("default"), 20);
+  for (const AlgorithmInfo& info : list_algorithms()) {
+    const Json properties = algorithm_schema(info.name).at("properties");
+    const Json config = make({info.name, info.presets.front(), "", {}}).config;
+    for (const auto& [key, value] : config.items()) {
+      const bool of_the_lidar = key.find("range_m") != std::string::npos || key == "columns";
+      if (of_the_lidar || value.is_object()) continue;
+      EXPECT_EQ(properties.at(key).at("default"), value) << info.name << " " << key;
+    }
+  }
+}
+
+TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
+  EXPECT_THAT(refusal({"kiss_icp", "improved", "", {"calm_start=4"}}),
+              AllOf(HasSubstr("calm_start"), HasSubstr("write 'initial_scans'")));
+  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {"loop.leaf_m=0.2"}}),
+              HasSubstr("write 'voxel_size_m'"));
+  EXPECT_THAT(refusal({"ct_icp", "improved", "", {"registration.min_neighbours=9"}}),
+              HasSubstr("write 'min_neighbors'"));
+}
+
 TEST(OdometryFactory, RefusalsNameTheNearestWord) {
   EXPECT_THAT(refusal({"kis_icp", "improved", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
   EXPECT_THAT(refusal({"orb_slam", "improved", "", {}}),

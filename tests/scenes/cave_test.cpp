@@ -84,7 +84,7 @@ TEST(Cave, IsOneClosedManifoldWithAHandleForEachLoop) {
   const CaveConfig config;
   const world::WorldModel cave = make_cave(config, 1);
   EXPECT_GE(cave.mesh.triangles.size(), 500000U);
-  const testing::Topology found = testing::topology(cave.mesh);
+  const world::testing::Topology found = world::testing::topology(cave.mesh);
   EXPECT_EQ(found.open_edges, 0U);
   EXPECT_EQ(found.pinched_vertices, 0U);
   EXPECT_EQ(found.components, 1U);
@@ -102,13 +102,13 @@ TEST(Cave, EnclosesTheVolumeOfItsTunnelsWithNormalsInward) {
     }
   }
   // Noise of 2 m scale and the junctions' overlaps change the volume by less than a fifth.
-  EXPECT_NEAR(testing::signed_volume(cave.mesh), -tubes, 0.2 * tubes);
+  EXPECT_NEAR(world::testing::signed_volume(cave.mesh), -tubes, 0.2 * tubes);
 }
 
 TEST(Cave, TrianglesAreAboutAsLargeAsTheGrid) {
   const world::WorldModel cave = make_cave(small_cave(), 3);
   const double step = small_cave().voxel_size_m;
-  for (const Triangle& t : cave.mesh.triangles) {
+  for (const world::Triangle& t : cave.mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       // Vertices of neighboring cells are less than two steps apart along each axis; the projection
       // moves each vertex by at most one step.
@@ -152,14 +152,14 @@ TEST(Cave, EveryRayFromTheRouteHitsRock) {
   const world::WorldModel cave = make_cave(small_cave(), 4);
   const world::World world(cave.mesh, "cave");
   SequentialRandom random(1);
-  std::vector<Ray> rays;
+  std::vector<world::Ray> rays;
   for (const Eigen::Vector3d& p : cave.routes[0]) {
     for (int k = 0; k < 2000; ++k)
-      rays.push_back({p, testing::random_direction(random).cast<float>()});
+      rays.push_back({p, world::testing::random_direction(random).cast<float>()});
   }
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   world.cast(rays, 1000, hits);
-  for (const Hit& hit : hits) EXPECT_TRUE(hit.valid());
+  for (const world::Hit& hit : hits) EXPECT_TRUE(hit.valid());
 }
 
 TEST(Cave, TunnelsAreTwoToFourMetersWide) {
@@ -170,8 +170,9 @@ TEST(Cave, TunnelsAreTwoToFourMetersWide) {
     for (std::size_t i = 10; i + 10 < tunnel.points.size(); ++i) {  // 5 m from the junctions
       const Eigen::Vector3d along = tunnel.points[i + 1] - tunnel.points[i - 1];
       const Eigen::Vector3f side = along.cross(Eigen::Vector3d::UnitZ()).normalized().cast<float>();
-      const std::array<Ray, 2> rays{Ray{tunnel.points[i], side}, Ray{tunnel.points[i], -side}};
-      std::array<Hit, 2> hits;
+      const std::array<world::Ray, 2> rays{world::Ray{tunnel.points[i], side},
+                                           world::Ray{tunnel.points[i], -side}};
+      std::array<world::Hit, 2> hits;
       world.cast(rays, 100, hits);
       const float width = hits[0].range + hits[1].range;
       EXPECT_GE(width, 2.0F);

@@ -8,7 +8,7 @@
 namespace lidarena::scenes {
 namespace {
 
-using testing::random_point;
+using world::testing::random_point;
 
 TEST(GradientNoise, VanishesOnTheLatticeAndStaysBounded) {
   const GradientNoise noise(3);

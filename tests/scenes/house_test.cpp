@@ -144,9 +144,10 @@ TEST(House, CeilingsAreOneOrTwoStoriesUp) {
   const world::World shell(build_shell(plan, config), "shell");
   for (const Room& room : plan.rooms) {
     const Vector2d middle = room.floor.center();
-    const std::array<Ray, 2> rays{Ray{{middle.x(), middle.y(), 1.0}, Eigen::Vector3f::UnitZ()},
-                                  Ray{{middle.x(), middle.y(), 1.0}, -Eigen::Vector3f::UnitZ()}};
-    std::array<Hit, 2> hits;
+    const std::array<world::Ray, 2> rays{
+        world::Ray{{middle.x(), middle.y(), 1.0}, Eigen::Vector3f::UnitZ()},
+        world::Ray{{middle.x(), middle.y(), 1.0}, -Eigen::Vector3f::UnitZ()}};
+    std::array<world::Hit, 2> hits;
     shell.cast(rays, 100, hits);
     EXPECT_NEAR(hits[0].range, room.height - 1, 1e-5);
     EXPECT_NEAR(hits[1].range, 1, 1e-5);
@@ -165,8 +166,8 @@ TEST(House, DoorsAreAsWideAsAskedAndPassWallsOfRealThickness) {
     for (double z = 0.1; z < config.door_height_m - 0.05; z += 0.15) {
       for (const double ahead : {-0.49, 0.0, 0.49}) {
         const Vector3d p = door.point(ahead * config.wall_thickness_m, z);
-        const std::array<Ray, 2> rays{Ray{p, side}, Ray{p, -side}};
-        std::array<Hit, 2> hits;
+        const std::array<world::Ray, 2> rays{world::Ray{p, side}, world::Ray{p, -side}};
+        std::array<world::Hit, 2> hits;
         world.cast(rays, 100, hits);
         EXPECT_NEAR(hits[0].range + hits[1].range, config.door_width_m, 1e-5);
         EXPECT_LE(hits[0].range + hits[1].range, 0.9F + 1e-5F);
@@ -214,7 +215,7 @@ void expect_clear_route(const HouseConfig& config, std::uint64_t seed) {
   ASSERT_EQ(house.routes.size(), 1U);
   const world::World world(house.mesh, "house");
   for (const Vector3d& p : along(house.routes[0])) {
-    const ClosestPoint nearest = world.closest_point(p);
+    const world::ClosestPoint nearest = world.closest_point(p);
     ASSERT_GE(nearest.distance, 0.4)
         << "seed " << seed << " at " << p.transpose() << " to " << nearest.point.transpose();
   }
@@ -235,14 +236,14 @@ double lost_rays(const HouseConfig& config, std::uint64_t seed) {
   const world::WorldModel house = make_house(config, seed);
   const world::World world(house.mesh, "house");
   SequentialRandom random(1);
-  std::vector<Ray> rays;
+  std::vector<world::Ray> rays;
   for (const Vector3d& p : along(house.routes[0])) {
     for (int k = 0; k < 100; ++k)
-      rays.push_back({p, testing::random_direction(random).cast<float>()});
+      rays.push_back({p, world::testing::random_direction(random).cast<float>()});
   }
-  std::vector<Hit> hits(rays.size());
+  std::vector<world::Hit> hits(rays.size());
   world.cast(rays, 1000, hits);
-  const auto lost = std::ranges::count_if(hits, [](const Hit& hit) { return !hit.valid(); });
+  const auto lost = std::ranges::count_if(hits, [](const world::Hit& hit) { return !hit.valid(); });
   return double(lost) / double(rays.size());
 }
 

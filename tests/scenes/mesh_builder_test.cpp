@@ -10,7 +10,7 @@
 namespace lidarena::scenes {
 namespace {
 
-using testing::signed_volume;
+using world::testing::signed_volume;
 
 constexpr double kPi = std::numbers::pi;
 

@@ -12,8 +12,8 @@
 namespace lidarena::scenes {
 namespace {
 
-using testing::Topology;
-using testing::topology;
+using world::testing::Topology;
+using world::testing::topology;
 
 /// Samples `value` in the blocks -blocks ... blocks - 1 along each axis.
 SparseField sample(int blocks, double step,
@@ -63,7 +63,7 @@ TEST(SurfaceNets, NormalsPointIntoFreeSpace) {
       sample(1, 0.2, [](const Eigen::Vector3i& p) { return (0.2 * p.cast<double>()).norm() - 1; });
   // Free space is the inside of the ball, so the signed volume is negative. With cells of 0.2 m the
   // error of the volume is less than that of a shell of half a cell.
-  EXPECT_NEAR(testing::signed_volume(surface_net(field)), -4.19, 4.19 * 0.3 * 0.2);
+  EXPECT_NEAR(world::testing::signed_volume(surface_net(field)), -4.19, 4.19 * 0.3 * 0.2);
 }
 
 TEST(SurfaceNets, WellComposedNoiseGivesAManifold) {

@@ -9,6 +9,7 @@
 namespace lidarena::sensor {
 namespace {
 
+using namespace testing;
 using namespace world::testing;
 
 bool same_beams(std::span<const Beam> a, std::span<const Beam> b) {

@@ -10,6 +10,7 @@
 namespace lidarena::sensor {
 namespace {
 
+using namespace testing;
 using namespace world::testing;
 
 std::vector<Beam> beams_of(const SensorConfig& config) {

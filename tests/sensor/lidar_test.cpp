@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 using namespace testing;
+using namespace world::testing;
 
 // Single precision leaves 1e-5 m at 40 m; the pattern, the poses and the geometry are double.
 constexpr double kTolerance = 1e-4;

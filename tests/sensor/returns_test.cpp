@@ -14,6 +14,7 @@ namespace {
 
 using Eigen::Vector3d;
 using namespace testing;
+using namespace world::testing;
 
 const Parallel kOneThread(1);
 

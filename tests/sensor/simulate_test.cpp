@@ -14,6 +14,7 @@ namespace lidarena::sensor {
 namespace {
 
 using namespace testing;
+using namespace world::testing;
 
 const world::World& box_world() {
   static const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));

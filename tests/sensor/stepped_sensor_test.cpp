@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Vector3d;
 using namespace testing;
+using namespace world::testing;
 
 constexpr Time kStep{1'000'000};
 

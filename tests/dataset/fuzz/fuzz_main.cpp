@@ -11,8 +11,9 @@
 
 namespace {
 
-const lidarena::fuzz::Target& tested_target() {
-  static const lidarena::fuzz::Target& kTarget = lidarena::fuzz::target(LIDARENA_FUZZ_TARGET);
+const lidarena::dataset::fuzz::Target& tested_target() {
+  static const lidarena::dataset::fuzz::Target& kTarget =
+      lidarena::dataset::fuzz::target(LIDARENA_FUZZ_TARGET);
   return kTarget;
 }
 
