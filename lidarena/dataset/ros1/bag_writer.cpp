@@ -96,6 +96,7 @@ struct BagWriter::Impl {
         .text("compression", is_lz4 ? "lz4" : "none")
         .number("size", static_cast<std::uint32_t>(chunk.size()))
         .append_to(head, {});
+    // The length that ends the header is that of the payload, which is written after it, uncopied.
     head.replace(head.size() - sizeof(std::uint32_t), static_cast<std::uint32_t>(records.size()));
     file.write(head.bytes());
     file.write(records);

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <tuple>
 
 #include "lidarena/map/voxel_key.hpp"
 
@@ -81,17 +83,31 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const estimation::ScanTim
 
 std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
                              map::VoxelRounding rounding) {
+  struct Cell {
+    std::uint64_t order;   // low bits of the hash
+    std::uint32_t first;   // index of the first point met in the cell
+    std::uint32_t chosen;  // index of its point of the lowest rank
+  };
   const auto inverse = static_cast<float>(1.0 / voxel);
-  tsl::robin_map<map::VoxelKey, std::uint32_t, map::VoxelKeyHash> cells;
-  cells.reserve(points.size() / 2);
+  const std::uint64_t order_bits = std::bit_ceil(points.size() + 1) - 1;
+  std::vector<Cell> cells;
+  tsl::robin_map<map::VoxelKey, std::size_t, map::VoxelKeyHash> index_of_cell;
+  index_of_cell.reserve(points.size() / 2);
   for (std::uint32_t i = 0; i < points.size(); ++i) {
-    const auto [cell, is_new] =
-        cells.try_emplace(map::voxel_key(map::voxel_of(points[i].position, inverse, rounding)), i);
-    if (!is_new && rank_of(i) < rank_of(cell->second)) cell.value() = i;
+    const map::VoxelKey key = map::voxel_key(map::voxel_of(points[i].position, inverse, rounding));
+    const auto [found, is_new] = index_of_cell.try_emplace(key, cells.size());
+    if (is_new) {
+      cells.push_back({map::VoxelKeyHash{}(key)&order_bits, i, i});
+    } else if (Cell& cell = cells[found->second]; rank_of(i) < rank_of(cell.chosen)) {
+      cell.chosen = i;
+    }
   }
+  std::sort(cells.begin(), cells.end(), [](const Cell& a, const Cell& b) {
+    return std::tie(a.order, a.first) < std::tie(b.order, b.first);
+  });
   std::vector<TimedPoint> kept;
   kept.reserve(cells.size());
-  for (const auto& [key, index] : cells) kept.push_back(points[index]);
+  for (const Cell& cell : cells) kept.push_back(points[cell.chosen]);
   return kept;
 }
 

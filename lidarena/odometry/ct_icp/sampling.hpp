@@ -23,7 +23,8 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const estimation::ScanTim
                                      bool rigid, const SamplingConfig& config);
 
 /// One point of each cubic cell (edge in m), drawn uniformly from those in it, so that the sample
-/// covers the scan's duration evenly. The choice depends on the input only; the order looks random.
+/// covers the scan's duration evenly. The choice depends on the input only, and so does the order,
+/// by the hashes of the cells, which looks random.
 std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel,
                              map::VoxelRounding rounding);
 
