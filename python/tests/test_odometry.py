@@ -129,7 +129,7 @@ def test_trajectories_are_views_and_survive_files(tmp_path, flight):
     between = path.at(50_000_000)
     np.testing.assert_allclose(between[:3, 3], path.positions[:2].mean(axis=0), atol=1e-12)
     assert path.at(-1) is None
-    with pytest.raises(lidarena.InputError, match="not later than the one before"):
+    with pytest.raises(lidarena.InputError, match="not later than that of the pose before"):
         lidarena.Trajectory([5, 4], np.tile(np.eye(4), (2, 1, 1)))
 
 

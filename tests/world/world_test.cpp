@@ -346,7 +346,8 @@ TEST_P(WorldMesh, ForgetsDegenerateTrianglesAndRefusesNothingButThem) {
   mesh.triangles.insert(mesh.triangles.begin(), {0, 0, 1});
   const World world = make_world(mesh);
   EXPECT_EQ(world.mesh().triangles.size(), 12U);
-  EXPECT_EQ(cast_one(world, {0, 0.1, 0.2}, Vector3d::UnitX()).range, 1.0F);
+  // Embree's rounding depends on the processor's vector unit.
+  EXPECT_FLOAT_EQ(cast_one(world, {0, 0.1, 0.2}, Vector3d::UnitX()).range, 1.0F);
   EXPECT_THROW(make_world(TriangleMesh{}), InputError);
 }
 
