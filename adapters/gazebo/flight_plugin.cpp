@@ -47,7 +47,7 @@ class FlightPlugin : public ::gazebo::ModelPlugin {
           read_sdf_config<FlightPluginConfig>(sdf, "flight plugin of " + model->GetName());
       const std::string found = ::gazebo::common::find_file(config.trajectory);
       const std::string& file = found.empty() ? config.trajectory : found;
-      flight_.emplace(thinned(read_recording(file), config.thin_s), file);
+      flight_.emplace(flight::thinned(flight::read_recording(file), config.thin_s), file);
     } catch (const Error& error) {
       gzerr << "lidarena: " << error.what() << "; " << model->GetName() << " does not move\n";
       return;

@@ -12,16 +12,10 @@ namespace lidarena::gazebo_plugin {
 /// Kind of shapes that the rays hit.
 enum class Geometry { kCollision, kVisual };
 
-}  // namespace lidarena::gazebo_plugin
-
-namespace lidarena {
-constexpr auto enum_names(gazebo_plugin::Geometry) {
-  return std::array{std::pair{"collision", gazebo_plugin::Geometry::kCollision},
-                    std::pair{"visual", gazebo_plugin::Geometry::kVisual}};
+constexpr auto enum_names(Geometry) {
+  return std::array{std::pair{"collision", Geometry::kCollision},
+                    std::pair{"visual", Geometry::kVisual}};
 }
-}  // namespace lidarena
-
-namespace lidarena::gazebo_plugin {
 
 /// The elements inside <plugin>; fields have their names.
 struct PluginConfig {

@@ -42,7 +42,7 @@ class RosOutput final : public Output {
  public:
   RosOutput(const PluginConfig& config, const Rig& rig)
       : info_(rig.lidars.front()),
-        driver_(config.dialect == dataset::Dialect::kDriver ? driver_of(info_)
+        driver_(config.dialect == dataset::Dialect::kDriver ? dataset::driver_of(info_)
                                                             : dataset::Driver::kUnknown),
         custom_(config.publish_pointcloud_type == 3),
         frame_(config.frame.empty() ? info_.id + "_lidar" : config.frame),
@@ -54,16 +54,16 @@ class RosOutput final : public Output {
 
   void write(const dataset::Event& event) override {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
-      encode_driver_imu(*sample, driver_, info_.id + "_imu", message_);
+      dataset::encode_driver_imu(*sample, driver_, info_.id + "_imu", message_);
       return imu_.publish(message_.bytes());
     }
     const auto& scan = std::get<Scan>(event.data);
     if (custom_) {
-      encode_livox_custom(scan, info_, frame_, message_);
+      dataset::encode_livox_custom(scan, info_, frame_, message_);
     } else if (driver_ == dataset::Driver::kLivox) {
-      encode_livox_cloud(scan, info_, frame_, message_);
+      dataset::encode_livox_cloud(scan, info_, frame_, message_);
     } else if (driver_ == dataset::Driver::kOuster) {
-      encode_ouster_cloud(scan, info_, frame_, message_);
+      dataset::encode_ouster_cloud(scan, info_, frame_, message_);
     } else {
       lidarena::dataset::ros::encode_scan(scan, frame_, message_);
     }
