@@ -77,7 +77,7 @@ class VoxelHashMap {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
     std::uint8_t level = 0;             ///< of the block, see PointBlocks
-    std::uint32_t plane = kDegenerate;  ///< index in planes_, kNoPlane or kShapeless
+    std::uint32_t plane = kDegenerate;  ///< index in planes_, kNoPlane or kDegenerate
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {
@@ -85,7 +85,7 @@ class VoxelHashMap {
   }
   /// Fits the plane of the cell to its present points.
   void fit_plane(Cell& cell);
-  /// Removes the plane of the cell, if any; `instead` is kNoPlane or kShapeless.
+  /// Removes the plane of the cell, if any; `instead` is kNoPlane or kDegenerate.
   void release_plane(Cell& cell, std::uint32_t instead);
   void append(Cell& cell, const Eigen::Vector3f& point);
 
