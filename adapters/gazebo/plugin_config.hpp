@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <string>
+#include <utility>
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/dataset/dataset.hpp"
