@@ -75,7 +75,8 @@ PlyReader::PlyReader(std::string_view bytes, const std::string& name)
 
 std::string_view PlyReader::line() {
   if (rest_.empty()) {
-    throw InputError(name_, fmt::format("ends after line {}", line_number_), std::string(kCutShort));
+    throw InputError(name_, fmt::format("ends after line {}", line_number_),
+                     std::string(kCutShort));
   }
   const std::size_t end = std::min(rest_.find('\n'), rest_.size());
   const std::string_view line = rest_.substr(0, end);
@@ -222,8 +223,8 @@ std::string PlyReader::packed(const PlyElement& element) {
   std::string bytes;
   if (format_ != Format::kAscii) {
     bytes = take(element.count, row_size);
-    for (char* value = bytes.data(); format_ == Format::kBigEndian && row_size > 0 &&
-                                     value < bytes.data() + bytes.size();) {
+    for (char* value = bytes.data();
+         format_ == Format::kBigEndian && row_size > 0 && value < bytes.data() + bytes.size();) {
       for (const PlyProperty& property : element.properties) {
         std::reverse(value, value + size_of(property.type));
         value += size_of(property.type);

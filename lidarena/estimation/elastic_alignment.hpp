@@ -33,13 +33,13 @@ struct MotionPrior {
   Eigen::Vector3d turn = Eigen::Vector3d::Zero();  ///< rad, likewise, rotation vector in world
 
   // Weights of the terms, each of which states:
-  double location = 0.0;          ///< the first knot's position is that of `begin`
-  double orientation = 0.0;       ///< the first knot's rotation is that of `begin`
-  double velocity = 0.0;          ///< the translation from first to last knot is `step`
-  double angular_velocity = 0.0;  ///< the rotation from first to last knot is `turn`
-  double small_velocity = 0.0;    ///< the translation from first to last knot is zero
-  double velocity_change = 0.0;              ///< the second differences of positions are zero
-  double angular_velocity_change = 0.0;      ///< the second differences of rotations are zero
+  double location = 0.0;                 ///< the first knot's position is that of `begin`
+  double orientation = 0.0;              ///< the first knot's rotation is that of `begin`
+  double velocity = 0.0;                 ///< the translation from first to last knot is `step`
+  double angular_velocity = 0.0;         ///< the rotation from first to last knot is `turn`
+  double small_velocity = 0.0;           ///< the translation from first to last knot is zero
+  double velocity_change = 0.0;          ///< the second differences of positions are zero
+  double angular_velocity_change = 0.0;  ///< the second differences of rotations are zero
 };
 
 struct ElasticProblem {

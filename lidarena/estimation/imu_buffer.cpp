@@ -49,8 +49,8 @@ bool ImuBuffer::add(const ImuSample& sample) {
   if (!samples_.empty() && sample.stamp <= samples_.back().stamp) {
     ++refused_;
     // Either this stamp is wrong, or the previous one, if that was far ahead of all others.
-    const bool previous_jumped = samples_.back().stamp - before_newest_ > kMaxPause &&
-                                 before_newest_ != Time::min() && sample.stamp > before_newest_;
+    const bool previous_jumped = before_newest_ != Time::min() && sample.stamp > before_newest_ &&
+                                 samples_.back().stamp - before_newest_ > kMaxPause;
     if (!previous_jumped) return false;
     samples_.pop_back();
   } else if (!samples_.empty()) {

@@ -93,9 +93,8 @@ struct TourConfig {
   int samples = 5000;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"cell_m", "voxel_size_m"},
-      {"max_cells", "max_voxels"}};
+  static constexpr RenamedKey renamed_keys[] = {{"cell_m", "voxel_size_m"},
+                                                {"max_cells", "max_voxels"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -107,10 +106,10 @@ struct TourConfig {
     v("margin_m", self.margin_m, "m",
       "distance kept in addition to clearance_m, for the tracking error of a quadrotor",
       at_least(0));
-    v("voxel_size_m", self.voxel_size_m, "m", "edge of the grid's cells; increased if max_voxels requires it",
-      Limits{0.02, 10.0, false});
-    v("max_voxels", self.max_voxels, "", "upper limit on the number of cells; limits time and memory",
-      between(100, 1e8));
+    v("voxel_size_m", self.voxel_size_m, "m",
+      "edge of the grid's cells; increased if max_voxels requires it", Limits{0.02, 10.0, false});
+    v("max_voxels", self.max_voxels, "",
+      "upper limit on the number of cells; limits time and memory", between(100, 1e8));
     v("max_views", self.max_views, "", "upper limit on the number of candidate viewpoints",
       between(2, 1e5));
     v("samples", self.samples, "", "number of surface points by which coverage is measured",

@@ -17,7 +17,7 @@ namespace lidarena::flight {
 struct Tour {
   std::vector<Eigen::Vector3d> waypoints;  ///< the last equals the first
   std::size_t views = 0;                   ///< number of chosen viewpoints
-  double voxel_size_m = 0.0;                     ///< final edge of the grid's cells
+  double voxel_size_m = 0.0;               ///< final edge of the grid's cells
   std::size_t cells = 0;                   ///< number of reachable cells
   double seeable = 0.0;                    ///< share of the mesh visible from reachable space
   double seen = 0.0;                       ///< share of the mesh seen along the flight
@@ -33,10 +33,10 @@ struct Tour {
 ///  5. shorten each path by straight segments as far as the clearance allows;
 ///  6. tighten corners where the flight would come too close to a surface, by extra waypoints.
 /// The start is `tour.start`, or the first point of the world's first route, or the point of a grid
-/// that is most enclosed by surfaces. Deterministic. Time grows with max_voxels, max_views * samples
-/// rays, and views * cells; memory is about 150 bytes per cell plus one byte per view and sample.
-/// Throws InputError (place `place`) when the start is too close to a surface, or no start is
-/// found.
+/// that is most enclosed by surfaces. Deterministic. Time grows with max_voxels, max_views *
+/// samples rays, and views * cells; memory is about 150 bytes per cell plus one byte per view and
+/// sample. Throws InputError (place `place`) when the start is too close to a surface, or no start
+/// is found.
 Tour plan_tour(const world::WorldModel& model, const world::World& world,
                const FlightConfig& config, const std::string& place, const Parallel& parallel);
 

@@ -17,15 +17,16 @@ struct IcpResult {
   Pose target_from_source = Pose::Identity();
   bool converged = false;
   int iterations = 0;
-  double fitness = 0.0;     ///< m^2, mean squared distance to the nearest target points
-  double overlap = 0.0;     ///< share of the source's points with a target point within `inlier_distance_m`
+  double fitness = 0.0;  ///< m^2, mean squared distance to the nearest target points
+  double overlap =
+      0.0;  ///< share of the source's points with a target point within `inlier_distance_m`
   double constraint = 0.0;  ///< share of the least constrained direction in all information
 };
 
 /// Iterated closest points (Besl, McKay 1992; with planes: Chen, Medioni 1991) from `guess`. With
-/// planes the maximum distance of correspondences shrinks from `max_correspondence_distance_m` to `inlier_distance_m`
-/// over the iterations. Fitness and overlap are those of the final pose. Not converged: too few
-/// correspondences, or steps still too large at the last iteration.
+/// planes the maximum distance of correspondences shrinks from `max_correspondence_distance_m` to
+/// `inlier_distance_m` over the iterations. Fitness and overlap are those of the final pose. Not
+/// converged: too few correspondences, or steps still too large at the last iteration.
 IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
                        const Pose& guess, const LoopConfig& config, const Parallel& parallel);
 

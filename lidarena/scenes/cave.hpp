@@ -23,8 +23,7 @@ struct CaveConfig {
   double voxel_size_m = 0.125;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"resolution_m", "voxel_size_m"}};
+  static constexpr RenamedKey renamed_keys[] = {{"resolution_m", "voxel_size_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

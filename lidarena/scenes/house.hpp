@@ -24,9 +24,7 @@ struct HouseConfig {
 
   /// Former names, for the message that names the new one.
   static constexpr RenamedKey renamed_keys[] = {
-      {"storey_m", "story_height_m"},
-      {"wall_m", "wall_thickness_m"},
-      {"vary_m", "variation_m"}};
+      {"storey_m", "story_height_m"}, {"wall_m", "wall_thickness_m"}, {"vary_m", "variation_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

@@ -72,7 +72,7 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
 }
 
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
-  const double low = 0.9;                 // m, sill of ordinary windows
+  const double low = 0.9;                        // m, sill of ordinary windows
   const double head = 0.82 * c.story_height_m;   // m, upper edge of ordinary windows
   const double upper = 1.35 * c.story_height_m;  // sill of the windows of the second story
   const double upper_head = 1.8 * c.story_height_m;

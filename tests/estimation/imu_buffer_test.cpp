@@ -10,6 +10,11 @@ namespace {
 
 Time ms(double t) { return from_seconds(1e-3 * t); }
 
+ImuSample sample(double t_ms, const Eigen::Vector3d& gyro = Eigen::Vector3d::Zero(),
+                 const Eigen::Vector3d& accel = Eigen::Vector3d::Zero()) {
+  return {ms(t_ms), gyro, accel};
+}
+
 /// Samples every 5 ms from 0 to 100 ms, with a rate that grows by 1 rad/s per second.
 ImuBuffer ramp() {
   ImuBuffer buffer(0.02);
@@ -62,7 +67,7 @@ TEST(ImuBuffer, BeyondTheSamplesTheNearestHoldsAndTooFarAwayIsAGap) {
 
 TEST(ImuBuffer, ASilenceIsAGap) {
   ImuBuffer buffer(0.02);
-  for (const double t : {0.0, 5.0, 55.0, 60.0}) buffer.add({ms(t), {}, {}});
+  for (const double t : {0.0, 5.0, 55.0, 60.0}) buffer.add(sample(t));
   const auto intervals = buffer.between(ms(0.0), ms(60.0));
   ASSERT_EQ(intervals.size(), 3U);
   EXPECT_FALSE(intervals[0].gap);
@@ -83,28 +88,35 @@ TEST(ImuBuffer, ForgettingChangesNoLaterAnswer) {
 
 TEST(ImuBuffer, BadSamplesAreRefusedAndCounted) {
   ImuBuffer buffer = ramp();
-  EXPECT_FALSE(buffer.add({ms(100.0), {}, {}})) << "not later";
-  EXPECT_FALSE(buffer.add({ms(50.0), {}, {}}));
-  EXPECT_FALSE(buffer.add({ms(200.0), {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0}, {}}));
+  EXPECT_FALSE(buffer.add(sample(100.0))) << "not later";
+  EXPECT_FALSE(buffer.add(sample(50.0)));
+  EXPECT_FALSE(buffer.add(sample(200.0, {std::numeric_limits<double>::quiet_NaN(), 0.0, 0.0})));
   EXPECT_EQ(buffer.refused(), 3U);
 }
 
 TEST(ImuBuffer, AStampFarAheadIsDroppedWhenTheNextSampleShowsThatItWasWrong) {
   ImuBuffer buffer(0.02);
-  for (const double t : {0.0, 5.0, 10.0}) EXPECT_TRUE(buffer.add({ms(t), {}, {}}));
-  EXPECT_TRUE(buffer.add({ms(900'000.0), {}, {}})) << "nothing speaks against it yet";
-  EXPECT_TRUE(buffer.add({ms(15.0), {}, {}}));
+  for (const double t : {0.0, 5.0, 10.0}) EXPECT_TRUE(buffer.add(sample(t)));
+  EXPECT_TRUE(buffer.add(sample(900'000.0))) << "nothing speaks against it yet";
+  EXPECT_TRUE(buffer.add(sample(15.0)));
   EXPECT_EQ(buffer.refused(), 1U);
-  EXPECT_TRUE(buffer.add({ms(20.0), {}, {}}));
+  EXPECT_TRUE(buffer.add(sample(20.0)));
   EXPECT_EQ(buffer.samples(ms(0.0), ms(1e6)).size(), 5U);
   EXPECT_FALSE(buffer.between(ms(0.0), ms(20.0)).back().gap);
+}
+
+TEST(ImuBuffer, AFirstStampThatIsFollowedByAnEarlierOneStays) {
+  ImuBuffer buffer(0.02);
+  EXPECT_TRUE(buffer.add(sample(900'000.0)));
+  EXPECT_FALSE(buffer.add(sample(15.0))) << "nothing shows which of the two is wrong";
+  EXPECT_EQ(buffer.first_stamp(), ms(900'000.0));
 }
 
 TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
   ImuBuffer buffer(0.02);
   const double rates[] = {1.0, 3.0, 3.0, 2.9, 1.5, 1.5};  // rad/s; repeated small ones are quiet
   double t = 0.0;
-  for (const double rate : rates) buffer.add({ms(t += 5.0), {0.0, rate, 0.0}, {}});
+  for (const double rate : rates) buffer.add(sample(t += 5.0, {0.0, rate, 0.0}));
   const auto intervals = buffer.between(ms(5.0), ms(30.0));
   ASSERT_EQ(intervals.size(), 5U);
   for (std::size_t i = 0; i < intervals.size(); ++i) EXPECT_EQ(intervals[i].saturated, i == 1) << i;
@@ -113,7 +125,7 @@ TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
 
   ImuBuffer in_g(0.02);
   in_g.set_accel_scale(9.8);
-  for (const double s : {5.0, 10.0}) in_g.add({ms(s), {}, {0.0, 0.0, 2.5}});
+  for (const double s : {5.0, 10.0}) in_g.add(sample(s, Eigen::Vector3d::Zero(), {0.0, 0.0, 2.5}));
   EXPECT_EQ(count_saturated(in_g.between(ms(5.0), ms(10.0))), 1U) << "2.5 g";
 }
 

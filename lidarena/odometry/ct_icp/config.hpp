@@ -78,8 +78,8 @@ struct SamplingConfig {
     v("initial_scans", self.initial_scans, "",
       "number of scans at the start that use the next two voxel sizes and no max_keypoints",
       at_least(0));
-    v("initial_scan_voxel_size_m", self.initial_scan_voxel_size_m, "m", "scan_voxel_size_m during initial_scans",
-      above(0));
+    v("initial_scan_voxel_size_m", self.initial_scan_voxel_size_m, "m",
+      "scan_voxel_size_m during initial_scans", above(0));
     v("initial_keypoint_voxel_size_m", self.initial_keypoint_voxel_size_m, "m",
       "keypoint_voxel_size_m during initial_scans", above(0));
     v("rigid_scans", self.rigid_scans, "",
@@ -138,8 +138,8 @@ struct RegistrationConfig {
       "iterations of the solver between two searches", at_least(1));
     v("convergence_translation_m", self.convergence_translation_m, "m",
       "registration ends when an iteration translates both ends together by less ...", at_least(0));
-    v("convergence_rotation_rad", self.convergence_rotation_rad, "rad", "... and rotates them by less",
-      at_least(0));
+    v("convergence_rotation_rad", self.convergence_rotation_rad, "rad",
+      "... and rotates them by less", at_least(0));
     v("search_radius_m", self.search_radius_m, "m", "radius of the neighbor search in the map",
       above(0));
     v("reassociation_distance_m", self.reassociation_distance_m, "m",
@@ -184,9 +184,8 @@ struct PriorConfig {
   double angular_velocity_change = 0.0;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"bend", "velocity_change"},
-      {"angular_bend", "angular_velocity_change"}};
+  static constexpr RenamedKey renamed_keys[] = {{"bend", "velocity_change"},
+                                                {"angular_bend", "angular_velocity_change"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -198,7 +197,8 @@ struct PriorConfig {
     v("angular_velocity", self.angular_velocity, "m^2/rad^2",
       "weight of: it has the angular velocity of the last one", at_least(0));
     v("small_velocity", self.small_velocity, "", "weight of: it ends where it began", at_least(0));
-    v("velocity_change", self.velocity_change, "", "weight of: neighboring segments have the same velocity", at_least(0));
+    v("velocity_change", self.velocity_change, "",
+      "weight of: neighboring segments have the same velocity", at_least(0));
     v("angular_velocity_change", self.angular_velocity_change, "m^2/rad^2",
       "weight of: neighboring segments have the same angular velocity", at_least(0));
   }
@@ -211,18 +211,18 @@ struct MapConfig {
   double radius_m = 100.0;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"voxel_m", "voxel_size_m"},
-      {"max_points", "max_points_per_voxel"},
-      {"spacing_m", "min_point_spacing_m"}};
+  static constexpr RenamedKey renamed_keys[] = {{"voxel_m", "voxel_size_m"},
+                                                {"max_points", "max_points_per_voxel"},
+                                                {"spacing_m", "min_point_spacing_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("voxel_size_m", self.voxel_size_m, "m",
       "voxel size; with a larger search radius a search visits 125 cells instead of 27", above(0));
-    v("max_points_per_voxel", self.max_points_per_voxel, "", "maximum number of points in a cell", Limits{1, 4096});
-    v("min_point_spacing_m", self.min_point_spacing_m, "m", "minimum distance between the points of a cell",
-      at_least(0));
+    v("max_points_per_voxel", self.max_points_per_voxel, "", "maximum number of points in a cell",
+      Limits{1, 4096});
+    v("min_point_spacing_m", self.min_point_spacing_m, "m",
+      "minimum distance between the points of a cell", at_least(0));
     v("radius_m", self.radius_m, "m", "points farther from the sensor are removed", above(0));
   }
 };
@@ -255,10 +255,9 @@ struct RobustConfig {
   double lost_motion_factor = 1.0;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"max_translation_m", "lost_translation_m"},
-      {"max_turn_rad", "lost_rotation_rad"},
-      {"motion_kept_when_lost", "lost_motion_factor"}};
+  static constexpr RenamedKey renamed_keys[] = {{"max_translation_m", "lost_translation_m"},
+                                                {"max_turn_rad", "lost_rotation_rad"},
+                                                {"motion_kept_when_lost", "lost_motion_factor"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -273,8 +272,8 @@ struct RobustConfig {
       "a registration with a smaller share of matched keypoints is not trusted", between(0, 1));
     v("lost_translation_m", self.lost_translation_m, "m",
       "a registration with a larger translation has failed", above(0));
-    v("lost_rotation_rad", self.lost_rotation_rad, "rad", "a registration with a larger rotation has failed",
-      above(0));
+    v("lost_rotation_rad", self.lost_rotation_rad, "rad",
+      "a registration with a larger rotation has failed", above(0));
     v("stop_when_lost", self.stop_when_lost, "",
       "report divergence after a failed registration, where the published program ends; false: use "
       "the prediction");
@@ -295,8 +294,7 @@ struct Config {
   RobustConfig robust;
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"cell_rounding", "voxel_rounding"}};
+  static constexpr RenamedKey renamed_keys[] = {{"cell_rounding", "voxel_rounding"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

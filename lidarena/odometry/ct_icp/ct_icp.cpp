@@ -33,7 +33,8 @@ CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
     : config_(config),
       body_from_lidar_(lidar.body_from_lidar),
       parallel_(std::move(parallel)),
-      map_({config.map.voxel_size_m, config.map.max_points_per_voxel, config.map.min_point_spacing_m, config.voxel_rounding}),
+      map_({config.map.voxel_size_m, config.map.max_points_per_voxel,
+            config.map.min_point_spacing_m, config.voxel_rounding}),
       gate_(config.insertion),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 

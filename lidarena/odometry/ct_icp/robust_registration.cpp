@@ -59,7 +59,8 @@ RobustRegistration register_robustly(std::span<const TimedPoint> frame,
     const Config settings = at_level(config, result.level);
     const SamplingConfig& sampling = settings.sampling;
     const RegistrationConfig& registration = settings.registration;
-    const double voxel = starting ? sampling.initial_keypoint_voxel_size_m : sampling.keypoint_voxel_size_m;
+    const double voxel =
+        starting ? sampling.initial_keypoint_voxel_size_m : sampling.keypoint_voxel_size_m;
     const auto keypoints =
         sample_keypoints(frame, sampling.keypoints, voxel, starting ? 0 : sampling.max_keypoints,
                          config.voxel_rounding);

@@ -55,7 +55,8 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const ma
     : points_(points), map_(map), config_(config), parallel_(parallel), matches_(points.size()) {}
 
 void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
-  match.found = map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_distance_m));
+  match.found =
+      map_.nearest(in_world, match.neighbors, static_cast<float>(config_.max_neighbor_distance_m));
   match.plane.reset();
   if (match.found == kNeighbors) {
     match.plane = estimation::fit_plane(map::columns_of(match.neighbors), config_.plane_fit,

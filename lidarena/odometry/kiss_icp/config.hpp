@@ -69,16 +69,15 @@ struct Config {
   double voxel_size() const { return voxel_size_m.value_or(max_range_m / 100.0); }
 
   /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"cell_rounding", "voxel_rounding"},
-      {"own_motion", "scan_motion_share"},
-      {"rebuild_start", "redeskew_first_scan"},
-      {"shapeless_weight", "degenerate_cell_weight"},
-      {"calm_start", "initial_scans"},
-      {"kernel_in_metres", "kernel_scale_in_meters"},
-      {"equal_times_are_no_times", "ignore_equal_times"},
-      {"motion_kept_when_lost", "lost_motion_factor"},
-      {"sensor_centred", "sensor_centered"}};
+  static constexpr RenamedKey renamed_keys[] = {{"cell_rounding", "voxel_rounding"},
+                                                {"own_motion", "scan_motion_share"},
+                                                {"rebuild_start", "redeskew_first_scan"},
+                                                {"shapeless_weight", "degenerate_cell_weight"},
+                                                {"calm_start", "initial_scans"},
+                                                {"kernel_in_metres", "kernel_scale_in_meters"},
+                                                {"equal_times_are_no_times", "ignore_equal_times"},
+                                                {"motion_kept_when_lost", "lost_motion_factor"},
+                                                {"sensor_centred", "sensor_centered"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

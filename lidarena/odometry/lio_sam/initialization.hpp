@@ -18,8 +18,8 @@ struct Start {
 };
 
 /// Roll and pitch from the mean specific force; at rest also the gyro's bias from the mean rate and
-/// the accelerometer's bias along gravity. Without `gravity_aligned_start`, as in the published program, the
-/// body is level and the biases are zero. `samples` must not be empty.
+/// the accelerometer's bias along gravity. Without `gravity_aligned_start`, as in the published
+/// program, the body is level and the biases are zero. `samples` must not be empty.
 Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
                  const Config& config);
 

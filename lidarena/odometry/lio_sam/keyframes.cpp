@@ -28,8 +28,8 @@ Features placed(const Keyframe& keyframe) {
 bool is_keyframe(const Keyframe& last, Time stamp, const Pose& world_from_lidar,
                  const Config& config) {
   const Pose moved = last.world_from_lidar.inverse() * world_from_lidar;
-  const bool old =
-      config.keyframe_interval_s > 0.0 && to_seconds(stamp - last.stamp) > config.keyframe_interval_s;
+  const bool old = config.keyframe_interval_s > 0.0 &&
+                   to_seconds(stamp - last.stamp) > config.keyframe_interval_s;
   return old || moved.translation().norm() >= config.keyframe_translation_m ||
          so3::log(moved.linear()).cwiseAbs().maxCoeff() >= config.keyframe_rotation_rad;
 }
