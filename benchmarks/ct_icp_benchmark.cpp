@@ -33,7 +33,7 @@ std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
 }
 
 const Config& config() {
-  static const Config improved = preset("improved", LidarInfo{});
+  static const Config improved = indoor(LidarInfo{});
   return improved;
 }
 

@@ -77,7 +77,7 @@ struct Stage {
   std::vector<Vector3f> in_map;
 
   explicit Stage(std::size_t count)
-      : config(preset("improved", LidarInfo{})),
+      : config(indoor(LidarInfo{})),
         scan(scan_at(kScans, count)),
         times(estimation::times_of(scan, Time{0})),
         points(preprocess(scan, times, se3::Vector6::Zero(), config, parallel)),

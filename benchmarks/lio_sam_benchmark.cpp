@@ -79,7 +79,7 @@ struct Scene {
     lidar.kind = spinning ? "spinning" : "rosette";
     lidar.columns = spinning ? 1024 : 0;
     lidar.max_range_m = 50.0;
-    config = preset("improved", lidar);
+    config = indoor(lidar);
     for (int i = 0; i < 20; ++i) {
       const Vector3d place(-6.0 + 0.5 * i, 0.5 * std::sin(i), 0.0);
       const Scan seen = scan_from(place, spinning, static_cast<std::uint64_t>(i) + 2);

@@ -1,7 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/factory.hpp"
 
+#include <algorithm>
+#include <utility>
+
 #include "lidarena/base/config_schema.hpp"
+#include "lidarena/odometry/arena_lio/arena_lio.hpp"
+#include "lidarena/odometry/arena_lo/arena_lo.hpp"
+#include "lidarena/odometry/arena_slam/arena_slam.hpp"
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
@@ -36,13 +42,20 @@ struct LoopedConfig {
 const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const LidarInfo& lidar) {
   if (const ImuInfo* imu = rig.imu_beside(lidar)) return *imu;
   throw InputError("rig", "it has no IMU, but " + algorithm + " needs one",
-                   "use kiss_icp or ct_icp, which need none");
+                   "use arena_lo, kiss_icp or ct_icp, which need none");
 }
 
-/// One struct for each algorithm: its configuration, its presets and how to build it.
+template <class Config>
+using PresetTable = std::vector<std::pair<std::string, Config (*)(const LidarInfo&)>>;
+
+/// One struct for each algorithm: its configuration, its presets (the default first) and how to
+/// build it.
 struct Kiss {
   using Config = kiss_icp::Config;
-  static constexpr auto preset = kiss_icp::preset;
+  static PresetTable<Config> presets() {
+    return {
+        {"indoor", kiss_icp::indoor}, {"published", kiss_icp::published}, {"head", kiss_icp::head}};
+  }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
     return std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel);
@@ -51,7 +64,9 @@ struct Kiss {
 
 struct Ct {
   using Config = ct_icp::Config;
-  static constexpr auto preset = ct_icp::preset;
+  static PresetTable<Config> presets() {
+    return {{"indoor", ct_icp::indoor}, {"published", ct_icp::published}};
+  }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
     return std::make_unique<ct_icp::CtIcp>(config, lidar, parallel);
@@ -60,7 +75,9 @@ struct Ct {
 
 struct FastLio {
   using Config = fast_lio2::Config;
-  static constexpr auto preset = fast_lio2::preset;
+  static PresetTable<Config> presets() {
+    return {{"indoor", fast_lio2::indoor}, {"published", fast_lio2::published}};
+  }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("fast_lio2", rig, lidar);
@@ -70,7 +87,9 @@ struct FastLio {
 
 struct LioSam {
   using Config = lio_sam::Config;
-  static constexpr auto preset = lio_sam::preset;
+  static PresetTable<Config> presets() {
+    return {{"indoor", lio_sam::indoor}, {"published", lio_sam::published}};
+  }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("lio_sam", rig, lidar);
@@ -79,25 +98,93 @@ struct LioSam {
 };
 
 struct LioSamLc : LioSam {
-  static Config preset(const std::string& name, const LidarInfo& lidar) {
-    Config config = lio_sam::preset(name, lidar);
+  template <Config (*without_loops)(const LidarInfo&)>
+  static Config with_loops(const LidarInfo& lidar) {
+    Config config = without_loops(lidar);
     config.loop_closure = true;
     return config;
   }
+  static PresetTable<Config> presets() {
+    return {{"indoor", with_loops<lio_sam::indoor>}, {"published", with_loops<lio_sam::published>}};
+  }
 };
+
+struct ArenaLo {
+  using Config = arena_lo::Config;
+  static PresetTable<Config> presets() { return {{"indoor", arena_lo::indoor}}; }
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
+                                         const Parallel& parallel) {
+    return std::make_unique<arena_lo::ArenaLo>(config, lidar, parallel);
+  }
+};
+
+struct ArenaLio {
+  using Config = arena_lio::Config;
+  static PresetTable<Config> presets() { return {{"indoor", arena_lio::indoor}}; }
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
+                                         const LidarInfo& lidar, const Parallel& parallel) {
+    const ImuInfo& imu = imu_for("arena_lio", rig, lidar);
+    return std::make_unique<arena_lio::ArenaLio>(config, lidar, imu, parallel);
+  }
+};
+
+struct ArenaSlam {
+  using Config = arena_slam::Config;
+  static PresetTable<Config> presets() { return {{"indoor", arena_slam::indoor}}; }
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
+                                         const LidarInfo& lidar, const Parallel& parallel) {
+    const ImuInfo& imu = imu_for("arena_slam", rig, lidar);
+    return std::make_unique<arena_slam::ArenaSlam>(config, lidar, imu, parallel);
+  }
+};
+
+std::string listed(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+template <class Maker>
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  for (const auto& [name, make_config] : Maker::presets()) names.push_back(name);
+  return names;
+}
+
+/// What a former preset of a published method is now.
+std::string successor_of(const std::string& algorithm, const std::string& preset) {
+  if (preset == "original") {
+    const bool was_indoor = algorithm.starts_with("ct_icp") || algorithm.starts_with("lio_sam");
+    return std::string("its former settings are the preset ") +
+           (was_indoor ? "indoor" : "published");
+  }
+  if (preset != "improved") return "";
+  if (algorithm.starts_with("fast_lio2")) return "that method is arena_lio now";
+  if (algorithm.starts_with("lio_sam")) return "that method is arena_slam now";
+  if (algorithm.starts_with("ct_icp")) return "that method is arena_lo now";
+  return "it was removed; arena_lo is more accurate";
+}
+
+template <class Maker>
+typename Maker::Config preset_config(const OdometryRequest& request, const LidarInfo& lidar) {
+  for (const auto& [name, make_config] : Maker::presets()) {
+    if (name == request.preset) return make_config(lidar);
+  }
+  throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'");
+}
 
 template <class Maker>
 MadeOdometry make(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
                   const Parallel& parallel) {
-  const auto config = configured(Maker::preset(request.preset, lidar), request);
+  const auto config = configured(preset_config<Maker>(request, lidar), request);
   return {Maker::build(config, rig, lidar, parallel), to_json(config)};
 }
 
 template <class Maker>
 MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
                             const Parallel& parallel) {
-  const LoopedConfig<typename Maker::Config> defaults{Maker::preset(request.preset, lidar), {}};
-  const auto config = configured(defaults, request);
+  const LoopedConfig<typename Maker::Config> preset{preset_config<Maker>(request, lidar), {}};
+  const auto config = configured(preset, request);
   return {std::make_unique<WithLoop>(Maker::build(config.odometry, rig, lidar, parallel),
                                      config.loops, parallel),
           to_json(config)};
@@ -106,18 +193,18 @@ MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, cons
 /// The default preset for a LiDAR of which nothing is known: the defaults in the schema. (Ranges
 /// follow the LiDAR's.)
 template <class Maker>
-typename Maker::Config default_config(const AlgorithmInfo& info) {
-  return Maker::preset(info.presets.front(), LidarInfo{});
+typename Maker::Config default_config() {
+  return Maker::presets().front().second(LidarInfo{});
 }
 
 template <class Maker>
 Json schema(const AlgorithmInfo& info) {
-  return schema_document(info.name + ": " + info.summary, default_config<Maker>(info));
+  return schema_document(info.name + ": " + info.summary, default_config<Maker>());
 }
 
 template <class Maker>
 Json schema_with_loop(const AlgorithmInfo& info) {
-  const LoopedConfig<typename Maker::Config> config{default_config<Maker>(info), {}};
+  const LoopedConfig<typename Maker::Config> config{default_config<Maker>(), {}};
   return schema_document(info.name + ": " + info.summary, config);
 }
 
@@ -127,40 +214,60 @@ struct Algorithm {
   Json (*schema)(const AlgorithmInfo&);
 };
 
+template <class Maker>
+Algorithm plain(std::string name, std::string summary, bool needs_imu) {
+  return {{std::move(name), std::move(summary), preset_names<Maker>(), needs_imu},
+          make<Maker>,
+          schema<Maker>};
+}
+
+template <class Maker>
+Algorithm looped(std::string name, std::string summary, bool needs_imu) {
+  return {{std::move(name), std::move(summary), preset_names<Maker>(), needs_imu},
+          make_with_loop<Maker>,
+          schema_with_loop<Maker>};
+}
+
 std::vector<Algorithm> algorithms() {
   return {
-      {{"kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo et al. 2023)",
-        kiss_icp::preset_names(), false},
-       make<Kiss>,
-       schema<Kiss>},
-      {{"ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach et al. 2022)",
-        ct_icp::preset_names(), false},
-       make<Ct>,
-       schema<Ct>},
-      {{"fast_lio2", "LiDAR and IMU: iterated Kalman filter on points and planes (Xu et al. 2022)",
-        fast_lio2::preset_names(), true},
-       make<FastLio>,
-       schema<FastLio>},
-      {{"lio_sam", "LiDAR and IMU: edges and planes, smoothed in a factor graph (Shan et al. 2020)",
-        lio_sam::preset_names(), true},
-       make<LioSam>,
-       schema<LioSam>},
-      {{"lio_sam_lc", "LIO-SAM with loop closure", lio_sam::preset_names(), true},
-       make<LioSamLc>,
-       schema<LioSamLc>},
-      {{"kiss_icp+loop", "KISS-ICP with loop closure around it", kiss_icp::preset_names(), false},
-       make_with_loop<Kiss>,
-       schema_with_loop<Kiss>},
-      {{"fast_lio2+loop", "FAST-LIO2 with loop closure around it", fast_lio2::preset_names(), true},
-       make_with_loop<FastLio>,
-       schema_with_loop<FastLio>},
+      plain<Kiss>("kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo 2023)",
+                  false),
+      plain<Ct>("ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach 2022)",
+                false),
+      plain<FastLio>("fast_lio2",
+                     "LiDAR and IMU: iterated Kalman filter on points and planes (Xu 2022)", true),
+      plain<LioSam>("lio_sam",
+                    "LiDAR and IMU: edges and planes, smoothed in a factor graph (Shan 2020)",
+                    true),
+      plain<LioSamLc>("lio_sam_lc", "LIO-SAM with its loop closure", true),
+      plain<ArenaLo>("arena_lo", "our own, LiDAR only: elastic scans of several segments", false),
+      plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true),
+      plain<ArenaSlam>("arena_slam", "our own, LiDAR and IMU: smoothed keyframes, loop closure",
+                       true),
+      looped<Kiss>("kiss_icp+loop", "KISS-ICP with our loop closure around it", false),
+      looped<FastLio>("fast_lio2+loop", "FAST-LIO2 with our loop closure around it", true),
+      looped<ArenaLo>("arena_lo+loop", "arena_lo with our loop closure around it", false),
+      looped<ArenaLio>("arena_lio+loop", "arena_lio with our loop closure around it", true),
   };
 }
 
-std::string listed(const std::vector<std::string>& words) {
-  std::string text;
-  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
-  return text;
+/// The algorithm that is asked for, which has the preset that is asked for.
+Algorithm chosen_algorithm(const OdometryRequest& request) {
+  std::vector<std::string> names;
+  for (Algorithm& algorithm : algorithms()) {
+    const std::vector<std::string>& presets = algorithm.info.presets;
+    names.push_back(algorithm.info.name);
+    if (names.back() != request.algorithm) continue;
+    if (std::find(presets.begin(), presets.end(), request.preset) != presets.end())
+      return std::move(algorithm);
+    const std::string successor = successor_of(request.algorithm, request.preset);
+    throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'",
+                     successor.empty() ? "use one of " + listed(presets) : successor);
+  }
+  const std::string nearest = nearest_word(request.algorithm, names);
+  throw InputError(
+      "algorithm", "there is no '" + request.algorithm + "'",
+      nearest.empty() ? "use one of " + listed(names) : "did you mean '" + nearest + "'?");
 }
 
 const LidarInfo& chosen_lidar(const Rig& rig, const std::string& lidar_id) {
@@ -188,18 +295,12 @@ Json algorithm_schema(const std::string& name) {
   throw InputError("algorithm", "there is no '" + name + "'");
 }
 
+void check_algorithm(const OdometryRequest& request) { chosen_algorithm(request); }
+
 MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,
                            const std::string& lidar_id, const Parallel& parallel) {
-  std::vector<std::string> names;
-  for (const Algorithm& algorithm : algorithms()) {
-    if (algorithm.info.name == request.algorithm)
-      return algorithm.make(request, rig, chosen_lidar(rig, lidar_id), parallel);
-    names.push_back(algorithm.info.name);
-  }
-  const std::string nearest = nearest_word(request.algorithm, names);
-  throw InputError(
-      "algorithm", "there is no '" + request.algorithm + "'",
-      nearest.empty() ? "use one of " + listed(names) : "did you mean '" + nearest + "'?");
+  const Algorithm algorithm = chosen_algorithm(request);
+  return algorithm.make(request, rig, chosen_lidar(rig, lidar_id), parallel);
 }
 
 }  // namespace lidarena::odometry

@@ -15,7 +15,7 @@ namespace lidarena::odometry {
 /// Which odometry to build, and its settings.
 struct OdometryRequest {
   std::string algorithm;                 ///< one of the names of list_algorithms()
-  std::string preset = "improved";       ///< "original", "improved" or another of its presets
+  std::string preset = "indoor";         ///< one of its presets, see list_algorithms()
   std::string config_file{};             ///< YAML, applied after the preset; empty: none
   std::vector<std::string> overrides{};  ///< "key=value", applied last
 };
@@ -34,14 +34,18 @@ std::vector<AlgorithmInfo> list_algorithms();
 /// name.
 Json algorithm_schema(const std::string& name);
 
+/// Throws InputError for an unknown algorithm or preset, naming the nearest or, for a former preset,
+/// its successor.
+void check_algorithm(const OdometryRequest& request);
+
 struct MadeOdometry {
   std::unique_ptr<Odometry> odometry;
   Json config;  ///< the complete configuration, for the manifest
 };
 
 /// Builds an odometry for the LiDAR `lidar_id` of `rig` (empty: its only one).
-/// Throws InputError for an unknown algorithm or preset (naming the nearest), a bad configuration,
-/// or a sensor that the rig lacks.
+/// Throws InputError as check_algorithm(), and for a bad configuration or a sensor that the rig
+/// lacks.
 MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,
                            const std::string& lidar_id, const Parallel& parallel);
 

@@ -24,12 +24,66 @@ enum class ScanStatus {
 };
 const char* to_string(ScanStatus status);
 
+/// What a method counted in one scan. A method leaves unset what it does not have.
+struct ScanCounters {
+  using Count = std::optional<std::uint64_t>;
+  Count points;                 ///< within the range limits
+  Count keypoints;              ///< points or features that were registered
+  Count matches;                ///< of these, with a counterpart in the map
+  Count near_planes;            ///< of these, with a plane nearby, whether they lie on it or not
+  Count edges;                  ///< edge features found
+  Count surfaces;               ///< surface features found
+  Count iterations;             ///< of the registration or the filter's update
+  Count degenerate_directions;  ///< of 6 that the scan does not determine
+  Count retry_level;            ///< 0: the first registration was trusted
+  Count map_points;
+  Count keyframes;
+  Count loops;                   ///< accepted so far
+  Count loops_tried;             ///< verified so far, accepted or not
+  Count imu_saturated;           ///< intervals of this scan with a sample at the end of its range
+  Count imu_refused;             ///< samples so far that were out of order or not finite
+  Count imu_restarts;            ///< of the inertial estimate so far
+  Count scans_refused;           ///< so far, out of order
+  std::optional<bool> inserted;  ///< the scan was added to the map
+  std::optional<bool> standing;  ///< the sensor stands still
+  std::optional<double> threshold_m;  ///< scale of the prediction's error
+  std::optional<double> imu_gap_s;    ///< longest time without samples in this scan
+  std::optional<double> accel_scale;  ///< factor from the IMU's accelerations to m/s^2
+
+  /// Calls v(name, field) for each field.
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("points", self.points);
+    v("keypoints", self.keypoints);
+    v("matches", self.matches);
+    v("near_planes", self.near_planes);
+    v("edges", self.edges);
+    v("surfaces", self.surfaces);
+    v("iterations", self.iterations);
+    v("degenerate_directions", self.degenerate_directions);
+    v("retry_level", self.retry_level);
+    v("map_points", self.map_points);
+    v("keyframes", self.keyframes);
+    v("loops", self.loops);
+    v("loops_tried", self.loops_tried);
+    v("imu_saturated", self.imu_saturated);
+    v("imu_refused", self.imu_refused);
+    v("imu_restarts", self.imu_restarts);
+    v("scans_refused", self.scans_refused);
+    v("inserted", self.inserted);
+    v("standing", self.standing);
+    v("threshold_m", self.threshold_m);
+    v("imu_gap_s", self.imu_gap_s);
+    v("accel_scale", self.accel_scale);
+  }
+};
+
 /// Result of one scan.
 struct ScanResult {
   StampedPose estimate;  ///< world_from_body and the instant at which it holds
   ScanStatus status = ScanStatus::kTracked;
   std::optional<Eigen::Matrix<double, 6, 6>> covariance;  ///< of (translation, rotation), if known
-  std::map<std::string, double> counters;  ///< iterations, inliers, edges, planes, loops, ...
+  ScanCounters counters;
   /// Poses within the scan, if the method estimates or assumes them; for de-skewing by others.
   std::vector<StampedPose> motion;
 };

@@ -26,9 +26,9 @@ ScanResult WithLoop::register_scan(const Scan& scan) {
   result.estimate.world_from_body = orthonormalized(world_from_odom_ * odom_from_body);
   for (StampedPose& pose : result.motion)
     pose.world_from_body = orthonormalized(world_from_odom_ * pose.world_from_body);
-  result.counters["keyframes"] = static_cast<double>(clouds_.size());
-  result.counters["loops"] = static_cast<double>(closer_.accepted());
-  result.counters["loops_tried"] = static_cast<double>(closer_.records().size());
+  result.counters.keyframes = clouds_.size();
+  result.counters.loops = closer_.accepted();
+  result.counters.loops_tried = closer_.records().size();
   return result;
 }
 

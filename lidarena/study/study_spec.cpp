@@ -30,20 +30,7 @@ odometry::OdometryRequest parse_algorithm(const std::string& text) {
 
 /// Throws InputError for an algorithm or preset that neither the factory nor the study lists.
 void check_algorithm(const StudySpec& spec, const std::string& text) {
-  if (find_external(spec, text) != nullptr) return;
-  const odometry::OdometryRequest request = parse_algorithm(text);
-  std::vector<std::string> names;
-  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
-    names.push_back(info.name);
-    if (info.name != request.algorithm) continue;
-    const auto& presets = info.presets;
-    if (std::find(presets.begin(), presets.end(), request.preset) != presets.end()) return;
-    throw InputError(request.algorithm, "has no preset '" + request.preset + "'");
-  }
-  const std::string nearest = nearest_word(request.algorithm, names);
-  throw InputError(
-      request.algorithm, "is not a known algorithm",
-      nearest.empty() ? "see: lidarena list algorithms" : "did you mean '" + nearest + "'?");
+  if (find_external(spec, text) == nullptr) odometry::check_algorithm(parse_algorithm(text));
 }
 
 void check_external(const StudySpec& spec) {

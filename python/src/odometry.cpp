@@ -72,13 +72,48 @@ class PythonOdometry : public odometry::Odometry {
   std::vector<StampedPose> estimates_;
 };
 
+/// A field of ScanCounters from a number.
+template <class T>
+void set_counter(std::optional<T>& field, double value) {
+  field = static_cast<T>(value);
+}
+
+odometry::ScanCounters counters_of(const std::map<std::string, double>& by_name) {
+  odometry::ScanCounters counters;
+  std::string known;
+  for (const auto& [name, value] : by_name) {
+    bool found = false;
+    known.clear();
+    odometry::ScanCounters::visit(counters, [&](const char* field_name, auto& field) {
+      known += std::string(known.empty() ? "" : ", ") + field_name;
+      if (name != field_name) return;
+      set_counter(field, value);
+      found = true;
+    });
+    if (!found)
+      throw InputError("counters", "unknown counter '" + name + "'", "use some of: " + known);
+  }
+  return counters;
+}
+
+py::dict to_dict(const odometry::ScanCounters& counters) {
+  py::dict by_name;
+  odometry::ScanCounters::visit(counters, [&](const char* name, const auto& field) {
+    if (field) by_name[name] = *field;
+  });
+  return by_name;
+}
+
 void bind_results(py::module_& m) {
   py::class_<odometry::ScanResult>(m, "ScanResult", "Result of one scan.")
       .def(py::init([](std::int64_t stamp, const Eigen::Matrix4d& pose, const std::string& status,
                        std::optional<Eigen::Matrix<double, 6, 6>> covariance,
                        std::map<std::string, double> counters) {
-             return odometry::ScanResult{
-                 {Time{stamp}, pose_of(pose)}, status_of(status), covariance, counters, {}};
+             return odometry::ScanResult{{Time{stamp}, pose_of(pose)},
+                                         status_of(status),
+                                         covariance,
+                                         counters_of(counters),
+                                         {}};
            }),
            py::arg("stamp"), py::arg("pose"), py::arg("status") = "tracked",
            py::arg("covariance") = py::none(),
@@ -95,7 +130,9 @@ void bind_results(py::module_& m) {
       .def_property_readonly(
           "covariance", [](const odometry::ScanResult& r) { return r.covariance; },
           "6x6 of (translation, rotation), or None")
-      .def_property_readonly("counters", [](const odometry::ScanResult& r) { return r.counters; });
+      .def_property_readonly(
+          "counters", [](const odometry::ScanResult& r) { return to_dict(r.counters); },
+          "What the method counted, by name");
   py::class_<odometry::OdometryTraits>(m, "OdometryTraits", "Properties of an odometry.")
       .def(py::init([](bool needs_imu, bool revises_past, bool gravity_aligned) {
              return odometry::OdometryTraits{needs_imu, revises_past, gravity_aligned, false,
@@ -171,7 +208,7 @@ void bind_odometry(py::module_& m) {
       .def("memory", &odometry::Odometry::memory, "Memory in bytes, by part.");
   m.def("list_algorithms", &algorithms, "Name, summary, presets and needs_imu of each algorithm.");
   m.def("make_odometry", &make, py::arg("rig"), py::arg("algorithm"), py::arg("lidar_id") = "",
-        py::arg("preset") = "improved", py::arg("config_file") = "",
+        py::arg("preset") = "indoor", py::arg("config_file") = "",
         py::arg("overrides") = std::vector<std::string>{}, py::arg("threads") = 0,
         "Makes an algorithm by its name; `overrides` are 'key=value'. Its complete "
         "configuration is the attribute `config`.");

@@ -265,14 +265,14 @@ TEST(CtIcpInsertion, ScansThatTurnAreKeptOutUntilSixWere) {
 
 TEST(CtIcp, SuspectScansAreTriedAgainAtHigherLevels) {
   const synthetic::Recording recording{.seconds = 2.5};
-  Config config = preset("improved", synthetic::rig_of(recording).lidars[0]);
+  Config config = indoor(synthetic::rig_of(recording).lidars[0]);
   config.robust.enabled = true;
   config.robust.max_attempts = 3;
   config.robust.max_rotation_rad = 0.01;  // suspect from 6 deg/s on
   CtIcp odometry(config, synthetic::rig_of(recording).lidars[0], Parallel(1));
   double highest = 0.0;
   for (const Scan& scan : synthetic::scans_of(recording))
-    highest = std::max(highest, odometry.register_scan(scan).counters.at("level"));
+    highest = std::max(highest, odometry.register_scan(scan).counters.retry_level.value());
   EXPECT_EQ(highest, 3.0) << "after an untrusted scan: level 1 and two more attempts";
 }
 
@@ -281,7 +281,8 @@ TEST(CtIcp, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
                                        .seconds = 0.5};
   const LidarInfo lidar = synthetic::rig_of(recording).lidars[0];
   for (const char* name : {"improved", "original"}) {
-    CtIcp odometry(preset(name, lidar), lidar, Parallel(1));
+    CtIcp odometry((std::string(name) == "improved" ? indoor(lidar) : published(lidar)), lidar,
+                   Parallel(1));
     for (Scan scan : synthetic::scans_of(recording)) {
       scan.timed = false;
       for (Point& point : scan.points) point.dt_ns = 0;
@@ -295,7 +296,7 @@ TEST(CtIcp, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
 
 TEST(CtIcp, AFloorAloneIsDegenerate) {
   const LidarInfo lidar = synthetic::rig_of({}).lidars[0];
-  CtIcp odometry(preset("improved", lidar), lidar, Parallel(1));
+  CtIcp odometry(indoor(lidar), lidar, Parallel(1));
   std::vector<Point> points;
   for (int i = 0; i < 4000; ++i) {
     const double radius = 1.0 + 0.002 * i;

@@ -37,13 +37,13 @@ TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesIt
   const TemporaryFolder folder;
   for (const AlgorithmInfo& info : list_algorithms()) {
     EXPECT_FALSE(info.summary.empty());
-    EXPECT_THAT(info.presets, testing::IsSupersetOf({"original", "improved"}));
+    EXPECT_THAT(info.presets, testing::Contains("indoor"));
     for (const std::string& preset : info.presets) {
       const MadeOdometry made = make({info.name, preset, "", {}});
       ASSERT_NE(made.odometry, nullptr);
       EXPECT_EQ(made.odometry->traits().needs_imu, info.needs_imu);
       const auto file = folder.write(preset + ".yaml", made.config.dump(2));
-      EXPECT_EQ(make({info.name, "improved", file.string(), {}}).config, made.config);
+      EXPECT_EQ(make({info.name, "indoor", file.string(), {}}).config, made.config);
     }
   }
 }
@@ -68,26 +68,30 @@ TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
       EXPECT_EQ(properties.at(key).at("default"), value) << algorithm << " " << key;
   };
   const LidarInfo unknown;
-  expect_defaults("kiss_icp", to_json(kiss_icp::preset("improved", unknown)));
-  expect_defaults("ct_icp", to_json(ct_icp::preset("improved", unknown)));
-  expect_defaults("fast_lio2", to_json(fast_lio2::preset("improved", unknown)));
-  expect_defaults("lio_sam", to_json(lio_sam::preset("improved", unknown)));
+  expect_defaults("kiss_icp", to_json(kiss_icp::indoor(unknown)));
+  expect_defaults("ct_icp", to_json(ct_icp::indoor(unknown)));
+  expect_defaults("fast_lio2", to_json(fast_lio2::indoor(unknown)));
+  expect_defaults("lio_sam", to_json(lio_sam::indoor(unknown)));
+  expect_defaults("arena_lo", to_json(arena_lo::indoor(unknown)));
+  expect_defaults("arena_lio", to_json(arena_lio::indoor(unknown)));
+  expect_defaults("arena_slam", to_json(arena_slam::indoor(unknown)));
 }
 
 TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
-  EXPECT_THAT(refusal({"kiss_icp", "improved", "", {"calm_start=4"}}),
+  EXPECT_THAT(refusal({"kiss_icp", "indoor", "", {"calm_start=4"}}),
               AllOf(HasSubstr("calm_start"), HasSubstr("write 'initial_scans'")));
-  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {"loop.leaf_m=0.2"}}),
+  EXPECT_THAT(refusal({"lio_sam_lc", "indoor", "", {"loop.leaf_m=0.2"}}),
               HasSubstr("write 'voxel_size_m'"));
-  EXPECT_THAT(refusal({"ct_icp", "improved", "", {"registration.min_neighbours=9"}}),
+  EXPECT_THAT(refusal({"ct_icp", "indoor", "", {"registration.min_neighbours=9"}}),
               HasSubstr("write 'min_neighbors'"));
 }
 
 TEST(OdometryFactory, RefusalsNameTheNearestWord) {
-  EXPECT_THAT(refusal({"kis_icp", "improved", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
-  EXPECT_THAT(refusal({"orb_slam", "improved", "", {}}),
+  EXPECT_THAT(refusal({"kis_icp", "indoor", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
+  EXPECT_THAT(refusal({"orb_slam", "indoor", "", {}}),
               AllOf(HasSubstr("orb_slam"), HasSubstr("use one of")));
-  EXPECT_THAT(refusal({"kiss_icp", "haed", "", {}}), HasSubstr("did you mean 'head'"));
+  EXPECT_THAT(refusal({"kiss_icp", "haed", "", {}}),
+              HasSubstr("use one of indoor, published, head"));
   EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size=1"}}),
               HasSubstr("did you mean 'voxel_size_m'"));
   EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size_m=-1"}}), HasSubstr("above 0"));
@@ -96,6 +100,17 @@ TEST(OdometryFactory, RefusalsNameTheNearestWord) {
   EXPECT_THAT(refusal({"kiss_icp", "head", "/no/such.yaml", {}}), HasSubstr("/no/such.yaml"));
   EXPECT_THAT(refusal({"kiss_icp", "head", "", {}}, "os0"),
               AllOf(HasSubstr("os0"), HasSubstr("use one of lidar")));
+}
+
+TEST(OdometryFactory, AFormerPresetIsRefusedWithItsSuccessor) {
+  EXPECT_THAT(refusal({"kiss_icp", "original", "", {}}), HasSubstr("the preset published"));
+  EXPECT_THAT(refusal({"kiss_icp", "improved", "", {}}), HasSubstr("arena_lo"));
+  EXPECT_THAT(refusal({"ct_icp", "original", "", {}}), HasSubstr("the preset indoor"));
+  EXPECT_THAT(refusal({"ct_icp", "improved", "", {}}), HasSubstr("arena_lo"));
+  EXPECT_THAT(refusal({"fast_lio2", "original", "", {}}), HasSubstr("the preset published"));
+  EXPECT_THAT(refusal({"fast_lio2+loop", "improved", "", {}}), HasSubstr("arena_lio"));
+  EXPECT_THAT(refusal({"lio_sam", "original", "", {}}), HasSubstr("the preset indoor"));
+  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {}}), HasSubstr("arena_slam"));
 }
 
 TEST(OdometryFactory, TheOnlyLidarNeedsNoNameAndAmongSeveralOneMustBeChosen) {
@@ -119,7 +134,7 @@ TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsN
       if (stem.starts_with(info.name) && info.name.size() > algorithm.size()) algorithm = info.name;
     }
     ASSERT_FALSE(algorithm.empty()) << stem;
-    EXPECT_NO_THROW(make({algorithm, "improved", entry.path().string(), {}})) << stem;
+    EXPECT_NO_THROW(make({algorithm, "indoor", entry.path().string(), {}})) << stem;
   }
 }
 

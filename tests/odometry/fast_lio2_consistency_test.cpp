@@ -71,7 +71,7 @@ std::vector<Errors> errors_over(const Recording& recording, bool plane_uncertain
   Rig rig = synthetic::rig_of(recording);
   rig.imus.front().gyro_noise_density = recording.gyro_noise_density;
   rig.imus.front().accel_noise_density = recording.accel_noise_density;
-  Config config = preset("improved", rig.lidars.front());
+  Config config = indoor(rig.lidars.front());
   config.plane_uncertainty = plane_uncertainty;
   FastLio2 odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
   std::optional<Time> first;

@@ -43,7 +43,7 @@ std::vector<ImuSample> standing(double accel_unit, double noise) {
 
 Config improved_config() {
   LidarInfo lidar;
-  return preset("improved", lidar);
+  return indoor(lidar);
 }
 
 TEST(FastLio2Start, GravityAndBiasComeFromTheMeans) {

@@ -142,7 +142,7 @@ TEST(KissIcp, APatternThatRepeatsHoldsTheSensorUnlessItsLinesAreLeftOut) {
   Recording recording = along_the_straight();
   recording.repeating = true;
   const auto error_with = [&](double weight) {
-    Config config = preset("improved", synthetic::rig_of(recording).lidars.front());
+    Config config = indoor(synthetic::rig_of(recording).lidars.front());
     config.degenerate_cell_weight = weight;
     KissIcp odometry = made(config, recording);
     for (const Scan& scan : synthetic::scans_of(recording)) odometry.register_scan(scan);
@@ -173,9 +173,9 @@ TEST(KissIcp, OfAScanOnePointACellIsRegisteredAndOneASmallerCellIsKept) {
   config.min_spacing = false;
   KissIcp odometry = made(config, {});
   const ScanResult result = odometry.register_scan(scan);
-  EXPECT_EQ(result.counters.at("points"), 1600U);
-  EXPECT_EQ(result.counters.at("map_points"), 400U);
-  EXPECT_EQ(result.counters.at("keypoints"), 100U);
+  EXPECT_EQ(result.counters.points, 1600U);
+  EXPECT_EQ(result.counters.map_points, 400U);
+  EXPECT_EQ(result.counters.keypoints, 100U);
 }
 
 TEST(KissIcp, UntimedScansAreTrackedWithoutDeskewing) {

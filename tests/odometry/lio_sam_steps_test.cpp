@@ -263,7 +263,7 @@ TEST(LioSamRegistration, FindsTheWayHomeWithEitherPreset) {
   const Features features = seen(map, truth);
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.03, -0.03}), {0.1, -0.08, 0.1});
   for (const char* name : {"original", "improved"}) {
-    Config config = preset(name, spinning());
+    Config config = (std::string(name) == "improved" ? indoor(spinning()) : published(spinning()));
     const Registration found = register_features(features, map, guess, config, Parallel(1));
     EXPECT_TRUE(found.converged) << name;
     EXPECT_EQ(found.degenerate_directions, 0) << name;
@@ -278,8 +278,10 @@ TEST(LioSamRegistration, InATunnelTheWayAlongIsLeftToTheGuess) {
   const Features features = seen(map, truth);
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.0, -0.02}), {0.1, -0.08, 0.1});
   for (const char* name : {"original", "improved"}) {
-    const Registration found =
-        register_features(features, map, guess, preset(name, spinning()), Parallel(1));
+    const Registration found = register_features(
+        features, map, guess,
+        (std::string(name) == "improved" ? indoor(spinning()) : published(spinning())),
+        Parallel(1));
     EXPECT_EQ(found.degenerate_directions, 1) << name;
     EXPECT_NEAR(found.map_from_lidar.translation().x(), guess.translation().x(), 5e-3) << name;
     EXPECT_LT((found.map_from_lidar.translation() - truth.translation()).tail<2>().norm(), 2e-3);
@@ -315,7 +317,7 @@ std::vector<ImuSample> resting(const Vector3d& force, const Vector3d& rate) {
 }
 
 TEST(LioSamStart, FeelsHowTheBodyLeansAndHowTheImuIsMounted) {
-  const Config config = preset("improved", spinning());
+  const Config config = indoor(spinning());
   const Eigen::Matrix3d lean = so3::exp({0.0, 0.2, 0.0}) * so3::exp({0.1, 0.0, 0.0});
   const Pose body_from_imu = make_pose(so3::exp({0.5, -0.3, 1.0}), {0.1, 0.0, 0.0});
   const Vector3d force = (lean * body_from_imu.linear()).transpose() * Vector3d(0, 0, 9.81);
@@ -329,7 +331,7 @@ TEST(LioSamStart, FeelsHowTheBodyLeansAndHowTheImuIsMounted) {
 }
 
 TEST(LioSamStart, WhatTheForceAtRestIsTooLongByIsTheAccelerometersBias) {
-  const Config config = preset("improved", spinning());
+  const Config config = indoor(spinning());
   const Vector3d up = Vector3d(0.1, -0.05, 1.0).normalized();
   const Start start =
       start_from(resting((config.gravity + 0.07) * up, Vector3d::Zero()), Pose::Identity(), config);
@@ -338,12 +340,12 @@ TEST(LioSamStart, WhatTheForceAtRestIsTooLongByIsTheAccelerometersBias) {
 
 TEST(LioSamStart, TheProgramTakesTheBodyToBeLevel) {
   const Start start = start_from(resting({1.0, 0.0, 9.7}, Vector3d::Zero()), Pose::Identity(),
-                                 preset("original", spinning()));
+                                 published(spinning()));
   EXPECT_TRUE(start.inertial.state.world_from_imu.matrix().isIdentity());
 }
 
 TEST(LioSamStart, AccelerationsInUnitsOfGAreScaled) {
-  const Config config = preset("improved", spinning());
+  const Config config = indoor(spinning());
   const Start start =
       start_from(resting({0.0, 0.0, 1.0}, Vector3d::Zero()), Pose::Identity(), config);
   EXPECT_EQ(start.accel_scale, config.gravity);
@@ -431,13 +433,14 @@ TEST(LioSam, StandingStillNothingGrowsUnlessTheProgramsLivoxModeIsAskedFor) {
   const auto events = synthetic::record(still);
   const auto keyframes_after = [&](const char* name, double age) {
     const Rig rig = synthetic::rig_of(still);
-    Config config = preset(name, rig.lidars[0]);
+    Config config =
+        (std::string(name) == "improved" ? indoor(rig.lidars[0]) : published(rig.lidars[0]));
     config.keyframe_interval_s = age;
     LioSam odometry(config, rig.lidars[0], rig.imus[0], Parallel(1));
     double keyframes = 0.0;
     for (const dataset::Event& event : events) {
       if (const auto* scan = std::get_if<Scan>(&event.data)) {
-        keyframes = odometry.register_scan(*scan).counters.at("keyframes");
+        keyframes = odometry.register_scan(*scan).counters.keyframes.value();
       } else {
         odometry.register_imu(std::get<ImuSample>(event.data));
       }
@@ -473,7 +476,7 @@ TEST(LioSam, PointsAndImuTogetherAreSmootherThanPointsAlone) {
   synthetic::Recording sparse{.range_noise_m = 0.03, .points_per_scan = 2048, .repeating = false};
   sparse.gyro_noise_density = 2.4e-4;
   sparse.accel_noise_density = 1.7e-3;
-  Config config = preset("improved", synthetic::rig_of(sparse).lidars[0]);
+  Config config = indoor(synthetic::rig_of(sparse).lidars[0]);
   ASSERT_TRUE(config.smoothed_pose);
   const double together = step_error(sparse, config);
   config.smoothed_pose = false;
@@ -483,7 +486,7 @@ TEST(LioSam, PointsAndImuTogetherAreSmootherThanPointsAlone) {
 
 TEST(LioSam, WithoutImuEveryScanSaysSo) {
   const Rig rig = synthetic::rig_of({});
-  LioSam odometry(preset("improved", rig.lidars[0]), rig.lidars[0], rig.imus[0], Parallel(1));
+  LioSam odometry(indoor(rig.lidars[0]), rig.lidars[0], rig.imus[0], Parallel(1));
   for (const Scan& scan : synthetic::scans_of({.seconds = 0.3})) {
     EXPECT_EQ(odometry.register_scan(scan).status, ScanStatus::kInitializing);
   }

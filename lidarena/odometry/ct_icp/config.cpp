@@ -54,15 +54,8 @@ Config improved(const LidarInfo& lidar) {
 
 }  // namespace
 
-std::vector<std::string> preset_names() { return {"improved", "original"}; }
+Config published(const LidarInfo&) { return original(); }
 
-Config preset(const std::string& name, const LidarInfo& lidar) {
-  if (name == "improved") return improved(lidar);
-  if (name == "original") return original();
-  const std::string nearest = nearest_word(name, preset_names());
-  throw InputError(
-      "preset", "ct_icp has no preset '" + name + "'",
-      nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
-}
+Config indoor(const LidarInfo& lidar) { return improved(lidar); }
 
 }  // namespace lidarena::odometry::ct_icp

@@ -311,12 +311,10 @@ struct Config {
   }
 };
 
-/// Names of preset(), the default first.
-std::vector<std::string> preset_names();
-
-/// Settings for a LiDAR: "improved"; "original", the published program of 2022 with its handheld
-/// profile. Throws InputError for another name.
-Config preset(const std::string& name, const LidarInfo& lidar);
+/// The program's own defaults.
+Config published(const LidarInfo& lidar);
+/// What a user of the program would set for a small sensor in rooms and tunnels.
+Config indoor(const LidarInfo& lidar);
 
 constexpr auto enum_names(KeypointSampling) {
   return std::array{std::pair{"all", KeypointSampling::kAll},

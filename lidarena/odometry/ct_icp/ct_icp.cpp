@@ -60,13 +60,13 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   return {poses_.back(),
           status,
           std::nullopt,
-          {{"points", points.size()},
-           {"keypoints", found.registration.keypoints},
-           {"matches", found.registration.matches},
-           {"iterations", found.registration.iterations},
-           {"level", found.level},
-           {"inserted", inserted ? 1 : 0},
-           {"map_points", map_.size()}},
+          {.points = points.size(),
+           .keypoints = found.registration.keypoints,
+           .matches = found.registration.matches,
+           .iterations = found.registration.iterations,
+           .retry_level = found.level,
+           .map_points = map_.size(),
+           .inserted = inserted},
           rigid ? std::vector<StampedPose>{} : motion_within(motion, times)};
 }
 

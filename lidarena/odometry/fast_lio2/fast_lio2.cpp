@@ -82,13 +82,13 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
   publish(points);
   return finish_scan(end, status,
-                     {{"points", points.size()},
-                      {"reduced_points", reduced.size()},
-                      {"planes", update.points.count},
-                      {"near_planes", residuals.near_planes()},
-                      {"evaluations", update.evaluations},
-                      {"map_points", map_.size()},
-                      {"still", still ? 1.0 : 0.0}});
+                     {.points = points.size(),
+                      .keypoints = reduced.size(),
+                      .matches = update.points.count,
+                      .near_planes = residuals.near_planes(),
+                      .iterations = update.evaluations,
+                      .map_points = map_.size(),
+                      .standing = still});
 }
 
 Time FastLio2::scan_end(const Scan& scan) {
@@ -204,8 +204,8 @@ ScanStatus FastLio2::status_of(const estimation::IteratedUpdate& update,
   if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
-  const bool contradicts =
-      static_cast<double>(update.points.count) < config_.min_inlier_share * residuals.near_planes();
+  const bool contradicts = static_cast<double>(update.points.count) <
+                           config_.min_inlier_share * static_cast<double>(residuals.near_planes());
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
@@ -222,18 +222,17 @@ ScanResult FastLio2::refused_scan() {
   return finish_scan(poses_.back().stamp, ScanStatus::kTooFewPoints, {});
 }
 
-ScanResult FastLio2::finish_scan(Time end, ScanStatus status,
-                                 std::map<std::string, double> counters) {
+ScanResult FastLio2::finish_scan(Time end, ScanStatus status, const ScanCounters& counters) {
   ScanResult result;
   result.estimate = {end, body_pose(estimate_.state.world_from_imu())};
   result.status = status;
   if (started_) result.covariance = body_covariance();
-  counters["imu_gap_s"] = longest_gap_s_;
-  counters["imu_clipped"] = static_cast<double>(saturated_);
-  counters["imu_refused"] = static_cast<double>(imu_.refused());
-  counters["scans_refused"] = static_cast<double>(scans_refused_);
-  counters["accel_scale"] = accel_scale_;
-  result.counters = std::move(counters);
+  result.counters = counters;
+  result.counters.imu_gap_s = longest_gap_s_;
+  result.counters.imu_saturated = saturated_;
+  result.counters.imu_refused = imu_.refused();
+  result.counters.scans_refused = scans_refused_;
+  result.counters.accel_scale = accel_scale_;
   if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);
   return result;
 }

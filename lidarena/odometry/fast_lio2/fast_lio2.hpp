@@ -54,7 +54,7 @@ class FastLio2 : public Odometry {
   /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const estimation::IteratedUpdate& update, const PlaneResiduals& residuals);
   ScanResult refused_scan();
-  ScanResult finish_scan(Time end, ScanStatus status, std::map<std::string, double> counters);
+  ScanResult finish_scan(Time end, ScanStatus status, const ScanCounters& counters);
   Pose body_pose(const Pose& map_from_imu) const;
   Eigen::Matrix<double, 6, 6> body_covariance() const;
   void publish(std::span<const Eigen::Vector3f> points);

@@ -68,9 +68,9 @@ void PlaneResiduals::find(const Eigen::Vector3f& in_world, Match& match) const {
   match.weight = own / (own + plane_variance(match.neighbors, *match.plane, own));
 }
 
-double PlaneResiduals::near_planes() const {
-  return static_cast<double>(std::count_if(matches_.begin(), matches_.end(),
-                                           [](const Match& match) { return match.near_plane; }));
+std::size_t PlaneResiduals::near_planes() const {
+  return static_cast<std::size_t>(std::count_if(
+      matches_.begin(), matches_.end(), [](const Match& match) { return match.near_plane; }));
 }
 
 estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(

@@ -56,7 +56,7 @@ class PlaneResiduals {
       const estimation::InertialState& state, bool search);
   const std::vector<Match>& matches() const { return matches_; }
   /// Number of points for which the last search found a plane, whether they lie on it or not.
-  double near_planes() const;
+  std::size_t near_planes() const;
 
  private:
   void find(const Eigen::Vector3f& in_world, Match& match) const;

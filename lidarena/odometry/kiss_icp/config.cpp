@@ -5,7 +5,7 @@ namespace lidarena::odometry::kiss_icp {
 
 namespace {
 
-Config head() { return {}; }
+Config latest() { return {}; }
 
 /// The published program of the paper's year, tag v0.2.
 Config original() {
@@ -50,16 +50,10 @@ Config improved(const LidarInfo& lidar) {
 
 }  // namespace
 
-std::vector<std::string> preset_names() { return {"improved", "head", "original"}; }
+Config published(const LidarInfo&) { return original(); }
 
-Config preset(const std::string& name, const LidarInfo& lidar) {
-  if (name == "improved") return improved(lidar);
-  if (name == "head") return head();
-  if (name == "original") return original();
-  const std::string nearest = nearest_word(name, preset_names());
-  throw InputError(
-      "preset", "kiss_icp has no preset '" + name + "'",
-      nearest.empty() ? "use improved, head or original" : "did you mean '" + nearest + "'?");
-}
+Config head(const LidarInfo&) { return latest(); }
+
+Config indoor(const LidarInfo& lidar) { return improved(lidar); }
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -179,12 +179,12 @@ struct Config {
   }
 };
 
-/// Names of preset(), the default first.
-std::vector<std::string> preset_names();
-
-/// Settings for a LiDAR: "improved"; "head" and "original", the published program of 2025 and 2023.
-/// Throws InputError for another name.
-Config preset(const std::string& name, const LidarInfo& lidar);
+/// The program's own defaults.
+Config published(const LidarInfo& lidar);
+/// The program of 2025.
+Config head(const LidarInfo& lidar);
+/// What a user of the program would set for a small sensor in rooms and tunnels.
+Config indoor(const LidarInfo& lidar);
 
 constexpr auto enum_names(PoseInstant) {
   return std::array{std::pair{"scan_middle", PoseInstant::kScanMiddle},

@@ -25,8 +25,13 @@ double mean_range(std::span<const Eigen::Vector3f> points) {
 /// Adds the result of the next slice to that of the scan: counters are summed, all else is taken
 /// from the slice.
 void append(ScanResult slice, ScanResult& scan) {
-  for (const char* count : {"points", "keypoints", "matches", "iterations"})
-    slice.counters[count] += scan.counters[count];
+  const auto add = [](ScanCounters::Count& sum, const ScanCounters::Count& count) {
+    sum = sum.value_or(0) + count.value_or(0);
+  };
+  add(slice.counters.points, scan.counters.points);
+  add(slice.counters.keypoints, scan.counters.keypoints);
+  add(slice.counters.matches, scan.counters.matches);
+  add(slice.counters.iterations, scan.counters.iterations);
   // a slice starts where the previous one ended, or just after
   for (const StampedPose& pose : slice.motion) {
     if (scan.motion.empty() || pose.stamp > scan.motion.back().stamp) scan.motion.push_back(pose);
@@ -90,12 +95,12 @@ ScanResult KissIcp::register_slice(const Scan& slice) {
   return {{reference_of(times), body_pose(pose)},
           status,
           std::nullopt,
-          {{"points", points.size()},
-           {"keypoints", keypoints.size()},
-           {"matches", found.matches},
-           {"iterations", found.iterations},
-           {"sigma_m", sigma},
-           {"map_points", map_.size()}},
+          {.points = points.size(),
+           .keypoints = keypoints.size(),
+           .matches = found.matches,
+           .iterations = found.iterations,
+           .map_points = map_.size(),
+           .threshold_m = sigma},
           motion_within(times, twist)};
 }
 

@@ -80,15 +80,8 @@ Config improved(const LidarInfo& lidar) {
 
 }  // namespace
 
-std::vector<std::string> preset_names() { return {"improved", "original"}; }
+Config published(const LidarInfo& lidar) { return original(lidar); }
 
-Config preset(const std::string& name, const LidarInfo& lidar) {
-  if (name == "improved") return improved(lidar);
-  if (name == "original") return original(lidar);
-  const std::string nearest = nearest_word(name, preset_names());
-  throw InputError(
-      "preset", "lio_sam has no preset '" + name + "'",
-      nearest.empty() ? "use improved or original" : "did you mean '" + nearest + "'?");
-}
+Config indoor(const LidarInfo& lidar) { return improved(lidar); }
 
 }  // namespace lidarena::odometry::lio_sam

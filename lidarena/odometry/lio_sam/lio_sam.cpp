@@ -59,20 +59,19 @@ ScanResult LioSam::register_scan(const Scan& scan) {
   const ScanStatus status = status_of(found, features);
   const bool matched = status == ScanStatus::kTracked || status == ScanStatus::kDegenerate;
   const bool first = keyframes_.empty() && status == ScanStatus::kInitializing;
-  std::map<std::string, double> counters{{"points", image.pixels.size()},
-                                         {"edges", raw.edges.size()},
-                                         {"surfaces", raw.surfaces.size()},
-                                         {"edges_thinned", features.edges.size()},
-                                         {"surfaces_thinned", features.surfaces.size()},
-                                         {"matches", found.points.count},
-                                         {"iterations", found.iterations},
-                                         {"degenerate_directions", found.degenerate_directions},
-                                         {"map_points", submap_.size()}};
+  const ScanCounters counters{.points = image.pixels.size(),
+                              .keypoints = features.edges.size() + features.surfaces.size(),
+                              .matches = found.points.count,
+                              .edges = raw.edges.size(),
+                              .surfaces = raw.surfaces.size(),
+                              .iterations = found.iterations,
+                              .degenerate_directions = found.degenerate_directions,
+                              .map_points = submap_.size()};
   if (matched) fuse(found);
   last_mapped_ = scan.stamp;
   Pose world_from_lidar = found.map_from_lidar;
   if (matched || first) keep(scan.stamp, world_from_lidar, std::move(features));
-  return finish_scan(scan.stamp, world_from_lidar, status, std::move(counters));
+  return finish_scan(scan.stamp, world_from_lidar, status, counters);
 }
 
 Time LioSam::scan_end(const Scan& scan) {
@@ -267,28 +266,28 @@ bool LioSam::merge(Time stamp, const Pose& world_from_lidar, const Features& fea
 }
 
 ScanResult LioSam::finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                               std::map<std::string, double> counters) {
+                               const ScanCounters& counters) {
   if (status != ScanStatus::kDiverged) {
     poses_.add(stamp, keyframes_.empty()
                           ? world_from_lidar
                           : keyframes_.back().world_from_lidar.inverse() * world_from_lidar);
   }
-  return result_of(stamp, world_from_lidar, status, std::move(counters));
+  return result_of(stamp, world_from_lidar, status, counters);
 }
 
 ScanResult LioSam::result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                             std::map<std::string, double> counters) const {
+                             const ScanCounters& counters) const {
   ScanResult result;
   result.estimate = {stamp, orthonormalized(world_from_lidar * body_from_lidar_.inverse())};
   result.status = status;
-  counters["imu_gap_s"] = longest_gap_s_;
-  counters["imu_refused"] = static_cast<double>(imu_.refused());
-  counters["imu_restarts"] = restarts_;
-  counters["accel_scale"] = accel_scale_;
-  counters["keyframes"] = static_cast<double>(keyframes_.size());
-  counters["loops"] = static_cast<double>(closer_.accepted());
-  counters["loops_tried"] = static_cast<double>(closer_.records().size());
-  result.counters = std::move(counters);
+  result.counters = counters;
+  result.counters.imu_gap_s = longest_gap_s_;
+  result.counters.imu_refused = imu_.refused();
+  result.counters.imu_restarts = restarts_;
+  result.counters.accel_scale = accel_scale_;
+  result.counters.keyframes = keyframes_.size();
+  result.counters.loops = closer_.accepted();
+  result.counters.loops_tried = closer_.records().size();
   return result;
 }
 

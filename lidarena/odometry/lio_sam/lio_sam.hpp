@@ -72,9 +72,9 @@ class LioSam : public Odometry {
   bool merge(Time stamp, const Pose& world_from_lidar, const Features& features);
   /// The result of a scan that is part of the trajectory.
   ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                         std::map<std::string, double> counters);
+                         const ScanCounters& counters);
   ScanResult result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                       std::map<std::string, double> counters) const;
+                       const ScanCounters& counters) const;
   estimation::Preintegration empty_preintegration() const {
     return {smoother_.latest().bias, noise_};
   }
