@@ -27,6 +27,22 @@ Pose pose_at(const ImuTrack& track, Time t) {
   return extrapolate(after == track.begin() ? *after : *(after - 1), t);
 }
 
+std::vector<StampedPose> motion_along(const ImuTrack& track, Time begin, Time end, Time at,
+                                      const Pose& world_from_imu_at, const Pose& imu_from_body) {
+  std::vector<StampedPose> motion;
+  if (track.empty() || begin >= end) return motion;
+  const Pose world_from_track = world_from_imu_at * pose_at(track, at).inverse();
+  const auto add = [&](Time t) {
+    motion.push_back({t, orthonormalized(world_from_track * pose_at(track, t) * imu_from_body)});
+  };
+  add(begin);
+  for (const ImuStep& step : track) {
+    if (step.begin > begin && step.begin < end) add(step.begin);
+  }
+  add(end);
+  return motion;
+}
+
 std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
                                     const Pose& imu_from_lidar, const Pose& world_from_imu_at_end,
                                     const Parallel& parallel) {

@@ -7,6 +7,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/scan.hpp"
+#include "lidarena/base/trajectory.hpp"
 
 namespace lidarena::estimation {
 
@@ -25,6 +26,12 @@ using ImuTrack = std::vector<ImuStep>;
 /// Pose at `t`, extrapolated from the last step that begins at or before it, or from the first step
 /// if all begin later. `track` must not be empty.
 Pose pose_at(const ImuTrack& track, Time t);
+
+/// Poses of a body from `begin` to `end`, at both and at the begin of each step between them. The
+/// track gives the motion relative to the instant `at`, at which the pose is `world_from_imu_at`.
+/// Empty if `track` is empty or unless begin < end.
+std::vector<StampedPose> motion_along(const ImuTrack& track, Time begin, Time end, Time at,
+                                      const Pose& world_from_imu_at, const Pose& imu_from_body);
 
 /// Positions (m) of all points of `scan`, in order, in the LiDAR frame at the instant of
 /// `world_from_imu_at_end` (FAST-LIO2's backward propagation, eq. 10, with the relative poses of

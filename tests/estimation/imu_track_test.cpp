@@ -38,6 +38,22 @@ TEST(ImuTrack, GivesThePoseOfTheStepThatAnInstantFallsInto) {
   }
 }
 
+TEST(ImuTrack, TheMotionOfABodyIsThatOfTheTrackMovedToTheKnownPose) {
+  const Pose imu_from_body = make_pose(so3::exp({0.1, 0.2, -0.3}), {0.05, -0.02, 0.1});
+  const Pose elsewhere = make_pose(so3::exp({0.0, 0.3, 2.0}), {10.0, -4.0, 2.0});
+  const auto poses = motion_along(track(20), from_seconds(0.012), from_seconds(0.1),
+                                  from_seconds(0.1), elsewhere * motion(0.1), imu_from_body);
+  ASSERT_EQ(poses.size(), 19U) << "both ends and the steps from 0.015 to 0.095 s";
+  EXPECT_EQ(poses.front().stamp, from_seconds(0.012));
+  EXPECT_EQ(poses.back().stamp, from_seconds(0.1));
+  for (const StampedPose& pose : poses) {
+    const Pose expected = elsewhere * motion(to_seconds(pose.stamp)) * imu_from_body;
+    EXPECT_LT((pose.world_from_body.translation() - expected.translation()).norm(), 1e-7);
+  }
+  EXPECT_TRUE(motion_along({}, Time{0}, Time{5}, Time{5}, elsewhere, imu_from_body).empty());
+  EXPECT_TRUE(motion_along(track(20), Time{5}, Time{5}, Time{5}, elsewhere, imu_from_body).empty());
+}
+
 TEST(ImuTrack, DeskewedPointsAreSeenFromTheEnd) {
   const Pose imu_from_lidar = make_pose(so3::exp({0.1, 0.2, -0.3}), {0.05, -0.02, 0.1});
   const Eigen::Vector3d landmark(4.0, 3.0, -1.0);
