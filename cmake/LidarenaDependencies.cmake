@@ -13,10 +13,10 @@ find_package(CLI11 REQUIRED)
 find_package(tsl-robin-map REQUIRED)
 find_package(PkgConfig REQUIRED)
 pkg_check_modules(zstd REQUIRED IMPORTED_TARGET libzstd)
+pkg_check_modules(deflate REQUIRED IMPORTED_TARGET libdeflate)  # CRC-32 of MCAP
 pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(lzf REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(md REQUIRED IMPORTED_TARGET libmd)
-find_package(ZLIB REQUIRED)
 find_package(BZip2 QUIET)  # reads ROS 1 bags with bz2 chunks
 
 # Embree 4 if found, else Embree 3 (a single .cpp file handles the differences), else the built-in

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 
 packages=(g++ cmake ninja-build pkg-config ca-certificates
           libeigen3-dev libembree-dev libtbb-dev libassimp-dev libyaml-cpp-dev
-          nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev zlib1g-dev libpng-dev
+          nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev libdeflate-dev libpng-dev
           liblz4-dev liblzf-dev libmd-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev
           dpkg-dev file)
 # Debian 12 has sdformat 12; later releases dropped it, which disables SDF worlds. Without libbz2,

@@ -4,8 +4,8 @@
 #ifdef LIDARENA_HAVE_BZIP2
 #include <bzlib.h>
 #endif
+#include <libdeflate.h>
 #include <lz4frame.h>
-#include <zlib.h>
 #include <zstd.h>
 
 #include <algorithm>
@@ -116,13 +116,7 @@ void decompress_bz2(Bytes, std::uint64_t, std::vector<std::byte>&) {
 }  // namespace
 
 std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc) {
-  return static_cast<std::uint32_t>(
-      crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
-std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second, std::uint64_t second_size) {
-  return static_cast<std::uint32_t>(
-      crc32_combine(first, second, static_cast<z_off_t>(second_size)));
+  return bytes.empty() ? crc : libdeflate_crc32(crc, bytes.data(), bytes.size());
 }
 
 struct ZstdCompressor::Impl {

@@ -12,10 +12,8 @@
 
 namespace lidarena::dataset {
 
-/// CRC-32 of IEEE 802.3, as computed by zlib; `crc` is that of the preceding bytes.
+/// CRC-32 of IEEE 802.3; `crc` is that of the preceding bytes.
 std::uint32_t crc32_of(Bytes bytes, std::uint32_t crc = 0);
-/// CRC-32 of two consecutive pieces, from their CRCs and the size of the second.
-std::uint32_t crc32_joined(std::uint32_t first, std::uint32_t second, std::uint64_t second_size);
 
 /// Compresses to one zstd frame; the same input gives the same output (with the same version of the
 /// library).

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <tsl/robin_map.h>
-
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +22,10 @@ class PointMap {
 
   /// Adds `point` (m) if it is finite and the first of its voxel; returns whether it was added.
   bool insert(const Eigen::Vector3f& point);
-  void insert(std::span<const Eigen::Vector3f> points);
+  /// The same for many points, several times faster: most of the time goes into waiting for memory,
+  /// which is fetched ahead here. `added`, if given, receives the indices of the points that were
+  /// added.
+  void insert(std::span<const Eigen::Vector3f> points, std::vector<std::uint32_t>* added = nullptr);
 
   std::span<const Eigen::Vector3f> points() const { return points_; }
   /// Returns the points and leaves the map empty.
@@ -34,11 +35,31 @@ class PointMap {
   std::size_t memory_bytes() const;
 
  private:
-  using Blocks = tsl::robin_map<VoxelKey, std::uint64_t, VoxelKeyHash>;
+  /// Which of a block's 64 voxels are occupied; none: the slot of the table is free.
+  struct Block {
+    VoxelKey key = 0;
+    std::uint64_t taken = 0;
+  };
+  /// Place of a point: its block and the bit of its voxel; no bit: the point is not finite.
+  struct Place {
+    VoxelKey block = 0;
+    std::uint64_t bit = 0;
+  };
+
+  Place place_of(const Eigen::Vector3f& point) const;
+  /// Index of the slot at which the search for a block begins.
+  std::size_t first_slot(VoxelKey block) const {
+    return VoxelKeyHash{}(block) & (blocks_.size() - 1);
+  }
+  /// Marks the voxel; returns whether it was free. The table has a free slot.
+  bool take_voxel(const Place& place);
+  /// Grows the table so that it is at most half full after `more` blocks.
+  void reserve_blocks(std::size_t more);
 
   float inverse_size_;
   std::vector<Eigen::Vector3f> points_;
-  Blocks blocks_;  ///< which of a block's 64 voxels are occupied
+  std::vector<Block> blocks_;  ///< open addressing with linear probing; the size is a power of two
+  std::size_t used_ = 0;       ///< slots that are not free
 };
 
 }  // namespace lidarena::map

@@ -369,12 +369,10 @@ TEST(Mcap, ReadsLz4Frames) {
 
 TEST(Mcap, TheCheckSumIsCrc32OfIeee) {
   const std::string text = "123456789";  // the usual test value
-  EXPECT_EQ(crc32_of(std::as_bytes(std::span(text))), 0xCBF43926U);
-  for (const std::size_t cut : {0UL, 4UL, 9UL}) {
-    const auto bytes = std::as_bytes(std::span(text));
-    EXPECT_EQ(crc32_joined(crc32_of(bytes.first(cut)), crc32_of(bytes.subspan(cut)), 9 - cut),
-              0xCBF43926U);
-  }
+  const auto bytes = std::as_bytes(std::span(text));
+  EXPECT_EQ(crc32_of(bytes), 0xCBF43926U);
+  for (const std::size_t cut : {0UL, 4UL, 9UL})
+    EXPECT_EQ(crc32_of(bytes.subspan(cut), crc32_of(bytes.first(cut))), 0xCBF43926U);
 }
 
 TEST_P(McapFiles, AMessageLargerThanAChunkSharesOneWithThoseBeforeIt) {

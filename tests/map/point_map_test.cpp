@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -60,6 +61,23 @@ TEST(PointMap, KeepsTheFirstPointOfEachVoxelInTheOrderTheyCame) {
   ASSERT_GT(expected.size(), 5000U);
   ASSERT_EQ(map.size(), expected.size());
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), map.points().begin()));
+}
+
+TEST(PointMap, ABatchAddsWhatItsPointsAddOneByOneAndTellsWhich) {
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+  Points points = random_points(5000, 4.0);
+  for (std::size_t i = 0; i < points.size(); i += 7) points[i].x() = kNan;
+  PointMap one_by_one(0.5);
+  std::vector<std::uint32_t> expected;
+  for (std::uint32_t i = 0; i < points.size(); ++i) {
+    if (one_by_one.insert(points[i])) expected.push_back(i);
+  }
+  PointMap batch(0.5);
+  std::vector<std::uint32_t> added;
+  batch.insert(points, &added);
+  ASSERT_GT(expected.size(), 1000U);
+  EXPECT_EQ(added, expected);
+  EXPECT_TRUE(std::ranges::equal(batch.points(), one_by_one.points()));
 }
 
 TEST(PointMap, CellsOnBothSidesOfZeroAreDifferentOnes) {

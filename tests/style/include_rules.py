@@ -32,6 +32,7 @@ ONLY = {
 HIDDEN = {
     "embree": {"world"}, "assimp/": {"world"}, "sdf/": {"world"}, "yaml-cpp": {"base"},
     "tbb/": {"base", "world"}, "zstd.h": {"dataset"}, "lz4": {"dataset"},
+    "libdeflate.h": {"dataset"},
     "lzf.h": {"dataset"}, "md5.h": {"dataset"}, "png.h": {"report"},
     "ceres/": {"estimation"},
 }

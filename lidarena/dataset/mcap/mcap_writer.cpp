@@ -43,12 +43,6 @@ struct McapWriter::Impl {
     file.write(bytes);
   }
 
-  /// The same for bytes whose checksum is known.
-  void write(Bytes bytes, std::uint32_t crc_of_bytes) {
-    crc = crc32_joined(crc, crc_of_bytes, bytes.size());
-    file.write(bytes);
-  }
-
   template <class Record>
   void write_record(const Record& content) {
     record.clear();
@@ -69,8 +63,7 @@ struct McapWriter::Impl {
   void close_chunk(Bytes tail = {}) {
     if (chunk_messages.empty()) return;
     const std::uint64_t size = chunk.size() + tail.size();
-    const std::uint32_t crc_of_chunk = crc32_of(chunk.bytes());
-    const std::uint32_t crc_of_tail = crc32_of(tail);
+    const std::uint32_t crc_of_records = crc32_of(tail, crc32_of(chunk.bytes()));
     Bytes records = chunk.bytes();
     std::uint64_t stored_size = size;
     if (compressor) {
@@ -81,17 +74,13 @@ struct McapWriter::Impl {
     mcap::ChunkIndex index{chunk_start_time, chunk_end_time, file.size(), 0, {}, 0,
                            compression,      stored_size,    size};
     record.clear();
-    append_head(record,
-                mcap::Chunk{chunk_start_time,
-                            chunk_end_time,
-                            size,
-                            crc32_joined(crc_of_chunk, crc_of_tail, tail.size()),
-                            compression,
-                            {}},
-                stored_size);
+    append_head(
+        record,
+        mcap::Chunk{chunk_start_time, chunk_end_time, size, crc_of_records, compression, {}},
+        stored_size);
     write(record.bytes());
-    compressor ? write(records) : write(records, crc_of_chunk);
-    write(tail, crc_of_tail);
+    write(records);
+    write(tail);
     index.chunk_length = file.size() - index.chunk_start;
     for (const auto& [channel_id, messages] : chunk_messages) {
       index.message_index_offsets[channel_id] = file.size();

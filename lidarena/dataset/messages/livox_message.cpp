@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/firing_order.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 
@@ -42,7 +43,7 @@ Scan decode_livox(Bytes message, std::string_view place, Encoding encoding) {
   scan.timed = scan.points.empty() || std::ranges::any_of(scan.points, [](const Point& point) {
                  return point.dt_ns != 0;
                });
-  std::ranges::stable_sort(scan.points, {}, &Point::dt_ns);
+  sort_in_firing_order(scan.points);
   return scan;
 }
 

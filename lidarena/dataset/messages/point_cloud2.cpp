@@ -12,6 +12,7 @@
 #include <optional>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/firing_order.hpp"
 
 namespace lidarena::dataset::ros {
 namespace {
@@ -41,34 +42,39 @@ std::size_t size_of(FieldType type) {
 bool is_float(FieldType type) { return type == FieldType::kFloat32 || type == FieldType::kFloat64; }
 
 template <class T>
-double load(const std::byte* at) {
-  T value;
-  std::memcpy(&value, at, sizeof value);
-  return static_cast<double>(value);
+std::vector<double> load_column(const PointCloud2& cloud, std::uint32_t offset) {
+  std::vector<double> values(std::size_t{cloud.width} * cloud.height);
+  const std::byte* at = cloud.data.data() + offset;
+  for (double& value : values) {
+    T stored;
+    std::memcpy(&stored, at, sizeof stored);
+    value = static_cast<double>(stored);
+    at += cloud.point_step;
+  }
+  return values;
 }
 
-/// Value of a field of the point at `point`; a double holds every field type exactly.
-double value_of(const PointField& field, const std::byte* point) {
-  const std::byte* at = point + field.offset;
+/// Values of a field, one per point; a double holds every field type exactly.
+std::vector<double> column_of(const PointField& field, const PointCloud2& cloud) {
   switch (field.type) {
     case FieldType::kInt8:
-      return load<std::int8_t>(at);
+      return load_column<std::int8_t>(cloud, field.offset);
     case FieldType::kUint8:
-      return load<std::uint8_t>(at);
+      return load_column<std::uint8_t>(cloud, field.offset);
     case FieldType::kInt16:
-      return load<std::int16_t>(at);
+      return load_column<std::int16_t>(cloud, field.offset);
     case FieldType::kUint16:
-      return load<std::uint16_t>(at);
+      return load_column<std::uint16_t>(cloud, field.offset);
     case FieldType::kInt32:
-      return load<std::int32_t>(at);
+      return load_column<std::int32_t>(cloud, field.offset);
     case FieldType::kUint32:
-      return load<std::uint32_t>(at);
+      return load_column<std::uint32_t>(cloud, field.offset);
     case FieldType::kFloat32:
-      return load<float>(at);
+      return load_column<float>(cloud, field.offset);
     case FieldType::kFloat64:
-      return load<double>(at);
+      return load_column<double>(cloud, field.offset);
   }
-  return 0.0;
+  return {};
 }
 
 /// The field with the first of `names` that exists; nullptr if none does.
@@ -139,22 +145,21 @@ std::optional<TimeUnit> guess_unit(const PointField& field, double low, double h
   return std::nullopt;
 }
 
-/// ns since header.stamp of each point; empty if the scan is untimed.
+/// ns since header.stamp of each kept point; empty if the scan is untimed.
 std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<std::size_t>& kept,
                                    Time stamp, std::string_view place) {
   const PointField* field = find(cloud, {"t", "offset_time", "time", "timestamp"});
   if (field == nullptr || kept.empty()) return {};
+  const std::vector<double> all = column_of(*field, cloud);
   std::vector<double> values(kept.size());
-  std::ranges::transform(kept, values.begin(), [&](std::size_t i) {
-    return value_of(*field, cloud.data.data() + i * cloud.point_step);
-  });
+  std::ranges::transform(kept, values.begin(), [&](std::size_t i) { return all[i]; });
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
     throw InputError(place, fmt::format("field '{}' of a return is not finite", field->name));
   }
   const auto [low, high] = std::ranges::minmax(values);
   if (low == 0.0 && high == 0.0) return {};
-  std::optional<TimeUnit> unit = TimeUnit{};
-  if (is_float(field->type)) unit = guess_unit(*field, low, high, stamp);
+  if (!is_float(field->type)) return {values.begin(), values.end()};  // ns since header.stamp
+  const std::optional<TimeUnit> unit = guess_unit(*field, low, high, stamp);
   if (!unit) {
     throw InputError(place,
                      fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
@@ -168,19 +173,24 @@ std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<s
   return times;
 }
 
-/// Indices of the points that are returns.
-std::vector<std::size_t> returns_of(const PointCloud2& cloud,
-                                    const std::array<const PointField*, 3>& position) {
-  const std::size_t count = std::size_t{cloud.width} * cloud.height;
-  std::vector<std::size_t> kept;
-  kept.reserve(count);
-  for (std::size_t i = 0; i < count; ++i) {
-    Eigen::Vector3d p;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      p[static_cast<int>(axis)] =
-          value_of(*position[axis], cloud.data.data() + i * cloud.point_step);
-    }
-    if (p.allFinite() && !p.isZero(0.0)) kept.push_back(i);
+/// Positions of the points that are returns, and their indices in the cloud.
+struct Returns {
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<std::size_t> indices;
+};
+
+Returns returns_of(const PointCloud2& cloud, const std::array<const PointField*, 3>& position) {
+  const std::vector<double> x = column_of(*position[0], cloud);
+  const std::vector<double> y = column_of(*position[1], cloud);
+  const std::vector<double> z = column_of(*position[2], cloud);
+  Returns kept;
+  kept.positions.reserve(x.size());
+  kept.indices.reserve(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Eigen::Vector3d p(x[i], y[i], z[i]);
+    if (!p.allFinite() || p.isZero(0.0)) continue;
+    kept.positions.push_back(p.cast<float>());
+    kept.indices.push_back(i);
   }
   return kept;
 }
@@ -201,9 +211,7 @@ void set_times(Scan& scan, const std::vector<std::int64_t>& times, std::string_v
   for (std::size_t i = 0; i < times.size(); ++i) {
     scan.points[i].dt_ns = static_cast<std::int32_t>(times[i] - shift);
   }
-  if (!std::ranges::is_sorted(scan.points, {}, &Point::dt_ns)) {
-    std::ranges::stable_sort(scan.points, {}, &Point::dt_ns);
-  }
+  sort_in_firing_order(scan.points);
 }
 
 const std::vector<PointField>& truth_fields() {
@@ -325,18 +333,21 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
   }
   const PointField* intensity = find(cloud, {"intensity", "reflectivity", "signal"});
   const PointField* ring = find(cloud, {"ring", "line", "channel"});
-  const std::vector<std::size_t> kept = returns_of(cloud, position);
-  Scan scan{header_stamp, std::vector<Point>(kept.size()), true};
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    const std::byte* data = cloud.data.data() + kept[i] * cloud.point_step;
-    Point& point = scan.points[i];
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      point.position[static_cast<int>(axis)] = static_cast<float>(value_of(*position[axis], data));
-    }
-    if (intensity != nullptr) point.intensity = static_cast<float>(value_of(*intensity, data));
-    if (ring != nullptr) point.ring = as_ring(value_of(*ring, data));
+  const Returns kept = returns_of(cloud, position);
+  const auto column_or_zeros = [&](const PointField* field) {
+    return field != nullptr ? column_of(*field, cloud)
+                            : std::vector<double>(std::size_t{cloud.width} * cloud.height);
+  };
+  const std::vector<double> intensities = column_or_zeros(intensity);
+  const std::vector<double> rings = column_or_zeros(ring);
+  Scan scan{header_stamp, std::vector<Point>(kept.indices.size()), true};
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const std::size_t at = kept.indices[i];
+    scan.points[i].position = kept.positions[i];
+    scan.points[i].intensity = static_cast<float>(intensities[at]);
+    scan.points[i].ring = as_ring(rings[at]);
   }
-  const std::vector<std::int64_t> times = times_of(cloud, kept, header_stamp, place);
+  const std::vector<std::int64_t> times = times_of(cloud, kept.indices, header_stamp, place);
   scan.timed = !times.empty();
   if (scan.timed) set_times(scan, times, place);
   return scan;

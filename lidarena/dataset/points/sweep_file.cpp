@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/firing_order.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 
@@ -80,8 +81,7 @@ void set_times(Scan& scan, const std::vector<std::int64_t>& times, bool absolute
   for (std::size_t i = 0; i < times.size(); ++i) {
     scan.points[i].dt_ns = static_cast<std::int32_t>(times[i] - begin);
   }
-  std::stable_sort(scan.points.begin(), scan.points.end(),
-                   [](const Point& a, const Point& b) { return a.dt_ns < b.dt_ns; });
+  sort_in_firing_order(scan.points);
 }
 
 /// Raw little-endian float32 rows without a header.
