@@ -41,40 +41,47 @@ std::size_t size_of(FieldType type) {
 
 bool is_float(FieldType type) { return type == FieldType::kFloat32 || type == FieldType::kFloat64; }
 
+/// Points that are decoded together, so that each is read from memory once.
+constexpr std::size_t kBlock = 512;
+using Column = std::array<double, kBlock>;
+
 template <class T>
-std::vector<double> load_column(const PointCloud2& cloud, std::uint32_t offset) {
-  std::vector<double> values(std::size_t{cloud.width} * cloud.height);
-  const std::byte* at = cloud.data.data() + offset;
+void load(const std::byte* at, std::size_t step, std::span<double> values) {
   for (double& value : values) {
     T stored;
     std::memcpy(&stored, at, sizeof stored);
     value = static_cast<double>(stored);
-    at += cloud.point_step;
+    at += step;
   }
-  return values;
 }
 
-/// Values of a field, one per point; a double holds every field type exactly.
-std::vector<double> column_of(const PointField& field, const PointCloud2& cloud) {
-  switch (field.type) {
-    case FieldType::kInt8:
-      return load_column<std::int8_t>(cloud, field.offset);
-    case FieldType::kUint8:
-      return load_column<std::uint8_t>(cloud, field.offset);
-    case FieldType::kInt16:
-      return load_column<std::int16_t>(cloud, field.offset);
-    case FieldType::kUint16:
-      return load_column<std::uint16_t>(cloud, field.offset);
-    case FieldType::kInt32:
-      return load_column<std::int32_t>(cloud, field.offset);
-    case FieldType::kUint32:
-      return load_column<std::uint32_t>(cloud, field.offset);
-    case FieldType::kFloat32:
-      return load_column<float>(cloud, field.offset);
-    case FieldType::kFloat64:
-      return load_column<double>(cloud, field.offset);
+/// Values of a field of the points from `first` on; a double holds every field type exactly. Zeros
+/// if there is no such field.
+void load_column(const PointCloud2& cloud, const PointField* field, std::size_t first,
+                 std::span<double> values) {
+  if (field == nullptr) {
+    std::ranges::fill(values, 0.0);
+    return;
   }
-  return {};
+  const std::byte* at = cloud.data.data() + first * cloud.point_step + field->offset;
+  switch (field->type) {
+    case FieldType::kInt8:
+      return load<std::int8_t>(at, cloud.point_step, values);
+    case FieldType::kUint8:
+      return load<std::uint8_t>(at, cloud.point_step, values);
+    case FieldType::kInt16:
+      return load<std::int16_t>(at, cloud.point_step, values);
+    case FieldType::kUint16:
+      return load<std::uint16_t>(at, cloud.point_step, values);
+    case FieldType::kInt32:
+      return load<std::int32_t>(at, cloud.point_step, values);
+    case FieldType::kUint32:
+      return load<std::uint32_t>(at, cloud.point_step, values);
+    case FieldType::kFloat32:
+      return load<float>(at, cloud.point_step, values);
+    case FieldType::kFloat64:
+      return load<double>(at, cloud.point_step, values);
+  }
 }
 
 /// The field with the first of `names` that exists; nullptr if none does.
@@ -145,14 +152,11 @@ std::optional<TimeUnit> guess_unit(const PointField& field, double low, double h
   return std::nullopt;
 }
 
-/// ns since header.stamp of each kept point; empty if the scan is untimed.
-std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<std::size_t>& kept,
+/// ns since header.stamp of each return, from the values of its time field; empty if the scan is
+/// untimed.
+std::vector<std::int64_t> times_of(const PointField* field, const std::vector<double>& values,
                                    Time stamp, std::string_view place) {
-  const PointField* field = find(cloud, {"t", "offset_time", "time", "timestamp"});
-  if (field == nullptr || kept.empty()) return {};
-  const std::vector<double> all = column_of(*field, cloud);
-  std::vector<double> values(kept.size());
-  std::ranges::transform(kept, values.begin(), [&](std::size_t i) { return all[i]; });
+  if (field == nullptr || values.empty()) return {};
   if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
     throw InputError(place, fmt::format("field '{}' of a return is not finite", field->name));
   }
@@ -173,31 +177,60 @@ std::vector<std::int64_t> times_of(const PointCloud2& cloud, const std::vector<s
   return times;
 }
 
-/// Positions of the points that are returns, and their indices in the cloud.
-struct Returns {
-  std::vector<Eigen::Vector3f> positions;
-  std::vector<std::size_t> indices;
-};
-
-Returns returns_of(const PointCloud2& cloud, const std::array<const PointField*, 3>& position) {
-  const std::vector<double> x = column_of(*position[0], cloud);
-  const std::vector<double> y = column_of(*position[1], cloud);
-  const std::vector<double> z = column_of(*position[2], cloud);
-  Returns kept;
-  kept.positions.reserve(x.size());
-  kept.indices.reserve(x.size());
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Eigen::Vector3d p(x[i], y[i], z[i]);
-    if (!p.allFinite() || p.isZero(0.0)) continue;
-    kept.positions.push_back(p.cast<float>());
-    kept.indices.push_back(i);
-  }
-  return kept;
-}
-
 std::uint16_t as_ring(double value) {
   constexpr double kLast = std::numeric_limits<std::uint16_t>::max();
   return value >= 0.0 && value <= kLast ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
+}
+
+/// The fields of a cloud from which points are made; nullptr where there is none.
+struct PointFields {
+  std::array<const PointField*, 3> position;
+  const PointField* intensity;
+  const PointField* ring;
+  const PointField* time;
+};
+
+PointFields fields_of(const PointCloud2& cloud, std::string_view place) {
+  const std::array position{find(cloud, {"x"}), find(cloud, {"y"}), find(cloud, {"z"})};
+  for (const PointField* axis : position) {
+    if (axis != nullptr && is_float(axis->type)) continue;
+    throw InputError(
+        place,
+        "a cloud needs fields x, y, z of float32 or float64; it has: " + list_of_fields(cloud),
+        "name another topic");
+  }
+  return {position, find(cloud, {"intensity", "reflectivity", "signal"}),
+          find(cloud, {"ring", "line", "channel"}),
+          find(cloud, {"t", "offset_time", "time", "timestamp"})};
+}
+
+/// Appends the returns to `points`, without times; gives the values of their time field.
+std::vector<double> append_returns(const PointCloud2& cloud, const PointFields& fields,
+                                   std::vector<Point>& points) {
+  const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  points.reserve(count);
+  std::vector<double> times;
+  times.reserve(count);
+  Column x, y, z, intensity, ring, time;
+  for (std::size_t first = 0; first < count; first += kBlock) {
+    const std::size_t size = std::min(kBlock, count - first);
+    const auto load = [&](const PointField* field, Column& column) {
+      load_column(cloud, field, first, std::span(column).first(size));
+    };
+    load(fields.position[0], x);
+    load(fields.position[1], y);
+    load(fields.position[2], z);
+    load(fields.intensity, intensity);
+    load(fields.ring, ring);
+    load(fields.time, time);
+    for (std::size_t i = 0; i < size; ++i) {
+      const Eigen::Vector3d p(x[i], y[i], z[i]);
+      if (!p.allFinite() || p.isZero(0.0)) continue;
+      points.push_back({p.cast<float>(), static_cast<float>(intensity[i]), 0, as_ring(ring[i]), 0});
+      times.push_back(time[i]);
+    }
+  }
+  return times;
 }
 
 /// Sets stamp and dt_ns so that no point is earlier than the stamp, and sorts by time.
@@ -322,32 +355,10 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
     if (cloud.fields == own_fields(true)) return own_scan(header_stamp, cloud, true);
     if (cloud.fields == own_fields(false)) return own_scan(header_stamp, cloud, false);
   }
-  const std::array position{find(cloud, {"x"}), find(cloud, {"y"}), find(cloud, {"z"})};
-  for (const PointField* axis : position) {
-    if (axis == nullptr || !is_float(axis->type)) {
-      throw InputError(
-          place,
-          "a cloud needs fields x, y, z of float32 or float64; it has: " + list_of_fields(cloud),
-          "name another topic");
-    }
-  }
-  const PointField* intensity = find(cloud, {"intensity", "reflectivity", "signal"});
-  const PointField* ring = find(cloud, {"ring", "line", "channel"});
-  const Returns kept = returns_of(cloud, position);
-  const auto column_or_zeros = [&](const PointField* field) {
-    return field != nullptr ? column_of(*field, cloud)
-                            : std::vector<double>(std::size_t{cloud.width} * cloud.height);
-  };
-  const std::vector<double> intensities = column_or_zeros(intensity);
-  const std::vector<double> rings = column_or_zeros(ring);
-  Scan scan{header_stamp, std::vector<Point>(kept.indices.size()), true};
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    const std::size_t at = kept.indices[i];
-    scan.points[i].position = kept.positions[i];
-    scan.points[i].intensity = static_cast<float>(intensities[at]);
-    scan.points[i].ring = as_ring(rings[at]);
-  }
-  const std::vector<std::int64_t> times = times_of(cloud, kept.indices, header_stamp, place);
+  const PointFields fields = fields_of(cloud, place);
+  Scan scan{header_stamp, {}, true};
+  const std::vector<double> time_values = append_returns(cloud, fields, scan.points);
+  const std::vector<std::int64_t> times = times_of(fields.time, time_values, header_stamp, place);
   scan.timed = !times.empty();
   if (scan.timed) set_times(scan, times, place);
   return scan;
