@@ -109,8 +109,9 @@ class Files {
 void describe(const fs::path& folder, evaluation::ScoredRun& run) {
   if (!fs::exists(folder / "manifest.json")) return;
   const Json manifest = dataset::read_json(folder / "manifest.json");
-  run.algorithm = fmt::format("{}:{} on {}", manifest.value("algorithm", "?"),
-                              manifest.value("preset", "?"), manifest.value("sensor", "?"));
+  const std::string preset = manifest.value("preset", "");
+  run.algorithm = fmt::format("{}{}{} on {}", manifest.value("algorithm", "?"),
+                              preset.empty() ? "" : ":", preset, manifest.value("sensor", "?"));
   const fs::path dataset = folder / manifest.value("dataset", "");
   run.flight = dataset.filename().string();
   if (!fs::exists(dataset / "manifest.json")) return;

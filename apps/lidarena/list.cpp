@@ -29,7 +29,9 @@ int list_algorithms_verb(const Common& common) {
                     {"presets", info.presets},
                     {"needs_imu", info.needs_imu}});
     if (common.json) continue;
-    fmt::print("{:<14} {} (presets: {})\n", info.name, info.summary, fmt::join(info.presets, ", "));
+    fmt::print("{:<14} {}", info.name, info.summary);
+    if (!info.presets.empty()) fmt::print(" (presets: {})", fmt::join(info.presets, ", "));
+    fmt::print("\n");
   }
   if (common.json) print_json(list);
   return kDone;

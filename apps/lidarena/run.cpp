@@ -69,8 +69,7 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("dataset", *dataset, "Dataset folder, .mcap, .bag or folder of sweeps")
       ->required();
   verb->add_option("--out", *out, "Folder to write")->required();
-  verb->add_option("--preset", r->odometry.preset, "One of the algorithm's presets")
-      ->capture_default_str();
+  verb->add_option("--preset", r->odometry.preset, "One of the algorithm's presets; default: its first");
   verb->add_option("--sensor", r->read.sensor, "Id of the LiDAR to use, if there are several");
   verb->add_option("--config", r->odometry.config_file,
                    "YAML file that overrides values of the preset")

@@ -48,8 +48,8 @@ const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const Lidar
 template <class Config>
 using PresetTable = std::vector<std::pair<std::string, Config (*)(const LidarInfo&)>>;
 
-/// One struct for each algorithm: its configuration, its presets (the default first) and how to
-/// build it.
+/// One struct for each algorithm: its configuration, its presets (the default first; one without a
+/// name if there is no choice) and how to build it.
 struct Kiss {
   using Config = kiss_icp::Config;
   static PresetTable<Config> presets() {
@@ -111,7 +111,7 @@ struct LioSamLc : LioSam {
 
 struct ArenaLo {
   using Config = arena_lo::Config;
-  static PresetTable<Config> presets() { return {{"indoor", arena_lo::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_lo::indoor}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
     return std::make_unique<arena_lo::ArenaLo>(config, lidar, parallel);
@@ -120,7 +120,7 @@ struct ArenaLo {
 
 struct ArenaLio {
   using Config = arena_lio::Config;
-  static PresetTable<Config> presets() { return {{"indoor", arena_lio::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_lio::indoor}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("arena_lio", rig, lidar);
@@ -130,7 +130,7 @@ struct ArenaLio {
 
 struct ArenaSlam {
   using Config = arena_slam::Config;
-  static PresetTable<Config> presets() { return {{"indoor", arena_slam::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_slam::indoor}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("arena_slam", rig, lidar);
@@ -147,7 +147,9 @@ std::string listed(const std::vector<std::string>& words) {
 template <class Maker>
 std::vector<std::string> preset_names() {
   std::vector<std::string> names;
-  for (const auto& [name, make_config] : Maker::presets()) names.push_back(name);
+  for (const auto& [name, make_config] : Maker::presets()) {
+    if (!name.empty()) names.push_back(name);
+  }
   return names;
 }
 
@@ -168,7 +170,7 @@ std::string successor_of(const std::string& algorithm, const std::string& preset
 template <class Maker>
 typename Maker::Config preset_config(const OdometryRequest& request, const LidarInfo& lidar) {
   for (const auto& [name, make_config] : Maker::presets()) {
-    if (name == request.preset) return make_config(lidar);
+    if (name == request.preset || request.preset.empty()) return make_config(lidar);
   }
   throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'");
 }
@@ -258,11 +260,13 @@ Algorithm chosen_algorithm(const OdometryRequest& request) {
     const std::vector<std::string>& presets = algorithm.info.presets;
     names.push_back(algorithm.info.name);
     if (names.back() != request.algorithm) continue;
-    if (std::find(presets.begin(), presets.end(), request.preset) != presets.end())
+    if (request.preset.empty() || std::ranges::find(presets, request.preset) != presets.end())
       return std::move(algorithm);
-    const std::string successor = successor_of(request.algorithm, request.preset);
+    std::string remedy = successor_of(request.algorithm, request.preset);
+    if (presets.empty()) remedy = "it has none: leave it out";
+    if (remedy.empty()) remedy = "use one of " + listed(presets);
     throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'",
-                     successor.empty() ? "use one of " + listed(presets) : successor);
+                     remedy);
   }
   const std::string nearest = nearest_word(request.algorithm, names);
   throw InputError(
@@ -293,6 +297,15 @@ Json algorithm_schema(const std::string& name) {
     if (algorithm.info.name == name) return algorithm.schema(algorithm.info);
   }
   throw InputError("algorithm", "there is no '" + name + "'");
+}
+
+OdometryRequest with_default_preset(OdometryRequest request) {
+  for (const Algorithm& algorithm : algorithms()) {
+    const AlgorithmInfo& info = algorithm.info;
+    if (info.name == request.algorithm && request.preset.empty() && !info.presets.empty())
+      request.preset = info.presets.front();
+  }
+  return request;
 }
 
 void check_algorithm(const OdometryRequest& request) { chosen_algorithm(request); }

@@ -15,7 +15,7 @@ namespace lidarena::odometry {
 /// Which odometry to build, and its settings.
 struct OdometryRequest {
   std::string algorithm;                 ///< one of the names of list_algorithms()
-  std::string preset = "indoor";         ///< one of its presets, see list_algorithms()
+  std::string preset{};                  ///< one of its presets; empty: the default one
   std::string config_file{};             ///< YAML, applied after the preset; empty: none
   std::vector<std::string> overrides{};  ///< "key=value", applied last
 };
@@ -23,7 +23,7 @@ struct OdometryRequest {
 struct AlgorithmInfo {
   std::string name;
   std::string summary;
-  std::vector<std::string> presets;
+  std::vector<std::string> presets;  ///< the default first; our own methods have none
   bool needs_imu = false;
 };
 
@@ -34,8 +34,12 @@ std::vector<AlgorithmInfo> list_algorithms();
 /// name.
 Json algorithm_schema(const std::string& name);
 
-/// Throws InputError for an unknown algorithm or preset, naming the nearest or, for a former preset,
-/// its successor.
+/// The request with the name of the default preset if it names none and the algorithm is known and
+/// has presets.
+OdometryRequest with_default_preset(OdometryRequest request);
+
+/// Throws InputError for an unknown algorithm or preset, naming the nearest or, for a former
+/// preset, its successor.
 void check_algorithm(const OdometryRequest& request);
 
 struct MadeOdometry {

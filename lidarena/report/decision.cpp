@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
 #include <tuple>
 
 #include "lidarena/report/study_cells.hpp"
@@ -50,9 +51,9 @@ Candidate candidate(const StudyCells& cells, const std::string& world, const std
 
 /// "fast_lio2", with its preset if that is not the default.
 std::string name_of(const Candidate& c) {
-  return c.variant == "improved" || c.variant == "improved-rolling"
-             ? c.algorithm
-             : c.algorithm + " (" + c.variant + ")";
+  const bool usual = c.variant.empty() || c.variant == "indoor" || c.variant == "indoor-rolling" ||
+                     c.variant == "rolling";
+  return usual ? c.algorithm : c.algorithm + " (" + c.variant + ")";
 }
 
 std::string figures_of(const Candidate& c) {
@@ -147,6 +148,7 @@ ReportTable candidates_table(const std::string& world, const std::vector<Candida
 
 std::vector<Candidate> candidates(const Results& results, const std::string& world) {
   std::vector<Candidate> all;
+  std::set<std::string> seen;  // methods without presets occur in every variant
   for (const std::string& variant : variants_of(results)) {
     const StudyCells cells(results, variant);
     for (const std::string& sensor : cells.sensors()) {
@@ -156,6 +158,7 @@ std::vector<Candidate> candidates(const Results& results, const std::string& wor
         if (const std::string& mode = rows.front()->mode; !mode.empty() && mode != "rolling") {
           continue;
         }
+        if (!seen.insert(sensor + "|" + label_of(*rows.front())).second) continue;
         all.push_back(candidate(cells, world, sensor, algorithm));
       }
     }

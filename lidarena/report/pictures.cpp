@@ -41,12 +41,14 @@ Picture map_picture(const ResultRow& row) {
   dataset::Cloud map;
   if (fs::exists(row.folder / "scored.ply")) map = dataset::read_cloud(row.folder / "scored.ply");
   TopView view;
-  view.title = fmt::format("{}, {} ({})", row.sensor, row.algorithm, variant_of(row));
+  view.title = fmt::format("{}, {}", row.sensor, label_of(row));
   view.map = &map;
   view.truth = truth ? &*truth : nullptr;
   view.estimate = aligned_positions(row, estimate);
   view.width = kMapWidth;
-  return {fmt::format("map-{}-{}-{}-{}", row.world, row.sensor, row.algorithm, variant_of(row)),
+  const std::string variant = variant_of(row);
+  return {fmt::format("map-{}-{}-{}{}{}", row.world, row.sensor, row.algorithm,
+                      variant.empty() ? "" : "-", variant),
           top_view_svg(view)};
 }
 
@@ -119,7 +121,7 @@ std::vector<const ResultRow*> first_seed_rows(const Results& results, const std:
   std::set<std::string> seen;
   for (const ResultRow& row : results.rows) {
     if (row.world != world || row.status != "ok") continue;
-    if (seen.insert(row.sensor + "|" + row.algorithm + "|" + variant_of(row)).second) {
+    if (seen.insert(row.sensor + "|" + label_of(row)).second) {
       rows.push_back(&row);
     }
   }

@@ -134,7 +134,12 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 std::string variant_of(const ResultRow& row) { return variant_of(row.preset, row.mode); }
 
 std::string variant_of(const std::string& preset, const std::string& mode) {
-  return mode.empty() ? preset : preset + "-" + mode;
+  return preset + (preset.empty() || mode.empty() ? "" : "-") + mode;
+}
+
+std::string label_of(const ResultRow& row) {
+  const std::string variant = variant_of(row);
+  return row.algorithm + (variant.empty() ? "" : " (" + variant + ")");
 }
 
 double own_memory_mb(const dataset::ResourceRow& row) {
@@ -228,8 +233,8 @@ std::string results_text(const Results& results) {
     const auto shown = [](const std::optional<double>& v, const char* format) {
       return v ? cell(v, format) : std::string("-");
     };
-    lines.push_back({r.world, r.sensor, r.algorithm + ":" + variant_of(r),
-                     shown(r.rpe_cm_per_m, "{:.2f}"), shown(r.ate_cm, "{:.2f}"),
+    lines.push_back({r.world, r.sensor, label_of(r), shown(r.rpe_cm_per_m, "{:.2f}"),
+                     shown(r.ate_cm, "{:.2f}"),
                      shown(figure(r.reprojected_map, &MapFigures::rmse_cm), "{:.2f}"),
                      shown(figure(r.reprojected_map, &MapFigures::outliers_percent), "{:.3g}"),
                      shown(r.real_time_factor, "{:.1f}"), shown(r.own_memory_mb, "{:.1f}"),

@@ -42,6 +42,8 @@ struct ResultRow {
 /// modes.
 std::string variant_of(const ResultRow& row);
 std::string variant_of(const std::string& preset, const std::string& mode);
+/// The algorithm with its variant: "fast_lio2 (indoor)"; "arena_lio" if it has no presets.
+std::string label_of(const ResultRow& row);
 
 struct Results {
   std::string title;

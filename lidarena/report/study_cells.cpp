@@ -30,9 +30,20 @@ std::optional<double> map_rmse_of(const ResultRow& row) {
   return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
 }
 
+namespace {
+
+/// Whether a row is compared within the variant. Methods without presets are compared with every
+/// preset of the others, within their mode.
+bool belongs_to(const ResultRow& row, const std::string& variant) {
+  if (variant.empty() || variant_of(row) == variant) return true;
+  return row.preset.empty() && (row.mode.empty() || variant.ends_with("-" + row.mode));
+}
+
+}  // namespace
+
 StudyCells::StudyCells(const Results& results, const std::string& variant) {
   for (const ResultRow& row : results.rows) {
-    if (variant.empty() || variant_of(row) == variant) rows_.push_back(&row);
+    if (belongs_to(row, variant)) rows_.push_back(&row);
   }
 }
 
@@ -82,13 +93,16 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
 }
 
 std::vector<std::string> variants_of(const Results& results) {
+  const bool without_presets =
+      std::ranges::all_of(results.rows, [](const ResultRow& row) { return row.preset.empty(); });
   std::vector<std::string> variants;
   for (const ResultRow& row : results.rows) {
+    if (row.preset.empty() && !without_presets) continue;
     const std::string variant = variant_of(row);
     if (std::ranges::find(variants, variant) == variants.end()) variants.push_back(variant);
   }
   std::ranges::stable_partition(
-      variants, [](const std::string& variant) { return variant.starts_with("original"); });
+      variants, [](const std::string& variant) { return variant.starts_with("indoor"); });
   return variants;
 }
 

@@ -8,7 +8,7 @@
 namespace lidarena::report {
 namespace {
 
-/// The smallest figure with its algorithm: "fast_lio2 (improved): 0.84"; empty if there is none.
+/// The smallest figure with its algorithm: "fast_lio2 (indoor): 0.84"; empty if there is none.
 std::string smallest_figure(const Results& results, const std::string& world,
                             const std::string& sensor, const RowFigure& of) {
   std::optional<double> best;
@@ -19,8 +19,8 @@ std::string smallest_figure(const Results& results, const std::string& world,
       const auto value = cells.median(world, sensor, algorithm, of);
       if (!value || (best && *best <= *value)) continue;
       best = value;
-      text = fmt::format("{}{}: {}", algorithm, preset.empty() ? "" : " (" + preset + ")",
-                         figure(value).text);
+      const ResultRow& row = *cells.rows(world, sensor, algorithm).front();
+      text = fmt::format("{}: {}", label_of(row), figure(value).text);
     }
   }
   return text;
@@ -84,7 +84,7 @@ ReportTable runs_table(const Results& results, const std::string& world) {
   for (const ResultRow& row : results.rows) {
     if (row.world != world) continue;
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {} ({}), {}", row.sensor, row.algorithm, variant_of(row), row.seed))};
+        word(fmt::format("{}, {}, {}", row.sensor, label_of(row), row.seed))};
     for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
                               map_value(row.own_map, &MapFigures::rmse_cm),
                               map_value(row.own_map, &MapFigures::outliers_percent),
@@ -117,12 +117,12 @@ ReportTable commands_table(const Results& results) {
       {"run", "commands"},
       {}};
   for (const ResultRow& row : results.rows) {
+    const std::string preset = row.preset.empty() ? "" : " --preset " + row.preset;
     table.rows.push_back(
         {word(row.name),
-         word(
-             fmt::format("{} && lidarena run {} data --preset {} --sensor {} --out run && lidarena "
-                         "evaluate run",
-                         simulate_command(row), row.algorithm, row.preset, argument(row.sensor)))});
+         word(fmt::format("{} && lidarena run {} data{} --sensor {} --out run && lidarena evaluate "
+                          "run",
+                          simulate_command(row), row.algorithm, preset, argument(row.sensor)))});
   }
   return table;
 }

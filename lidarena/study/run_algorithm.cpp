@@ -133,11 +133,12 @@ Json made_on() {
 
 odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& out,
                                    const Parallel& parallel, LogSink& log) {
+  const odometry::OdometryRequest chosen = odometry::with_default_preset(request.odometry);
   dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
   for (const std::string& note : dataset.notes) log.info("note: " + note);
   const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
   const odometry::MadeOdometry made =
-      odometry::make_odometry(request.odometry, dataset.rig, lidar_id, parallel);
+      odometry::make_odometry(chosen, dataset.rig, lidar_id, parallel);
   odometry::RunOptions options;
   options.lidar_id = lidar_id;
   if (const ImuInfo* imu = dataset.rig.imu_beside(*dataset.rig.find_lidar(lidar_id))) {
@@ -151,8 +152,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
         reprojected_map(request, lidar_id, result.files.trajectory, parallel);
   }
   result.files.manifest = {{"kind", "run"},
-                           {"algorithm", request.odometry.algorithm},
-                           {"preset", request.odometry.preset},
+                           {"algorithm", chosen.algorithm},
+                           {"preset", chosen.preset},
                            {"config", made.config},
                            {"dataset", relative_path(request.dataset, out)},
                            {"sensor", lidar_id},

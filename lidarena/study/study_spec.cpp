@@ -19,13 +19,13 @@ namespace fs = std::filesystem;
 
 std::string stem(const std::string& name_or_path) { return fs::path(name_or_path).stem().string(); }
 
-/// NAME:PRESET into its parts; the preset defaults to the algorithm's default.
+/// NAME:PRESET into its parts, with the algorithm's default preset if none is named.
 odometry::OdometryRequest parse_algorithm(const std::string& text) {
   odometry::OdometryRequest request;
   const std::size_t colon = text.find(':');
   request.algorithm = text.substr(0, colon);
   if (colon != std::string::npos) request.preset = text.substr(colon + 1);
-  return request;
+  return odometry::with_default_preset(std::move(request));
 }
 
 /// Throws InputError for an algorithm or preset that neither the factory nor the study lists.
@@ -68,7 +68,8 @@ PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t
   cell.seed = seed;
   cell.seconds = scene.seconds;
   cell.mode = mode;
-  cell.name = fmt::format("{}-{}-{}-{}", cell.dataset, stem(sensor), cell.algorithm, cell.preset);
+  cell.name = fmt::format("{}-{}-{}{}{}", cell.dataset, stem(sensor), cell.algorithm,
+                          cell.preset.empty() ? "" : "-", cell.preset);
   return cell;
 }
 

@@ -80,7 +80,7 @@ void bind_evaluation(py::module_& m) {
         py::arg("mesh_from_map") = py::none(), py::arg("threads") = 0,
         "(figures, distance of each point to the mesh: float32, m, NaN if there is none).");
   m.def("run_algorithm", &run_algorithm_on, py::arg("algorithm"), py::arg("dataset"),
-        py::arg("out"), py::arg("preset") = "indoor", py::arg("sensor") = "",
+        py::arg("out"), py::arg("preset") = "", py::arg("sensor") = "",
         py::arg("config_file") = "", py::arg("overrides") = std::vector<std::string>{},
         py::arg("threads") = 0, "Runs one algorithm over a dataset and writes a RUN folder.");
   m.def(

@@ -208,7 +208,7 @@ void bind_odometry(py::module_& m) {
       .def("memory", &odometry::Odometry::memory, "Memory in bytes, by part.");
   m.def("list_algorithms", &algorithms, "Name, summary, presets and needs_imu of each algorithm.");
   m.def("make_odometry", &make, py::arg("rig"), py::arg("algorithm"), py::arg("lidar_id") = "",
-        py::arg("preset") = "indoor", py::arg("config_file") = "",
+        py::arg("preset") = "", py::arg("config_file") = "",
         py::arg("overrides") = std::vector<std::string>{}, py::arg("threads") = 0,
         "Makes an algorithm by its name; `overrides` are 'key=value'. Its complete "
         "configuration is the attribute `config`.");

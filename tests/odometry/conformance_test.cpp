@@ -25,6 +25,7 @@ std::vector<Candidate> candidates() {
   std::vector<Candidate> all;
   for (const AlgorithmInfo& info : list_algorithms()) {
     for (const std::string& preset : info.presets) all.push_back({info.name, preset});
+    if (info.presets.empty()) all.push_back({info.name, ""});
   }
   return all;
 }
@@ -263,7 +264,8 @@ TEST_P(OdometryConformance, FinishingTwiceIsFinishingOnceAndNothingGivesNothing)
 }
 
 std::string name_of(const testing::TestParamInfo<Candidate>& candidate) {
-  std::string name = candidate.param.algorithm + "_" + candidate.param.preset;
+  const auto& [algorithm, preset] = candidate.param;
+  std::string name = algorithm + (preset.empty() ? "" : "_" + preset);
   std::replace(name.begin(), name.end(), '+', '_');
   return name;
 }

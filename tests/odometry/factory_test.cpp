@@ -7,6 +7,9 @@
 #include <filesystem>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/odometry/arena_lio/config.hpp"
+#include "lidarena/odometry/arena_lo/config.hpp"
+#include "lidarena/odometry/arena_slam/config.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
@@ -37,13 +40,17 @@ TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesIt
   const TemporaryFolder folder;
   for (const AlgorithmInfo& info : list_algorithms()) {
     EXPECT_FALSE(info.summary.empty());
-    EXPECT_THAT(info.presets, testing::Contains("indoor"));
-    for (const std::string& preset : info.presets) {
+    const bool ours = info.name.starts_with("arena");
+    EXPECT_EQ(info.presets.empty(), ours) << info.name;
+    if (!ours) EXPECT_EQ(info.presets.front(), "indoor") << info.name;
+    std::vector<std::string> presets = info.presets;
+    presets.push_back("");
+    for (const std::string& preset : presets) {
       const MadeOdometry made = make({info.name, preset, "", {}});
       ASSERT_NE(made.odometry, nullptr);
       EXPECT_EQ(made.odometry->traits().needs_imu, info.needs_imu);
       const auto file = folder.write(preset + ".yaml", made.config.dump(2));
-      EXPECT_EQ(make({info.name, "indoor", file.string(), {}}).config, made.config);
+      EXPECT_EQ(make({info.name, "", file.string(), {}}).config, made.config);
     }
   }
 }
@@ -111,6 +118,14 @@ TEST(OdometryFactory, AFormerPresetIsRefusedWithItsSuccessor) {
   EXPECT_THAT(refusal({"fast_lio2+loop", "improved", "", {}}), HasSubstr("arena_lio"));
   EXPECT_THAT(refusal({"lio_sam", "original", "", {}}), HasSubstr("the preset indoor"));
   EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {}}), HasSubstr("arena_slam"));
+  EXPECT_THAT(refusal({"arena_lio", "improved", "", {}}), HasSubstr("leave it out"));
+}
+
+TEST(OdometryFactory, TheDefaultPresetIsNamedWhereThereIsOne) {
+  EXPECT_EQ(with_default_preset({.algorithm = "kiss_icp"}).preset, "indoor");
+  EXPECT_EQ(with_default_preset({.algorithm = "kiss_icp", .preset = "head"}).preset, "head");
+  EXPECT_EQ(with_default_preset({.algorithm = "arena_lo"}).preset, "");
+  EXPECT_EQ(with_default_preset({.algorithm = "not_ours"}).preset, "");
 }
 
 TEST(OdometryFactory, TheOnlyLidarNeedsNoNameAndAmongSeveralOneMustBeChosen) {
@@ -134,7 +149,7 @@ TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsN
       if (stem.starts_with(info.name) && info.name.size() > algorithm.size()) algorithm = info.name;
     }
     ASSERT_FALSE(algorithm.empty()) << stem;
-    EXPECT_NO_THROW(make({algorithm, "indoor", entry.path().string(), {}})) << stem;
+    EXPECT_NO_THROW(make({algorithm, "", entry.path().string(), {}})) << stem;
   }
 }
 

@@ -112,10 +112,11 @@ TEST_P(OnRealData, ThereAndBackAgainIsNoMotion) {
 }
 
 INSTANTIATE_TEST_SUITE_P(LidarOnly, OnRealData,
-                         ::testing::Values(Case{"kiss_icp", "head"}, Case{"kiss_icp", "improved"},
-                                           Case{"ct_icp", "improved"}),
+                         ::testing::Values(Case{"kiss_icp", "head"}, Case{"kiss_icp", "indoor"},
+                                           Case{"ct_icp", "published"}, Case{"arena_lo", ""}),
                          [](const auto& tried) {
-                           return std::string(tried.param.algorithm) + "_" + tried.param.preset;
+                           const std::string preset = tried.param.preset;
+                           return tried.param.algorithm + (preset.empty() ? "" : "_" + preset);
                          });
 
 }  // namespace

@@ -26,7 +26,7 @@ ResultRow row(const std::string& world, const std::string& sensor, const std::st
   r.world = r.flight = world;
   r.sensor = sensor;
   r.algorithm = algorithm;
-  r.preset = "original";
+  r.preset = "indoor";
   r.seed = seed;
   r.rpe_cm_per_m = rpe;
   r.own_map = MapFigures{100, 2.0 * rpe, rpe, rpe, rpe, outliers, std::vector<double>(20, 5.0)};
@@ -61,8 +61,8 @@ const ReportTable& table_called(const std::vector<ReportTable>& tables, const st
 }
 
 TEST(PaperTables, OnThePapersOwnFiguresTheMarksAreThePapers) {
-  const auto tables = paper_tables(results_of_the_paper(), "original");
-  const ReportTable& drift = table_called(tables, "table2-cave-original");
+  const auto tables = paper_tables(results_of_the_paper(), "indoor");
+  const ReportTable& drift = table_called(tables, "table2-cave-indoor");
   ASSERT_EQ(drift.head.back(), "fast_lio2");
   const TableCell& best = drift.rows.at(1).back();  // Os0-128, FAST-LIO2: bold and underlined
   EXPECT_EQ(best.text, "0.49");
@@ -73,7 +73,7 @@ TEST(PaperTables, OnThePapersOwnFiguresTheMarksAreThePapers) {
   EXPECT_FALSE(drift.rows.at(0).back().best_in_column);
   EXPECT_TRUE(drift.rows.at(0).at(2).best_in_column)
       << "KISS-ICP: the Mid-360 is the better sensor";
-  const ReportTable& outliers = table_called(tables, "table4-cave-original");
+  const ReportTable& outliers = table_called(tables, "table4-cave-indoor");
   EXPECT_TRUE(outliers.rows.at(0).at(3).best_in_row) << "3.68 of LIO-SAM with loop closure";
 }
 
@@ -87,7 +87,7 @@ TEST(PaperTables, Table3IsDividedByTheHouse) {
 }
 
 TEST(Claims, AllThatFiguresCanJudgeHoldOnThePapersOwn) {
-  for (const Claim& claim : paper_claims(results_of_the_paper(), "original")) {
+  for (const Claim& claim : paper_claims(results_of_the_paper(), "indoor")) {
     if (claim.text.find("memory") != std::string::npos) {
       EXPECT_FALSE(claim.holds) << "there are no measurements over time";
     } else if (claim.text.find("highest drift") != std::string::npos ||
@@ -107,9 +107,9 @@ TEST(Claims, OneContraryFigureOverthrowsAClaimAndMissingRunsLeaveItOpen) {
       r.rpe_cm_per_m = 1.0;  // below FAST-LIO2's 1.61
     }
   }
-  EXPECT_EQ(paper_claims(results, "original").at(0).holds, false);
+  EXPECT_EQ(paper_claims(results, "indoor").at(0).holds, false);
   std::erase_if(results.rows, [](const ResultRow& r) { return r.algorithm != "fast_lio2"; });
-  EXPECT_FALSE(paper_claims(results, "original").at(0).holds)
+  EXPECT_FALSE(paper_claims(results, "indoor").at(0).holds)
       << "there is no other algorithm to compare with";
 }
 
@@ -124,7 +124,7 @@ TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
       r.own_map.reset();
     }
   }
-  const auto claims = paper_claims(results, "original");
+  const auto claims = paper_claims(results, "indoor");
   const auto about = [&](const char* words) {
     return *std::ranges::find_if(
         claims, [&](const Claim& c) { return c.text.find(words) != std::string::npos; });
@@ -138,7 +138,7 @@ TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
   const Claim diverged = about("ten times the outliers");
   EXPECT_FALSE(diverged.holds);
   EXPECT_THAT(diverged.evidence, testing::Each(HasSubstr("ct_icp diverged")));
-  EXPECT_THAT(table_markdown(claims_table(claims, "original")), HasSubstr("cannot be judged"));
+  EXPECT_THAT(table_markdown(claims_table(claims, "indoor")), HasSubstr("cannot be judged"));
 }
 
 TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
@@ -154,7 +154,7 @@ TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
     Results results;
     results.rows.push_back(row("cave", "livox_mid360", "fast_lio2", 1, 1));
     results.rows[0].folder = folder.path();
-    return paper_claims(results, "original").back().holds;
+    return paper_claims(results, "indoor").back().holds;
   };
   EXPECT_EQ(verdict([](int s) { return 2.0 * s; }), true);
   EXPECT_EQ(verdict([](int s) { return s < 5 ? 10.0 * s : 50.0; }), false);
@@ -169,12 +169,12 @@ TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
   results.rows.push_back(row("cave", "livox_mid360", "kiss_icp", 9.0, 9.0));  // without a mode
   const std::vector<ReportTable> tables = timing_tables(results);
   ASSERT_EQ(tables.size(), 3U);
-  const ReportTable& drift = table_called(tables, "modes-drift-cave-original");
+  const ReportTable& drift = table_called(tables, "modes-drift-cave-indoor");
   EXPECT_THAT(drift.head, testing::ElementsAre("sensor, algorithm", "rolling", "frozen"));
   ASSERT_EQ(drift.rows.size(), 1U);
   EXPECT_EQ(drift.rows[0][1].value, 1.0);
   EXPECT_EQ(drift.rows[0][2].value, 5.0);
-  EXPECT_EQ(table_called(tables, "modes-outliers-cave-original").rows[0][2].value, 10.0);
+  EXPECT_EQ(table_called(tables, "modes-outliers-cave-indoor").rows[0][2].value, 10.0);
   EXPECT_TRUE(timing_tables(results_of_the_paper()).empty());
 }
 
@@ -184,7 +184,7 @@ TEST(StudyCells, ACellIsTheMedianOfWhatWentWellAndSaysWhatDidNot) {
     results.rows.push_back(row("cave", "os0", "kiss_icp", static_cast<double>(seed), 0, seed));
   }
   results.rows[3].status = "diverged";
-  const StudyCells cells(results, "original");
+  const StudyCells cells(results, "indoor");
   EXPECT_DOUBLE_EQ(*cells.median("cave", "os0", "kiss_icp", rpe_of), 2.0);
   EXPECT_EQ(cells.status_text("cave", "os0", "kiss_icp"), "1 of 4 diverged");
   EXPECT_FALSE(cells.median("cave", "os0", "ct_icp", rpe_of));
@@ -228,7 +228,7 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
       commands_table(results).rows.at(0).at(1).text,
       HasSubstr("lidarena simulate --world cave --flight cave --sensor livox_mid360 --sensor "
                 "ouster_os0_128 --seed 7 --seconds 20.0 --no-data --out data && lidarena run "
-                "ct_icp data --preset original --sensor livox_mid360"));
+                "ct_icp data --preset indoor --sensor livox_mid360"));
 }
 
 TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
@@ -254,7 +254,7 @@ TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
 ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
                 double p95_ms) {
   ResultRow r = row("mine", sensor, algorithm, 1.0, 0.0);
-  r.preset = "improved";
+  r.preset = "published";
   r.reprojected_map = MapFigures{100, map_rmse_cm, 0, 0, 0, 0.5, std::vector<double>(20, 5.0)};
   r.latency_p95_ms = p95_ms;
   r.own_memory_mb = 30.0;
@@ -323,8 +323,8 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
   results.rows[0].mode = "rolling";
   results.rows[1].mode = "official";
   EXPECT_THAT(variants_of(results),
-              ::testing::ElementsAre("improved-rolling", "improved-official"));
-  const StudyCells cells(results, "improved-official");
+              ::testing::ElementsAre("published-rolling", "published-official"));
+  const StudyCells cells(results, "published-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
 }

@@ -172,7 +172,7 @@ StudySpec small_spec() {
 TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
   const std::vector<PlannedRun> cells = plan(small_spec(), configs());
   ASSERT_EQ(cells.size(), 8U);
-  EXPECT_EQ(cells[0].name, "house-house-s1-livox_mid360-kiss_icp-improved");
+  EXPECT_EQ(cells[0].name, "house-house-s1-livox_mid360-kiss_icp-indoor");
   EXPECT_EQ(cells[1].preset, "head");
   std::set<std::string> names;
   std::set<std::string> datasets;
@@ -334,13 +334,13 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
     const std::filesystem::path out = scratch.path() / study;
     EXPECT_EQ(run_study(spec, configs(), out, {}, log).failed, 0U);
     return dataset::read_json(out /
-                              "runs/house-house-s1-livox_mid360-kiss_icp-improved/metrics.json");
+                              "runs/house-house-s1-livox_mid360-kiss_icp-indoor/metrics.json");
   };
   const Json kept = metrics_of("kept");
   spec.keep_maps = false;
   EXPECT_EQ(metrics_of("not_kept"), kept);
   const std::filesystem::path run =
-      scratch.path() / "not_kept/runs/house-house-s1-livox_mid360-kiss_icp-improved";
+      scratch.path() / "not_kept/runs/house-house-s1-livox_mid360-kiss_icp-indoor";
   for (const auto& entry : std::filesystem::directory_iterator(run)) {
     EXPECT_NE(entry.path().extension(), ".ply") << entry.path();
   }

@@ -125,7 +125,7 @@ TEST_F(Cli, FromAMeshToAScoredMap) {
        {"src='http", "src=\"http", "href='http", "href=\"http", "<script src"}) {
     EXPECT_THAT(page, Not(HasSubstr(reach))) << "the page must not need the network";
   }
-  for (const char* picture : {"world-data", "map-data-livox_mid360-kiss_icp-improved"}) {
+  for (const char* picture : {"world-data", "map-data-livox_mid360-kiss_icp-indoor"}) {
     const std::string svg = content(fs::path(run) / "figures" / (std::string(picture) + ".svg"));
     EXPECT_THAT(svg, AllOf(HasSubstr("<svg xmlns="), HasSubstr("data:image/png;base64,")))
         << picture;

@@ -162,7 +162,7 @@ void write_study(const fs::path& folder) {
                              {"flight", "cave"},
                              {"sensor", "livox_mid360"},
                              {"algorithm", algorithm},
-                             {"preset", "improved"},
+                             {"preset", "indoor"},
                              {"seed", 1}});
     const fs::path run = folder / "runs" / algorithm;
     fs::create_directories(run);
