@@ -27,6 +27,9 @@ NAMES = {
     "lio_sam_lc": "LIO-SAM lc",
     "lio_sam": "LIO-SAM",
     "fast_lio2": "FAST-LIO2",
+    "arena_lo": "arena_lo",
+    "arena_lio": "arena_lio",
+    "arena_slam": "arena_slam",
 }
 OTHER_STUDIES = ("brisk-", "timing-")  # prefixes of other studies' tables
 MARK = re.compile(r"(<!-- tables/(\S+)\.md -->\n).*?(<!-- end -->)", re.DOTALL)
