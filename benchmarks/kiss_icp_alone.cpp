@@ -3,7 +3,7 @@
 // doubles) with as little other code as when the cost of the published program was measured. Under
 // `valgrind --tool=callgrind` the difference of two runs with different numbers of scans gives the
 // instructions per scan; prints the process's peak memory. Usage:
-//   kiss_icp_alone FOLDER SCANS [PRESET]
+//   kiss_icp_alone FOLDER SCANS [published|head|indoor]
 #include <sys/resource.h>
 
 #include <cstdio>
@@ -35,10 +35,16 @@ Scan scan_of(const std::string& file, double begin_s) {
   return scan;
 }
 
+odometry::kiss_icp::Config config_of(const std::string& preset, const LidarInfo& lidar) {
+  if (preset == "published") return odometry::kiss_icp::published(lidar);
+  if (preset == "head") return odometry::kiss_icp::head(lidar);
+  if (preset == "indoor") return odometry::kiss_icp::indoor(lidar);
+  throw InputError("preset", "there is no '" + preset + "'", "use published, head or indoor");
+}
+
 int run(const std::string& folder, int scans, const std::string& preset) {
   const LidarInfo lidar;
-  odometry::kiss_icp::KissIcp odometry(odometry::kiss_icp::preset(preset, lidar), lidar,
-                                       Parallel(1));
+  odometry::kiss_icp::KissIcp odometry(config_of(preset, lidar), lidar, Parallel(1));
   std::ifstream index(folder + "/scans.txt");
   double begin_s = 0.0, end_s = 0.0;
   int number = 0, done = 0;
@@ -61,11 +67,11 @@ int run(const std::string& folder, int scans, const std::string& preset) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "kiss_icp_alone FOLDER SCANS [PRESET]\n");
+    std::fprintf(stderr, "kiss_icp_alone FOLDER SCANS [published|head|indoor]\n");
     return 2;
   }
   try {
-    return lidarena::run(argv[1], std::stoi(argv[2]), argc > 3 ? argv[3] : "improved");
+    return lidarena::run(argv[1], std::stoi(argv[2]), argc > 3 ? argv[3] : "indoor");
   } catch (const std::exception& error) {
     std::fprintf(stderr, "kiss_icp_alone: %s\n", error.what());
     return 2;

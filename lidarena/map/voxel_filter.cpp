@@ -3,9 +3,6 @@
 
 #include <tsl/robin_map.h>
 
-#include <algorithm>
-#include <bit>
-#include <iterator>
 #include <utility>
 
 #include "lidarena/base/error.hpp"
@@ -15,7 +12,7 @@ namespace lidarena::map {
 
 namespace {
 
-/// Finds the points that are the first of their voxels, with a hash table of their indices: open
+/// The points that are the first of their voxels: a hash table of their indices with open
 /// addressing, at most 5/8 full.
 class FirstPoints {
  public:
@@ -31,14 +28,6 @@ class FirstPoints {
 
   /// Indices in the order of the points.
   std::vector<std::uint32_t> take() { return std::move(kept_); }
-  /// Indices in the order of the table: pseudo-random, but the same for the same input.
-  std::vector<std::uint32_t> in_table_order() const {
-    std::vector<std::uint32_t> indices;
-    indices.reserve(kept_.size());
-    std::copy_if(slots_.begin(), slots_.end(), std::back_inserter(indices),
-                 [](std::uint32_t index) { return index != kFree; });
-    return indices;
-  }
 
  private:
   static constexpr std::uint32_t kFree = 0xFFFFFFFFU;
@@ -76,37 +65,6 @@ class FirstPoints {
 std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> points,
                                                double voxel_size, VoxelRounding rounding) {
   return FirstPoints(points, voxel_size, rounding).take();
-}
-
-std::vector<std::uint32_t> downsampled_indices(std::span<const Eigen::Vector3f> points,
-                                               double voxel_size, const Thinning& thinning) {
-  if (thinning.order == ThinningOrder::kMixed)
-    return FirstPoints(points, voxel_size, thinning.rounding).in_table_order();
-  const std::uint32_t y_factor = thinning.order == ThinningOrder::kTeschner ? 19349663U : 19349669U;
-  const auto inverse_size = static_cast<float>(1.0 / voxel_size);
-  // The order of a hash table at least twice as large as its input, with a power of two of slots.
-  // Of points in the same slot, later ones follow.
-  const auto mask = static_cast<std::uint32_t>(std::bit_ceil(2 * points.size() + 1) - 1);
-  const auto slot = [&](std::uint32_t i) {
-    const Eigen::Array<std::uint32_t, 3, 1> voxel =
-        voxel_of(points[i], inverse_size, thinning.rounding).cast<std::uint32_t>();
-    return (voxel.x() * 73856093U ^ voxel.y() * y_factor ^ voxel.z() * 83492791U) & mask;
-  };
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> slots_and_indices;
-  for (const std::uint32_t i : first_of_each_voxel(points, voxel_size, thinning.rounding))
-    slots_and_indices.emplace_back(slot(i), i);
-  std::sort(slots_and_indices.begin(), slots_and_indices.end());
-  std::vector<std::uint32_t> indices;
-  for (const auto& [slot_taken, i] : slots_and_indices) indices.push_back(i);
-  return indices;
-}
-
-std::vector<Eigen::Vector3f> thin(std::span<const Eigen::Vector3f> points, double voxel_size,
-                                  const Thinning& thinning) {
-  std::vector<Eigen::Vector3f> thinned;
-  for (const std::uint32_t i : downsampled_indices(points, voxel_size, thinning))
-    thinned.push_back(points[i]);
-  return thinned;
 }
 
 std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/map/voxel_hash_map.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -73,35 +72,6 @@ void VoxelHashMap::append(Cell& cell, const Eigen::Vector3f& point) {
   }
   cell.points[cell.count++] = point;
   ++size_;
-  if (options_.plane_thinness > 0.0) fit_plane(cell);
-}
-
-void VoxelHashMap::fit_plane(Cell& cell) {
-  constexpr int kMinPlanePoints = 5;      // fewer can lie near a plane by chance
-  constexpr float kLineThinness = 0.02F;  // line: middle below this share of the largest variance
-  if (cell.count < kMinPlanePoints) return;
-  const Eigen::Map<const Eigen::Matrix3Xf> points(cell.points->data(), 3, cell.count);
-  const Eigen::Vector3f mean = points.rowwise().mean();
-  const Eigen::Matrix3Xf centered = points.colwise() - mean;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(centered * centered.transpose());
-  const Eigen::Vector3f& variances = solver.eigenvalues();
-  if (variances[1] < kLineThinness * variances[2]) return release_plane(cell, kDegenerate);
-  if (!(variances[0] < static_cast<float>(options_.plane_thinness) * variances[1]))
-    return release_plane(cell, kNoPlane);
-  if (cell.plane >= kDegenerate && free_planes_.empty()) {
-    cell.plane = static_cast<std::uint32_t>(planes_.size());
-    planes_.emplace_back();
-  } else if (cell.plane >= kDegenerate) {
-    cell.plane = free_planes_.back();
-    free_planes_.pop_back();
-  }
-  planes_[cell.plane] = {mean, solver.eigenvectors().col(0)};
-}
-
-void VoxelHashMap::release_plane(Cell& cell, std::uint32_t instead) {
-  if (cell.plane < kDegenerate) free_planes_.push_back(cell.plane);
-  cell.plane = instead;
 }
 
 void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
@@ -113,14 +83,14 @@ void VoxelHashMap::remove_far(const Eigen::Vector3f& center, double radius) {
       continue;
     }
     blocks_.release(cell.points, cell.level);
-    release_plane(cell, kDegenerate);
     size_ -= cell.count;
     it = cells_.erase(it);
   }
 }
 
-VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float max_distance) const {
-  if (!query.allFinite()) return {};
+std::optional<Neighbor> VoxelHashMap::nearest(const Eigen::Vector3f& query,
+                                              float max_distance) const {
+  if (!query.allFinite()) return std::nullopt;
   const Voxel voxel = cell_of(query);
   const VoxelKey key = voxel_key(voxel);
   // Squared distance along each axis to the cells below, here and above: a cell that begins beyond
@@ -134,9 +104,9 @@ VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float ma
   const auto gap = [&](int axis, int step) {
     return step == 0 ? 0.0F : (step < 0 ? low[axis] : high[axis]);
   };
-  Match best;
+  Neighbor best;
   best.squared_distance = max_distance * max_distance;
-  std::uint32_t plane = kNoPlane;
+  bool found_one = false;
   for (const auto& [dx, dy, dz] : kSteps) {
     if (gap(0, dx) + gap(1, dy) + gap(2, dz) >= best.squared_distance) continue;
     const auto found = cells_.find(key + voxel_key_step(dx, dy, dz));
@@ -145,15 +115,11 @@ VoxelHashMap::Match VoxelHashMap::nearest(const Eigen::Vector3f& query, float ma
     for (std::size_t i = 0; i < cell.count; ++i) {
       const float squared_distance = (cell.points[i] - query).squaredNorm();
       if (squared_distance >= best.squared_distance) continue;
-      best.point = cell.points[i];
-      best.squared_distance = squared_distance;
-      best.found = true;
-      plane = cell.plane;
+      best = {cell.points[i], squared_distance};
+      found_one = true;
     }
   }
-  best.degenerate = options_.plane_thinness > 0.0 && plane == kDegenerate;
-  if (plane < kDegenerate) best.plane = &planes_[plane];
-  return best;
+  return found_one ? std::optional(best) : std::nullopt;
 }
 
 namespace {
@@ -253,8 +219,7 @@ std::vector<Eigen::Vector3f> VoxelHashMap::points() const {
 std::size_t VoxelHashMap::memory_bytes() const {
   // robin_map: one array of buckets, each the value plus 8 bytes of bookkeeping
   constexpr std::size_t kBucketBytes = sizeof(std::pair<VoxelKey, Cell>) + 8;
-  return cells_.bucket_count() * kBucketBytes + blocks_.memory_bytes() +
-         planes_.capacity() * sizeof(Plane) + free_planes_.capacity() * sizeof(std::uint32_t);
+  return cells_.bucket_count() * kBucketBytes + blocks_.memory_bytes();
 }
 
 }  // namespace lidarena::map

@@ -6,6 +6,7 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,22 +26,6 @@ class VoxelHashMap {
     int max_points = 20;       ///< per cell (1..4096); later points are rejected
     double min_spacing = 0.0;  ///< m; points nearer to another one of their cell are rejected
     VoxelRounding rounding = VoxelRounding::kFloor;
-    /// Above 0: a plane is fitted to the points of each cell and kept if the variance (m^2) across
-    /// it is below this share of the middle one of the three variances.
-    double plane_thinness = 0.0;
-  };
-  struct Plane {
-    Eigen::Vector3f mean;    ///< of the cell's points, m
-    Eigen::Vector3f normal;  ///< unit, either sign
-  };
-  /// The nearest point and what its cell looks like.
-  struct Match : Neighbor {
-    bool found = false;
-    const Plane* plane = nullptr;  ///< of the point's cell; null if it is not flat
-    /// Only with plane fitting: the cell of the point has fewer than five points, or they lie on a
-    /// line, so that they show the scan pattern rather than a surface.
-    bool degenerate = false;
-    explicit operator bool() const { return found; }
   };
 
   /// Throws InputError on invalid options.
@@ -56,7 +41,7 @@ class VoxelHashMap {
 
   /// Nearest point to `query` in its cell and the 26 around it, nearer than `max_distance` (m): the
   /// nearest of the whole map if that is at most `voxel_size` away.
-  Match nearest(const Eigen::Vector3f& query, float max_distance) const;
+  std::optional<Neighbor> nearest(const Eigen::Vector3f& query, float max_distance) const;
 
   /// Writes the points nearest to `query`, nearer than `radius` (m), to `out`, at most as many as
   /// it holds, not sorted but in the same order for the same map; returns how many were found.
@@ -71,22 +56,15 @@ class VoxelHashMap {
   std::size_t memory_bytes() const;
 
  private:
-  static constexpr std::uint32_t kNoPlane = 0xFFFFFFFFU;
-  static constexpr std::uint32_t kDegenerate = 0xFFFFFFFEU;  ///< no plane, see Neighbor
   struct Cell {
     Eigen::Vector3f* points = nullptr;
     std::uint16_t count = 0;
-    std::uint8_t level = 0;             ///< of the block, see PointBlocks
-    std::uint32_t plane = kDegenerate;  ///< index in planes_, kNoPlane or kDegenerate
+    std::uint8_t level = 0;  ///< of the block, see PointBlocks
   };
 
   Voxel cell_of(const Eigen::Vector3f& point) const {
     return voxel_of(point, inverse_size_, options_.rounding);
   }
-  /// Fits the plane of the cell to its present points.
-  void fit_plane(Cell& cell);
-  /// Removes the plane of the cell, if any; `instead` is kNoPlane or kDegenerate.
-  void release_plane(Cell& cell, std::uint32_t instead);
   void append(Cell& cell, const Eigen::Vector3f& point);
 
   Options options_;
@@ -95,8 +73,6 @@ class VoxelHashMap {
   float squared_spacing_;
   tsl::robin_map<VoxelKey, Cell, VoxelKeyHash> cells_;
   PointBlocks blocks_;
-  std::vector<Plane> planes_;
-  std::vector<std::uint32_t> free_planes_;
   std::size_t size_ = 0;
 };
 

@@ -8,7 +8,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <set>
 
 #include "lidarena/base/error.hpp"
@@ -47,10 +46,6 @@ Points first_ones(const Points& points, double size) {
     if (seen.insert(cell_of(p, size)).second) kept.push_back(p);
   }
   return kept;
-}
-
-bool before(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
-  return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
 }
 
 TEST(PointMap, KeepsTheFirstPointOfEachVoxelInTheOrderTheyCame) {
@@ -126,63 +121,12 @@ TEST(VoxelFilter, IndicesNameTheFirstPointOfEachVoxel) {
   EXPECT_EQ(kept, first_ones(points, 0.5));
 }
 
-TEST(VoxelFilter, ThinningKeepsTheSamePointsInAnOrderOfItsOwn) {
-  const Points points = random_points(5000, 3.0);
-  Points expected = first_ones(points, 0.5);
-  Points thinned = thin(points, 0.5);
-  EXPECT_EQ(thinned, thin(points, 0.5)) << "the order must depend only on the input";
-  EXPECT_NE(thinned, expected) << "the order must not be that of the input";
-  std::sort(expected.begin(), expected.end(), before);
-  std::sort(thinned.begin(), thinned.end(), before);
-  EXPECT_EQ(thinned, expected);
-}
-
-/// Reference: a hash table in which each point takes the first free slot from its own on.
-Points in_slots(const Points& points, double size, std::uint32_t y_factor, std::size_t slot_count) {
-  std::map<std::size_t, Eigen::Vector3f> slots;
-  for (const auto& p : points) {
-    const Cell cell = cell_of(p, size);
-    const auto hash = static_cast<std::uint32_t>(cell[0]) * 73856093U ^
-                      static_cast<std::uint32_t>(cell[1]) * y_factor ^
-                      static_cast<std::uint32_t>(cell[2]) * 83492791U;
-    std::size_t slot = hash % slot_count * 1000;  // room for 1000 points with the same slot
-    while (slots.contains(slot)) ++slot;
-    slots[slot] = p;
-  }
-  Points ordered;
-  for (const auto& [slot, p] : slots) ordered.push_back(p);
-  return ordered;
-}
-
-TEST(VoxelFilter, ThinnedPointsStandInTheOrderOfTheHashTheyAreToldToHave) {
-  const Points points = random_points(5000, 3.0);
-  const Points first = first_ones(points, 0.5);
-  constexpr std::size_t kSlots = 16384;  // the power of two above twice 5000
-  EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschner}),
-            in_slots(first, 0.5, 19349663U, kSlots));
-  EXPECT_EQ(thin(points, 0.5, {VoxelRounding::kFloor, ThinningOrder::kTeschnerPrime}),
-            in_slots(first, 0.5, 19349669U, kSlots));
-}
-
 TEST(VoxelFilter, RoundedTowardsZeroTheCellAroundTheOriginIsTwiceAsWide) {
   const Points points{{-0.4F, 0.1F, 0.1F}, {0.4F, 0.1F, 0.1F},  {0.4F, -0.3F, -0.4F},
                       {0.6F, 0.1F, 0.1F},  {-0.6F, 0.1F, 0.1F}, {-0.9F, 0.2F, 0.2F}};
   EXPECT_EQ(first_of_each_voxel(points, 0.5, VoxelRounding::kTruncate),
             (std::vector<std::uint32_t>{0, 3, 4}));
   EXPECT_EQ(first_of_each_voxel(points, 0.5), (std::vector<std::uint32_t>{0, 1, 2, 3, 4}));
-}
-
-TEST(VoxelFilter, ASecondPassTakesItsPointsFromTheWholeScan) {
-  // A line of points 1 cm apart is a scan in order of time. In each 1.5 m cell, one of 3 points
-  // remains (0.5 m cells); if taken in input order, it would always be the first.
-  Points line;
-  for (int i = 0; i < 150000; ++i) line.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
-  const Points twice = thin(thin(line, 0.5), 1.5);
-  ASSERT_EQ(twice.size(), 1000U);
-  std::array<int, 3> thirds{};
-  for (const auto& p : twice) ++thirds[static_cast<std::size_t>(std::fmod(p.x(), 1.5F) / 0.499F)];
-  // 1000 draws among 3: 333 each, standard deviation 15; 5 sigma
-  for (const int count : thirds) EXPECT_NEAR(count, 333, 75);
 }
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/kiss_icp/adaptive_threshold.hpp"
 
-#include <algorithm>
 #include <cmath>
 
 #include "lidarena/base/so3.hpp"
@@ -13,34 +12,24 @@ double displacement(const Pose& error, double range) {
 }
 
 AdaptiveThreshold::AdaptiveThreshold(const Config& config)
-    : initial_(config.initial_threshold_m),
+    : release_(config.release),
+      initial_(config.initial_threshold_m),
       min_motion_(config.min_motion_m),
       range_(config.max_range_m),
-      start_(config.threshold_start),
-      lever_(config.threshold_lever),
-      kept_(config.threshold_memory ? std::exp(-1.0 / *config.threshold_memory) : 1.0) {
-  if (start_ == ThresholdStart::kUntilMoved) return;
-  squared_sum_ = initial_ * initial_;
-  count_ = 1.0;
-}
+      counting_(counts_errors_at(release_, Pose::Identity(), min_motion_)),
+      count_(initial_samples(release_)),
+      squared_sum_(count_ * initial_ * initial_) {}
 
 double AdaptiveThreshold::sigma() const {
-  const bool initial = count_ == 0.0 || (start_ == ThresholdStart::kUntilMoved && !moved_);
-  return initial ? initial_ : std::sqrt(squared_sum_ / count_);
+  return counting_ && count_ > 0.0 ? std::sqrt(squared_sum_ / count_) : initial_;
 }
 
-void AdaptiveThreshold::observe(const Pose& prediction, const Pose& estimate, double mean_range) {
-  constexpr double kMotionsToMove = 5.0;  // the 2023 program's constant
-  moved_ = moved_ || estimate.translation().norm() > kMotionsToMove * min_motion_;
-  const double lever = lever_ == ThresholdLever::kMeanRange ? mean_range : range_;
-  double deviation = displacement(prediction.inverse() * estimate, lever);
-  // With a memory, small errors must count too; otherwise slow motion would never reduce sigma.
-  if (kept_ < 1.0)
-    deviation = std::max(deviation, min_motion_);
-  else if (!(deviation > min_motion_))
-    return;
-  squared_sum_ = kept_ * squared_sum_ + deviation * deviation;
-  count_ = kept_ * count_ + 1.0;
+void AdaptiveThreshold::observe(const Pose& prediction, const Pose& estimate) {
+  counting_ = counts_errors_at(release_, estimate, min_motion_);
+  const double deviation = displacement(prediction.inverse() * estimate, range_);
+  if (!counting_ || !(deviation > min_motion_)) return;
+  squared_sum_ += deviation * deviation;
+  count_ += 1.0;
 }
 
 }  // namespace lidarena::odometry::kiss_icp

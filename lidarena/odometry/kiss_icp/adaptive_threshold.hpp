@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstddef>
-
 #include "lidarena/base/pose.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
 
@@ -19,19 +17,17 @@ class AdaptiveThreshold {
   explicit AdaptiveThreshold(const Config& config);
 
   double sigma() const;
-  /// `prediction` and `estimate` of the same pose; `mean_range` (m) of the keypoints.
-  void observe(const Pose& prediction, const Pose& estimate, double mean_range);
+  /// `prediction` and `estimate` of the same pose, map_from_lidar.
+  void observe(const Pose& prediction, const Pose& estimate);
 
  private:
+  Release release_;
   double initial_;
   double min_motion_;
   double range_;
-  ThresholdStart start_;
-  ThresholdLever lever_;
-  double kept_;         ///< factor on the sums at each new error
-  bool moved_ = false;  ///< has been more than 5 minimum motions from the start
-  double squared_sum_ = 0.0;
-  double count_ = 0.0;
+  bool counting_;       ///< at the last pose
+  double count_;        ///< of errors
+  double squared_sum_;  ///< of errors, m^2
 };
 
 }  // namespace lidarena::odometry::kiss_icp

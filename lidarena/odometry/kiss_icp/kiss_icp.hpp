@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -15,9 +14,8 @@
 
 namespace lidarena::odometry::kiss_icp {
 
-/// LiDAR odometry by scan-to-map ICP with an adaptive search radius, after Vizzo, Guadagnino,
-/// Mersch, Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md in this
-/// folder.
+/// LiDAR odometry by scan-to-map ICP with an adaptive search radius: Vizzo, Guadagnino, Mersch,
+/// Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md in this folder.
 class KissIcp : public Odometry {
  public:
   KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
@@ -30,22 +28,15 @@ class KissIcp : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Registers a part of a scan and appends its points to `registered_scan_`.
-  ScanResult register_slice(const Scan& slice);
-  /// Calls register_points from the predicted pose. With redeskew_first_scan, the second scan first
-  /// replaces the first one in the map by its de-skewed points.
-  Registration registered(const TimedPoints& keypoints, const PreviousPose& previous_pose,
-                          const Pose& guess);
-  Time reference_of(const estimation::ScanTimes& times) const {
-    return pose_time(times, config_.pose_instant);
-  }
-  /// The previous pose of the lidar, with the twist `before` up to it.
-  PreviousPose previous_pose(const estimation::ScanTimes& times, const se3::Vector6& before) const;
-  /// Predicted motion of the lidar since the previous pose, with constant velocity.
-  Pose predicted_motion(const estimation::ScanTimes& times) const;
+  /// The scan's points within the range gate, in the lidar's frame at `instant`, for a lidar that
+  /// moves with `twist`.
+  Points preprocess(const Scan& scan, const estimation::ScanTimes& times, const se3::Vector6& twist,
+                    Time instant) const;
+  /// Whether the published program would de-skew this scan.
+  bool deskews(const Scan& scan) const;
   ScanStatus status_of(const Registration& registration, std::size_t points) const;
-  /// Stores the scan's pose and the motion up to it.
-  void advance(const Pose& pose, const estimation::ScanTimes& times, ScanStatus status);
+  /// Adds the scan to the map and stores its pose and the motion up to it.
+  void advance(const Pose& pose, const Points& map_points, const estimation::ScanTimes& times);
   /// Poses of the body within the scan, as used for de-skewing; empty if it was not de-skewed.
   std::vector<StampedPose> motion_within(const estimation::ScanTimes& times,
                                          const se3::Vector6& twist) const;
@@ -55,19 +46,14 @@ class KissIcp : public Odometry {
   Config config_;
   Pose body_from_lidar_;
   Parallel parallel_;
-  map::VoxelHashMap map_;     ///< in the lidar's frame at its first pose
-  TimedPoints first_points_;  ///< of the first scan, kept until the second one de-skews it
+  map::VoxelHashMap map_;  ///< in the lidar's frame at its first pose
   AdaptiveThreshold threshold_;
-  double scan_motion_share_ =
-      0.0;  ///< the configured value, 0 during the first initial_scans scans
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< of the lidar, between the last two scans
-  double motion_seconds_;           ///< duration of motion_
-  std::optional<Time> instant_;     ///< of the last pose
   Time scan_duration_;              ///< of the last scan that had times
   std::vector<StampedPose> poses_;  ///< of the body
-  std::vector<Eigen::Vector3f> registered_scan_;
+  Points registered_scan_;
 };
 
 }  // namespace lidarena::odometry::kiss_icp
