@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Minimizes the same cost as elastic_alignment.cpp; the prior is written a second time, for
-// automatic differentiation.
+#include "tests/estimation/elastic_oracle.hpp"
+
 #include <ceres/ceres.h>
 #include <ceres/rotation.h>
 
 #include <array>
-#include <memory>
-#include <utility>
+#include <cmath>
 #include <vector>
 
-#include "lidarena/base/so3.hpp"
-#include "lidarena/estimation/elastic_alignment.hpp"
-
-namespace lidarena::estimation {
+namespace lidarena::estimation::oracle {
 
 namespace {
 
@@ -33,7 +29,6 @@ template <class T>
 Vector3<T> position_of(const T* knot) {
   return Eigen::Map<const Vector3<T>>(knot + 4);
 }
-
 template <class T>
 Vector3<T> rotation_vector(const Quaternion<T>& q) {
   const std::array<T, 4> wxyz{q.w(), q.x(), q.y(), q.z()};
@@ -45,108 +40,45 @@ template <class T>
 Vector3<T> rotation_between(const T* from, const T* to) {
   return rotation_vector<T>(rotation_of(to) * rotation_of(from).conjugate());
 }
-template <class T>
-bool put(double weight, const Vector3<T>& error, T* residual) {
-  Eigen::Map<Vector3<T>>{residual} = T(weight) * error;
-  return true;
-}
 
-/// A point's error, with the analytic derivative of ElasticSegment: automatic differentiation takes
-/// ten times as long.
-template <int kRows>
-class MatchCost : public ceres::SizedCostFunction<kRows, kKnot, kKnot> {
- public:
-  /// `a`: position in the segment, 0 to 1.
-  MatchCost(const ElasticMatch& match, double a) : match_(match), a_(a) {}
+struct MatchError {
+  ElasticMatch match;
+  double a;  ///< position in the segment, 0 to 1
 
-  bool Evaluate(double const* const* knots, double* residual, double** jacobians) const override {
-    const ElasticSegment segment(pose_of(knots[0]), pose_of(knots[1]));
-    const Eigen::Vector3d gap = segment.place(match_.point, a_) - match_.anchor;
-    for (int r = 0; r < kRows; ++r) {
-      const Eigen::Vector3d direction = match_.weight * match_.shape.row(r);
-      residual[r] = direction.dot(gap);
-      if (jacobians == nullptr) continue;
-      const auto row = segment.row(match_.point, a_, direction);
-      for (int k = 0; k < 2; ++k) {
-        if (jacobians[k] == nullptr) continue;
-        Eigen::Map<Eigen::RowVector4d>(jacobians[k] + r * kKnot) =
-            by_quaternion(row.segment<3>(6 * k + 3), knots[k]);
-        Eigen::Map<Eigen::RowVector3d>(jacobians[k] + r * kKnot + 4) = row.segment<3>(6 * k);
-      }
-    }
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    const Vector3<T> turn = T(a) * rotation_between(from, to);
+    const Vector3<T> start = rotation_of(from) * match.point.cast<T>().eval();
+    Vector3<T> rotated;
+    ceres::AngleAxisRotatePoint(turn.data(), start.data(), rotated.data());
+    const Vector3<T> position =
+        rotated + position_of(from) + T(a) * (position_of(to) - position_of(from));
+    residual[0] = T(match.weight) * match.normal.cast<T>().dot(position - match.anchor.cast<T>());
     return true;
   }
-
- private:
-  static Pose pose_of(const double* knot) {
-    return make_pose(rotation_of(knot).toRotationMatrix(), Eigen::Vector3d(position_of(knot)));
-  }
-  /// Converts a derivative with respect to a rotation vector on the left to one with respect to x y
-  /// z w. The manifold's increment d maps q to the product (d, 1) q, which rotates by 2 d; its
-  /// derivative G has orthonormal columns.
-  static Eigen::RowVector4d by_quaternion(const Eigen::RowVector3d& by_rotation,
-                                          const double* knot) {
-    const Eigen::Vector3d v(knot[0], knot[1], knot[2]);
-    Eigen::Matrix<double, 4, 3> g;
-    g << knot[3] * Eigen::Matrix3d::Identity() - so3::hat(v), -v.transpose();
-    return 2.0 * by_rotation * g.transpose();
-  }
-
-  const ElasticMatch& match_;
-  double a_;
 };
 
-struct LocationCost {
+/// A term of the prior: `error` makes three residuals of one, two or three knots.
+template <class Error>
+struct PriorError {
   double weight;
-  Eigen::Vector3d expected;
+  Error error;
   template <class T>
-  bool operator()(const T* knot, T* residual) const {
-    return put<T>(weight, position_of(knot) - expected.cast<T>(), residual);
+  bool operator()(const T* a, T* residual) const {
+    return put<T>(std::array{a}, residual);
   }
-};
-
-struct OrientationCost {
-  double weight;
-  Eigen::Quaterniond expected;
   template <class T>
-  bool operator()(const T* knot, T* residual) const {
-    return put<T>(weight, rotation_vector<T>(rotation_of(knot) * expected.conjugate().cast<T>()),
-                  residual);
+  bool operator()(const T* a, const T* b, T* residual) const {
+    return put<T>(std::array{a, b}, residual);
   }
-};
-
-struct StepCost {
-  double weight;
-  Eigen::Vector3d expected;
   template <class T>
-  bool operator()(const T* from, const T* to, T* residual) const {
-    return put<T>(weight, position_of(to) - position_of(from) - expected.cast<T>(), residual);
+  bool operator()(const T* a, const T* b, const T* c, T* residual) const {
+    return put<T>(std::array{a, b, c}, residual);
   }
-};
-
-struct RotationCost {
-  double weight;
-  Eigen::Vector3d expected;
-  template <class T>
-  bool operator()(const T* from, const T* to, T* residual) const {
-    return put<T>(weight, rotation_between(from, to) - expected.cast<T>(), residual);
-  }
-};
-
-struct BendCost {
-  double weight;
-  template <class T>
-  bool operator()(const T* before, const T* here, const T* after, T* residual) const {
-    return put<T>(weight, position_of(before) - T(2.0) * position_of(here) + position_of(after),
-                  residual);
-  }
-};
-
-struct AngularBendCost {
-  double weight;
-  template <class T>
-  bool operator()(const T* before, const T* here, const T* after, T* residual) const {
-    return put<T>(weight, rotation_between(here, after) - rotation_between(before, here), residual);
+  template <class T, std::size_t N>
+  bool put(const std::array<const T*, N>& knots, T* residual) const {
+    Eigen::Map<Vector3<T>>{residual} = T(weight) * error(knots.data());
+    return true;
   }
 };
 
@@ -154,12 +86,10 @@ struct AngularBendCost {
 class Adjustment {
  public:
   Adjustment(const ElasticProblem& problem, std::vector<Knot>& knots)
-      : problem_(problem),
-        knots_(knots),
-        manifold_(ceres::EigenQuaternionManifold{}, ceres::EuclideanManifold<3>{}),
-        loss_(make_ceres_loss(problem.kernel, problem.kernel_scale)),
-        adjustment_(options()) {
-    for (Knot& knot : knots_) adjustment_.AddParameterBlock(knot.data(), kKnot, &manifold_);
+      : problem_(problem), knots_(knots) {
+    using Manifold =
+        ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>>;
+    for (Knot& knot : knots_) adjustment_.AddParameterBlock(knot.data(), kKnot, new Manifold);
     for (const ElasticMatch& match : problem_.matches) add(match);
     add_prior();
   }
@@ -167,7 +97,7 @@ class Adjustment {
   void solve(int iterations) {
     ceres::Solver::Options options;
     options.max_num_iterations = iterations;
-    options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    options.linear_solver_type = ceres::DENSE_QR;
     options.num_threads = 1;
     options.logging_type = ceres::SILENT;
     ceres::Solver::Summary summary;
@@ -175,52 +105,90 @@ class Adjustment {
   }
 
  private:
-  static ceres::Problem::Options options() {
-    ceres::Problem::Options options;
-    options.manifold_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    return options;
-  }
-
   void add(const ElasticMatch& match) {
     const double position = match.alpha * static_cast<double>(knots_.size() - 1);
     const std::size_t first = std::min(static_cast<std::size_t>(position), knots_.size() - 2);
     const double a = position - static_cast<double>(first);
-    ceres::CostFunction* cost = nullptr;
-    if (match.rows == 1) cost = new MatchCost<1>(match, a);
-    if (match.rows == 3) cost = new MatchCost<3>(match, a);
-    adjustment_.AddResidualBlock(cost, loss_.get(), knots_[first].data(), knots_[first + 1].data());
+    adjustment_.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<MatchError, 1, kKnot, kKnot>(new MatchError{match, a}),
+        new ceres::CauchyLoss(problem_.kernel_scale), knots_[first].data(),
+        knots_[first + 1].data());
   }
 
   /// Adds one term of the prior over the knots with these indices, unless its weight is zero.
-  template <class Cost, class... Blocks>
-  void add_term(double weight, Cost cost, Blocks... knots) {
+  template <class Error, class... Indices>
+  void add_term(double weight, Error error, Indices... indices) {
     if (!(weight > 0.0)) return;
-    cost.weight = std::sqrt(weight * static_cast<double>(problem_.matches.size()));
-    using Function = ceres::AutoDiffCostFunction<Cost, 3, ((void)sizeof(Blocks), kKnot)...>;
-    adjustment_.AddResidualBlock(new Function(new Cost(cost)), nullptr, knots_[knots].data()...);
+    const double root = std::sqrt(weight * static_cast<double>(problem_.matches.size()));
+    using Term = PriorError<Error>;
+    using Function = ceres::AutoDiffCostFunction<Term, 3, ((void)sizeof(Indices), kKnot)...>;
+    adjustment_.AddResidualBlock(new Function(new Term{root, error}), nullptr,
+                                 knots_[indices].data()...);
   }
 
   void add_prior() {
     const MotionPrior& prior = problem_.prior;
-    const std::size_t first = 0;
     const std::size_t last = knots_.size() - 1;
-    add_term(prior.location, LocationCost{0.0, prior.begin.translation()}, first);
-    add_term(prior.orientation, OrientationCost{0.0, Eigen::Quaterniond(prior.begin.linear())},
-             first);
-    add_term(prior.velocity, StepCost{0.0, prior.step}, first, last);
-    add_term(prior.small_velocity, StepCost{0.0, Eigen::Vector3d::Zero()}, first, last);
-    add_term(prior.angular_velocity, RotationCost{0.0, prior.turn}, first, last);
-    for (std::size_t i = 1; i < last; ++i) {
-      add_term(prior.velocity_change, BendCost{0.0}, i - 1, i, i + 1);
-      add_term(prior.angular_velocity_change, AngularBendCost{0.0}, i - 1, i, i + 1);
-    }
+    const Eigen::Vector3d begin = prior.begin.translation();
+    const Eigen::Quaterniond q_begin(prior.begin.linear());
+    const std::size_t first = 0;
+    add_term(
+        prior.location,
+        [begin](const auto* knots) {
+          return (position_of(knots[0]) - begin.cast<std::decay_t<decltype(*knots[0])>>()).eval();
+        },
+        first);
+    add_term(
+        prior.orientation,
+        [q_begin](const auto* knots) {
+          using T = std::decay_t<decltype(*knots[0])>;
+          return rotation_vector<T>(rotation_of(knots[0]) * q_begin.conjugate().cast<T>());
+        },
+        first);
+    add_term(
+        prior.alignment,
+        [q_begin](const auto* knots) {
+          using T = std::decay_t<decltype(*knots[0])>;
+          const T dot = rotation_of(knots[0]).dot(q_begin.cast<T>());
+          return Vector3<T>(T(1.0) - dot * dot, T(0.0), T(0.0));
+        },
+        first);
+    add_step(prior.velocity, prior.step, last);
+    add_step(prior.small_velocity, Eigen::Vector3d::Zero(), last);
+    for (std::size_t i = 1; i < last; ++i) add_bends(i);
+  }
+
+  void add_step(double weight, const Eigen::Vector3d& expected, std::size_t last) {
+    const std::size_t first = 0;
+    add_term(
+        weight,
+        [expected](const auto* knots) {
+          using T = std::decay_t<decltype(*knots[0])>;
+          return (position_of(knots[1]) - position_of(knots[0]) - expected.cast<T>()).eval();
+        },
+        first, last);
+  }
+
+  void add_bends(std::size_t i) {
+    add_term(
+        problem_.prior.velocity_change,
+        [](const auto* knots) {
+          using T = std::decay_t<decltype(*knots[0])>;
+          return (position_of(knots[0]) - T(2.0) * position_of(knots[1]) + position_of(knots[2]))
+              .eval();
+        },
+        i - 1, i, i + 1);
+    add_term(
+        problem_.prior.angular_velocity_change,
+        [](const auto* knots) {
+          return (rotation_between(knots[1], knots[2]) - rotation_between(knots[0], knots[1]))
+              .eval();
+        },
+        i - 1, i, i + 1);
   }
 
   const ElasticProblem& problem_;
   std::vector<Knot>& knots_;
-  ceres::ProductManifold<ceres::EigenQuaternionManifold, ceres::EuclideanManifold<3>> manifold_;
-  std::unique_ptr<ceres::LossFunction> loss_;
   ceres::Problem adjustment_;
 };
 
@@ -234,7 +202,6 @@ Knot knot_of(const Pose& pose) {
 }  // namespace
 
 ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion, int iterations) {
-  if (problem.matches.empty()) return motion;
   std::vector<Knot> knots;
   for (const Pose& pose : motion.knots) knots.push_back(knot_of(pose));
   Adjustment(problem, knots).solve(iterations);
@@ -244,4 +211,4 @@ ElasticMotion align_by_ceres(const ElasticProblem& problem, ElasticMotion motion
   return motion;
 }
 
-}  // namespace lidarena::estimation
+}  // namespace lidarena::estimation::oracle
