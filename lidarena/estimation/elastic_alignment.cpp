@@ -16,14 +16,13 @@ namespace lidarena::estimation {
 
 namespace {
 
-// Gauss-Newton: this share of the largest diagonal element is added to all. It is far above
-// rounding, so that directions without information from matches stay unchanged, and far below the
-// information of any match.
+// This share of the largest diagonal element is added to all. It is far above rounding, so that
+// directions without information from matches stay unchanged, and far below the information of any
+// match.
 constexpr double kDamping = 1e-10;
 
 // Levenberg-Marquardt, with the usual constants of such solvers (the same as Ceres has):
 constexpr double kInitialDamping = 1e-4;  // share of a parameter's curvature
-constexpr double kMinCurvature = 1e-6;    // counts as the curvature of a parameter without any
 constexpr double kMinQuality = 1e-3;  // a step that gains a smaller share of its prediction fails
 constexpr double kMinGain = 1e-6;     // share of the cost; the search ends below
 constexpr double kMinStep = 1e-8;     // m and rad, norm of the whole step; likewise
@@ -182,6 +181,19 @@ Linearization linearized(const ElasticProblem& problem, const ElasticMotion& mot
   return {std::move(hessian), std::move(gradient)};
 }
 
+/// The step to the minimum, where `damping` of each parameter's curvature is added to it.
+Eigen::VectorXd step_of(const Linearization& equations, double damping) {
+  Eigen::MatrixXd hessian = equations.hessian;
+  const double least = kDamping * hessian.diagonal().maxCoeff();
+  hessian.diagonal() *= 1.0 + damping;
+  hessian.diagonal().array() += least;
+  return -hessian.ldlt().solve(equations.gradient);
+}
+
+double predicted_gain(const Linearization& equations, const Eigen::VectorXd& step) {
+  return -step.dot(equations.gradient) - 0.5 * step.dot(equations.hessian * step);
+}
+
 void apply(const Eigen::VectorXd& step, ElasticMotion& motion) {
   for (std::size_t i = 0; i < motion.knots.size(); ++i) {
     const auto first = static_cast<Eigen::Index>(6 * i);
@@ -219,9 +231,7 @@ double cost_of(const ElasticProblem& problem, const ElasticMotion& motion) {
 
 ElasticMotion gauss_newton_step(const ElasticProblem& problem, ElasticMotion motion,
                                 const Parallel& parallel) {
-  auto [hessian, gradient] = linearized(problem, motion, parallel);
-  hessian.diagonal().array() += kDamping * hessian.diagonal().maxCoeff();
-  apply(-hessian.ldlt().solve(gradient), motion);
+  apply(step_of(linearized(problem, motion, parallel), 0.0), motion);
   return motion;
 }
 
@@ -231,16 +241,14 @@ ElasticMotion align_by_levenberg_marquardt(const ElasticProblem& problem, Elasti
   double damping_growth = 2.0;
   double cost = cost_of(problem, motion);
   for (int i = 0; i < iterations; ++i) {
-    const auto [hessian, gradient] = linearized(problem, motion, parallel);
-    Eigen::MatrixXd damped = hessian;
-    damped.diagonal() += damping * hessian.diagonal().cwiseMax(kMinCurvature);
-    const Eigen::VectorXd step = -damped.ldlt().solve(gradient);
+    const Linearization equations = linearized(problem, motion, parallel);
+    const Eigen::VectorXd step = step_of(equations, damping);
     if (!(step.norm() > kMinStep)) break;
     ElasticMotion candidate = motion;
     apply(step, candidate);
     const double gain = cost - cost_of(problem, candidate);
     if (std::abs(gain) <= kMinGain * cost) break;
-    const double quality = gain / (-step.dot(gradient) - 0.5 * step.dot(hessian * step));
+    const double quality = gain / predicted_gain(equations, step);
     if (quality > kMinQuality) {
       motion = std::move(candidate);
       cost -= gain;
