@@ -18,7 +18,7 @@ TEST(CtIcpSampling, CellsAboutZeroAreTwiceAsWide) {
 std::vector<TimedPoint> combs() {
   std::vector<TimedPoint> points;
   for (const float range : {0.3F, 1.5F, 3.0F, 6.0F, 12.0F, 100.0F, 300.0F}) {
-    const float low = range < 2.0F ? 0.105F : 1.605F;
+    const float low = range < 2.0F ? 0.005F : 1.605F;
     for (int i = 0; i < 32; ++i)
       points.push_back({{range, 0.05F, low + 0.01F * static_cast<float>(i)}, 0.0F});
   }
@@ -52,7 +52,7 @@ TEST(CtIcpSampling, TheGridHasCellsOfItsOwnForTheFirstScans) {
   config.keypoints = KeypointSampling::kGrid;
   config.keypoint_voxel_size_m = 1.0;
   config.initial_keypoint_voxel_size_m = 0.1;
-  // 1.605 to 1.915 m: one cell of 1 m, four of 0.1 m; nearer ones from 0.105 to 0.415 likewise
+  // 1.605 to 1.915 m: one cell of 1 m, four of 0.1 m; nearer ones from 0.005 to 0.315 likewise
   EXPECT_EQ(sample_keypoints(combs(), config, false).size(), 7U);
   EXPECT_EQ(sample_keypoints(combs(), config, true).size(), 28U);
   config.keypoints = KeypointSampling::kAll;
