@@ -2,7 +2,10 @@
 #include "lidarena/estimation/elastic_alignment.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/so3.hpp"
@@ -13,11 +16,16 @@ namespace lidarena::estimation {
 
 namespace {
 
-constexpr double kConverged = 1e-9;  // m and rad, norm of the whole step
-// Damping: this share of the largest diagonal element is added to all. It is far above rounding, so
-// that directions without information from matches stay unchanged, and far below the information of
-// any match.
+// This share of the largest diagonal element is added to all. It is far above rounding, so that
+// directions without information from matches stay unchanged, and far below the information of any
+// match.
 constexpr double kDamping = 1e-10;
+
+// Levenberg-Marquardt, with the usual constants of such solvers (the same as Ceres has):
+constexpr double kInitialDamping = 1e-4;  // share of a parameter's curvature
+constexpr double kMinQuality = 1e-3;  // a step that gains a smaller share of its prediction fails
+constexpr double kMinGain = 1e-6;     // share of the cost; the search ends below
+constexpr double kMinStep = 1e-8;     // m and rad, norm of the whole step; likewise
 
 /// Normal equations of the knots of a motion, kept per segment.
 struct MotionEquations {
@@ -34,17 +42,13 @@ void add_match(const ElasticProblem& problem, const ElasticTrack& track, const E
   const auto [index, a] = track.locate(match.alpha);
   const ElasticSegment& segment = track.segment(index);
   const Eigen::Vector3d gap = segment.place(match.point, a) - match.anchor;
-  const auto shape = match.shape.topRows(match.rows);
+  const double distance = match.normal.dot(gap);
   const double squared_weight = match.weight * match.weight;
-  const double squared_error = squared_weight * (shape * gap).squaredNorm();
+  const double squared_error = squared_weight * (distance * distance);
   const double weight =
-      squared_weight * robust_weight(problem.kernel, squared_error, problem.kernel_scale);
-  for (int r = 0; r < match.rows; ++r) {
-    const Eigen::Vector3d direction = shape.row(r);
-    const auto row = problem.exact_slerp ? segment.row(match.point, a, direction)
-                                         : segment.first_order_row(match.point, a, direction);
-    equations.segments[index].add<1>(row, Eigen::Matrix<double, 1, 1>(direction.dot(gap)), weight);
-  }
+      squared_weight * robust_weight(RobustKernel::kCauchy, squared_error, problem.kernel_scale);
+  const ElasticSegment::Row row = segment.row(match.point, a, match.normal);
+  equations.segments[index].add<1>(row, Eigen::Matrix<double, 1, 1>(distance), weight);
 }
 
 MotionEquations equations_of(const ElasticProblem& problem, const ElasticTrack& track,
@@ -94,14 +98,9 @@ class PriorTerms {
       const RelativeRotation turn = rotation_between(prior.begin, begin);
       rotation(0, turn.by_to, open(prior.orientation, turn.vector));
     }
+    if (prior.alignment > 0.0) add_alignment(prior);
     if (prior.velocity > 0.0) add_step(open(prior.velocity, step - prior.step));
     if (prior.small_velocity > 0.0) add_step(open(prior.small_velocity, step));
-    if (prior.angular_velocity > 0.0) {
-      const RelativeRotation turn = rotation_between(begin, motion.end());
-      PriorTerm& term = open(prior.angular_velocity, turn.vector - prior.turn);
-      rotation(0, turn.by_from, term);
-      rotation(last_, turn.by_to, term);
-    }
     for (Eigen::Index i = 1; i < last_; ++i) add_bends(prior, i);
   }
   const std::vector<PriorTerm>& terms() const { return terms_; }
@@ -121,6 +120,15 @@ class PriorTerms {
   void add_step(PriorTerm& term) const {
     position(0, -1.0, term);
     position(last_, 1.0, term);
+  }
+  void add_alignment(const MotionPrior& prior) {
+    const Eigen::Vector3d turn = rotation_between(prior.begin, knot(0)).vector;
+    const double angle = turn.norm();
+    const double half_sine = std::sin(0.5 * angle);
+    PriorTerm& term = open(prior.alignment, Eigen::Vector3d::UnitX() * (half_sine * half_sine));
+    // an increment along the axis is the change of the angle; the slope at zero is zero
+    if (angle > 0.0)
+      term.jacobian.row(0).segment<3>(3) = (0.5 * std::sin(angle) / angle * turn).transpose();
   }
   /// Adds the second differences at an inner knot.
   void add_bends(const MotionPrior& prior, Eigen::Index i) {
@@ -147,9 +155,14 @@ class PriorTerms {
   std::vector<PriorTerm> terms_;
 };
 
-/// The Gauss-Newton step: (translation, rotation) of each knot.
-Eigen::VectorXd step_of(const ElasticProblem& problem, const ElasticMotion& motion,
-                        const Parallel& parallel) {
+/// Normal equations of all knots: (translation, rotation) of each.
+struct Linearization {
+  Eigen::MatrixXd hessian;
+  Eigen::VectorXd gradient;
+};
+
+Linearization linearized(const ElasticProblem& problem, const ElasticMotion& motion,
+                         const Parallel& parallel) {
   const auto unknowns = static_cast<Eigen::Index>(6 * motion.knots.size());
   Eigen::MatrixXd hessian = Eigen::MatrixXd::Zero(unknowns, unknowns);
   Eigen::VectorXd gradient = Eigen::VectorXd::Zero(unknowns);
@@ -165,8 +178,20 @@ Eigen::VectorXd step_of(const ElasticProblem& problem, const ElasticMotion& moti
     hessian.noalias() += count * term.weight * term.jacobian.transpose() * term.jacobian;
     gradient.noalias() += count * term.weight * term.jacobian.transpose() * term.error;
   }
-  hessian.diagonal().array() += kDamping * hessian.diagonal().maxCoeff();
-  return -hessian.ldlt().solve(gradient);
+  return {std::move(hessian), std::move(gradient)};
+}
+
+/// The step to the minimum, where `damping` of each parameter's curvature is added to it.
+Eigen::VectorXd step_of(const Linearization& equations, double damping) {
+  Eigen::MatrixXd hessian = equations.hessian;
+  const double least = kDamping * hessian.diagonal().maxCoeff();
+  hessian.diagonal() *= 1.0 + damping;
+  hessian.diagonal().array() += least;
+  return -hessian.ldlt().solve(equations.gradient);
+}
+
+double predicted_gain(const Linearization& equations, const Eigen::VectorXd& step) {
+  return -step.dot(equations.gradient) - 0.5 * step.dot(equations.hessian * step);
 }
 
 void apply(const Eigen::VectorXd& step, ElasticMotion& motion) {
@@ -181,14 +206,21 @@ void apply(const Eigen::VectorXd& step, ElasticMotion& motion) {
 
 }  // namespace
 
+double observability_of(std::span<const ElasticMatch> matches) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const ElasticMatch& match : matches) sum += match.normal * match.normal.transpose();
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+  solver.computeDirect(sum / sum.trace(), Eigen::EigenvaluesOnly);
+  return solver.eigenvalues()[0];
+}
+
 double cost_of(const ElasticProblem& problem, const ElasticMotion& motion) {
   const ElasticTrack track(motion);
   double cost = 0.0;
   for (const ElasticMatch& match : problem.matches) {
     const Eigen::Vector3d gap = track.place(match.point, match.alpha) - match.anchor;
-    const double squared_error =
-        match.weight * match.weight * (match.shape.topRows(match.rows) * gap).squaredNorm();
-    cost += robust_cost(problem.kernel, squared_error, problem.kernel_scale);
+    const double error = match.weight * match.normal.dot(gap);
+    cost += robust_cost(RobustKernel::kCauchy, error * error, problem.kernel_scale);
   }
   const auto count = static_cast<double>(problem.matches.size());
   const PriorTerms prior(problem.prior, motion);
@@ -197,12 +229,35 @@ double cost_of(const ElasticProblem& problem, const ElasticMotion& motion) {
   return cost;
 }
 
-ElasticMotion align_by_gauss_newton(const ElasticProblem& problem, ElasticMotion motion,
-                                    int iterations, const Parallel& parallel) {
+ElasticMotion gauss_newton_step(const ElasticProblem& problem, ElasticMotion motion,
+                                const Parallel& parallel) {
+  apply(step_of(linearized(problem, motion, parallel), 0.0), motion);
+  return motion;
+}
+
+ElasticMotion align_by_levenberg_marquardt(const ElasticProblem& problem, ElasticMotion motion,
+                                           int iterations, const Parallel& parallel) {
+  double damping = kInitialDamping;
+  double damping_growth = 2.0;
+  double cost = cost_of(problem, motion);
   for (int i = 0; i < iterations; ++i) {
-    const Eigen::VectorXd step = step_of(problem, motion, parallel);
-    apply(step, motion);
-    if (!(step.norm() > kConverged)) break;
+    const Linearization equations = linearized(problem, motion, parallel);
+    const Eigen::VectorXd step = step_of(equations, damping);
+    if (!(step.norm() > kMinStep)) break;
+    ElasticMotion candidate = motion;
+    apply(step, candidate);
+    const double gain = cost - cost_of(problem, candidate);
+    if (std::abs(gain) <= kMinGain * cost) break;
+    const double quality = gain / predicted_gain(equations, step);
+    if (quality > kMinQuality) {
+      motion = std::move(candidate);
+      cost -= gain;
+      damping *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * quality - 1.0, 3.0));
+      damping_growth = 2.0;
+    } else {
+      damping *= damping_growth;
+      damping_growth *= 2.0;
+    }
   }
   return motion;
 }

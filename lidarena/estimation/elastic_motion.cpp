@@ -38,13 +38,13 @@ MotionChange change_between(const ElasticMotion& a, const ElasticMotion& b) {
 
 ElasticSegment::ElasticSegment(const Pose& from, const Pose& to)
     : from_(from.linear()),
-      to_(to.linear()),
       begin_(from.translation()),
       step_(to.translation() - from.translation()),
       axis_(Eigen::Vector3d::UnitZ()),
       angle_(0.0),
       half_cotangent_(0.0) {
-  const Eigen::Vector3d turn = so3::log(to_ * from_.transpose());
+  const Eigen::Matrix3d end = to.linear();
+  const Eigen::Vector3d turn = so3::log(end * from_.transpose());
   const double angle = turn.norm();
   if (angle < kStraight) return;
   axis_ = turn / angle;
@@ -86,15 +86,6 @@ ElasticSegment::Row ElasticSegment::row(const Eigen::Vector3d& point, double a,
   Row row;
   row << (1.0 - a) * direction.transpose(), (lever - last).transpose(), a * direction.transpose(),
       last.transpose();
-  return row;
-}
-
-ElasticSegment::Row ElasticSegment::first_order_row(const Eigen::Vector3d& point, double a,
-                                                    const Eigen::Vector3d& direction) const {
-  Row row;
-  row << (1.0 - a) * direction.transpose(),
-      (1.0 - a) * (from_ * point).cross(direction).transpose(), a * direction.transpose(),
-      a * (to_ * point).cross(direction).transpose();
   return row;
 }
 

@@ -48,15 +48,8 @@ class ElasticSegment {
   /// Jacobian of the slerp.
   Row row(const Eigen::Vector3d& point, double a, const Eigen::Vector3d& direction) const;
 
-  /// The same with the first-order approximation of the published program, valid for small
-  /// rotations: the rotation increment is (1 - a) times that of one knot plus a times that of the
-  /// other.
-  Row first_order_row(const Eigen::Vector3d& point, double a,
-                      const Eigen::Vector3d& direction) const;
-
  private:
   Eigen::Matrix3d from_;
-  Eigen::Matrix3d to_;
   Eigen::Vector3d begin_;
   Eigen::Vector3d step_;
   Eigen::Vector3d axis_;   ///< unit, world

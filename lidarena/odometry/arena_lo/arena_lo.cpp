@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lo/arena_lo.hpp"
 
-#include <algorithm>
 #include <utility>
 
 namespace lidarena::odometry::arena_lo {
@@ -9,23 +8,6 @@ namespace lidarena::odometry::arena_lo {
 namespace {
 
 constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
-constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
-
-std::vector<Eigen::Vector3f> placed(const estimation::ElasticMotion& motion,
-                                    std::span<const TimedPoint> points, const Parallel& parallel) {
-  const estimation::ElasticTrack track(motion);
-  std::vector<Eigen::Vector3f> positions(points.size());
-  parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
-    const Eigen::Vector3d point = points[i].position.cast<double>();
-    positions[i] = track.place(point, points[i].alpha).cast<float>();
-  });
-  return positions;
-}
-
-estimation::ElasticMotion moved(const Pose& by, estimation::ElasticMotion motion) {
-  for (Pose& knot : motion.knots) knot = by * knot;
-  return motion;
-}
 
 }  // namespace
 
@@ -34,91 +16,74 @@ ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel
       body_from_lidar_(lidar.body_from_lidar),
       parallel_(std::move(parallel)),
       map_({config.map.voxel_size_m, config.map.max_points_per_voxel,
-            config.map.min_point_spacing_m, config.voxel_rounding}),
-      gate_(config.insertion),
+            config.map.min_point_spacing_m}),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult ArenaLo::register_scan(const Scan& scan) {
   const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
-  const bool rigid = !times.timed || map_.empty() || scans_ < config_.sampling.rigid_scans;
-  const auto points = timed_points(scan, times, rigid, config_.sampling);
-  const double voxel =
-      starting() ? config_.sampling.initial_scan_voxel_size_m : config_.sampling.scan_voxel_size_m;
-  const auto frame = thin(points, voxel, config_.voxel_rounding);
+  if (!poses_.empty() && times.last <= poses_.back().stamp) return refused_scan();
+  const bool rigid = !times.timed || map_.empty();
+  const SamplingConfig& sampling = config_.sampling;
+  const auto points =
+      estimation::timed_points(scan, times, rigid, {sampling.min_range_m, sampling.max_range_m});
+  const auto frame = thin(points, sampling.scan_voxel_size_m);
+  const auto keypoints = sample_keypoints(frame, sampling);
 
-  const estimation::ElasticMotion guess = history_.predict(times, config_.registration);
-  const RobustRegistration found = align(frame, guess);
-  const estimation::ElasticMotion& motion = found.registration.motion;
+  const Registration found = align(keypoints, times);
   const ScanStatus status = status_of(found, points.size());
+  const bool lost = status == ScanStatus::kTooFewPoints;
+  advance(found.motion, frame, times, lost);
 
-  const bool inserted = status != ScanStatus::kTooFewPoints && gate_.admits(motion, found.verdict);
-  if (inserted) map_.insert(placed(motion, frame, parallel_));
-  map_.remove_far(motion.end().translation().cast<float>(), config_.map.radius_m);
-
-  advance(found, times, status);
-  registered_scan_ = placed(moved(body_from_lidar_, motion), points, parallel_);
+  const auto body_motion = estimation::moved(body_from_lidar_, found.motion);
+  registered_scan_ = estimation::placed(body_motion, points, parallel_);
   return {poses_.back(),
           status,
           std::nullopt,
           {.points = points.size(),
-           .keypoints = found.registration.keypoints,
-           .matches = found.registration.matches,
-           .iterations = found.registration.iterations,
-           .retry_level = found.level,
+           .keypoints = keypoints.size(),
+           .matches = found.matches,
+           .iterations = found.iterations,
            .map_points = map_.size(),
-           .inserted = inserted},
-          rigid ? std::vector<StampedPose>{} : motion_within(motion, times)};
+           .scans_refused = scans_refused_,
+           .inserted = !lost},
+          rigid ? std::vector<StampedPose>{}
+                : estimation::body_poses(found.motion, times, body_from_lidar_)};
 }
 
-RobustRegistration ArenaLo::align(std::span<const TimedPoint> frame,
-                                  const estimation::ElasticMotion& guess) {
-  RobustRegistration found{{guess}};
-  if (map_.empty() || frame.empty()) return found;
-  const estimation::MotionPrior prior = history_.prior(guess, config_.registration, config_.prior);
-  found =
-      register_robustly(frame, map_, guess, prior, config_, starting(), first_level_, parallel_);
-  const bool lost = found.verdict == Verdict::kLost;
-  if (lost && !(stops_when_lost(found))) found.registration.motion = guess;
-  return found;
+Registration ArenaLo::align(std::span<const TimedPoint> keypoints,
+                            const estimation::ScanTimes& times) const {
+  const Expectation expected = history_.expect(times, config_.registration.segments, config_.prior);
+  if (map_.empty()) return {expected.guess};
+  return register_keypoints(keypoints, map_, expected, config_.registration, parallel_);
 }
 
-ScanStatus ArenaLo::status_of(const RobustRegistration& found, std::size_t points) const {
+ScanStatus ArenaLo::status_of(const Registration& found, std::size_t points) const {
   if (points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
-  if (found.verdict == Verdict::kLost)
-    return stops_when_lost(found) ? ScanStatus::kDiverged : ScanStatus::kTooFewPoints;
-  return found.registration.observability < kDegenerate ? ScanStatus::kDegenerate
-                                                        : ScanStatus::kTracked;
+  if (found.failed) return ScanStatus::kTooFewPoints;
+  return found.observability < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
-bool ArenaLo::stops_when_lost(const RobustRegistration& found) const {
-  return config_.robust.stop_when_lost && found.registration.enough;
-}
-
-void ArenaLo::advance(const RobustRegistration& found, const estimation::ScanTimes& times,
-                      ScanStatus status) {
-  const estimation::ElasticMotion& motion = found.registration.motion;
-  const bool lost = status == ScanStatus::kTooFewPoints;
-  history_.add(motion, times, lost, config_.robust.lost_motion_factor);
-  first_level_ = found.verdict == Verdict::kTrusted || !config_.robust.enabled ? 0 : 1;
-  if (times.timed) scan_duration_ = times.last - times.first;
-  poses_.push_back({times.last, body_pose(motion.end())});
-  ++scans_;
-}
-
-std::vector<StampedPose> ArenaLo::motion_within(const estimation::ElasticMotion& motion,
-                                                const estimation::ScanTimes& times) const {
-  std::vector<StampedPose> poses;
-  const auto segments = static_cast<std::int64_t>(motion.segments());
-  for (std::int64_t i = 0; i <= segments; ++i) {
-    const Time instant = times.first + (times.last - times.first) * i / segments;
-    poses.push_back({instant, body_pose(motion.knots[static_cast<std::size_t>(i)])});
+void ArenaLo::advance(const estimation::ElasticMotion& motion, std::span<const TimedPoint> frame,
+                      const estimation::ScanTimes& times, bool lost) {
+  if (!lost) map_.insert(estimation::placed(motion, frame, parallel_));
+  map_.remove_far(motion.end().translation().cast<float>(), config_.map.radius_m);
+  if (lost) {
+    history_.add_lost(motion, times);
+  } else {
+    history_.add(motion, times);
   }
-  return poses;
+  if (times.timed) scan_duration_ = times.last - times.first;
+  poses_.push_back({times.last, body_from_lidar_ * motion.end() * body_from_lidar_.inverse()});
 }
 
-Pose ArenaLo::body_pose(const Pose& map_from_lidar) const {
-  return body_from_lidar_ * map_from_lidar * body_from_lidar_.inverse();
+ScanResult ArenaLo::refused_scan() {
+  ++scans_refused_;
+  return {poses_.back(),
+          ScanStatus::kTooFewPoints,
+          std::nullopt,
+          {.scans_refused = scans_refused_},
+          {}};
 }
 
 std::vector<Eigen::Vector3f> ArenaLo::map() const {

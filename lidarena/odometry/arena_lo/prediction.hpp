@@ -3,35 +3,36 @@
 
 #include "lidarena/base/se3.hpp"
 #include "lidarena/estimation/elastic_alignment.hpp"
+#include "lidarena/estimation/scan_times.hpp"
 #include "lidarena/odometry/arena_lo/config.hpp"
-#include "lidarena/odometry/arena_lo/sampling.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
-/// Last motions of the lidar, for the initial guess and the motion prior of the next scan.
+/// What is known of a scan's motion before it is registered.
+struct Expectation {
+  estimation::ElasticMotion guess;  ///< where the registration starts
+  estimation::MotionPrior prior;
+};
+
+/// The last pose and velocity of the lidar, which predict the next scan by real time, so that a
+/// dropped scan causes no error.
 class MotionHistory {
  public:
-  /// Adds a scan's motion. A `lost` one is a prediction: the velocity is then multiplied by `kept`.
-  void add(const estimation::ElasticMotion& motion, const estimation::ScanTimes& times, bool lost,
-           double kept);
+  /// Adds the motion of a registered scan.
+  void add(const estimation::ElasticMotion& motion, const estimation::ScanTimes& times);
+  /// Adds the prediction of a scan that could not be registered: the velocity is halved.
+  void add_lost(const estimation::ElasticMotion& motion, const estimation::ScanTimes& times);
 
-  /// Initial guess for the registration of the next scan (CT-ICP, III-A).
-  estimation::ElasticMotion predict(const estimation::ScanTimes& times,
-                                    const RegistrationConfig& config) const;
-
-  /// Motion prior of the next scan (III-C): the end and the motion of the last one; with
-  /// constant_twist the prediction, which is the same by real time.
-  estimation::MotionPrior prior(const estimation::ElasticMotion& prediction,
-                                const RegistrationConfig& config, const PriorConfig& weights) const;
+  /// The motion with the last velocity: the guess and what the prior expects.
+  Expectation expect(const estimation::ScanTimes& times, int segments,
+                     const PriorConfig& weights) const;
 
  private:
-  estimation::ElasticMotion constant_motion(int segments) const;
-  estimation::ElasticMotion constant_twist(const estimation::ScanTimes& times, int segments) const;
+  estimation::ElasticMotion predict(const estimation::ScanTimes& times, int segments) const;
 
-  int scans_ = 0;
-  estimation::ElasticMotion last_ = estimation::ElasticMotion::still(Pose::Identity(), 1);
-  estimation::ElasticMotion before_ = last_;
-  Time instant_{0};                            ///< of the last scan's end
+  bool empty_ = true;
+  Pose end_ = Pose::Identity();                ///< of the last scan, map from lidar
+  Time instant_{0};                            ///< of that pose
   se3::Vector6 twist_ = se3::Vector6::Zero();  ///< m/s, rad/s, lidar
 };
 

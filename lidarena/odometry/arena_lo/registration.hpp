@@ -5,30 +5,32 @@
 #include <span>
 
 #include "lidarena/base/parallel.hpp"
-#include "lidarena/estimation/elastic_alignment.hpp"
+#include "lidarena/map/neighborhood.hpp"
 #include "lidarena/map/voxel_hash_map.hpp"
-#include "lidarena/odometry/arena_lo/config.hpp"
+#include "lidarena/odometry/arena_lo/prediction.hpp"
 #include "lidarena/odometry/arena_lo/sampling.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
 struct Registration {
-  estimation::ElasticMotion motion;  ///< of the lidar in the map
+  estimation::ElasticMotion motion;  ///< of the lidar in the map; the guess if `failed`
   int iterations = 0;
-  std::size_t keypoints = 0;
   std::size_t matches = 0;     ///< matched keypoints in the last iteration
-  double observability = 1.0;  ///< smallest share of a direction; isotropic: 1/3
-  bool enough = true;          ///< each iteration had at least min_residuals matches
-
-  double matched_share() const;
+  double observability = 1.0;  ///< see estimation::observability_of
+  /// There were fewer than 50 matches, or the motion is not finite, ends more than 5 m from where
+  /// it was expected to begin, or rotates by more than lost_rotation_rad.
+  bool failed = false;
 };
 
-/// Elastic ICP of `keypoints` against `map` from `guess` (CT-ICP, III-B): alternates neighbor
-/// searches and solutions.
+/// Match of a keypoint, at `position` (m, map) with the present motion, with the plane through the
+/// mean of a neighborhood: the flatter and the nearer, the more it weighs.
+estimation::ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
+                                     const map::Neighborhood& near,
+                                     const RegistrationConfig& config);
+
+/// Elastic ICP of `keypoints` against `map`: alternates neighbor searches and Gauss-Newton steps.
 Registration register_keypoints(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
-                                const estimation::ElasticMotion& guess,
-                                const estimation::MotionPrior& prior,
-                                const RegistrationConfig& config, int iterations,
+                                const Expectation& expected, const RegistrationConfig& config,
                                 const Parallel& parallel);
 
 }  // namespace lidarena::odometry::arena_lo

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/map/voxel_hash_map.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/ct_icp/prediction.hpp"
-#include "lidarena/odometry/ct_icp/robust_registration.hpp"
-#include "lidarena/odometry/ct_icp/sampling.hpp"
+#include "lidarena/odometry/ct_icp/quality.hpp"
+#include "lidarena/odometry/ct_icp/registration.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::ct_icp {
@@ -29,21 +31,17 @@ class CtIcp : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Aligns the downsampled scan with the map, if there is one; returns the guess if that fails.
-  RobustRegistration align(std::span<const TimedPoint> frame,
-                           const estimation::ElasticMotion& guess);
-  ScanStatus status_of(const RobustRegistration& found, std::size_t points) const;
-  /// Whether the published program would end at this failed registration.
-  bool stops_when_lost(const RobustRegistration& found) const;
-  /// Stores the scan's motion.
-  void advance(const RobustRegistration& found, const estimation::ScanTimes& times,
-               ScanStatus status);
-  /// Poses of the body within the scan; empty if the scan is rigid.
-  std::vector<StampedPose> motion_within(const estimation::ElasticMotion& motion,
-                                         const estimation::ScanTimes& times) const;
-  /// Pose of the body in the world, which is the body's frame at the start.
-  Pose body_pose(const Pose& map_from_lidar) const;
+  /// The first scans use finer voxels and more iterations.
   bool starting() const { return scans_ < config_.sampling.initial_scans; }
+  /// Aligns the keypoints with the map, if there is one.
+  Registration align(std::span<const TimedPoint> keypoints) const;
+  ScanStatus status_of(const Registration& found, std::size_t points) const;
+  /// Stores the scan's motion, and inserts `frame` into the map; returns whether it did.
+  bool advance(const Registration& found, std::span<const TimedPoint> frame,
+               const estimation::ScanTimes& times);
+  /// A scan that changes nothing: it is out of time order, or its registration or an earlier one
+  /// has failed, where the published program ends.
+  ScanResult ignored(ScanStatus status) const;
 
   Config config_;
   Pose body_from_lidar_;
@@ -53,7 +51,8 @@ class CtIcp : public Odometry {
   MotionHistory history_;
 
   int scans_ = 0;
-  int first_level_ = 0;             ///< of the next scan's registration
+  std::size_t scans_refused_ = 0;   ///< out of time order
+  bool ended_ = false;              ///< a registration has failed
   Time scan_duration_;              ///< of the last scan that had times
   std::vector<StampedPose> poses_;  ///< of the body
   std::vector<Eigen::Vector3f> registered_scan_;

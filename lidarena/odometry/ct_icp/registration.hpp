@@ -5,9 +5,9 @@
 #include <span>
 
 #include "lidarena/base/parallel.hpp"
-#include "lidarena/estimation/elastic_alignment.hpp"
+#include "lidarena/map/neighborhood.hpp"
 #include "lidarena/map/voxel_hash_map.hpp"
-#include "lidarena/odometry/ct_icp/config.hpp"
+#include "lidarena/odometry/ct_icp/prediction.hpp"
 #include "lidarena/odometry/ct_icp/sampling.hpp"
 
 namespace lidarena::odometry::ct_icp {
@@ -15,20 +15,22 @@ namespace lidarena::odometry::ct_icp {
 struct Registration {
   estimation::ElasticMotion motion;  ///< of the lidar in the map
   int iterations = 0;
-  std::size_t keypoints = 0;
   std::size_t matches = 0;     ///< matched keypoints in the last iteration
-  double observability = 1.0;  ///< smallest share of a direction; isotropic: 1/3
-  bool enough = true;          ///< each iteration had at least min_residuals matches
-
-  double matched_share() const;
+  double observability = 1.0;  ///< see estimation::observability_of
+  bool failed = false;         ///< an iteration had fewer than min_neighbors matches
 };
 
-/// Elastic ICP of `keypoints` against `map` from `guess` (CT-ICP, III-B): alternates neighbor
-/// searches and solutions.
+/// Match of a keypoint, at `position` (m, map) with the present motion, with the plane of the
+/// neighbors through the farthest of them. Weight, with c1 + c2 = 1:
+/// c1 planarity^2 + c2 exp(-distance of that neighbor / (max_plane_distance_m min_neighbors)).
+estimation::ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
+                                     std::span<const map::Neighbor> neighbors,
+                                     const RegistrationConfig& config);
+
+/// Elastic ICP of `keypoints` against `map` (CT-ICP, III-B): alternates neighbor searches and
+/// solutions.
 Registration register_keypoints(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
-                                const estimation::ElasticMotion& guess,
-                                const estimation::MotionPrior& prior,
-                                const RegistrationConfig& config, int iterations,
+                                const Expectation& expected, const RegistrationConfig& config,
                                 const Parallel& parallel);
 
 }  // namespace lidarena::odometry::ct_icp

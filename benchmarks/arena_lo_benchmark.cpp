@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times of the single steps of CT-ICP with the settings of preset improved, in a box of 16 x 12 x
-// 4 m: downsampling, keypoints, neighbor search and description, one step of each solver,
-// insertion.
+// Times of the single steps of arena_lo with its own settings, in a box of 16 x 12 x 4 m:
+// downsampling, keypoints, neighbor search and description, insertion; and of both elastic solvers:
+// one Gauss-Newton step of arena_lo, and a solution of CT-ICP.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,10 +9,9 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/odometry/ct_icp/neighborhood.hpp"
-#include "lidarena/odometry/ct_icp/registration.hpp"
+#include "lidarena/odometry/arena_lo/registration.hpp"
 
-namespace lidarena::odometry::ct_icp {
+namespace lidarena::odometry::arena_lo {
 namespace {
 
 /// Points of a scan at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
@@ -33,8 +32,8 @@ std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
 }
 
 const Config& config() {
-  static const Config improved = indoor(LidarInfo{});
-  return improved;
+  static const Config made = indoor(LidarInfo{});
+  return made;
 }
 
 const map::VoxelHashMap& map() {
@@ -48,26 +47,19 @@ const map::VoxelHashMap& map() {
 }
 
 std::vector<TimedPoint> keypoints() {
-  return sample_keypoints(scan_of(20'000, 2), KeypointSampling::kGrid,
-                          config().sampling.keypoint_voxel_size_m, config().sampling.max_keypoints,
-                          map::VoxelRounding::kFloor);
+  return sample_keypoints(scan_of(20'000, 2), config().sampling);
 }
 
 void thin_scan(benchmark::State& state) {
   const auto points = scan_of(static_cast<std::size_t>(state.range(0)), 2);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(
-        thin(points, config().sampling.scan_voxel_size_m, map::VoxelRounding::kFloor));
+  for (auto _ : state) benchmark::DoNotOptimize(thin(points, config().sampling.scan_voxel_size_m));
   state.SetItemsProcessed(state.iterations() * state.range(0));
 }
 BENCHMARK(thin_scan)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
 
 void choose_keypoints(benchmark::State& state) {
   const auto frame = scan_of(20'000, 2);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(
-        sample_keypoints(frame, KeypointSampling::kGrid, config().sampling.keypoint_voxel_size_m,
-                         config().sampling.max_keypoints, map::VoxelRounding::kFloor));
+  for (auto _ : state) benchmark::DoNotOptimize(sample_keypoints(frame, config().sampling));
 }
 BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
 
@@ -85,7 +77,7 @@ BENCHMARK(search_neighbors)->Unit(benchmark::kMillisecond);
 void describe_neighbors(benchmark::State& state) {
   std::vector<map::Neighbor> near(20);
   near.resize(map().nearest(keypoints().front().position, 0.4F, near));
-  for (auto _ : state) benchmark::DoNotOptimize(describe(near, PlanePoint::kMean));
+  for (auto _ : state) benchmark::DoNotOptimize(map::describe(near));
 }
 BENCHMARK(describe_neighbors);
 
@@ -100,31 +92,37 @@ std::vector<estimation::ElasticMatch> matches() {
     const Eigen::Array3d share = match.point.array().abs() / Eigen::Array3d(8.0, 6.0, 2.0);
     Eigen::Index axis = 0;
     share.maxCoeff(&axis);
-    match.shape.row(0) = Eigen::Vector3d::Unit(axis);
+    match.normal = Eigen::Vector3d::Unit(axis);
     made.push_back(match);
   }
   return made;
 }
 
-template <bool kCeresSolver>
-void solve(benchmark::State& state) {
-  const auto made = matches();
-  const estimation::ElasticProblem problem{made, {}, estimation::RobustKernel::kCauchy, 0.05, true};
-  const auto guess = estimation::ElasticMotion::still(
-      make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}), static_cast<int>(state.range(0)));
-  const Parallel one(1);
-  for (auto _ : state) {
-    benchmark::DoNotOptimize(kCeresSolver
-                                 ? estimation::align_by_ceres(problem, guess, 1)
-                                 : estimation::align_by_gauss_newton(problem, guess, 1, one));
-  }
+estimation::ElasticMotion guess(std::int64_t segments) {
+  return estimation::ElasticMotion::still(make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}),
+                                          static_cast<int>(segments));
 }
-BENCHMARK(solve<false>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
-BENCHMARK(solve<true>)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+
+void gauss_newton_step(benchmark::State& state) {
+  const auto made = matches();
+  const Parallel one(1);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        estimation::gauss_newton_step({made, {}, 0.05}, guess(state.range(0)), one));
+}
+BENCHMARK(gauss_newton_step)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+
+void levenberg_marquardt(benchmark::State& state) {
+  const auto made = matches();
+  const Parallel one(1);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        estimation::align_by_levenberg_marquardt({made, {}, 0.1}, guess(1), 20, one));
+}
+BENCHMARK(levenberg_marquardt)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
-  const auto frame =
-      thin(scan_of(20'000, 3), config().sampling.scan_voxel_size_m, map::VoxelRounding::kFloor);
+  const auto frame = thin(scan_of(20'000, 3), config().sampling.scan_voxel_size_m);
   map::VoxelHashMap grown = [] {
     map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel,
                             config().map.min_point_spacing_m});
@@ -139,4 +137,4 @@ void insert_scan(benchmark::State& state) {
 BENCHMARK(insert_scan)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace lidarena::odometry::ct_icp
+}  // namespace lidarena::odometry::arena_lo
