@@ -31,7 +31,8 @@ class ScanClock {
 
 /// Backward propagation (section IV-C, eq. 10): the points (m) in the LiDAR's frame at the scan's
 /// end, where `state` holds. Points of the track's first instant stay as they were measured, since
-/// the program moves only points that are later than a pose of the track.
+/// the program moves only points that are later than a pose of the track. Its earliest point, if
+/// later, is moved once more for each earlier step of the track.
 std::vector<Eigen::Vector3f> propagate_backward(const Scan& selected,
                                                 const estimation::ImuTrack& track,
                                                 const estimation::InertialState& state,

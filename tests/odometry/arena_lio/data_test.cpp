@@ -94,7 +94,8 @@ TEST(ArenaLioData, SamplesFromThePastAndFromFarAheadAreRefusedAndCounted) {
   }
   const Outcome outcome = play(events);
   EXPECT_LT(outcome.final_error({}), kTracked);
-  EXPECT_NEAR(outcome.results.back().counters.imu_refused.value(), bad / 50, 1.0)
+  EXPECT_NEAR(static_cast<double>(outcome.results.back().counters.imu_refused.value()), bad / 50,
+              1.0)
       << "the last stamp from far ahead may not be detected yet";
   EXPECT_EQ(outcome.count(ScanStatus::kTracked), 39U) << "all but the first";
 }
@@ -130,6 +131,21 @@ TEST(ArenaLioData, DroppedScansAreBridgedByTheImu) {
   EXPECT_EQ(outcome.results.size(), 37U);
   EXPECT_LT(outcome.final_error({}), kTracked);
   EXPECT_EQ(outcome.count(ScanStatus::kTracked), 36U);
+}
+
+TEST(ArenaLioData, TheMotionWithinAScanIsThatOfTheFlight) {
+  const Outcome outcome = play(usual_events());
+  EXPECT_TRUE(outcome.results.front().motion.empty()) << "it starts with the first scan's end";
+  for (std::size_t i = 10; i < outcome.results.size(); ++i) {
+    const ScanResult& result = outcome.results[i];
+    ASSERT_GT(result.motion.size(), 15U) << "an IMU at 200 Hz";
+    EXPECT_EQ(result.motion.back().stamp, result.estimate.stamp);
+    for (const StampedPose& pose : result.motion) {
+      const Pose moved = pose.world_from_body.inverse() * result.estimate.world_from_body;
+      const Pose expected = synthetic::truth({}, pose.stamp, result.estimate.stamp);
+      EXPECT_LT((moved.translation() - expected.translation()).norm(), 0.003) << i;
+    }
+  }
 }
 
 TEST(ArenaLioData, AnImuThatStartsLateIsWaitedForAndThenStartsInMotion) {

@@ -106,15 +106,26 @@ TEST(FastLio2Preprocess, PointsAreMovedToTheEndExceptThoseOfTheFirstInstant) {
   }
 }
 
+TEST(FastLio2Preprocess, TheEarliestPointIsMovedAgainForEachEarlierStep) {
+  const Scan scan = scan_at({60, 50, 90});  // steps begin at 0, 40 and 80 ms
+  estimation::InertialState at_end;
+  at_end.nav.world_from_imu = pose_after(0.1);
+  const auto moved = propagate_backward(scan, track_from(kStamp), at_end, Parallel(1));
+  const Pose once = pose_after(0.1).inverse() * pose_after(0.05);
+  const Eigen::Vector3f expected = (once * once * Eigen::Vector3d(3, 0, 0)).cast<float>();
+  EXPECT_LT((moved[1] - expected).norm(), 1e-5F) << "an error of the program";
+  const Pose other = pose_after(0.1).inverse() * pose_after(0.06);
+  EXPECT_LT((moved[0] - (other * Eigen::Vector3d(2, 0, 0)).cast<float>()).norm(), 1e-5F);
+}
+
 TEST(FastLio2Preprocess, AfterADroppedScanTheFirstInstantIsMovedToo) {
-  const Scan scan = scan_at({0, 50});
+  const Scan scan = scan_at({0, 0, 50});
   estimation::InertialState at_end;
   at_end.nav.world_from_imu = pose_after(0.15);  // the track begins 0.1 s before the scan
   const auto moved =
       propagate_backward(scan, track_from(kStamp - from_seconds(0.1)), at_end, Parallel(1));
-  const Pose end_from_first = pose_after(0.15).inverse() * pose_after(0.1);
-  const Eigen::Vector3f expected = (end_from_first * Eigen::Vector3d(2, 0, 0)).cast<float>();
-  EXPECT_LT((moved[0] - expected).norm(), 1e-5F);
+  const Pose once = pose_after(0.15).inverse() * pose_after(0.1);
+  EXPECT_LT((moved[1] - (once * Eigen::Vector3d(3, 0, 0)).cast<float>()).norm(), 1e-5F);
 }
 
 TEST(FastLio2Preprocess, UntimedScansAndScansWithoutATrackStayAsTheyAre) {
