@@ -54,15 +54,17 @@ inline const std::vector<dataset::Event>& usual_events() {
   return events;
 }
 
-/// The usual events with `change` applied to each IMU sample; removes the samples for which it
-/// returns false.
-inline std::vector<dataset::Event> with_imu(const std::function<bool(ImuSample&)>& change) {
-  std::vector<dataset::Event> events;
-  for (dataset::Event event : usual_events()) {
+/// The events with `change` applied to each IMU sample; without the samples for which it returns
+/// false.
+inline std::vector<dataset::Event> with_imu(
+    const std::function<bool(ImuSample&)>& change,
+    const std::vector<dataset::Event>& events = usual_events()) {
+  std::vector<dataset::Event> changed;
+  for (dataset::Event event : events) {
     auto* sample = std::get_if<ImuSample>(&event.data);
-    if (sample == nullptr || change(*sample)) events.push_back(std::move(event));
+    if (sample == nullptr || change(*sample)) changed.push_back(std::move(event));
   }
-  return events;
+  return changed;
 }
 
 }  // namespace lidarena::odometry::synthetic

@@ -111,5 +111,19 @@ TEST(ArenaLioPlanes, UncertainPlanesAndThoseThroughTheOriginAreUsedWithTheirWeig
   EXPECT_EQ(weight({0.4F, 10.0F, 0.01F}), 0.0) << "no map within 2.2 m";
 }
 
+TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
+  map::KdTree map;
+  for (int i = 0; i < 25; ++i)
+    map.insert({0.2F * static_cast<float>(i / 5), 0.2F * static_cast<float>(i % 5), -1.0F});
+  const std::vector<Eigen::Vector3f> points{{0.5F, 0.3F, -1.0F}};
+  const Parallel parallel(1);
+  const auto sums = [&](bool extrinsics) {
+    const Config config{.estimate_extrinsics = extrinsics};
+    return PlaneResiduals(points, map, config, parallel)({}, true).hessian;
+  };
+  EXPECT_EQ(sums(false).rightCols<6>().norm(), 0.0);
+  EXPECT_GT(sums(true).diagonal().tail<6>().maxCoeff(), 0.1);
+}
+
 }  // namespace
 }  // namespace lidarena::odometry::arena_lio

@@ -61,5 +61,16 @@ TEST(FastLio2Planes, ThickNeighborhoodsAndSmallMapsHaveNone) {
   EXPECT_EQ(matches_of({{0.1F, 0.1F, -2.0F}}, four), 0U);
 }
 
+TEST(FastLio2Planes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
+  const map::KdTree map = floor_at(-1.0F);
+  const std::vector<Eigen::Vector3f> points{{0.5F, 0.3F, -1.0F}};
+  const Parallel parallel(1);
+  const auto sums = [&](bool extrinsics) {
+    return PlaneResiduals(points, map, extrinsics, parallel)({}, true).hessian;
+  };
+  EXPECT_EQ(sums(false).rightCols<6>().norm(), 0.0);
+  EXPECT_GT(sums(true).diagonal().tail<6>().maxCoeff(), 0.1);
+}
+
 }  // namespace
 }  // namespace lidarena::odometry::fast_lio2
