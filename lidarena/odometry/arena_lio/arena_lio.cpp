@@ -72,8 +72,7 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const bool still = still_.observe(estimation::statistics(samples), predicted,
                                     estimate_.state.position(), accel_scale_);
   if (still) stand();
-  has_moved_ = has_moved_ || !still;
-
+  if (!still) has_moved_ = true;
   const ScanStatus status = status_of(update, residuals);
   const bool seen_enough = still && still_.scans() > kStandingScansMapped;
   if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
