@@ -63,6 +63,11 @@ State::Vector minus(const State& a, const State& b) {
   return delta;
 }
 
+bool is_plausible(const State& state) {
+  return state.position().allFinite() && state.rotation().allFinite() &&
+         state.nav.velocity.norm() < kMaxPlausibleSpeed;
+}
+
 State::Matrix transport(const State& from, const State::Vector& delta) {
   State::Matrix a = State::Matrix::Identity();
   for (const State::Block block : {State::kRotation, State::kLidarRotation}) {

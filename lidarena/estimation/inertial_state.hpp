@@ -48,6 +48,9 @@ InertialState plus(const InertialState& state, const InertialState::Vector& delt
 /// The tangent vector at `b` that leads to `a`: plus(b, minus(a, b)) is a.
 InertialState::Vector minus(const InertialState& a, const InertialState& b);
 
+/// False if the pose is not finite or the speed is beyond kMaxPlausibleSpeed: it has diverged.
+bool is_plausible(const InertialState& state);
+
 /// Jacobian of the tangent vector at plus(`from`, `delta`) with respect to a small change e of
 /// `delta`: minus(plus(from, delta + e), plus(from, delta)) ~ transport(from, delta) e.
 InertialState::Matrix transport(const InertialState& from, const InertialState::Vector& delta);

@@ -3,6 +3,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "lidarena/base/so3.hpp"
+
 namespace lidarena::estimation {
 namespace {
 
@@ -89,6 +91,17 @@ StateEstimate pose_update(const StateEstimate& prior, const Pose& world_from_imu
   sigma << Eigen::Vector3d::Constant(position_sigma), Eigen::Vector3d::Constant(rotation_sigma);
   return observe<6>(prior, State::kPosition,
                     minus(measured, prior.state).segment<6>(State::kPosition), sigma);
+}
+
+Eigen::Matrix<double, 6, 6> body_covariance(const StateEstimate& estimate,
+                                            const Eigen::Matrix3d& frame_from_world,
+                                            const Pose& imu_from_body) {
+  Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
+  by_state.topLeftCorner<3, 3>() = frame_from_world;
+  by_state.topRightCorner<3, 3>() =
+      -frame_from_world * estimate.state.rotation() * so3::hat(imu_from_body.translation());
+  by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
+  return by_state * estimate.covariance.topLeftCorner<6, 6>() * by_state.transpose();
 }
 
 }  // namespace lidarena::estimation

@@ -53,4 +53,10 @@ StateEstimate zero_velocity_update(const StateEstimate& prior, double sigma);
 StateEstimate pose_update(const StateEstimate& prior, const Pose& world_from_imu,
                           double position_sigma, double rotation_sigma);
 
+/// Covariance of the (translation, rotation) of a body that is fixed to the IMU, in a frame whose
+/// axes are those of the state's world rotated by `frame_from_world`.
+Eigen::Matrix<double, 6, 6> body_covariance(const StateEstimate& estimate,
+                                            const Eigen::Matrix3d& frame_from_world,
+                                            const Pose& imu_from_body);
+
 }  // namespace lidarena::estimation

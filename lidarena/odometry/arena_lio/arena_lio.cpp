@@ -3,21 +3,24 @@
 
 #include <Eigen/Eigenvalues>
 #include <cmath>
+#include <functional>
 
-#include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
-#include "lidarena/odometry/arena_lio/plane_residuals.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
 
 using State = estimation::InertialState;
 
+// Walls that are parallel to the sensor's axes at the start are not parallel to the grids.
+constexpr map::GridAxes kGrid = map::GridAxes::kRotated;
+constexpr double kConvergence = 1e-3;            // m, rad, m/s: largest step of a converged update
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
-constexpr int kLostScans = 15;        // in a row that contradict the map: tracking is lost
-constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
+constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
+constexpr int kLostScans = 15;            // in a row that contradict the map: tracking is lost
+constexpr double kDegenerate = 0.01;      // minimum share of a direction; isotropic: 1/3
 
 /// At most `most` of the points, at even intervals of their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
@@ -28,19 +31,15 @@ std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int mos
   return points;
 }
 
-Eigen::Matrix3d orthonormal(const Eigen::Matrix3d& rotation) {
-  return Eigen::Quaterniond(rotation).normalized().toRotationMatrix();
-}
-
 }  // namespace
 
 ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
                    Parallel parallel)
     : config_(config),
-      body_from_imu_(imu.body_from_imu),
-      map_from_start_(map::grid_from_points(config.grid_axes)),
-      world_from_map_(body_from_imu_ * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
-                                                 Eigen::Vector3d::Zero())),
+      imu_from_body_(imu.body_from_imu.inverse()),
+      map_from_start_(map::grid_from_points(kGrid)),
+      world_from_map_(imu.body_from_imu * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
+                                                    Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
       noise_(estimation::noise_of(imu, config.imu_noise_factor)),
       parallel_(std::move(parallel)),
@@ -51,37 +50,34 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
 ScanResult ArenaLio::register_scan(const Scan& scan) {
   const Time end = scan_end(scan);
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
-  const std::vector<ImuSample> samples = imu_.samples(
-      integrated_until_ ? *integrated_until_ + Time{1} : Time::min(), end);  // since the last scan
+  const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
   if (started_) {
     predict(intervals);
-  } else if (!start(samples) || config_.skip_first_scan) {
-    return finish_scan(
-        end, scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
+  } else if (!start(samples)) {
+    const bool empty = scan.points.empty();
+    return finish_scan(scan.stamp, end,
+                       empty ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
   }
 
   const State predicted = estimate_.state;
   const std::vector<Eigen::Vector3f> points = preprocess(scan);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(map::voxel_means(points, config_.scan_voxel_size_m, config_.grid_axes),
-             config_.max_scan_points);
+      evenly(map::voxel_means(points, config_.scan_voxel_size_m, kGrid), config_.max_scan_points);
   PlaneResiduals residuals(reduced, map_, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
-      {config_.max_iterations, config_.convergence, config_.point_variance_m2});
+      {config_.max_iterations, kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
-  const bool still = config_.zero_velocity_updates &&
-                     still_.observe(estimation::statistics(samples), predicted,
-                                    estimate_.state.position(), config_, accel_scale_);
+  const bool still = still_.observe(estimation::statistics(samples), predicted,
+                                    estimate_.state.position(), accel_scale_);
   if (still) stand();
-  has_moved_ = has_moved_ || !still;
-
+  if (!still) has_moved_ = true;
   const ScanStatus status = status_of(update, residuals);
-  const bool seen_enough = still && still_.scans() > config_.standing_scans_mapped;
+  const bool seen_enough = still && still_.scans() > kStandingScansMapped;
   if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
-  publish(points);
-  return finish_scan(end, status,
+  registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
+  return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
                       .keypoints = reduced.size(),
                       .matches = update.points.count,
@@ -96,6 +92,10 @@ Time ArenaLio::scan_end(const Scan& scan) {
   return scan.timed ? scan.stamp + scan_duration_ : scan.stamp;
 }
 
+std::vector<ImuSample> ArenaLio::new_samples(Time end) const {
+  return imu_.samples(integrated_until_ ? *integrated_until_ + Time{1} : Time::min(), end);
+}
+
 std::vector<estimation::ImuInterval> ArenaLio::intervals_until(Time end) {
   const bool silent = imu_.empty() || (!integrated_until_ && imu_.first_stamp() > end);
   const Time begin = silent ? end : integrated_until_.value_or(imu_.first_stamp());
@@ -108,16 +108,13 @@ std::vector<estimation::ImuInterval> ArenaLio::intervals_until(Time end) {
 }
 
 bool ArenaLio::start(const std::vector<ImuSample>& samples) {
-  const bool skip = first_scan_ && config_.skip_first_scan;
-  first_scan_ = false;
-  if (!skip) start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
-  if (start_samples_.size() < static_cast<std::size_t>(config_.initialization_samples))
-    return false;
-  const Start begin = start_from(start_samples_, imu_from_lidar_, config_);
-  estimate_ = begin.estimate;
+  start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
+  const std::optional<Start> begin = start_from(start_samples_, imu_from_lidar_);
+  if (!begin) return false;
+  estimate_ = begin->estimate;
   estimate_.state.rotation() = map_from_start_ * estimate_.state.rotation();
   estimate_.state.gravity = map_from_start_ * estimate_.state.gravity;
-  accel_scale_ = begin.accel_scale;
+  accel_scale_ = begin->accel_scale;
   first_pose_ = estimate_.state.world_from_imu();
   started_ = true;
   imu_.set_accel_scale(accel_scale_);
@@ -127,7 +124,7 @@ bool ArenaLio::start(const std::vector<ImuSample>& samples) {
 
 void ArenaLio::stand() {
   estimate_ = estimation::zero_velocity_update(estimate_, kStillSpeedSigma);
-  if (!config_.hold_first_pose || has_moved_) return;
+  if (has_moved_) return;
   estimate_ =
       estimation::pose_update(estimate_, first_pose_, kStillTranslationSigma, kStillRotationSigma);
 }
@@ -135,9 +132,6 @@ void ArenaLio::stand() {
 void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = estimate_.state;
   track_.clear();
-  const estimation::Integration integration = config_.second_order_integration
-                                                  ? estimation::Integration::kSecondOrder
-                                                  : estimation::Integration::kFirstOrder;
   for (const estimation::ImuInterval& interval : intervals) {
     Eigen::Vector3d accel = accel_scale_ * interval.accel;
     if (interval.gap) {  // coast with constant velocity
@@ -147,61 +141,45 @@ void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
         state.rotation() * (accel - state.nav.bias.accel) + state.gravity;
     track_.push_back({interval.begin, state.world_from_imu(), state.nav.velocity, acceleration,
                       interval.gyro - state.nav.bias.gyro});
-    const State::Matrix f =
-        estimation::propagate(state, interval.gyro, accel, interval.seconds(), integration);
+    const bool unreliable = interval.gap || interval.saturated;
+    const State::Matrix f = estimation::propagate(state, interval.gyro, accel, interval.seconds(),
+                                                  estimation::Integration::kSecondOrder);
     estimate_.covariance = f * estimate_.covariance * f.transpose() +
-                           estimation::step_noise(noise_over(interval), interval.seconds());
+                           estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise_,
+                                                  interval.seconds());
   }
-  state.rotation() = orthonormal(state.rotation());
-  state.imu_from_lidar.linear() = orthonormal(state.imu_from_lidar.linear());
-}
-
-estimation::ImuNoise ArenaLio::noise_over(const estimation::ImuInterval& interval) const {
-  if (interval.gap || (config_.detect_saturation && interval.saturated))
-    return estimation::kCoastingNoise;
-  if (config_.noise_model == NoiseModel::kDensity) return noise_;
-  // A sample's variance times dt^2 is a density of sqrt(variance dt) over dt.
-  const auto density = [&](double variance) { return std::sqrt(variance * interval.seconds()); };
-  return {density(config_.gyro_variance), density(config_.accel_variance),
-          density(config_.gyro_bias_variance), density(config_.accel_bias_variance)};
+  state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
+  state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
 }
 
 std::vector<Eigen::Vector3f> ArenaLio::preprocess(const Scan& scan) const {
-  Scan used;
-  used.stamp = scan.stamp;
-  used.timed = scan.timed;
-  const auto stride = static_cast<std::size_t>(config_.point_stride);
+  Scan used{.stamp = scan.stamp, .points = {}, .timed = scan.timed};
   const auto nearest = static_cast<float>(config_.min_range_m * config_.min_range_m);
-  used.points.reserve(scan.points.size() / stride + 1);
-  for (std::size_t i = 0; i < scan.points.size(); i += stride) {
-    const float squared = scan.points[i].position.squaredNorm();
-    if (std::isfinite(squared) && squared > nearest) used.points.push_back(scan.points[i]);
+  used.points.reserve(scan.points.size());
+  for (const Point& point : scan.points) {
+    const float squared = point.position.squaredNorm();
+    if (std::isfinite(squared) && squared > nearest) used.points.push_back(point);
   }
-  std::vector<Eigen::Vector3f> at_end = estimation::deskew(
-      used, track_, estimate_.state.imu_from_lidar, estimate_.state.world_from_imu(), parallel_);
-  for (std::size_t i = 0; !config_.deskew_first_instant && i < at_end.size(); ++i) {
-    if (used.points[i].dt_ns == 0) at_end[i] = used.points[i].position;
-  }
-  return at_end;
+  return estimation::deskew(used, track_, estimate_.state.imu_from_lidar,
+                            estimate_.state.world_from_imu(), parallel_);
 }
 
 void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points,
                         const PlaneResiduals& residuals) {
   const Pose world_from_lidar = estimate_.state.world_from_lidar();
   add_scan(transformed(world_from_lidar, points),
-           map_.empty() ? std::vector<Match>{} : residuals.matches(),
+           map_.empty() ? std::span<const Nearest>{} : residuals.nearest(),
            static_cast<float>(config_.map_voxel_size_m), map_);
   map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
 }
 
 ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
                                const PlaneResiduals& residuals) {
-  const State& state = estimate_.state;
-  if (!state.position().allFinite() || !state.rotation().allFinite() ||
-      !(state.nav.velocity.norm() < estimation::kMaxPlausibleSpeed)) {
+  if (!estimation::is_plausible(estimate_.state)) {
+    contradicting_scans_ = kLostScans + 1;
     return ScanStatus::kDiverged;
   }
-  if (residuals.matches().empty()) return ScanStatus::kTooFewPoints;
+  if (residuals.nearest().empty()) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
   const bool contradicts = static_cast<double>(update.points.count) <
@@ -219,14 +197,20 @@ ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
 /// A scan out of time order is counted and changes nothing else.
 ScanResult ArenaLio::refused_scan() {
   ++scans_refused_;
-  return finish_scan(poses_.back().stamp, ScanStatus::kTooFewPoints, {});
+  const Time last = poses_.back().stamp;
+  return finish_scan(last, last, ScanStatus::kTooFewPoints, {});
 }
 
-ScanResult ArenaLio::finish_scan(Time end, ScanStatus status, const ScanCounters& counters) {
+ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
+                                 const ScanCounters& counters) {
+  const Pose world_from_imu = world_from_map_ * estimate_.state.world_from_imu();
   ScanResult result;
-  result.estimate = {end, body_pose(estimate_.state.world_from_imu())};
+  result.estimate = {end, world_from_imu * imu_from_body_};
   result.status = status;
-  if (started_) result.covariance = body_covariance();
+  if (started_)
+    result.covariance =
+        estimation::body_covariance(estimate_, world_from_map_.linear(), imu_from_body_);
+  result.motion = estimation::motion_along(track_, begin, end, end, world_from_imu, imu_from_body_);
   result.counters = counters;
   result.counters.imu_gap_s = longest_gap_s_;
   result.counters.imu_saturated = saturated_;
@@ -237,35 +221,13 @@ ScanResult ArenaLio::finish_scan(Time end, ScanStatus status, const ScanCounters
   return result;
 }
 
-Pose ArenaLio::body_pose(const Pose& map_from_imu) const {
-  return world_from_map_ * map_from_imu * body_from_imu_.inverse();
-}
-
-Eigen::Matrix<double, 6, 6> ArenaLio::body_covariance() const {
-  const State& state = estimate_.state;
-  const Pose imu_from_body = body_from_imu_.inverse();
-  Eigen::Matrix<double, 6, 6> by_state = Eigen::Matrix<double, 6, 6>::Zero();
-  by_state.topLeftCorner<3, 3>() = world_from_map_.linear();
-  by_state.topRightCorner<3, 3>() =
-      -world_from_map_.linear() * state.rotation() * so3::hat(imu_from_body.translation());
-  by_state.bottomRightCorner<3, 3>() = imu_from_body.linear().transpose();
-  return by_state * estimate_.covariance.topLeftCorner<6, 6>() * by_state.transpose();
-}
-
-void ArenaLio::publish(std::span<const Eigen::Vector3f> points) {
-  registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
-  if (!config_.keep_all_scans) return;
-  for (const Eigen::Vector3f& p : registered_scan_) archive_.push_back({p.x(), p.y(), p.z()});
-}
-
 std::vector<Eigen::Vector3f> ArenaLio::map() const {
   return transformed(world_from_map_, map_.points());
 }
 
 std::map<std::string, std::uint64_t> ArenaLio::memory() const {
   return {{"map", map_.memory_bytes()},
-          {"scan_buffer", archive_.size() * sizeof(ArchivedPoint) +
-                              registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
+          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
           {"backlog", imu_.memory_bytes()},
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -20,9 +18,9 @@
 
 namespace lidarena::odometry::arena_lio {
 
-/// Tightly coupled LiDAR-inertial odometry: an iterated error-state Kalman filter that registers
-/// raw points with planes of the map, after Xu, Cai, He, Lin, Zhang, "FAST-LIO2: Fast Direct
-/// LiDAR-Inertial Odometry" (IEEE T-RO 2022). See README.md in this folder.
+/// Tightly coupled LiDAR-inertial odometry: FAST-LIO2's iterated Kalman filter on points and
+/// planes, with the planes' uncertainty, grids that are not parallel to walls, the IMU's own noise,
+/// and tests for standstill, saturation and lost tracking. See README.md in this folder.
 class ArenaLio : public Odometry {
  public:
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -38,6 +36,8 @@ class ArenaLio : public Odometry {
  private:
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
   Time scan_end(const Scan& scan);
+  /// The samples since the end of the last scan.
+  std::vector<ImuSample> new_samples(Time end) const;
   /// IMU intervals since the end of the last scan, or since the first sample.
   std::vector<estimation::ImuInterval> intervals_until(Time end);
   /// Collects samples and initializes once there are enough; returns whether it has.
@@ -46,21 +46,18 @@ class ArenaLio : public Odometry {
   void stand();
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<estimation::ImuInterval>& intervals);
-  estimation::ImuNoise noise_over(const estimation::ImuInterval& interval) const;
-  /// The points in use, in the LiDAR's frame at the scan's end.
+  /// The usable points, in the LiDAR's frame at the scan's end.
   std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
   /// Adds the points to the map and removes map points far from the sensor.
   void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
   /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const estimation::IteratedUpdate& update, const PlaneResiduals& residuals);
   ScanResult refused_scan();
-  ScanResult finish_scan(Time end, ScanStatus status, const ScanCounters& counters);
-  Pose body_pose(const Pose& map_from_imu) const;
-  Eigen::Matrix<double, 6, 6> body_covariance() const;
-  void publish(std::span<const Eigen::Vector3f> points);
+  /// The result with the current estimate, which is that at `end`.
+  ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
 
   Config config_;
-  Pose body_from_imu_;
+  Pose imu_from_body_;
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
   Pose world_from_map_;
   Pose imu_from_lidar_;
@@ -72,7 +69,6 @@ class ArenaLio : public Odometry {
   double longest_gap_s_ = 0.0;            ///< of the IMU, in the last scan
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
-  bool first_scan_ = true;
   bool started_ = false;
   double accel_scale_ = 1.0;
 
@@ -90,9 +86,6 @@ class ArenaLio : public Odometry {
   Time scan_duration_;  ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
-  /// A point as stored in the published program's buffer (48 bytes).
-  using ArchivedPoint = std::array<float, 12>;
-  std::deque<ArchivedPoint> archive_;  ///< no vector, whose growth would copy gigabytes in a scan
 };
 
 }  // namespace lidarena::odometry::arena_lio

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/estimation/imu_at_rest.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
-#include "lidarena/odometry/arena_lio/config.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
@@ -17,12 +17,11 @@ struct Start {
   bool still = false;
 };
 
-/// Gravity from the direction of the mean specific force, gyro bias from the mean rate, and at rest
-/// the part of the accelerometer's bias along gravity from the magnitude of the mean force. The
-/// world is the IMU's frame. FAST-LIO2 assumes a sensor at rest; with `initial_sigma` 0, velocity
-/// and gyro bias of a moving one are unknown.
-Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
-                 const Config& config);
+/// Gravity from the direction of the mean specific force; at rest the gyro's bias from the mean
+/// rate, and the part of the accelerometer's bias along gravity from the magnitude of the mean
+/// force. Velocity and biases of a moving sensor are unknown, and their covariance is large. The
+/// world is the IMU's frame. Nothing if there are too few samples or they show no acceleration.
+std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar);
 
 /// Decides at each scan whether the sensor stands still. Slow motion is detected by the distance
 /// from the place where the standstill began.
@@ -31,7 +30,7 @@ class StillDetector {
   /// `predicted`: the state before the scan's update (with a map of few scans the update turns
   /// its own errors into velocity); `position`: after the update, m.
   bool observe(const estimation::ImuStatistics& imu, const estimation::InertialState& predicted,
-               const Eigen::Vector3d& position, const Config& config, double accel_scale);
+               const Eigen::Vector3d& position, double accel_scale);
   int scans() const { return scans_; }  ///< number of scans in the current standstill
 
  private:

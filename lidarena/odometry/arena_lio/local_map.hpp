@@ -10,8 +10,8 @@
 namespace lidarena::odometry::arena_lio {
 
 /// Adds a scan's points (m, world) to the map, which keeps the point nearest to the center of each
-/// cell. `matches` are those of the points' last search; empty if there was none.
-void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
+/// cell. `nearest` are those of the points' last search; empty if there was none.
+void add_scan(std::span<const Eigen::Vector3f> points, std::span<const Nearest> nearest,
               float voxel, map::KdTree& map);
 
 /// Removes points outside the box of half edge `radius` (m) around the sensor, each time the sensor

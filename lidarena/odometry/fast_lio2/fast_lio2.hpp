@@ -3,26 +3,23 @@
 
 #include <array>
 #include <deque>
-#include <optional>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/estimation/imu_buffer.hpp"
-#include "lidarena/estimation/imu_track.hpp"
-#include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/map/kd_tree.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
-#include "lidarena/odometry/fast_lio2/initialization.hpp"
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
-#include "lidarena/odometry/fast_lio2/plane_residuals.hpp"
+#include "lidarena/odometry/fast_lio2/preprocess.hpp"
+#include "lidarena/odometry/fast_lio2/propagation.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::fast_lio2 {
 
 /// Tightly coupled LiDAR-inertial odometry: an iterated error-state Kalman filter that registers
 /// raw points with planes of the map, after Xu, Cai, He, Lin, Zhang, "FAST-LIO2: Fast Direct
-/// LiDAR-Inertial Odometry" (IEEE T-RO 2022). See README.md in this folder.
+/// LiDAR-Inertial Odometry" (IEEE T-RO 2022), as its program does. See README.md in this folder.
 class FastLio2 : public Odometry {
  public:
   FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -36,61 +33,41 @@ class FastLio2 : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Instant of the scan's last firing; for a scan without points, its expected instant.
-  Time scan_end(const Scan& scan);
-  /// IMU intervals since the end of the last scan, or since the first sample.
-  std::vector<estimation::ImuInterval> intervals_until(Time end);
-  /// Collects samples and initializes once there are enough; returns whether it has.
-  bool start(const std::vector<ImuSample>& samples);
-  /// Updates the filter with the knowledge that the sensor stands still.
-  void stand();
-  /// Propagates state and covariance over the intervals and stores the track for de-skewing.
-  void predict(const std::vector<estimation::ImuInterval>& intervals);
-  estimation::ImuNoise noise_over(const estimation::ImuInterval& interval) const;
-  /// The points in use, in the LiDAR's frame at the scan's end.
-  std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
-  /// Adds the points to the map and removes map points far from the sensor.
-  void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
-  /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const estimation::IteratedUpdate& update, const PlaneResiduals& residuals);
+  /// Initializes with the samples up to `end`, except those of the first scan; the estimate is then
+  /// that of the last sample.
+  void start(Time end);
+  /// Propagates the estimate to the end of the scan.
+  void predict(const ScanSpan& scan);
+  /// Keeps the scan (m) as the program publishes it.
+  void publish(std::vector<Eigen::Vector3f> in_world);
   ScanResult refused_scan();
-  ScanResult finish_scan(Time end, ScanStatus status, const ScanCounters& counters);
-  Pose body_pose(const Pose& map_from_imu) const;
-  Eigen::Matrix<double, 6, 6> body_covariance() const;
-  void publish(std::span<const Eigen::Vector3f> points);
+  /// The result with the current estimate, which is that at `end`.
+  ScanResult finish_scan(const Scan& scan, Time end, ScanStatus status);
 
   Config config_;
-  Pose body_from_imu_;
-  Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
-  Pose world_from_map_;
-  Pose imu_from_lidar_;
-  estimation::ImuNoise noise_;
+  bool is_livox_;
+  Pose world_from_start_;  ///< body's frame at the start, from the IMU's at the start
+  Pose imu_from_body_;
+  Pose imu_from_lidar_;  ///< as given
   Parallel parallel_;
 
   estimation::ImuBuffer imu_;
-  std::optional<Time> integrated_until_;  ///< none until there are samples
-  double longest_gap_s_ = 0.0;            ///< of the IMU, in the last scan
-  std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
-  std::vector<ImuSample> start_samples_;
+  ScanClock clock_;
   bool first_scan_ = true;
   bool started_ = false;
   double accel_scale_ = 1.0;
-
-  estimation::StateEstimate
-      estimate_;  ///< state and covariance at the end of the last scan, in the map's frame
-  estimation::ImuTrack track_;
-  int contradicting_scans_ = 0;
-  std::size_t scans_refused_ = 0;
-  StillDetector still_;
-  Pose first_pose_ = Pose::Identity();  ///< of the IMU
-  bool has_moved_ = false;
+  std::vector<ImuSample> start_samples_;
+  Time estimated_{Time::min()};  ///< instant of the estimate
+  estimation::StateEstimate estimate_;
+  estimation::ImuTrack track_;  ///< of the last scan
   map::KdTree map_;
-  MapWindow map_window_;
+  MapBox box_;
+  ScanCounters counters_;  ///< of the scan at hand
+  std::size_t scans_refused_ = 0;
 
-  Time scan_duration_;  ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
-  /// A point as stored in the published program's buffer (48 bytes).
+  /// A point as stored in the program's buffer (48 bytes).
   using ArchivedPoint = std::array<float, 12>;
   std::deque<ArchivedPoint> archive_;  ///< no vector, whose growth would copy gigabytes in a scan
 };

@@ -1,42 +1,24 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
-#include "lidarena/estimation/imu_at_rest.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
-#include "lidarena/odometry/fast_lio2/config.hpp"
 
 namespace lidarena::odometry::fast_lio2 {
 
 /// Result of the initialization.
 struct Start {
   estimation::StateEstimate estimate;
-  double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
-  bool still = false;
+  double accel_scale = 1.0;  ///< factor on the IMU's accelerations
 };
 
-/// Gravity from the direction of the mean specific force, gyro bias from the mean rate, and at rest
-/// the part of the accelerometer's bias along gravity from the magnitude of the mean force. The
-/// world is the IMU's frame. FAST-LIO2 assumes a sensor at rest; with `initial_sigma` 0, velocity
-/// and gyro bias of a moving one are unknown.
-Start start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar,
-                 const Config& config);
-
-/// Decides at each scan whether the sensor stands still. Slow motion is detected by the distance
-/// from the place where the standstill began.
-class StillDetector {
- public:
-  /// `predicted`: the state before the scan's update (with a map of few scans the update turns
-  /// its own errors into velocity); `position`: after the update, m.
-  bool observe(const estimation::ImuStatistics& imu, const estimation::InertialState& predicted,
-               const Eigen::Vector3d& position, const Config& config, double accel_scale);
-  int scans() const { return scans_; }  ///< number of scans in the current standstill
-
- private:
-  Eigen::Vector3d anchor_ = Eigen::Vector3d::Zero();
-  int scans_ = 0;
-};
+/// Gravity from the direction of the mean specific force, the gyro's bias from the mean rate; the
+/// sensor must be at rest. The world is the IMU's frame. All accelerations are scaled so that their
+/// mean here is as long as gravity, in whatever unit they are. Nothing if there are too few samples
+/// or they show no acceleration.
+std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar);
 
 }  // namespace lidarena::odometry::fast_lio2

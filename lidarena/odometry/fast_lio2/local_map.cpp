@@ -1,51 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/fast_lio2/local_map.hpp"
 
-#include <limits>
+#include <algorithm>
+
+#include "lidarena/map/cell_insertion.hpp"
 
 namespace lidarena::odometry::fast_lio2 {
-namespace {
 
-enum class Insertion { kPlain, kThinned, kNone };
-
-/// How to insert a point, by its neighbors (FAST-LIO2, section V-E; the shortcuts are the published
-/// program's): if the nearest one is outside the cell on every axis, the cell is empty; if any one
-/// is nearer to the cell's center, the point is not needed.
-Insertion insertion_of(const Eigen::Vector3f& point, const Match& match, float voxel) {
-  if (match.found == 0) return Insertion::kThinned;
-  const Eigen::Vector3f center = ((point / voxel).array().floor() + 0.5F) * voxel;
-  const Eigen::Vector3f away = (match.neighbors[0].point - center).cwiseAbs();
-  if ((away.array() > 0.5F * voxel).all()) return Insertion::kPlain;
-  const float own = (point - center).squaredNorm();
-  for (std::size_t i = 0; i < match.found; ++i) {
-    if ((match.neighbors[i].point - center).squaredNorm() < own) return Insertion::kNone;
-  }
-  return Insertion::kThinned;
-}
-
-}  // namespace
-
-void add_scan(std::span<const Eigen::Vector3f> points, const std::vector<Match>& matches,
-              float voxel, map::KdTree& map) {
+void insert_scan(std::span<const Eigen::Vector3f> points, std::span<const Neighbors> neighbors,
+                 float voxel, map::KdTree& map) {
+  std::vector<Eigen::Vector3f> plain;
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Insertion insertion =
-        matches.empty() ? Insertion::kThinned : insertion_of(points[i], matches[i], voxel);
-    if (insertion == Insertion::kPlain) map.insert(points[i]);
-    if (insertion == Insertion::kThinned) map.insert_downsampled(points[i], voxel);
+    const map::CellInsertion how = map::cell_insertion(points[i], neighbors[i], voxel);
+    if (how == map::CellInsertion::kThinned) map.insert_downsampled(points[i], voxel);
+    if (how == map::CellInsertion::kPlain) plain.push_back(points[i]);
   }
+  for (const Eigen::Vector3f& point : plain) map.insert(point);
 }
 
-void MapWindow::follow(const Eigen::Vector3f& sensor, map::KdTree& map) {
-  if ((sensor - center_).cwiseAbs().maxCoeff() < 0.25F * radius_) return;
-  center_ = sensor;
-  constexpr float kFar = std::numeric_limits<float>::max();
+void MapBox::follow(const Eigen::Vector3f& sensor, map::KdTree& map) {
+  const Eigen::Vector3f half = Eigen::Vector3f::Constant(0.5F * size_);
+  if (box_.isEmpty()) box_ = {sensor - half, sensor + half};
+  const float margin = 1.5F * range_;
+  const float shift = std::max(0.45F * (size_ - 2.0F * margin), 0.5F * range_);
+  const Eigen::AlignedBox3f before = box_;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    Eigen::AlignedBox3f below(Eigen::Vector3f::Constant(-kFar), Eigen::Vector3f::Constant(kFar));
-    Eigen::AlignedBox3f above = below;
-    below.max()[axis] = center_[axis] - radius_;
-    above.min()[axis] = center_[axis] + radius_;
-    map.remove(below);
-    map.remove(above);
+    Eigen::AlignedBox3f left = before;
+    if (sensor[axis] - before.min()[axis] <= margin) {
+      box_.translate(-shift * Eigen::Vector3f::Unit(axis));
+      left.min()[axis] = before.max()[axis] - shift;
+    } else if (before.max()[axis] - sensor[axis] <= margin) {
+      box_.translate(shift * Eigen::Vector3f::Unit(axis));
+      left.max()[axis] = before.min()[axis] + shift;
+    } else {
+      continue;
+    }
+    map.remove(left);
   }
 }
 

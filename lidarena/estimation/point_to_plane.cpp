@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/point_to_plane.hpp"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace lidarena::estimation {
+
+PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
+                             const InertialState& state, bool extrinsics) {
+  const Eigen::Vector3d in_imu =
+      state.imu_from_lidar.linear() * point + state.imu_from_lidar.translation();
+  const Eigen::Vector3d in_world = state.rotation() * in_imu + state.position();
+  const Eigen::Vector3d normal_in_imu = state.rotation().transpose() * plane.normal;
+  PointResidual residual{plane.normal.dot(in_world) + plane.offset, {}};
+  residual.row << plane.normal.transpose(), in_imu.cross(normal_in_imu).transpose(),
+      Eigen::Matrix<double, 1, 6>::Zero();
+  if (extrinsics) {
+    residual.row.tail<6>()
+        << point.cross(state.imu_from_lidar.linear().transpose() * normal_in_imu).transpose(),
+        normal_in_imu.transpose();
+  }
+  return residual;
+}
+
+bool is_inlier(double distance, double range) {
+  return 1.0 - 0.9 * std::abs(distance) / std::sqrt(range) > 0.9;
+}
+
+NormalEquations<kPointDof> sum_residuals(std::span<const Eigen::Vector3f> points,
+                                         const InertialState& state, bool extrinsics,
+                                         PointPlanes& planes, const Parallel& parallel) {
+  return accumulate_normal_equations<kPointDof>(
+      parallel, points.size(), [&](std::size_t i, NormalEquations<kPointDof>& sum) {
+        std::optional<WeightedPlane>& match = planes[i];
+        if (!match) return;
+        const Eigen::Vector3d point = points[i].cast<double>();
+        const PointResidual residual = point_residual(point, match->plane, state, extrinsics);
+        if (!is_inlier(residual.distance, point.norm())) {
+          match.reset();
+          return;
+        }
+        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), match->weight);
+      });
+}
+
+}  // namespace lidarena::estimation
