@@ -22,13 +22,9 @@ using synthetic::with_imu;
 
 constexpr double kTracked = 0.1;  // m; the map's voxels have 0.2 m, lost tracking gives meters
 
-Config config_for(const Recording& recording) {
-  return indoor(synthetic::rig_of(recording).lidars.front());
-}
-
 Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
-  ArenaLio odometry(config_for(recording), rig.lidars.front(), rig.imus.front(), Parallel(1));
+  ArenaLio odometry(indoor(rig.lidars.front()), rig.lidars.front(), rig.imus.front(), Parallel(1));
   return synthetic::play(events, odometry);
 }
 
