@@ -156,9 +156,10 @@ std::vector<std::string> preset_names() {
 /// What a former preset of a published method is now.
 std::string successor_of(const std::string& algorithm, const std::string& preset) {
   if (preset == "original") {
-    const bool was_indoor = algorithm.starts_with("ct_icp") || algorithm.starts_with("lio_sam");
-    return std::string("its former settings are the preset ") +
-           (was_indoor ? "indoor" : "published");
+    if (algorithm.starts_with("kiss_icp"))
+      return "nearest to it is the preset published, whose de-skewing is off as shipped";
+    return "its settings are those of the preset " +
+           std::string(algorithm.starts_with("fast_lio2") ? "published" : "indoor");
   }
   if (preset != "improved") return "";
   if (algorithm.starts_with("fast_lio2")) return "that method is arena_lio now";

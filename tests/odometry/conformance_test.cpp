@@ -194,23 +194,28 @@ TEST_P(OdometryConformance, WhenTheFlightTakesPlaceDoesNotMatter) {
   }
 }
 
+// The beams of the next two tests do not repeat: of those that do, all points of a wall lie on a
+// few lines, through which any plane fits, and a published method may be held at its pose by them.
+
 TEST_P(OdometryConformance, HowTheSensorIsMountedDoesNotMatter) {
-  const Recording mounted{.body_from_lidar =
-                              make_pose(so3::exp({0.1, 0.3, 1.2}), {0.2, -0.1, 0.3})};
+  const Recording mounted{.body_from_lidar = make_pose(so3::exp({0.1, 0.3, 1.2}), {0.2, -0.1, 0.3}),
+                          .repeating = false};
   EXPECT_LT(largest_error(mounted, play(mounted).trajectory), kTracked);
 }
 
 TEST_P(OdometryConformance, StandingStillItStaysPut) {
+  // Of the presets for rooms the coarsest matches about 300 points with a map whose points are 0.5
+  // m apart: up to 0.25 m each, 0.25 m / sqrt(300) = 1.5 cm together. The presets for cars match
+  // some 80 points with planes through points up to 0.5 m away: 0.5 m / sqrt(80) = 5.6 cm. The
+  // limit is twice that.
+  const double limit = GetParam().preset == "published" ? 0.11 : 0.03;
   const Recording still{.motion = [](double) { return synthetic::flight(0.0); }};
   const Outcome outcome = play(still);
   const Pose& first = outcome.trajectory.poses().front().world_from_body;
   for (const StampedPose& pose : outcome.trajectory.poses()) {
     const Pose moved = first.inverse() * pose.world_from_body;
-    // The coarsest preset matches about 300 points with a map whose points are 0.5 m apart: up to
-    // 0.25 m each, 0.25 m / sqrt(300) = 1.5 cm together. The limit is twice that, for the angle at
-    // a distance of 5 m.
-    EXPECT_LT(moved.translation().norm(), 0.03);
-    EXPECT_LT(so3::angle(moved.linear()), 0.03 / 5.0);
+    EXPECT_LT(moved.translation().norm(), limit);
+    EXPECT_LT(so3::angle(moved.linear()), limit / 5.0) << "at a distance of 5 m";
   }
 }
 
@@ -229,7 +234,7 @@ TEST_P(OdometryConformance, MemoryIsNamedAndTheMapHasSome) {
 
 TEST_P(OdometryConformance, WhatItPublishesLiesOnTheWalls) {
   const auto odometry = make();
-  const Outcome outcome = play(*odometry, usual_events());
+  const Outcome outcome = play(*odometry, synthetic::record({.repeating = false}));
   const bool by_scan = odometry->traits().publishes_scans;
   std::vector<Eigen::Vector3f> points = odometry->map();
   if (by_scan)
