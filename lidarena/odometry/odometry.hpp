@@ -27,28 +27,28 @@ const char* to_string(ScanStatus status);
 /// What a method counted in one scan. A method leaves unset what it does not have.
 struct ScanCounters {
   using Count = std::optional<std::uint64_t>;
-  Count points;                 ///< within the range limits
-  Count keypoints;              ///< points or features that were registered
-  Count matches;                ///< of these, with a counterpart in the map
-  Count near_planes;            ///< of these, with a plane nearby, whether they lie on it or not
-  Count edges;                  ///< edge features found
-  Count surfaces;               ///< surface features found
-  Count iterations;             ///< of the registration or the filter's update
-  Count degenerate_directions;  ///< of 6 that the scan does not determine
-  Count retry_level;            ///< 0: the first registration was trusted
-  Count map_points;
-  Count keyframes;
-  Count loops;                   ///< accepted so far
-  Count loops_tried;             ///< verified so far, accepted or not
-  Count imu_saturated;           ///< intervals of this scan with a sample at the end of its range
-  Count imu_refused;             ///< samples so far that were out of order or not finite
-  Count imu_restarts;            ///< of the inertial estimate so far
-  Count scans_refused;           ///< so far, out of order
-  std::optional<bool> inserted;  ///< the scan was added to the map
-  std::optional<bool> standing;  ///< the sensor stands still
-  std::optional<double> threshold_m;  ///< scale of the prediction's error
-  std::optional<double> imu_gap_s;    ///< longest time without samples in this scan
-  std::optional<double> accel_scale;  ///< factor from the IMU's accelerations to m/s^2
+  Count points{};                 ///< within the range limits
+  Count keypoints{};              ///< points or features that were registered
+  Count matches{};                ///< of these, with a counterpart in the map
+  Count near_planes{};            ///< of these, with a plane nearby, whether they lie on it or not
+  Count edges{};                  ///< edge features found
+  Count surfaces{};               ///< surface features found
+  Count iterations{};             ///< of the registration or the filter's update
+  Count degenerate_directions{};  ///< of 6 that the scan does not determine
+  Count retry_level{};            ///< 0: the first registration was trusted
+  Count map_points{};
+  Count keyframes{};
+  Count loops{};                   ///< accepted so far
+  Count loops_tried{};             ///< verified so far, accepted or not
+  Count imu_saturated{};           ///< intervals of this scan with a sample at the end of its range
+  Count imu_refused{};             ///< samples so far that were out of order or not finite
+  Count imu_restarts{};            ///< of the inertial estimate so far
+  Count scans_refused{};           ///< so far, out of order
+  std::optional<bool> inserted{};  ///< the scan was added to the map
+  std::optional<bool> standing{};  ///< the sensor stands still
+  std::optional<double> threshold_m{};  ///< scale of the prediction's error
+  std::optional<double> imu_gap_s{};    ///< longest time without samples in this scan
+  std::optional<double> accel_scale{};  ///< factor from the IMU's accelerations to m/s^2
 
   /// Calls v(name, field) for each field.
   template <class Self, class V>
