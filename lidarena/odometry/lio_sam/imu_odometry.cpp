@@ -14,6 +14,7 @@ constexpr double kLongGap = 0.05;            // s; over longer gaps the motion i
 constexpr double kMaxSpeed = 30.0;           // m/s; the program resets beyond this ...
 constexpr double kMaxBias = 1.0;             // ... and this bias, m/s^2, rad/s
 constexpr int kSpeaking = 2;                 // corrections from which on there are poses
+constexpr double kDelayedScans = 3.0;        // duration of a scan and of the two it waits for
 
 /// Of a registered pose: sigmas of 0.05 rad and 0.1 m, when degenerate 1 rad and 1 m.
 estimation::PoseMeasurement::Information information(bool degenerate) {
@@ -34,14 +35,14 @@ estimation::NavState::Matrix start_covariance() {
 
 }  // namespace
 
-ImuOdometry::ImuOdometry(const Config& config, const Pose& imu_from_lidar)
+ImuOdometry::ImuOdometry(const Config& config, const Pose& imu_from_lidar, double scan_period)
     : imu_from_lidar_(imu_from_lidar),
       imu_{{config.gyro_noise_density, config.accel_noise_density, config.gyro_bias_walk,
             config.accel_bias_walk},
            1.0,
            {0.0, 0.0, -config.gravity}},
       samples_(kLongGap),
-      pending_(estimation::ImuBias{}, imu_.noise) {}
+      delay_(from_seconds(kDelayedScans * scan_period)) {}
 
 bool ImuOdometry::is_ready(Time end) {
   if (ready_) return true;
@@ -55,15 +56,18 @@ bool ImuOdometry::is_ready(Time end) {
 }
 
 void ImuOdometry::advance(Time stamp) {
+  for (; !underway_.empty() && underway_.front().stamp + delay_ < stamp; underway_.pop_front())
+    use(underway_.front());
+  stamp_ = stamp;
   longest_gap_s_ = 0.0;
-  if (corrections_ > 0) {
-    const std::vector<estimation::ImuInterval> intervals = samples_.between(stamp_, stamp);
-    longest_gap_s_ = estimation::longest_gap_s(intervals);
-    estimation::integrate(intervals, smoother_.latest(), imu_, pending_);
-    now_ = pending_.predict(smoother_.latest(), imu_.gravity);
-  }
-  stamp_ = corrections_ > 0 ? std::max(stamp_, stamp) : stamp;
-  samples_.remove_before(stamp);
+  const Time needed = underway_.empty() ? stamp : underway_.front().stamp;
+  samples_.remove_before(corrections_ > 0 ? smoothed_until_ : std::min(needed, stamp));
+  if (corrections_ == 0) return;
+  const std::vector<estimation::ImuInterval> since = samples_.between(smoothed_until_, stamp);
+  longest_gap_s_ = estimation::longest_gap_s(since);
+  estimation::Preintegration sum(smoother_.latest().bias, imu_.noise);
+  estimation::integrate(since, smoother_.latest(), imu_, sum);
+  now_ = sum.predict(smoother_.latest(), imu_.gravity);
 }
 
 std::optional<Pose> ImuOdometry::odom_from_lidar() const {
@@ -80,35 +84,40 @@ estimation::ImuTrack ImuOdometry::track(Time end) {
   return estimation::integrate(intervals, from, imu_, sum);
 }
 
-void ImuOdometry::correct(const Pose& odom_from_lidar, bool degenerate) {
-  const Pose odom_from_imu = odom_from_lidar * imu_from_lidar_.inverse();
+void ImuOdometry::send(const Pose& odom_from_lidar, bool degenerate) {
+  underway_.push_back({stamp_, odom_from_lidar * imu_from_lidar_.inverse(), degenerate});
+}
+
+void ImuOdometry::use(const Correction& correction) {
   if (corrections_ == 0) {
-    restart(odom_from_imu);
+    start(correction.odom_from_imu);
   } else {
-    smoother_.add(pending_, {odom_from_imu, information(degenerate)});
-    now_ = smoother_.latest();
+    estimation::Preintegration sum(smoother_.latest().bias, imu_.noise);
+    estimation::integrate(samples_.between(smoothed_until_, correction.stamp), smoother_.latest(),
+                          imu_, sum);
+    smoother_.add(sum, {correction.odom_from_imu, information(correction.degenerate)});
   }
+  smoothed_until_ = correction.stamp;
   ++corrections_;
-  pending_ = {now_.bias, imu_.noise};
   if (!has_failed()) return;
   corrections_ = 0;
-  now_ = {odom_from_imu, Eigen::Vector3d::Zero(), {}};
+  now_ = {correction.odom_from_imu, Eigen::Vector3d::Zero(), {}};
   ++resets_;
 }
 
-void ImuOdometry::restart(const Pose& odom_from_imu) {
-  now_ = {odom_from_imu, Eigen::Vector3d::Zero(), {}};
-  estimation::InertialStart start;
-  start.state = now_;
-  start.covariance = start_covariance();
-  start.gravity = imu_.gravity;
-  smoother_.start(start);
+void ImuOdometry::start(const Pose& odom_from_imu) {
+  estimation::InertialStart begin;
+  begin.state.world_from_imu = odom_from_imu;
+  begin.covariance = start_covariance();
+  begin.gravity = imu_.gravity;
+  smoother_.start(begin);
 }
 
 bool ImuOdometry::has_failed() const {
   // Not "greater than": a state that is not finite has failed too.
-  return !(now_.velocity.norm() <= kMaxSpeed && now_.bias.accel.norm() <= kMaxBias &&
-           now_.bias.gyro.norm() <= kMaxBias);
+  const estimation::NavState& state = smoother_.latest();
+  return !(state.velocity.norm() <= kMaxSpeed && state.bias.accel.norm() <= kMaxBias &&
+           state.bias.gyro.norm() <= kMaxBias);
 }
 
 }  // namespace lidarena::odometry::lio_sam

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <deque>
 #include <optional>
 
 #include "lidarena/estimation/imu_buffer.hpp"
@@ -11,23 +12,25 @@
 namespace lidarena::odometry::lio_sam {
 
 /// Poses from the IMU between those of registered scans: preintegration from the latest state of a
-/// graph of poses, velocities and biases (section III-B). It is silent until the second pose, and
-/// again after a reset, which an implausible velocity or bias causes.
+/// graph of poses, velocities and biases (section III-B). Registered poses arrive late, because the
+/// program lets a scan wait for the two that follow. It is silent until the second pose, and again
+/// after a reset, which an implausible velocity or bias causes.
 class ImuOdometry {
  public:
-  ImuOdometry(const Config& config, const Pose& imu_from_lidar);
+  /// `scan_period` (s): time from one scan to the next.
+  ImuOdometry(const Config& config, const Pose& imu_from_lidar, double scan_period);
 
   void register_imu(const ImuSample& sample) { samples_.add(sample); }
   /// Whether there have been enough samples before `end` to begin.
   bool is_ready(Time end);
-  /// Integrates the samples up to `stamp`.
+  /// Moves to the stamp of a scan: uses the poses that have arrived by then, and the samples since.
   void advance(Time stamp);
-  /// Pose of the LiDAR at the latest instant of advance() or correct(); none while it is silent.
+  /// Pose of the LiDAR at the stamp; none while silent.
   std::optional<Pose> odom_from_lidar() const;
-  /// Motion of the IMU from the latest instant of advance() to `end`. Rates still have their bias.
+  /// Motion of the IMU from the stamp to `end`. Rates still have their bias.
   estimation::ImuTrack track(Time end);
-  /// Adds the pose of the LiDAR registered at the latest instant of advance().
-  void correct(const Pose& odom_from_lidar, bool degenerate);
+  /// Sends the pose of the LiDAR registered at the stamp.
+  void send(const Pose& odom_from_lidar, bool degenerate);
 
   double accel_scale() const { return imu_.accel_scale; }
   double longest_gap_s() const { return longest_gap_s_; }
@@ -36,7 +39,14 @@ class ImuOdometry {
   std::uint64_t memory_bytes() const { return samples_.memory_bytes(); }
 
  private:
-  void restart(const Pose& odom_from_imu);
+  /// A registered pose on its way.
+  struct Correction {
+    Time stamp{0};
+    Pose odom_from_imu;
+    bool degenerate = false;
+  };
+  void use(const Correction& correction);
+  void start(const Pose& odom_from_imu);
   bool has_failed() const;
 
   Pose imu_from_lidar_;
@@ -44,11 +54,14 @@ class ImuOdometry {
   estimation::ImuBuffer samples_;
   bool ready_ = false;
 
+  std::deque<Correction> underway_;
+  Time delay_;  ///< from a scan's stamp to the arrival of its pose
+
   estimation::InertialSmoother smoother_;
-  estimation::Preintegration pending_;  ///< since the smoother's last state
-  estimation::NavState now_;            ///< at `stamp_`
+  Time smoothed_until_{0};    ///< stamp of the smoother's last state
+  int corrections_ = 0;       ///< poses used since the start or the last reset
+  estimation::NavState now_;  ///< at `stamp_`
   Time stamp_{0};
-  int corrections_ = 0;  ///< poses since the start or the last reset
   std::size_t resets_ = 0;
   double longest_gap_s_ = 0.0;  ///< in the last scan and before it
 };

@@ -31,7 +31,7 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       body_from_lidar_(lidar.body_from_lidar),
       body_from_imu_(imu.body_from_imu),
       parallel_(std::move(parallel)),
-      imu_(config, imu.body_from_imu.inverse() * lidar.body_from_lidar),
+      imu_(config, imu.body_from_imu.inverse() * lidar.body_from_lidar, 1.0 / lidar.rate_hz),
       world_from_lidar_(body_from_lidar_),
       last_match_(body_from_lidar_),
       odom_from_lidar_(body_from_lidar_),
@@ -123,7 +123,7 @@ void LioSam::feed_back(const Pose& before, const Registration& found) {
   const Matrix3d odom_from_body = odom_from_lidar_.linear() * body_from_lidar.transpose();
   Pose measured = odom_from_lidar_;
   measured.linear() = leveled(odom_from_body) * body_from_lidar;
-  imu_.correct(measured, degenerate_);
+  imu_.send(measured, degenerate_);
   imu_at_scan_ = imu_.odom_from_lidar();
 }
 
