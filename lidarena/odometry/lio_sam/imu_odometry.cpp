@@ -75,6 +75,16 @@ std::optional<Pose> ImuOdometry::odom_from_lidar() const {
   return now_.world_from_imu * imu_from_lidar_;
 }
 
+Pose ImuOdometry::motion_since_sent() const {
+  ImuOdometry ahead = *this;
+  ahead.delay_ = Time{0};
+  ahead.advance(stamp_);
+  if (ahead.corrections_ < kSpeaking) return Pose::Identity();
+  const Pose last_from_now =
+      ahead.smoother_.latest().world_from_imu.inverse() * ahead.now_.world_from_imu;
+  return imu_from_lidar_.inverse() * last_from_now * imu_from_lidar_;
+}
+
 estimation::ImuTrack ImuOdometry::track(Time end) {
   estimation::NavState from = now_;
   from.bias.gyro.setZero();

@@ -27,6 +27,9 @@ class ImuOdometry {
   void advance(Time stamp);
   /// Pose of the LiDAR at the stamp; none while silent.
   std::optional<Pose> odom_from_lidar() const;
+  /// Motion of the LiDAR from the latest scan whose pose was sent to the stamp, by all poses sent,
+  /// whether they have arrived or not; none while there are not two.
+  Pose motion_since_sent() const;
   /// Motion of the IMU from the stamp to `end`. Rates still have their bias.
   estimation::ImuTrack track(Time end);
   /// Sends the pose of the LiDAR registered at the stamp.

@@ -124,7 +124,6 @@ void LioSam::feed_back(const Pose& before, const Registration& found) {
   Pose measured = odom_from_lidar_;
   measured.linear() = leveled(odom_from_body) * body_from_lidar;
   imu_.send(measured, degenerate_);
-  imu_at_scan_ = imu_.odom_from_lidar();
 }
 
 void LioSam::keep(Time stamp, Features features) {
@@ -178,12 +177,6 @@ ScanResult LioSam::result_of(const StampedPose& lidar, ScanStatus status, const 
         estimation::motion_along(within.track, lidar.stamp, within.end, lidar.stamp,
                                  world_from_body * body_from_imu_, body_from_imu_.inverse());
   return result;
-}
-
-Pose LioSam::predicted() const {
-  const std::optional<Pose> imu = imu_.odom_from_lidar();
-  return imu && imu_at_scan_ ? world_from_lidar_ * imu_at_scan_->inverse() * *imu
-                             : world_from_lidar_;
 }
 
 Trajectory LioSam::trajectory() const {

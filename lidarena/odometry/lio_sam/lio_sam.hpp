@@ -58,8 +58,8 @@ class LioSam : public Odometry {
   ScanResult processed(Time stamp, ScanStatus status, const Within& within, ScanCounters counters);
   ScanResult result_of(const StampedPose& lidar, ScanStatus status, const Within& within,
                        ScanCounters counters) const;
-  /// world_from_lidar_ and the motion of the IMU odometry since.
-  Pose predicted() const;
+  /// world_from_lidar_ and the motion since, by the IMU.
+  Pose predicted() const { return world_from_lidar_ * imu_.motion_since_sent(); }
 
   Config config_;
   Pose body_from_lidar_;
@@ -73,7 +73,6 @@ class LioSam : public Odometry {
   Pose odom_from_lidar_;               ///< chain of the motions fed back, without loops
   bool degenerate_ = false;            ///< the last registration was
   std::optional<Pose> guess_origin_;   ///< of the IMU odometry, at the latest guess that used it
-  std::optional<Pose> imu_at_scan_;    ///< of the IMU odometry, after the last processed scan
 
   std::vector<Keyframe> keyframes_;
   FeatureMap submap_;

@@ -50,7 +50,7 @@ TEST(LioSam, ThePositionOfAMovingSensorIsThatOfTheMiddleOfTheScan) {
   // 1 m/s along x, without rotation, so that only the translation within the scan remains
   const Recording moving{.motion = [](double seconds) {
     Pose pose = Pose::Identity();
-    pose.translation() = {-2.0 + std::max(0.0, seconds - 1.0), 0.4, 1.5};
+    pose.translation() = Eigen::Vector3d(-2.0 + std::max(0.0, seconds - 1.0), 0.4, 1.5);
     return pose;
   }};
   const std::vector<ScanResult> results = results_of(moving, spinning());
