@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times of the single steps of arena_slam on scans of a room with pillars: 20,000 points on 4 lines in
-// a pattern that does not repeat (Mid-360), and 128 x 1024 points (OS0-128).
+// Times of the single steps of arena_slam on scans of a room with pillars: 20,000 points on 4 lines
+// in a pattern that does not repeat (Mid-360), and 128 x 1024 points (OS0-128).
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -105,7 +105,8 @@ const Scene& scene(const benchmark::State& state) {
 
 void project_points(benchmark::State& state) {
   const Scene& s = scene(state);
-  for (auto _ : state) benchmark::DoNotOptimize(estimation::project(s.scan, s.points, s.rule.layout));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(estimation::project(s.scan, s.points, s.rule.layout));
 }
 
 void extract(benchmark::State& state) {

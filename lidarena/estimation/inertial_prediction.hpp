@@ -12,7 +12,7 @@ namespace lidarena::estimation {
 /// What an estimator knows of its IMU.
 struct ImuModel {
   ImuNoise noise;
-  double accel_scale = 1.0;  ///< factor from its accelerations to m/s^2
+  double accel_scale = 1.0;                     ///< factor from its accelerations to m/s^2
   Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world
 };
 

@@ -6,7 +6,8 @@
 namespace lidarena::loop {
 
 /// Which loops are searched for and accepted. Candidates come by distance and by appearance; they
-/// are verified by overlap, fit and the possible drift of the odometry, and accepted when two agree.
+/// are verified by overlap, fit and the possible drift of the odometry, and accepted when two
+/// agree.
 struct LoopConfig {
   double min_time_gap_s = 10.0;
   double min_path_length_m = 20.0;

@@ -19,8 +19,8 @@ struct IcpResult {
   Pose target_from_source = Pose::Identity();
   bool converged = false;
   int iterations = 0;
-  double fitness = 0.0;  ///< m^2, mean squared distance to the target points within 0.3 m
-  double overlap = 0.0;  ///< share of the source's points with a target point within 0.3 m
+  double fitness = 0.0;     ///< m^2, mean squared distance to the target points within 0.3 m
+  double overlap = 0.0;     ///< share of the source's points with a target point within 0.3 m
   double constraint = 0.0;  ///< share of the least constrained direction in all information
 };
 

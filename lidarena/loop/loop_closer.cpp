@@ -16,10 +16,10 @@ namespace {
 
 using Covariance = estimation::PoseGraph::Covariance;
 
-constexpr double kMinTranslationSigma = 0.1;   // m: sigma of the drift at path length zero
-constexpr double kMinRotationSigma = 0.01;     // rad: likewise
-constexpr double kLeverArm = 1.0;              // m of path length per radian of rotation
-constexpr std::size_t kMaxWaitKeyframes = 20;  // keyframes that a loop waits for another
+constexpr double kMinTranslationSigma = 0.1;    // m: sigma of the drift at path length zero
+constexpr double kMinRotationSigma = 0.01;      // rad: likewise
+constexpr double kLeverArm = 1.0;               // m of path length per radian of rotation
+constexpr std::size_t kMaxWaitKeyframes = 20;   // keyframes that a loop waits for another
 constexpr std::size_t kKeyframesPerSearch = 2;  // keyframes from one search to the next
 constexpr double kMaxDescriptorDistance = 0.3;  // 0: equal places, 1: nothing in common
 constexpr std::size_t kSourceKeyframes = 4;     // before the new one, matched with its own points
@@ -28,11 +28,11 @@ constexpr double kVoxelSize = 0.2;              // m, in which both clouds are a
 constexpr std::size_t kMaxSourcePoints = 1000;
 constexpr std::size_t kMinSourcePoints = 300;
 constexpr std::size_t kMinTargetPoints = 1000;
-constexpr double kMinConstraint = 0.005;     // of the least constrained direction
-constexpr double kDriftGate = 3.0;           // sigmas by which a loop may correct the poses
-constexpr std::size_t kConsistentLoops = 2;  // loops that must agree
-constexpr double kConsistencyTranslation = 0.3;  // m, within which they agree
-constexpr double kConsistencyRotation = 0.03;    // rad
+constexpr double kMinConstraint = 0.005;            // of the least constrained direction
+constexpr double kDriftGate = 3.0;                  // sigmas by which a loop may correct the poses
+constexpr std::size_t kConsistentLoops = 2;         // loops that must agree
+constexpr double kConsistencyTranslation = 0.3;     // m, within which they agree
+constexpr double kConsistencyRotation = 0.03;       // rad
 constexpr double kOdometryTranslationSigma = 0.01;  // m, from keyframe to keyframe
 constexpr double kOdometryRotationSigma = 1e-3;     // rad
 constexpr double kLoopTranslationSigma = 0.03;      // m
@@ -201,9 +201,8 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
   }
   auto source = around(loop.second, kSourceKeyframes, 0, cloud);
   // The target must not contain keyframes of the source, which would match themselves.
-  const std::size_t after =
-      std::min(kTargetKeyframes,
-               loop.second - std::min(loop.second, loop.first + kSourceKeyframes + 1));
+  const std::size_t after = std::min(
+      kTargetKeyframes, loop.second - std::min(loop.second, loop.first + kSourceKeyframes + 1));
   auto target = around(loop.first, kTargetKeyframes, after, cloud);
   if (source.size() < kMinSourcePoints || target.size() < kMinTargetPoints) return loop;
   if (source.size() > kMaxSourcePoints) source.resize(kMaxSourcePoints);

@@ -57,7 +57,8 @@ TEST(EdgePoints, AreTheCornersOfARoom) {
                             static_cast<float>(range * std::sin(angle)), 0.0F);
     row.push_back({p, static_cast<float>(range), i});
   }
-  const std::vector<bool> edges = find_edges(row, EdgeRule{});  // 5 degrees beside a corner: 8 % less
+  const std::vector<bool> edges =
+      find_edges(row, EdgeRule{});  // 5 degrees beside a corner: 8 % less
   EXPECT_GE(std::count(edges.begin(), edges.end(), true), 4);
   for (std::size_t i = 0; i < row.size(); ++i) {
     if (!edges[i]) continue;

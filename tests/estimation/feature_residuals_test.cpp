@@ -41,9 +41,9 @@ TEST(FeatureResiduals, JacobiansAreTheNumericOnes) {
       };
       const double weight = here->row.tail<3>().norm();
       for (Eigen::Index k = 0; k < 6; ++k) {
-        const double slope =
-            (unweighted(*residual_at(stepped(k, 1e-6))) - unweighted(*residual_at(stepped(k, -1e-6)))) /
-            2e-6;
+        const double slope = (unweighted(*residual_at(stepped(k, 1e-6))) -
+                              unweighted(*residual_at(stepped(k, -1e-6)))) /
+                             2e-6;
         EXPECT_NEAR(here->row[k] / weight, slope, 1e-6) << k;
       }
     };
@@ -59,12 +59,11 @@ FivePoints five(const std::array<Vector3d, 5>& points) {
 }
 
 TEST(FeatureResiduals, ALineIsFoundOnlyWhereThereIsOne) {
-  const auto line = fit_line(
-      five({Vector3d{0, 0, 0}, {1, 0.01, 0}, {2, 0, 0.01}, {3, 0, 0}, {4, 0, 0}}));
+  const auto line =
+      fit_line(five({Vector3d{0, 0, 0}, {1, 0.01, 0}, {2, 0, 0.01}, {3, 0, 0}, {4, 0, 0}}));
   ASSERT_TRUE(line.has_value());
   EXPECT_NEAR(std::abs(line->direction.x()), 1.0, 1e-4);
-  EXPECT_FALSE(
-      fit_line(five({Vector3d{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 0}})));
+  EXPECT_FALSE(fit_line(five({Vector3d{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5, 0.5, 0}})));
 }
 
 TEST(FeatureResiduals, FarMatchesDoNotCount) {

@@ -46,8 +46,8 @@ TEST(Icp, LaysPlanesOnPlanes) {
 
 TEST(Icp, AFarCloudHasNothingToHold) {
   const Pair pair = corner();
-  const IcpResult result = align_clouds(pair.source, pair.target, places::standing(500.0, 0.0, 0.0),
-                                        Parallel(1));
+  const IcpResult result =
+      align_clouds(pair.source, pair.target, places::standing(500.0, 0.0, 0.0), Parallel(1));
   EXPECT_FALSE(result.converged);
   EXPECT_EQ(result.overlap, 0.0);
 }
@@ -65,8 +65,7 @@ TEST(Icp, AlongAStraightTunnelTheConstraintIsWeak) {
   map::KdTree target;
   target.build(walls);
   const places::Points source = places::seen_from(Pose::Identity(), walls, 8.0, 3);
-  const IcpResult result =
-      align_clouds(source, target, Pose::Identity(), Parallel(1));
+  const IcpResult result = align_clouds(source, target, Pose::Identity(), Parallel(1));
   EXPECT_LT(result.constraint, 0.005) << "the minimum for a loop";
 }
 

@@ -7,6 +7,9 @@
 #include <filesystem>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/odometry/arena_lio/config.hpp"
+#include "lidarena/odometry/arena_lo/config.hpp"
+#include "lidarena/odometry/arena_slam/config.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
@@ -80,8 +83,8 @@ TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
 TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
   EXPECT_THAT(refusal({"kiss_icp", "indoor", "", {"calm_start=4"}}),
               AllOf(HasSubstr("calm_start"), HasSubstr("write 'initial_scans'")));
-  EXPECT_THAT(refusal({"lio_sam_lc", "indoor", "", {"loop.leaf_m=0.2"}}),
-              HasSubstr("write 'voxel_size_m'"));
+  EXPECT_THAT(refusal({"arena_slam", "indoor", "", {"loop.least_gap_s=5"}}),
+              HasSubstr("write 'min_time_gap_s'"));
   EXPECT_THAT(refusal({"ct_icp", "indoor", "", {"registration.min_neighbours=9"}}),
               HasSubstr("write 'min_neighbors'"));
 }

@@ -56,11 +56,11 @@ ScanResult ArenaSlam::register_scan(const Scan& scan) {
   if (scan.stamp < last_stamp_)
     return result_of(scan.stamp, prediction.world_from_lidar, ScanStatus::kTracked, {});
 
-  const estimation::RangeImage image = estimation::project(
-      scan,
-      estimation::deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu,
-                         parallel_),
-      rule_.layout);
+  const estimation::RangeImage image =
+      estimation::project(scan,
+                          estimation::deskew(scan, prediction.track, imu_from_lidar_,
+                                             prediction.track_from_imu, parallel_),
+                          rule_.layout);
   const Features raw = extract_features(image, rule_.edges, parallel_);
   Features features = thinned(raw, config_);
 
@@ -129,8 +129,7 @@ ArenaSlam::Prediction ArenaSlam::predict(Time stamp, Time end) {
   estimation::Preintegration sum(now.bias, noise_);
   const std::vector<estimation::ImuInterval> within = imu_.between(stamp, end);
   prediction.track = estimation::integrate(within, now, imu_model(), sum);
-  longest_gap_s_ =
-      std::max(estimation::longest_gap_s(before), estimation::longest_gap_s(within));
+  longest_gap_s_ = std::max(estimation::longest_gap_s(before), estimation::longest_gap_s(within));
   return prediction;
 }
 
@@ -194,7 +193,9 @@ void ArenaSlam::restart_if_failed() {
   again.state.world_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   again.gravity = smoother_.gravity();
   again.gravity_sigma = kGravitySigma;
-  again.covariance.diagonal().segment<3>(estimation::NavState::kVelocity).setConstant(kRestartVariance);
+  again.covariance.diagonal()
+      .segment<3>(estimation::NavState::kVelocity)
+      .setConstant(kRestartVariance);
   smoother_.start(again);
   ++restarts_;
 }

@@ -26,10 +26,8 @@ class ArenaSlam : public Odometry {
   ArenaSlam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
   OdometryTraits traits() const override {
-    return {.needs_imu = true,
-            .revises_past = true,
-            .gravity_aligned = true,
-            .publishes_scans = false};
+    return {
+        .needs_imu = true, .revises_past = true, .gravity_aligned = true, .publishes_scans = false};
   }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;

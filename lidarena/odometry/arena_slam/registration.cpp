@@ -71,8 +71,7 @@ class Matcher {
           },
           planes_);
     }
-    PoseEquations sum =
-        sum_of(features_.edges, lines_, pose, parallel_, estimation::edge_residual);
+    PoseEquations sum = sum_of(features_.edges, lines_, pose, parallel_, estimation::edge_residual);
     sum += sum_of(features_.surfaces, planes_, pose, parallel_, estimation::surface_residual);
     return sum;
   }
@@ -120,8 +119,8 @@ Registration register_features(const Features& features, const FeatureMap& map, 
     result.points = points;
     result.degenerate_directions = degenerate.directions;
     step_size = step.tail<3>().norm() + lever * step.head<3>().norm();
-    result.converged = step.head<3>().norm() < kConvergedRotation &&
-                       step.tail<3>().norm() < kConvergedTranslation;
+    result.converged =
+        step.head<3>().norm() < kConvergedRotation && step.tail<3>().norm() < kConvergedTranslation;
     ++result.iterations;
   }
   result.map_from_lidar = orthonormalized(result.map_from_lidar);

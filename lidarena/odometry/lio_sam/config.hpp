@@ -85,7 +85,8 @@ struct Config {
     v("process_interval_s", self.process_interval_s, "s",
       "scans that begin sooner after the last processed one are only predicted", at_least(0));
     v("sensor", self.sensor, "",
-      "spinning, or livox: the port to the Mid-360, with other rules for the range image and edges");
+      "spinning, or livox: the port to the Mid-360, with other rules for the range image and "
+      "edges");
     v("columns", self.columns, "", "number of columns of a spinning LiDAR's range image",
       at_least(16));
     v("row_stride", self.row_stride, "", "every n-th row is used", at_least(1));

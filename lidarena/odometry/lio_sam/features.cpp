@@ -58,9 +58,9 @@ Time end_in_message(const Scan& scan) {
 std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const estimation::ImuTrack& track,
                                       Time known_until, const Pose& imu_from_lidar,
                                       const estimation::ImageLayout& layout) {
-  const auto first =
-      std::find_if(scan.points.begin(), scan.points.end(),
-                   [&](const Point& point) { return estimation::is_usable(point, layout); });
+  const auto first = std::find_if(scan.points.begin(), scan.points.end(), [&](const Point& point) {
+    return estimation::is_usable(point, layout);
+  });
   if (track.empty() || first == scan.points.end()) return estimation::positions(scan);
   const estimation::ImuTrack rotations = rotations_of(track, known_until);
   return estimation::deskew(scan, rotations, rotation_of(imu_from_lidar),

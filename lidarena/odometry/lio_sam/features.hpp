@@ -25,8 +25,8 @@ estimation::ImageLayout layout_of(const Config& config);
 Time end_in_message(const Scan& scan);
 
 /// Positions (m) of all points, in order, turned to the LiDAR's attitude at the first usable point
-/// in message order. The translation within the scan is not removed. Points later than `known_until`
-/// get the rotation of that instant. Untimed scans are returned unchanged.
+/// in message order. The translation within the scan is not removed. Points later than
+/// `known_until` get the rotation of that instant. Untimed scans are returned unchanged.
 std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const estimation::ImuTrack& track,
                                       Time known_until, const Pose& imu_from_lidar,
                                       const estimation::ImageLayout& layout);

@@ -18,8 +18,8 @@ struct Keyframe {
   std::uint32_t revision = 0;  ///< number of changes of the pose
 };
 
-/// Whether a scan at `stamp` and `world_from_lidar` should be a keyframe, given the last one: it has
-/// moved, or, with Livox sensors, the last one is older than a second.
+/// Whether a scan at `stamp` and `world_from_lidar` should be a keyframe, given the last one: it
+/// has moved, or, with Livox sensors, the last one is older than a second.
 bool is_keyframe(const Keyframe& last, Time stamp, const Pose& world_from_lidar,
                  const Config& config);
 

@@ -13,7 +13,7 @@ using Eigen::Vector3d;
 constexpr Time kImuMargin{10'000'000};  // the program uses IMU samples so long after a scan's end
 constexpr double kLevelWeight = 0.1;    // weight of the IMU's roll and pitch in fed back poses
 
-/// `rotation` with roll and pitch pulled towards level, which the IMU's orientation constantly is.
+/// `rotation` with roll and pitch pulled towards level, the constant orientation of a 6-axis IMU.
 Matrix3d leveled(const Matrix3d& rotation) {
   const double roll = std::atan2(rotation(2, 1), rotation(2, 2));
   const double pitch = std::atan2(-rotation(2, 0), std::hypot(rotation(2, 1), rotation(2, 2)));
@@ -73,8 +73,7 @@ bool LioSam::is_due(Time stamp) const {
   return !last_processed_ || to_seconds(stamp - *last_processed_) >= config_.process_interval_s;
 }
 
-Features LioSam::features_of(const Scan& scan, const Within& within,
-                             ScanCounters& counters) const {
+Features LioSam::features_of(const Scan& scan, const Within& within, ScanCounters& counters) const {
   const estimation::ImageLayout layout = layout_of(config_);
   const Pose imu_from_lidar = body_from_imu_.inverse() * body_from_lidar_;
   const estimation::RangeImage image = estimation::project(
@@ -102,8 +101,7 @@ Registration LioSam::match(const Features& features, const Pose& guess, Time sta
                       features.surfaces.size() > static_cast<std::size_t>(config_.min_surfaces);
   if (keyframes_.empty() || !enough) return {.map_from_lidar = guess};
   submap_.follow(keyframes_, stamp);
-  const Registration found =
-      register_features(features, submap_, guess, config_.sensor, parallel_);
+  const Registration found = register_features(features, submap_, guess, config_.sensor, parallel_);
   last_match_ = found.map_from_lidar;
   return found;
 }
@@ -119,10 +117,11 @@ void LioSam::feed_back(const Pose& before, const Registration& found) {
   if (found.iterations > 0) degenerate_ = found.degenerate_directions > 0;
   // A scan without enough features does not move last_match_: the motion is then zero or back.
   odom_from_lidar_ = orthonormalized(odom_from_lidar_ * before.inverse() * last_match_);
-  const Matrix3d body_from_lidar = body_from_lidar_.linear();
-  const Matrix3d odom_from_body = odom_from_lidar_.linear() * body_from_lidar.transpose();
   Pose measured = odom_from_lidar_;
-  measured.linear() = leveled(odom_from_body) * body_from_lidar;
+  if (config_.sensor == Sensor::kLivox) {
+    const Matrix3d body_from_lidar = body_from_lidar_.linear();
+    measured.linear() = leveled(measured.linear() * body_from_lidar.transpose()) * body_from_lidar;
+  }
   imu_.send(measured, degenerate_);
 }
 
@@ -160,8 +159,7 @@ ScanResult LioSam::processed(Time stamp, ScanStatus status, const Within& within
 ScanResult LioSam::result_of(const StampedPose& lidar, ScanStatus status, const Within& within,
                              ScanCounters counters) const {
   ScanResult result;
-  const Pose world_from_body =
-      orthonormalized(lidar.world_from_body * body_from_lidar_.inverse());
+  const Pose world_from_body = orthonormalized(lidar.world_from_body * body_from_lidar_.inverse());
   result.estimate = {lidar.stamp, world_from_body};
   result.status = status;
   result.counters = counters;

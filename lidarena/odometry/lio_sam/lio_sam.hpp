@@ -68,11 +68,11 @@ class LioSam : public Odometry {
   ImuOdometry imu_;
   std::optional<Time> last_processed_;
 
-  Pose world_from_lidar_;              ///< of the last processed scan
-  Pose last_match_;                    ///< of the last scan with enough features, before loops
-  Pose odom_from_lidar_;               ///< chain of the motions fed back, without loops
-  bool degenerate_ = false;            ///< the last registration was
-  std::optional<Pose> guess_origin_;   ///< of the IMU odometry, at the latest guess that used it
+  Pose world_from_lidar_;             ///< of the last processed scan
+  Pose last_match_;                   ///< of the last scan with enough features, before loops
+  Pose odom_from_lidar_;              ///< chain of the motions fed back, without loops
+  bool degenerate_ = false;           ///< the last registration was
+  std::optional<Pose> guess_origin_;  ///< of the IMU odometry, at the latest guess that used it
 
   std::vector<Keyframe> keyframes_;
   FeatureMap submap_;

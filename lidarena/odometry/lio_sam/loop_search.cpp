@@ -13,7 +13,8 @@ namespace lidarena::odometry::lio_sam {
 namespace {
 
 using Covariance = estimation::PoseGraph::Covariance;
-using Equations = estimation::NormalEquations<6>;  // rotation about the target's origin, translation
+using Equations =
+    estimation::NormalEquations<6>;  // rotation about the target's origin, translation
 using Points = std::vector<Eigen::Vector3f>;
 
 constexpr std::size_t kMinSourcePoints = 300;
@@ -147,8 +148,7 @@ std::optional<estimation::PoseGraph::Between> LoopSearch::verify(
   const Pose old_from_world = keyframes[candidate].world_from_lidar.inverse();
   const Pose& world_from_last = keyframes[last].world_from_lidar;
   const double voxel_size = config_.surface_voxel_size_m;
-  const Points source =
-      cloud_of(keyframes, last, last + 1, world_from_last.inverse(), voxel_size);
+  const Points source = cloud_of(keyframes, last, last + 1, world_from_last.inverse(), voxel_size);
   Points target =
       cloud_of(keyframes, candidate - std::min(candidate, around),
                std::min(candidate + around + 1, keyframes.size()), old_from_world, voxel_size);

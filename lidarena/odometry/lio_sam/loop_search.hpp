@@ -22,8 +22,8 @@ struct Alignment {
   bool converged = false;
   double fitness = 0.0;  ///< m^2, mean squared distance to the nearest target points
 };
-/// Iterated closest points, point to point (Besl, McKay 1992), from `guess`, with correspondences up
-/// to `reach` (m).
+/// Iterated closest points, point to point (Besl, McKay 1992), from `guess`, with correspondences
+/// up to `reach` (m).
 Alignment align_points(const std::vector<Eigen::Vector3f>& source, const map::KdTree& target,
                        const Pose& guess, double reach, const Parallel& parallel);
 

@@ -55,13 +55,13 @@ Registration register_features(const Features& features, const FeatureMap& map, 
                      estimation::surface_residual);
     if (sum.count < kMinMatches) break;
     if (result.iterations == 0)
-      degenerate = estimation::find_degenerate(sum.hessian, PoseEquations::Vector::Ones(),
-                                               kMinEigenvalue);
+      degenerate =
+          estimation::find_degenerate(sum.hessian, PoseEquations::Vector::Ones(), kMinEigenvalue);
     const PoseEquations::Vector step = degenerate.observed * sum.solve();
     result.map_from_lidar = estimation::moved(result.map_from_lidar, step);
     result.matches = sum.count;
-    result.converged = step.head<3>().norm() < kConvergedRotation &&
-                       step.tail<3>().norm() < kConvergedTranslation;
+    result.converged =
+        step.head<3>().norm() < kConvergedRotation && step.tail<3>().norm() < kConvergedTranslation;
     ++result.iterations;
   }
   result.degenerate_directions = degenerate.directions;

@@ -36,10 +36,10 @@ TEST(ArenaSlam, UsesAndTellsTheMotionWithinEachScan) {
     if (result.status == ScanStatus::kInitializing) continue;
     ASSERT_GE(result.motion.size(), 2U);
     EXPECT_EQ(result.motion.front().stamp, result.estimate.stamp);
-    EXPECT_LT((result.motion.front().world_from_body.matrix() -
-               result.estimate.world_from_body.matrix())
-                  .norm(),
-              1e-9);
+    EXPECT_LT(
+        (result.motion.front().world_from_body.matrix() - result.estimate.world_from_body.matrix())
+            .norm(),
+        1e-9);
     const StampedPose& last = result.motion.back();
     const Pose within = result.estimate.world_from_body.inverse() * last.world_from_body;
     const Pose truth = synthetic::truth(recording, result.estimate.stamp, last.stamp);

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstdlib>
+
 #include "lidarena/base/so3.hpp"
 
 namespace lidarena::odometry::lio_sam {
@@ -31,8 +34,9 @@ Scan scan_of(const std::vector<int>& milliseconds) {
 
 /// Angle about z of each point after de-skewing, rad.
 std::vector<double> angles(const Scan& scan, Time known_until) {
+  const estimation::ImageLayout layout{.min_range_m = 0.5};
   std::vector<double> angles;
-  for (const Eigen::Vector3f& p : deskewed(scan, turning(), known_until, Pose::Identity(), {}))
+  for (const Eigen::Vector3f& p : deskewed(scan, turning(), known_until, Pose::Identity(), layout))
     angles.push_back(std::atan2(double{p.y()}, double{p.x()}));
   return angles;
 }
@@ -81,19 +85,19 @@ TEST(LioSamDeskew, AMountedLidarTurnsAboutItself) {
 TEST(LioSamFeatures, EdgesAndTheRestAndSurfacesAreAveragedRowByRow) {
   estimation::RangeImage image;
   for (int row = 0; row < 2; ++row) {
-    for (int i = 0; i < 120; ++i) {  // a wall 5 m ahead with a pole 3 m before it
-      const float range = i == 60 ? 2.0F : 5.0F;
+    for (int i = 0; i < 120; ++i) {  // two walls with an edge between them
+      const float range = 4.0F + 0.04F * static_cast<float>(std::abs(i - 60));
       image.pixels.push_back({{range, 0.01F * static_cast<float>(i), 0.0F}, range, i});
     }
     image.row_end.push_back(image.pixels.size());
   }
   Config config;
-  config.row_surface_voxel_size_m = 10.0;
+  config.row_surface_voxel_size_m = 20.0;
   const Features features = extract_features(image, config, Parallel(1));
   ASSERT_EQ(features.edges.size(), 2U);
-  EXPECT_EQ(features.edges[0].x(), 2.0F);
+  EXPECT_EQ(features.edges[0].x(), 4.0F);
   EXPECT_EQ(features.surfaces.size(), 2U) << "one mean a row, although both rows lie in one voxel";
-  EXPECT_EQ(thinned(features, {.surface_voxel_size_m = 10.0}).surfaces.size(), 1U);
+  EXPECT_EQ(thinned(features, {.surface_voxel_size_m = 20.0}).surfaces.size(), 1U);
 }
 
 TEST(LioSamConfig, ThePresetsAreThoseOfTheProgramOrOfItsPort) {

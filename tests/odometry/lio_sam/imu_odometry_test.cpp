@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <vector>
 
 namespace lidarena::odometry::lio_sam {
@@ -12,8 +13,9 @@ using Eigen::Vector3d;
 
 constexpr double kPeriod = 0.1;  // s, of the scans
 
+/// The port's noise, with the data's gravity.
 Config config_of() {
-  Config config;
+  Config config = indoor(LidarInfo{});
   config.gravity = 9.81;
   return config;
 }
@@ -71,7 +73,7 @@ TEST(LioSamImuOdometry, AfterAResetItIsSilentUntilTheSecondPose) {
   EXPECT_EQ(flight.odometry().resets(), 1U);
   EXPECT_FALSE(flight.step(50.0)) << "one pose, no velocity yet";
   EXPECT_TRUE(flight.step(50.0));
-  EXPECT_NEAR(flight.odometry().odom_from_lidar()->translation().x(), flight.place() + 50.0, 0.02);
+  EXPECT_NEAR(flight.odometry().odom_from_lidar()->translation().x(), flight.place() + 50.0, 0.05);
 }
 
 TEST(LioSamImuOdometry, ANonsensicalPoseResetsItToo) {
@@ -88,8 +90,7 @@ TEST(LioSamImuOdometry, ANonsensicalPoseResetsItToo) {
 TEST(LioSamImuOdometry, TheTrackHasTheRatesAsMeasured) {
   Flight flight(1.0);
   for (int i = 0; i < 6; ++i) flight.step();
-  const estimation::ImuTrack track =
-      flight.odometry().track(from_seconds(2.0 + kPeriod));
+  const estimation::ImuTrack track = flight.odometry().track(from_seconds(2.0 + kPeriod));
   ASSERT_GE(track.size(), 20U);
   EXPECT_EQ(track.front().begin, from_seconds(2.0));
   for (const estimation::ImuStep& step : track) EXPECT_TRUE(step.rate.isZero());

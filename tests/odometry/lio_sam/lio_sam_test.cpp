@@ -77,10 +77,10 @@ TEST(LioSam, TheMotionWithinAScanBeginsAtItsPose) {
   for (const ScanResult& result : results_of({}, spinning())) {
     ASSERT_GE(result.motion.size(), 2U);
     EXPECT_EQ(result.motion.front().stamp, result.estimate.stamp);
-    EXPECT_LT((result.motion.front().world_from_body.matrix() -
-               result.estimate.world_from_body.matrix())
-                  .norm(),
-              1e-9);
+    EXPECT_LT(
+        (result.motion.front().world_from_body.matrix() - result.estimate.world_from_body.matrix())
+            .norm(),
+        1e-9);
   }
 }
 

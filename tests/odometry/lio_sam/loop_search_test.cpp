@@ -39,8 +39,8 @@ TEST(LioSamLoops, IcpLaysPointsOnPoints) {
   EXPECT_TRUE(found.converged);
   EXPECT_LT((found.target_from_source.translation() - truth.translation()).norm(), 2e-2);
   EXPECT_LT(found.fitness, 0.01);
-  const Alignment far = align_points(source, target, places::standing(500.0, 0.0, 0.0), 30.0,
-                                     Parallel(1));
+  const Alignment far =
+      align_points(source, target, places::standing(500.0, 0.0, 0.0), 30.0, Parallel(1));
   EXPECT_FALSE(far.converged) << "nothing within 30 m";
 }
 

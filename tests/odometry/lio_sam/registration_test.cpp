@@ -51,7 +51,8 @@ TEST(LioSamRegistration, FindsTheWayHome) {
   const FeatureMap map = map_of(points);
   const Pose truth = make_pose(so3::exp({0.1, -0.2, 0.5}), {0.3, 0.2, -0.4});
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.03, -0.03}), {0.1, -0.08, 0.1});
-  const Registration found = register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
+  const Registration found =
+      register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
   EXPECT_TRUE(found.converged);
   EXPECT_EQ(found.degenerate_directions, 0);
   EXPECT_LT((found.map_from_lidar.translation() - truth.translation()).norm(), 1e-3);
@@ -63,7 +64,8 @@ TEST(LioSamRegistration, InATunnelTheWayAlongIsLeftToTheGuess) {
   const FeatureMap map = map_of(points);
   const Pose truth = make_pose(so3::exp({0.1, 0.0, 0.3}), {0.0, 0.2, -0.4});
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.0, -0.02}), {0.1, -0.08, 0.1});
-  const Registration found = register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
+  const Registration found =
+      register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
   EXPECT_EQ(found.degenerate_directions, 1);
   EXPECT_NEAR(found.map_from_lidar.translation().x(), guess.translation().x(), 5e-3);
   EXPECT_LT((found.map_from_lidar.translation() - truth.translation()).tail<2>().norm(), 2e-3);
@@ -74,7 +76,8 @@ TEST(LioSamRegistration, WithTooFewMatchesThePoseIsTheGuess) {
   const std::vector<Eigen::Vector3f> points = walls(0);
   const Pose truth = Pose::Identity();
   const Pose guess = make_pose(so3::exp({0.02, 0.0, -0.02}), {0.1, -0.08, 0.1});
-  const Registration found = register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
+  const Registration found =
+      register_features(seen(points, truth), map, guess, Sensor::kSpinning, Parallel(1));
   EXPECT_EQ(found.iterations, 0);
   EXPECT_LT((found.map_from_lidar.matrix() - guess.matrix()).norm(), 1e-12);
 }
