@@ -32,7 +32,7 @@ std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
 }
 
 const Config& config() {
-  static const Config made = indoor(LidarInfo{});
+  static const Config made = settings_for(LidarInfo{});
   return made;
 }
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Effect of each loop on the map: runs LIO-SAM without and with loop closure on a dataset and
-// prints the error of both maps against the mesh after each scan that added a loop, and at the end
-// (SE(3) gauge on the flight up to then, at most 200,000 points). Usage:
-//   loop_effect PRESET DATASET [KEY=VALUE ...]
+// Effect of each loop on the map: runs arena_slam without and with loops on a dataset and prints
+// the error of both maps against the mesh after each scan that added a loop, and at the end (SE(3)
+// gauge on the flight up to then, at most 200,000 points). Usage:
+//   loop_effect DATASET [KEY=VALUE ...]
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,33 +38,36 @@ struct Contest {
   const world::World& world;
   const Parallel& parallel;
 
-  void print(Time stamp, double loops, double tried) const {
+  void print(Time stamp, std::uint64_t loops, std::uint64_t tried) const {
     const evaluation::MapError a = error_of(*without, truth, world, parallel);
     const evaluation::MapError b = error_of(*with, truth, world, parallel);
-    fmt::print("| {:.1f} | {:.0f} | {:.0f} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
+    fmt::print("| {:.1f} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
                to_seconds(stamp - truth.begin_time()), loops, tried, 100.0 * a.distance_m.rmse,
                a.outliers_percent, 100.0 * b.distance_m.rmse, b.outliers_percent);
     std::fflush(stdout);
   }
 };
 
-int show(const std::string& preset, const std::string& path, std::vector<std::string> overrides) {
+int show(const std::string& path, const std::vector<std::string>& overrides) {
   const Parallel parallel(0);
   dataset::Dataset dataset = study::open_any_dataset(path, {}, parallel);
   const std::optional<Trajectory> truth = dataset::load_truth(path);
   if (!truth) throw InputError(path, "has no ground truth", "use a simulated dataset");
   const world::World world(world::load_mesh(path + "/world.ply"));
   const LidarInfo* lidar = dataset.rig.find_lidar("");
-  const auto made = [&](const char* algorithm) {
-    return odometry::make_odometry({algorithm, preset, "", overrides}, dataset.rig, lidar->id,
+  const auto made = [&](const std::vector<std::string>& settings) {
+    return odometry::make_odometry({"arena_slam", "indoor", "", settings}, dataset.rig, lidar->id,
                                    parallel)
         .odometry;
   };
-  const Contest contest{made("lio_sam"), made("lio_sam_lc"), *truth, world, parallel};
+  std::vector<std::string> no_loops = overrides;
+  no_loops.insert(no_loops.end(), {"loop.search_radius_m=0", "loop.descriptor_candidates=0"});
+  const Contest contest{made(no_loops), made(overrides), *truth, world, parallel};
   fmt::print(
       "| s | loops | tried | RMSE cm | > 20 cm % | with loops: RMSE cm | > 20 cm % |\n"
       "|---|---|---|---|---|---|---|\n");
-  double loops = 0.0, tried = 0.0;
+  std::uint64_t loops = 0;
+  std::uint64_t tried = 0;
   Time last{0};
   while (const auto event = dataset.events->next()) {
     if (const auto* sample = std::get_if<ImuSample>(&event->data)) {
@@ -76,10 +80,9 @@ int show(const std::string& preset, const std::string& path, std::vector<std::st
     contest.without->register_scan(*scan);
     const odometry::ScanResult result = contest.with->register_scan(*scan);
     last = scan->stamp;
-    if (!result.counters.contains("loops")) continue;
-    tried = result.counters.at("loops_tried");
-    if (result.counters.at("loops") <= loops) continue;
-    loops = result.counters.at("loops");
+    tried = result.counters.loops_tried.value_or(tried);
+    if (result.counters.loops.value_or(loops) <= loops) continue;
+    loops = *result.counters.loops;
     contest.print(last, loops, tried);
   }
   contest.without->finish();
@@ -93,9 +96,8 @@ int show(const std::string& preset, const std::string& path, std::vector<std::st
 
 int main(int argc, char** argv) {
   try {
-    if (argc < 3)
-      throw lidarena::InputError("arguments", "two are needed", "give PRESET and DATASET");
-    return lidarena::show(argv[1], argv[2], {argv + 3, argv + argc});
+    if (argc < 2) throw lidarena::InputError("arguments", "one is needed", "give DATASET");
+    return lidarena::show(argv[1], {argv + 2, argv + argc});
   } catch (const std::exception& error) {
     fmt::print(stderr, "loop_effect: {}\n", error.what());
     return 2;

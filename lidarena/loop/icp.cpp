@@ -23,6 +23,8 @@ constexpr double kPlaneReach = 1.0;              // m: minimum search radius for
 constexpr std::size_t kMinCorrespondences = 10;  // minimum number of correspondences
 constexpr double kConvergedStep = 3e-4;          // m, rad: converged below this step
 constexpr double kShrink = 0.7;                  // factor on the maximum distance per iteration
+constexpr double kInlierDistance = 0.3;          // m: closer points overlap; final maximum distance
+constexpr int kMaxIterations = 40;
 
 /// Fits a plane to the points `near`; returns whether they are flat.
 bool find_normal(std::span<const map::Neighbor> near, Vector3d& normal) {
@@ -38,15 +40,6 @@ bool find_normal(std::span<const map::Neighbor> near, Vector3d& normal) {
   solver.computeDirect(spread);
   normal = solver.eigenvectors().col(0);
   return solver.eigenvalues()[0] < kFlat * solver.eigenvalues()[1];
-}
-
-void add_point(const Vector3d& moved, const map::KdTree& target, double reach, Equations& sum) {
-  std::array<map::Neighbor, 1> near;
-  if (target.nearest(moved.cast<float>(), near, static_cast<float>(reach)) == 0) return;
-  Eigen::Matrix<double, 3, 6> j;
-  j << -so3::hat(moved), Eigen::Matrix3d::Identity();
-  const Vector3d residual = moved - near[0].point.cast<double>();
-  sum.add<3>(j, residual, 1.0);
 }
 
 void add_plane(const Vector3d& moved, const map::KdTree& target, double reach, Equations& sum) {
@@ -66,30 +59,26 @@ void add_plane(const Vector3d& moved, const map::KdTree& target, double reach, E
 }
 
 Equations equations(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
-                    const Pose& pose, IcpMetric metric, double reach, const Parallel& parallel) {
+                    const Pose& pose, double reach, const Parallel& parallel) {
   return estimation::accumulate_normal_equations<6>(
       parallel, source.size(), [&](std::size_t i, Equations& sum) {
-        const Vector3d moved = pose * source[i].cast<double>();
-        (metric == IcpMetric::kPlanes ? add_plane : add_point)(moved, target, reach, sum);
+        add_plane(pose * source[i].cast<double>(), target, reach, sum);
       });
 }
 
 void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
-             const LoopConfig& config, IcpResult& result) {
+             IcpResult& result) {
   double sum = 0.0;
   std::size_t reached = 0;
   std::size_t inliers = 0;
-  const bool planes = config.metric == IcpMetric::kPlanes;
-  const auto reach =
-      static_cast<float>(planes ? config.inlier_distance_m : config.max_correspondence_distance_m);
   for (const Eigen::Vector3f& p : source) {
     std::array<map::Neighbor, 1> near;
     const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
-    if (target.nearest(moved, near, reach) == 0) continue;
+    if (target.nearest(moved, near, static_cast<float>(kInlierDistance)) == 0) continue;
     const auto squared = static_cast<double>(near[0].squared_distance);
     sum += squared;
     ++reached;
-    if (squared <= config.inlier_distance_m * config.inlier_distance_m) ++inliers;
+    if (squared <= kInlierDistance * kInlierDistance) ++inliers;
   }
   result.fitness =
       reached == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(reached);
@@ -115,25 +104,24 @@ double constraint_of(Equations sum, double lever, const Vector3d& center) {
 }  // namespace
 
 IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
-                       const Pose& guess, const LoopConfig& config, const Parallel& parallel) {
+                       const Pose& guess, const Parallel& parallel) {
   IcpResult result;
   result.target_from_source = guess;
-  const bool planes = config.metric == IcpMetric::kPlanes;
-  double reach = config.max_correspondence_distance_m;
+  double reach = kIcpReach;
   Equations sum;
-  while (result.iterations < config.max_iterations && !result.converged) {
+  while (result.iterations < kMaxIterations && !result.converged) {
     ++result.iterations;
-    const bool at_last = !planes || reach <= config.inlier_distance_m;
-    sum = equations(source, target, result.target_from_source, config.metric, reach, parallel);
+    const bool at_last = reach <= kInlierDistance;
+    sum = equations(source, target, result.target_from_source, reach, parallel);
     if (sum.count < kMinCorrespondences) break;
     const Eigen::Matrix<double, 6, 1> step = sum.solve();
     if (!step.allFinite()) break;
     result.target_from_source = orthonormalized(
         make_pose(so3::exp(step.head<3>()), step.tail<3>()) * result.target_from_source);
     result.converged = at_last && step.cwiseAbs().maxCoeff() < kConvergedStep;
-    if (planes) reach = std::max(config.inlier_distance_m, kShrink * reach);
+    reach = std::max(kInlierDistance, kShrink * reach);
   }
-  measure(source, target, config, result);
+  measure(source, target, result);
   Vector3d center = Vector3d::Zero();
   for (const Eigen::Vector3f& p : source)
     center += p.cast<double>() / static_cast<double>(source.size());

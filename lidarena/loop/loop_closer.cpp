@@ -16,11 +16,30 @@ namespace {
 
 using Covariance = estimation::PoseGraph::Covariance;
 
-constexpr double kMinTranslationSigma = 0.1;   // m: sigma of the drift at path length zero
-constexpr double kMinRotationSigma = 0.01;     // rad: likewise
-constexpr double kLeverArm = 1.0;              // m of path length per radian of rotation
-constexpr std::size_t kMaxWaitKeyframes = 20;  // keyframes that a loop waits for another
-constexpr double kMinVariance = 1e-6;          // m^2: minimum variance of a loop
+constexpr double kMinTranslationSigma = 0.1;    // m: sigma of the drift at path length zero
+constexpr double kMinRotationSigma = 0.01;      // rad: likewise
+constexpr double kLeverArm = 1.0;               // m of path length per radian of rotation
+constexpr std::size_t kMaxWaitKeyframes = 20;   // keyframes that a loop waits for another
+constexpr std::size_t kKeyframesPerSearch = 2;  // keyframes from one search to the next
+constexpr double kMaxDescriptorDistance = 0.3;  // 0: equal places, 1: nothing in common
+constexpr std::size_t kSourceKeyframes = 4;     // before the new one, matched with its own points
+constexpr std::size_t kTargetKeyframes = 8;     // on each side of the old one
+constexpr double kVoxelSize = 0.2;              // m, in which both clouds are averaged
+constexpr std::size_t kMaxSourcePoints = 1000;
+constexpr std::size_t kMinSourcePoints = 300;
+constexpr std::size_t kMinTargetPoints = 1000;
+constexpr double kMinConstraint = 0.005;            // of the least constrained direction
+constexpr double kDriftGate = 3.0;                  // sigmas by which a loop may correct the poses
+constexpr std::size_t kConsistentLoops = 2;         // loops that must agree
+constexpr double kConsistencyTranslation = 0.3;     // m, within which they agree
+constexpr double kConsistencyRotation = 0.03;       // rad
+constexpr double kOdometryTranslationSigma = 0.01;  // m, from keyframe to keyframe
+constexpr double kOdometryRotationSigma = 1e-3;     // rad
+constexpr double kLoopTranslationSigma = 0.03;      // m
+constexpr double kLoopRotationSigma = 3e-3;         // rad
+constexpr double kLoopKernelScale = 3.0;            // sigmas, of the Cauchy kernel of loops
+
+double squared(double sigma) { return sigma * sigma; }
 
 Covariance diagonal(double translation_variance, double rotation_variance) {
   Covariance covariance = Covariance::Zero();
@@ -68,16 +87,14 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
     graph_.nodes.push_back(orthonormalized(graph_.nodes.back() * previous_from_this));
     graph_.betweens.push_back(
         {index - 1, index, previous_from_this,
-         diagonal(config_.odometry_translation_sigma_m * config_.odometry_translation_sigma_m,
-                  config_.odometry_rotation_sigma_rad * config_.odometry_rotation_sigma_rad)});
+         diagonal(squared(kOdometryTranslationSigma), squared(kOdometryRotationSigma))});
   }
   if (config_.descriptor_candidates > 0) {
-    const auto n = static_cast<std::size_t>(config_.source_keyframes);
     descriptors_.push_back(
-        describe(turned(around(index, n, 0, cloud), graph_.nodes.back().linear()),
+        describe(turned(around(index, kSourceKeyframes, 0, cloud), graph_.nodes.back().linear()),
                  config_.descriptor_range_m));
   }
-  if (pending_.empty() && index % static_cast<std::size_t>(config_.keyframes_per_search) == 0)
+  if (pending_.empty() && index % kKeyframesPerSearch == 0)
     pending_ = candidates(path_lengths_to_last());
   return !pending_.empty() && try_next(cloud);
 }
@@ -136,7 +153,7 @@ void LoopCloser::add_similar(const std::vector<double>& path_lengths,
   std::vector<std::pair<double, Candidate>> similar;
   for (const auto& [unused, i] : by_rings) {
     const Resemblance resemblance = compare(descriptors_[i], here);
-    if (resemblance.distance > config_.max_descriptor_distance) continue;
+    if (resemblance.distance > kMaxDescriptorDistance) continue;
     const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.rotation_rad});
     const Eigen::Matrix3d rotation =
         graph_.nodes[i].linear().transpose() * level * graph_.nodes.back().linear();
@@ -161,21 +178,17 @@ std::vector<Eigen::Vector3f> LoopCloser::around(std::size_t keyframe, std::size_
         (graph_.nodes[keyframe].inverse() * graph_.nodes[i]).cast<float>();
     for (const Eigen::Vector3f& p : cloud(i)) points.push_back(moved * p);
   }
-  return shuffled(map::voxel_means(points, config_.voxel_size_m));
+  return shuffled(map::voxel_means(points, kVoxelSize));
 }
 
 bool LoopCloser::is_beyond_drift(const LoopRecord& loop) const {
-  if (config_.translation_drift_m_per_m <= 0.0) return false;
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
-  return apart - config_.max_correspondence_distance_m >
-         config_.drift_gate *
-             (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
+  return apart - kIcpReach >
+         kDriftGate * (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
-  const auto source_size = static_cast<std::size_t>(config_.source_keyframes);
-  const auto target_size = static_cast<std::size_t>(config_.target_keyframes);
   LoopRecord loop;
   loop.first = candidate.keyframe;
   loop.second = candidate.seen_from;
@@ -186,20 +199,16 @@ LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& c
     loop.verdict = LoopVerdict::kBeyondDrift;
     return loop;
   }
-  auto source = around(loop.second, source_size, 0, cloud);
+  auto source = around(loop.second, kSourceKeyframes, 0, cloud);
   // The target must not contain keyframes of the source, which would match themselves.
-  const std::size_t after =
-      std::min(target_size, loop.second - std::min(loop.second, loop.first + source_size + 1));
-  auto target = around(loop.first, target_size, after, cloud);
-  if (source.size() < static_cast<std::size_t>(config_.min_source_points) ||
-      target.size() < static_cast<std::size_t>(config_.min_target_points))
-    return loop;
-  if (config_.max_source_points > 0 &&
-      source.size() > static_cast<std::size_t>(config_.max_source_points))
-    source.resize(static_cast<std::size_t>(config_.max_source_points));
+  const std::size_t after = std::min(
+      kTargetKeyframes, loop.second - std::min(loop.second, loop.first + kSourceKeyframes + 1));
+  auto target = around(loop.first, kTargetKeyframes, after, cloud);
+  if (source.size() < kMinSourcePoints || target.size() < kMinTargetPoints) return loop;
+  if (source.size() > kMaxSourcePoints) source.resize(kMaxSourcePoints);
   map::KdTree tree;
   tree.build(std::move(target));
-  const IcpResult icp = align_clouds(source, tree, candidate.guess, config_, parallel_);
+  const IcpResult icp = align_clouds(source, tree, candidate.guess, parallel_);
   const Pose contradiction =
       (graph_.nodes[loop.first].inverse() * graph_.nodes[loop.second]).inverse() *
       icp.target_from_source;
@@ -217,17 +226,14 @@ LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) cons
   if (!icp.converged) return LoopVerdict::kNotConverged;
   if (!(icp.fitness < config_.max_fitness_m2)) return LoopVerdict::kPoorFit;
   if (icp.overlap < config_.min_overlap) return LoopVerdict::kLittleOverlap;
-  if (icp.constraint < config_.min_constraint) return LoopVerdict::kUnconstrained;
-  if (config_.translation_drift_m_per_m > 0.0) {
-    const double translation_m =
-        kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length;
-    const double rotation_rad =
-        kMinRotationSigma + config_.rotation_drift_rad_per_m * loop.path_length;
-    if (loop.translation_m > config_.drift_gate * translation_m ||
-        loop.rotation_rad > config_.drift_gate * rotation_rad)
-      return LoopVerdict::kBeyondDrift;
-  }
-  return LoopVerdict::kAccepted;
+  if (icp.constraint < kMinConstraint) return LoopVerdict::kUnconstrained;
+  const double translation_m =
+      kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length;
+  const double rotation_rad =
+      kMinRotationSigma + config_.rotation_drift_rad_per_m * loop.path_length;
+  const bool beyond = loop.translation_m > kDriftGate * translation_m ||
+                      loop.rotation_rad > kDriftGate * rotation_rad;
+  return beyond ? LoopVerdict::kBeyondDrift : LoopVerdict::kAccepted;
 }
 
 std::vector<double> LoopCloser::path_lengths_to_last() const {
@@ -261,8 +267,8 @@ bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
   const Pose by_b = x[b.first] * b.first_from_second;
   const Pose by_a = x[a.first] * a.first_from_second * x[a.second].inverse() * x[b.second];
   const Pose apart = by_a.inverse() * by_b;
-  return apart.translation().norm() < config_.consistency_translation_m &&
-         so3::angle(apart.linear()) < config_.consistency_rotation_rad;
+  return apart.translation().norm() < kConsistencyTranslation &&
+         so3::angle(apart.linear()) < kConsistencyRotation;
 }
 
 std::vector<LoopRecord> LoopCloser::confirmed_loops() {
@@ -275,27 +281,18 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
     if (agree(loop, last)) loops.push_back(loop);
   }
   loops.push_back(last);
-  if (loops.size() >= static_cast<std::size_t>(config_.min_consistent_loops)) return loops;
+  if (loops.size() >= kConsistentLoops) return loops;
   last.verdict = LoopVerdict::kWaiting;
   waiting_.push_back(last);
   return {};
 }
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
+  constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
   for (const LoopRecord& loop : loops) {
-    const bool by_fitness = config_.loop_translation_sigma_m <= 0.0;
-    const double variance = std::max(loop.fitness, kMinVariance);
-    const auto squared = [](double sigma) { return sigma * sigma; };
-    const estimation::RobustLoss loss =
-        config_.robust_kernel_scale > 0.0
-            ? estimation::RobustLoss{estimation::RobustKernel::kCauchy, config_.robust_kernel_scale}
-            : estimation::RobustLoss{};
     graph_.betweens.push_back(
         {loop.first, loop.second, loop.first_from_second,
-         by_fitness ? diagonal(variance, variance)
-                    : diagonal(squared(config_.loop_translation_sigma_m),
-                               squared(std::max(config_.loop_rotation_sigma_rad, 1e-6))),
-         loss});
+         diagonal(squared(kLoopTranslationSigma), squared(kLoopRotationSigma)), kLoss});
     accepted_.push_back(loop);
     for (LoopRecord& record : records_) {
       if (record.first == loop.first && record.second == loop.second &&

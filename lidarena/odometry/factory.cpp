@@ -111,7 +111,7 @@ struct LioSamLc : LioSam {
 
 struct ArenaLo {
   using Config = arena_lo::Config;
-  static PresetTable<Config> presets() { return {{"", arena_lo::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_lo::settings_for}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
     return std::make_unique<arena_lo::ArenaLo>(config, lidar, parallel);
@@ -120,7 +120,7 @@ struct ArenaLo {
 
 struct ArenaLio {
   using Config = arena_lio::Config;
-  static PresetTable<Config> presets() { return {{"", arena_lio::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_lio::settings_for}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("arena_lio", rig, lidar);
@@ -130,7 +130,7 @@ struct ArenaLio {
 
 struct ArenaSlam {
   using Config = arena_slam::Config;
-  static PresetTable<Config> presets() { return {{"", arena_slam::indoor}}; }
+  static PresetTable<Config> presets() { return {{"", arena_slam::settings_for}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
     const ImuInfo& imu = imu_for("arena_slam", rig, lidar);

@@ -16,7 +16,7 @@ struct WithLoopConfig {
   double keyframe_translation_m = 1.0;
   double keyframe_rotation_rad = 0.5;
   double cloud_voxel_size_m = 0.1;
-  loop::LoopConfig loop = loop::conservative_loops();
+  loop::LoopConfig loop;
 
   /// Former names, for the message that names the new one.
   static constexpr RenamedKey renamed_keys[] = {{"keyframe_distance_m", "keyframe_translation_m"},

@@ -62,13 +62,14 @@ double rms_error(const Walk& walk, const std::vector<Pose>& poses) {
 LoopConfig no_loops() {
   LoopConfig config;
   config.search_radius_m = 0.0;
+  config.descriptor_candidates = 0;
   return config;
 }
 
 TEST(LoopCloser, ComingBackCuresTheDrift) {
   const Walk trip = round_trip();
   const double drifted = rms_error(trip, closed(trip, no_loops()).poses());
-  const LoopCloser closer = closed(trip, conservative_loops());
+  const LoopCloser closer = closed(trip, LoopConfig{});
   EXPECT_GT(drifted, 0.6);
   EXPECT_GT(closer.accepted(), 0U);
   EXPECT_LT(rms_error(trip, closer.poses()), 0.4 * drifted)
@@ -81,22 +82,8 @@ TEST(LoopCloser, ComingBackCuresTheDrift) {
   }
 }
 
-TEST(LoopCloser, LioSamsRuleDoesSoToo) {
-  const Walk trip = round_trip();
-  LoopConfig config;
-  config.voxel_size_m = 0.3;
-  config.target_keyframes = 8;
-  config.max_iterations = 30;
-  config.max_correspondence_distance_m = 2.0;
-  config.keyframes_per_search = 4;
-  const LoopCloser closer = closed(trip, config);
-  EXPECT_GT(closer.accepted(), 2U) << "one for every search after the first round";
-  EXPECT_LT(rms_error(trip, closer.poses()),
-            0.5 * rms_error(trip, closed(trip, no_loops()).poses()));
-}
-
 TEST(LoopCloser, IsFoundByLooksAloneToo) {
-  LoopConfig config = conservative_loops();
+  LoopConfig config;
   config.search_radius_m = 0.0;
   config.descriptor_range_m = 9.0;
   const Walk trip = round_trip();
@@ -129,7 +116,7 @@ Walk identical_rooms() {
 
 TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
   const Walk tour = identical_rooms();
-  LoopConfig config = conservative_loops();
+  LoopConfig config;
   config.descriptor_range_m = 5.0;
   config.search_radius_m = 15.0;
   const LoopCloser closer = closed(tour, config);
@@ -148,44 +135,37 @@ TEST(LoopCloser, OfTwoIdenticalRoomsTheSecondIsNotTheFirst) {
 
   // Without the limit on drift, false loops are accepted; then only the graph's robust kernel
   // limits the damage.
-  config.translation_drift_m_per_m = 0.0;
+  config.translation_drift_m_per_m = 1e3;
+  config.rotation_drift_rad_per_m = 1e3;
   const LoopCloser trusting = closed(tour, config);
   int false_loops = 0;
   for (const LoopRecord& loop : trusting.records())
     false_loops += loop.verdict == LoopVerdict::kAccepted && loop.translation_m > 10.0 ? 1 : 0;
   EXPECT_GT(false_loops, 0);
   EXPECT_LT(rms_error(tour, trusting.poses()), 0.1);
-  LoopConfig lio_sams;
-  lio_sams.voxel_size_m = 0.3;
-  lio_sams.max_source_points = 400;  // faster
-  lio_sams.target_keyframes = 10;
-  lio_sams.max_iterations = 60;
-  EXPECT_GT(rms_error(tour, closed(tour, lio_sams).poses()), 1.0) << "the rooms are merged";
 }
 
 TEST(LoopCloser, StandingStillNoLoopIsTried) {
   const Points world = places::ring_corridor();
   const std::vector<Pose> truth(60, places::around_the_block(10.0));
   const Walk still = walk(truth, world, 9.0, se3::Vector6::Zero());
-  EXPECT_TRUE(closed(still, conservative_loops()).records().empty());
-  LoopConfig lio_sams;
-  lio_sams.voxel_size_m = 0.3;
-  lio_sams.target_keyframes = 2;
-  lio_sams.keyframes_per_search = 10;
-  EXPECT_FALSE(closed(still, lio_sams).records().empty()) << "LIO-SAM has no minimum path length";
+  EXPECT_TRUE(closed(still, LoopConfig{}).records().empty());
+  LoopConfig without_minimum;
+  without_minimum.min_path_length_m = 0.0;
+  EXPECT_FALSE(closed(still, without_minimum).records().empty());
 }
 
 TEST(LoopCloser, IsTheSameBitsOnAnyNumberOfThreads) {
   const Walk trip = round_trip();
-  const auto one = closed(trip, conservative_loops(), 1).poses();
-  const auto three = closed(trip, conservative_loops(), 3).poses();
+  const auto one = closed(trip, LoopConfig{}, 1).poses();
+  const auto three = closed(trip, LoopConfig{}, 3).poses();
   for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].matrix(), three[i].matrix());
 }
 
 TEST(LoopCloser, AFewPointsAreNoPlace) {
   Walk trip = round_trip();
   for (Points& cloud : trip.clouds) cloud.resize(20);
-  const LoopCloser closer = closed(trip, conservative_loops());
+  const LoopCloser closer = closed(trip, LoopConfig{});
   EXPECT_EQ(closer.accepted(), 0U);
   EXPECT_TRUE(std::any_of(closer.records().begin(), closer.records().end(), [](const auto& loop) {
     return loop.verdict == LoopVerdict::kTooFewPoints;

@@ -79,14 +79,14 @@ TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
   expect_defaults("ct_icp", to_json(ct_icp::indoor(unknown)));
   expect_defaults("fast_lio2", to_json(fast_lio2::indoor(unknown)));
   expect_defaults("lio_sam", to_json(lio_sam::indoor(unknown)));
-  expect_defaults("arena_lo", to_json(arena_lo::indoor(unknown)));
-  expect_defaults("arena_lio", to_json(arena_lio::indoor(unknown)));
-  expect_defaults("arena_slam", to_json(arena_slam::indoor(unknown)));
+  expect_defaults("arena_lo", to_json(arena_lo::settings_for(unknown)));
+  expect_defaults("arena_lio", to_json(arena_lio::settings_for(unknown)));
+  expect_defaults("arena_slam", to_json(arena_slam::settings_for(unknown)));
 }
 
 TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
-  EXPECT_THAT(refusal({"lio_sam_lc", "indoor", "", {"loop.leaf_m=0.2"}}),
-              HasSubstr("write 'voxel_size_m'"));
+  EXPECT_THAT(refusal({"arena_slam", "", "", {"loop.least_gap_s=5"}}),
+              HasSubstr("write 'min_time_gap_s'"));
   EXPECT_THAT(refusal({"ct_icp", "indoor", "", {"registration.min_neighbours=9"}}),
               HasSubstr("write 'min_neighbors'"));
 }

@@ -64,7 +64,6 @@ WithLoopConfig quick() {
   config.keyframe_translation_m = 0.5;
   config.keyframe_rotation_rad = 0.4;
   config.loop.min_path_length_m = 10.0;
-  config.loop.min_target_points = 500;
   return config;
 }
 

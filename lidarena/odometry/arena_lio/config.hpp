@@ -69,6 +69,6 @@ struct Config {
 };
 
 /// The settings for `lidar`: its range limits.
-Config indoor(const LidarInfo& lidar);
+Config settings_for(const LidarInfo& lidar);
 
 }  // namespace lidarena::odometry::arena_lio

@@ -3,7 +3,7 @@
 
 namespace lidarena::odometry::arena_lo {
 
-Config indoor(const LidarInfo& lidar) {
+Config settings_for(const LidarInfo& lidar) {
   Config config;
   config.sampling.min_range_m = lidar.min_range_m;
   config.sampling.max_range_m = lidar.max_range_m;

@@ -116,6 +116,6 @@ struct Config {
 };
 
 /// The settings for `lidar`: its range limits, and a map of 1.5 times its maximum range.
-Config indoor(const LidarInfo& lidar);
+Config settings_for(const LidarInfo& lidar);
 
 }  // namespace lidarena::odometry::arena_lo

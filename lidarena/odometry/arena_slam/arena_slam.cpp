@@ -6,24 +6,26 @@
 
 #include "lidarena/base/so3.hpp"
 #include "lidarena/odometry/arena_slam/initialization.hpp"
-#include "lidarena/odometry/arena_slam/range_image.hpp"
 
 namespace lidarena::odometry::arena_slam {
 namespace {
 
 constexpr std::size_t kStartSamples = 10;    // minimum number of IMU samples for initialization
 constexpr Time kStartMemory{1'000'000'000};  // maximum age of these samples
+constexpr double kMaxImuGap = 0.05;          // s; longer gaps between samples are coasted
+constexpr std::size_t kMinSurfaces = 100;    // a scan with fewer is not registered
 constexpr double kMaxSpeed = 30.0;           // m/s; beyond this the smoother has failed
 constexpr double kMaxBias = 1.0;             // m/s^2, rad/s; likewise
+constexpr double kRestartVariance = 9.0;     // m^2/s^2, of the velocity after a restart
+constexpr double kMinRotationSigma = 1e-3;   // rad, of a registered rotation in the smoother
+constexpr double kMinPositionSigma = 5e-3;   // m, likewise of a position
+constexpr int kLivoxIterations = 25;         // maximum for patterns that do not repeat
 
-estimation::ImuNoise configured_noise(const ImuInfo& imu, const Config& config) {
-  if (config.imu_noise_factor > 0.0) return estimation::noise_of(imu, config.imu_noise_factor);
-  return {config.gyro_noise_density, config.accel_noise_density, config.gyro_bias_walk,
-          config.accel_bias_walk};
-}
-
-Pose rotation_of(const Pose& pose) {
-  return make_pose(Eigen::Matrix3d(pose.linear()), Eigen::Vector3d::Zero());
+RegistrationLimits limits_for(const FeatureRule& rule, const Config& config) {
+  RegistrationLimits limits;
+  limits.max_plane_thickness_m = config.max_plane_thickness_m;
+  if (!rule.layout.by_azimuth) limits.max_iterations = kLivoxIterations;
+  return limits;
 }
 
 }  // namespace
@@ -34,9 +36,11 @@ ArenaSlam::ArenaSlam(const Config& config, const LidarInfo& lidar, const ImuInfo
       body_from_imu_(imu.body_from_imu),
       body_from_lidar_(lidar.body_from_lidar),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
-      noise_(configured_noise(imu, config)),
+      noise_(estimation::noise_of(imu, config.imu_noise_factor)),
+      rule_(feature_rule(lidar, config)),
+      limits_(limits_for(rule_, config)),
       parallel_(std::move(parallel)),
-      imu_(config.max_imu_gap_s),
+      imu_(kMaxImuGap),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)),
       pending_(estimation::ImuBias{}, noise_),
       submap_(config),
@@ -49,30 +53,44 @@ ScanResult ArenaSlam::register_scan(const Scan& scan) {
   if (!started_ && !start(scan.stamp, end))
     return finish_scan(scan.stamp, body_from_lidar_, unused, {});
   const Prediction prediction = predict(scan.stamp, end);
-  if (!is_due(scan.stamp))
+  if (scan.stamp < last_stamp_)
     return result_of(scan.stamp, prediction.world_from_lidar, ScanStatus::kTracked, {});
 
-  const RangeImage image = project(scan, deskewed(scan, prediction), config_);
-  const Features raw = extract_features(image, config_, parallel_);
+  const estimation::RangeImage image =
+      estimation::project(scan,
+                          estimation::deskew(scan, prediction.track, imu_from_lidar_,
+                                             prediction.track_from_imu, parallel_),
+                          rule_.layout);
+  const Features raw = extract_features(image, rule_.edges, parallel_);
   Features features = thinned(raw, config_);
 
   Registration found = match(features, prediction.world_from_lidar, scan.stamp);
   const ScanStatus status = status_of(found, features);
+  const ScanCounters counters = counters_of(image, raw, features, found);
   const bool matched = status == ScanStatus::kTracked || status == ScanStatus::kDegenerate;
   const bool first = keyframes_.empty() && status == ScanStatus::kInitializing;
-  const ScanCounters counters{.points = image.pixels.size(),
-                              .keypoints = features.edges.size() + features.surfaces.size(),
-                              .matches = found.points.count,
-                              .edges = raw.edges.size(),
-                              .surfaces = raw.surfaces.size(),
-                              .iterations = found.iterations,
-                              .degenerate_directions = found.degenerate_directions,
-                              .map_points = submap_.size()};
   if (matched) fuse(found);
-  last_mapped_ = scan.stamp;
+  last_stamp_ = scan.stamp;
   Pose world_from_lidar = found.map_from_lidar;
   if (matched || first) keep(scan.stamp, world_from_lidar, std::move(features));
-  return finish_scan(scan.stamp, world_from_lidar, status, counters);
+  ScanResult result = finish_scan(scan.stamp, world_from_lidar, status, counters);
+  if (status != ScanStatus::kDiverged)
+    result.motion = estimation::motion_along(prediction.track, scan.stamp, end, scan.stamp,
+                                             world_from_lidar * imu_from_lidar_.inverse(),
+                                             body_from_imu_.inverse());
+  return result;
+}
+
+ScanCounters ArenaSlam::counters_of(const estimation::RangeImage& image, const Features& raw,
+                                    const Features& features, const Registration& found) const {
+  return {.points = image.pixels.size(),
+          .keypoints = features.edges.size() + features.surfaces.size(),
+          .matches = found.points.count,
+          .edges = raw.edges.size(),
+          .surfaces = raw.surfaces.size(),
+          .iterations = found.iterations,
+          .degenerate_directions = found.degenerate_directions,
+          .map_points = submap_.size()};
 }
 
 Time ArenaSlam::scan_end(const Scan& scan) {
@@ -84,7 +102,7 @@ bool ArenaSlam::start(Time stamp, Time end) {
   imu_.remove_before(end - kStartMemory);
   const std::vector<ImuSample> samples = imu_.samples(end - kStartMemory, end);
   if (samples.size() < kStartSamples) return false;
-  const Start begin = start_from(samples, body_from_imu_, config_);
+  const Start begin = start_from(samples, body_from_imu_, config_.gravity);
   smoother_.start(begin.inertial);
   accel_scale_ = begin.accel_scale;
   pending_ = empty_preintegration();
@@ -95,14 +113,10 @@ bool ArenaSlam::start(Time stamp, Time end) {
   return true;
 }
 
-bool ArenaSlam::is_due(Time stamp) const {
-  return !last_mapped_ || to_seconds(stamp - *last_mapped_) >= config_.process_interval_s;
-}
-
 ArenaSlam::Prediction ArenaSlam::predict(Time stamp, Time end) {
-  longest_gap_s_ = 0.0;
   const estimation::NavState& last = smoother_.latest();
-  integrate(imu_.between(integrated_until_, stamp), last, pending_, nullptr);
+  const std::vector<estimation::ImuInterval> before = imu_.between(integrated_until_, stamp);
+  estimation::integrate(before, last, imu_model(), pending_);
   integrated_until_ = std::max(integrated_until_, stamp);
   imu_.remove_before(stamp);
   const estimation::NavState now = pending_.predict(last, smoother_.gravity());
@@ -112,60 +126,19 @@ ArenaSlam::Prediction ArenaSlam::predict(Time stamp, Time end) {
   prediction.world_from_lidar =
       world_from_lidar_ * imu_from_lidar_.inverse() * last_from_now * imu_from_lidar_;
   prediction.track_from_imu = now.world_from_imu;
-  estimation::NavState within = now;
-  if (!config_.deskew_bias) within.bias.gyro.setZero();
-  estimation::Preintegration sum(within.bias, noise_);
-  integrate(imu_.between(stamp, end), within, sum, &prediction.track);
+  estimation::Preintegration sum(now.bias, noise_);
+  const std::vector<estimation::ImuInterval> within = imu_.between(stamp, end);
+  prediction.track = estimation::integrate(within, now, imu_model(), sum);
+  longest_gap_s_ = std::max(estimation::longest_gap_s(before), estimation::longest_gap_s(within));
   return prediction;
-}
-
-void ArenaSlam::integrate(const std::vector<estimation::ImuInterval>& intervals,
-                          const estimation::NavState& state, estimation::Preintegration& sum,
-                          estimation::ImuTrack* track) {
-  const Eigen::Vector3d& gravity = smoother_.gravity();
-  for (const estimation::ImuInterval& interval : intervals) {
-    const estimation::NavState now = sum.predict(state, gravity);
-    const Eigen::Matrix3d rotation = now.world_from_imu.linear();
-    Eigen::Vector3d accel = accel_scale_ * interval.accel;
-    if (interval.gap) {  // coast with constant velocity
-      accel = state.bias.accel - rotation.transpose() * gravity;
-      longest_gap_s_ = std::max(longest_gap_s_, interval.seconds());
-    }
-    if (track != nullptr) {
-      track->push_back({interval.begin, now.world_from_imu, now.velocity,
-                        rotation * (accel - state.bias.accel) + gravity,
-                        interval.gyro - state.bias.gyro});
-    }
-    sum.integrate(interval.gyro, accel, interval.seconds(),
-                  interval.gap ? estimation::kCoastingNoise : noise_);
-  }
-}
-
-std::vector<Eigen::Vector3f> ArenaSlam::deskewed(const Scan& scan,
-                                                 const Prediction& prediction) const {
-  if (config_.deskew_translation)
-    return estimation::deskew(scan, prediction.track, imu_from_lidar_, prediction.track_from_imu,
-                              parallel_);
-  estimation::ImuTrack rotation_track =
-      prediction.track;  // rotation about the LiDAR, without translation
-  for (estimation::ImuStep& step : rotation_track) {
-    step.world_from_imu = rotation_of(step.world_from_imu);
-    step.velocity.setZero();
-    step.acceleration.setZero();
-  }
-  return estimation::deskew(scan, rotation_track, rotation_of(imu_from_lidar_),
-                            rotation_of(prediction.track_from_imu), parallel_);
 }
 
 Registration ArenaSlam::match(const Features& features, const Pose& guess, Time stamp) {
   Registration none;
   none.map_from_lidar = guess;
-  const bool enough = features.edges.size() >= static_cast<std::size_t>(config_.min_edges) &&
-                      features.surfaces.size() >= static_cast<std::size_t>(config_.min_surfaces);
-  if (keyframes_.empty() || !enough) return none;
-  const Eigen::Vector3d here = keyframes_.back().world_from_lidar.translation();
-  submap_.select(keyframes_, surrounding(keyframes_, here, stamp, config_));
-  return register_features(features, submap_.map(), guess, config_, parallel_);
+  if (keyframes_.empty() || features.surfaces.size() < kMinSurfaces) return none;
+  submap_.follow(keyframes_, stamp, config_);
+  return register_features(features, submap_, guess, limits_, parallel_);
 }
 
 ScanStatus ArenaSlam::status_of(const Registration& found, const Features& features) const {
@@ -184,10 +157,8 @@ void ArenaSlam::fuse(Registration& found) {
   const Pose odom_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   smoother_.add(pending_, {odom_from_imu, information_of(found, odom_from_imu)});
   restart_if_failed();
-  if (config_.smoothed_pose) {
-    odom_from_lidar_ = smoother_.latest().world_from_imu * imu_from_lidar_;
-    found.map_from_lidar = orthonormalized(odom_from_world.inverse() * odom_from_lidar_);
-  }
+  odom_from_lidar_ = smoother_.latest().world_from_imu * imu_from_lidar_;
+  found.map_from_lidar = orthonormalized(odom_from_world.inverse() * odom_from_lidar_);
   world_from_lidar_ = found.map_from_lidar;
   pending_ = empty_preintegration();
 }
@@ -196,13 +167,9 @@ estimation::PoseMeasurement::Information ArenaSlam::information_of(
     const Registration& found, const Pose& odom_from_imu) const {
   using Matrix6 = estimation::PoseMeasurement::Information;
   const auto squared = [](double x) { return x * x; };
-  Matrix6 min_covariance = Matrix6::Zero();  // covariance
-  const bool all_or_nothing = config_.point_sigma_m <= 0.0 && found.degenerate_directions > 0;
-  min_covariance.diagonal().head<3>().setConstant(
-      all_or_nothing ? 1.0 : squared(config_.min_rotation_sigma_rad));
-  min_covariance.diagonal().tail<3>().setConstant(
-      all_or_nothing ? 1.0 : squared(config_.min_translation_sigma_m));
-  if (config_.point_sigma_m <= 0.0) return min_covariance.inverse();
+  Matrix6 min_covariance = Matrix6::Zero();
+  min_covariance.diagonal().head<3>().setConstant(squared(kMinRotationSigma));
+  min_covariance.diagonal().tail<3>().setConstant(squared(kMinPositionSigma));
 
   // Jacobian of the errors of the registered LiDAR pose by those of the IMU's pose.
   const Eigen::Matrix3d world_from_odom =
@@ -225,21 +192,22 @@ void ArenaSlam::restart_if_failed() {
   estimation::InertialStart again;
   again.state.world_from_imu = odom_from_lidar_ * imu_from_lidar_.inverse();
   again.gravity = smoother_.gravity();
-  again.gravity_sigma = config_.gravity_sigma_rad;
-  again.covariance.diagonal().segment<3>(estimation::NavState::kVelocity).setConstant(9.0);
+  again.gravity_sigma = kGravitySigma;
+  again.covariance.diagonal()
+      .segment<3>(estimation::NavState::kVelocity)
+      .setConstant(kRestartVariance);
   smoother_.start(again);
   ++restarts_;
 }
 
 void ArenaSlam::keep(Time stamp, Pose& world_from_lidar, Features features) {
-  if (merge(stamp, world_from_lidar, features)) return;
+  if (merge(world_from_lidar, features)) return;
   const Pose previous_from_this =
       keyframes_.empty() ? world_from_lidar
                          : keyframes_.back().world_from_lidar.inverse() * world_from_lidar;
   poses_.add_anchor(stamp, previous_from_this);
   merger_.begin(features);
   keyframes_.push_back({stamp, world_from_lidar, std::move(features), 0});
-  if (!config_.loop_closure) return;
   const bool moved = closer_.add(stamp, previous_from_this, [this](std::size_t keyframe) {
     return std::span<const Eigen::Vector3f>(keyframes_[keyframe].features.surfaces);
   });
@@ -252,10 +220,10 @@ void ArenaSlam::keep(Time stamp, Pose& world_from_lidar, Features features) {
   world_from_lidar_ = world_from_lidar;  // corrected pose of the scan just registered
 }
 
-bool ArenaSlam::merge(Time stamp, const Pose& world_from_lidar, const Features& features) {
+bool ArenaSlam::merge(const Pose& world_from_lidar, const Features& features) {
   if (keyframes_.empty()) return false;
   Keyframe& last = keyframes_.back();
-  const bool due = is_keyframe(last, stamp, world_from_lidar, config_);
+  const bool due = is_keyframe(last, world_from_lidar, config_);
   const bool renew =
       due ? config_.scans_per_keyframe > 1
           : merger_.add(features, last.world_from_lidar.inverse() * world_from_lidar, config_);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/estimation/imu_buffer.hpp"
 #include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/estimation/inertial_prediction.hpp"
 #include "lidarena/estimation/inertial_smoother.hpp"
-#include "lidarena/estimation/preintegration.hpp"
 #include "lidarena/loop/anchored_trajectory.hpp"
 #include "lidarena/loop/loop_closer.hpp"
 #include "lidarena/odometry/arena_slam/config.hpp"
@@ -19,18 +18,16 @@
 
 namespace lidarena::odometry::arena_slam {
 
-/// LiDAR-inertial odometry on edges and planes, smoothed with the IMU, after Shan, Englot, Meyers,
-/// Wang, Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping"
-/// (IROS 2020). Poses hold for the scan's stamp, its first firing. See README.md in this folder.
+/// LiDAR-inertial SLAM on edges and planes, smoothed with the IMU, with loop closure. It descends
+/// from LIO-SAM (Shan, Englot, Meyers, Wang, Ratti, Rus, IROS 2020). Poses hold for the scan's
+/// stamp, its first firing. See README.md in this folder.
 class ArenaSlam : public Odometry {
  public:
   ArenaSlam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
   OdometryTraits traits() const override {
-    return {.needs_imu = true,
-            .revises_past = config_.loop_closure,
-            .gravity_aligned = true,
-            .publishes_scans = false};
+    return {
+        .needs_imu = true, .revises_past = true, .gravity_aligned = true, .publishes_scans = false};
   }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;
@@ -52,16 +49,12 @@ class ArenaSlam : public Odometry {
   Time scan_end(const Scan& scan);
   /// Initializes if there are enough IMU samples; returns whether it has.
   bool start(Time stamp, Time end);
-  bool is_due(Time stamp) const;
   Prediction predict(Time stamp, Time end);
-  /// Adds the IMU's intervals to `sum`, which began in `state`; fills `track` unless it is null.
-  void integrate(const std::vector<estimation::ImuInterval>& intervals,
-                 const estimation::NavState& state, estimation::Preintegration& sum,
-                 estimation::ImuTrack* track);
-  std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
   Registration match(const Features& features, const Pose& guess, Time stamp);
+  ScanCounters counters_of(const estimation::RangeImage& image, const Features& raw,
+                           const Features& features, const Registration& found) const;
   ScanStatus status_of(const Registration& found, const Features& features) const;
-  /// Adds the registered pose to the smoother; with smoothed_pose, replaces it by the smoother's.
+  /// Adds the registered pose to the smoother and replaces it by the smoother's.
   void fuse(Registration& found);
   estimation::PoseMeasurement::Information information_of(const Registration& found,
                                                           const Pose& odom_from_imu) const;
@@ -69,7 +62,7 @@ class ArenaSlam : public Odometry {
   /// Makes the scan a keyframe if one is due; a loop then may correct `world_from_lidar`.
   void keep(Time stamp, Pose& world_from_lidar, Features features);
   /// Averages the scan into the last keyframe; returns false if it should be the next keyframe.
-  bool merge(Time stamp, const Pose& world_from_lidar, const Features& features);
+  bool merge(const Pose& world_from_lidar, const Features& features);
   /// The result of a scan that is part of the trajectory.
   ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
                          const ScanCounters& counters);
@@ -78,12 +71,15 @@ class ArenaSlam : public Odometry {
   estimation::Preintegration empty_preintegration() const {
     return {smoother_.latest().bias, noise_};
   }
+  estimation::ImuModel imu_model() const { return {noise_, accel_scale_, smoother_.gravity()}; }
 
   Config config_;
   Pose body_from_imu_;
   Pose body_from_lidar_;
   Pose imu_from_lidar_;
   estimation::ImuNoise noise_;
+  FeatureRule rule_;
+  RegistrationLimits limits_;
   Parallel parallel_;
 
   estimation::ImuBuffer imu_;
@@ -98,11 +94,11 @@ class ArenaSlam : public Odometry {
   int restarts_ = 0;
   Pose odom_from_lidar_ = Pose::Identity();   ///< last registered pose, in the smoother's frame
   Pose world_from_lidar_ = Pose::Identity();  ///< the same pose in the map's frame
-  std::optional<Time> last_mapped_;
+  Time last_stamp_{Time::min()};
 
   std::vector<Keyframe> keyframes_;
   KeyframeMerger merger_;  ///< of the last keyframe
-  Submap submap_;
+  FeatureMap submap_;
   loop::AnchoredTrajectory poses_;  ///< of the LiDAR
   loop::LoopCloser closer_;
 };

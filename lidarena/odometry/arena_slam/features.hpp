@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
-#include "lidarena/odometry/arena_slam/range_image.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/edge_points.hpp"
+#include "lidarena/odometry/arena_slam/config.hpp"
 
 namespace lidarena::odometry::arena_slam {
 
@@ -15,19 +17,21 @@ struct Features {
   std::vector<Eigen::Vector3f> surfaces;
 };
 
-/// Points of a row that cannot be edges because they are not seen as edges from elsewhere: the far
-/// side of a range jump, and surfaces at a grazing angle. One flag per pixel.
-std::vector<bool> non_edge_points(std::span<const Pixel> row, const Config& config);
+/// How features are found in the scans of a kind of LiDAR.
+struct FeatureRule {
+  estimation::ImageLayout layout;
+  estimation::EdgeRule edges;
+};
+/// Spinning LiDARs have columns by azimuth; all others, whose pattern does not repeat, by firing
+/// order.
+FeatureRule feature_rule(const LidarInfo& lidar, const Config& config);
 
-/// Squared sum (m^2) of the differences between the neighbors' ranges and a point's own; 0 near the
-/// row's ends.
-std::vector<float> roughness(std::span<const Pixel> row, const Config& config);
+/// The edges of each row; all other points are surface points.
+Features extract_features(const estimation::RangeImage& image, const estimation::EdgeRule& rule,
+                          const Parallel& parallel);
 
-/// Edges are the roughest points of each sixth of a row, none adjacent to another; all other points
-/// are surface points (Zhang, Singh, "LOAM", RSS 2014, section V-A, as in LIO-SAM).
-Features extract_features(const RangeImage& image, const Config& config, const Parallel& parallel);
-
-/// The features averaged in voxels of `edge_voxel_size_m` and `surface_voxel_size_m`.
+/// The features averaged in voxels of `edge_voxel_size_m` and `surface_voxel_size_m`, in rotated
+/// grids.
 Features thinned(const Features& features, const Config& config);
 
 }  // namespace lidarena::odometry::arena_slam

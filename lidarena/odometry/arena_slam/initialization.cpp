@@ -20,37 +20,24 @@ estimation::NavState::Matrix covariance_of(bool still) {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
-/// The published program's: small for the biases, large for the velocity.
-estimation::NavState::Matrix program_covariance() {
-  estimation::NavState::Vector sigma;
-  sigma << Vector3d::Constant(1e-2), Vector3d::Constant(1e4), Vector3d::Constant(1e-2),
-      Vector3d::Constant(1e-3), Vector3d::Constant(1e-3);
-  return sigma.cwiseAbs2().asDiagonal();
-}
-
 }  // namespace
 
-Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
-                 const Config& config) {
+Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu, double gravity) {
   const estimation::ImuStatistics imu = estimation::statistics(samples);
   Start start;
-  start.accel_scale = estimation::accel_scale_of(imu, config.gravity);
-  start.still = estimation::is_at_rest(imu, config.gravity, start.accel_scale);
+  start.accel_scale = estimation::accel_scale_of(imu, gravity);
+  start.still = estimation::is_at_rest(imu, gravity, start.accel_scale);
   estimation::InertialStart& inertial = start.inertial;
-  inertial.gravity = {0.0, 0.0, -config.gravity};
+  inertial.gravity = {0.0, 0.0, -gravity};
   Pose world_from_body = Pose::Identity();
-  if (config.gravity_aligned_start) {
-    world_from_body.linear() = estimation::level_rotation(body_from_imu.linear() * imu.mean_accel);
-    if (start.still) {
-      inertial.state.bias.gyro = imu.mean_gyro;
-      inertial.state.bias.accel =
-          estimation::accel_bias_along_gravity(imu, config.gravity, start.accel_scale);
-    }
-    inertial.covariance = covariance_of(start.still);
-    inertial.gravity_sigma = start.still ? config.gravity_sigma_rad : kMovingTilt;
-  } else {
-    inertial.covariance = program_covariance();
+  world_from_body.linear() = estimation::level_rotation(body_from_imu.linear() * imu.mean_accel);
+  if (start.still) {
+    inertial.state.bias.gyro = imu.mean_gyro;
+    inertial.state.bias.accel =
+        estimation::accel_bias_along_gravity(imu, gravity, start.accel_scale);
   }
+  inertial.covariance = covariance_of(start.still);
+  inertial.gravity_sigma = start.still ? kGravitySigma : kMovingTilt;
   inertial.state.world_from_imu = world_from_body * body_from_imu;
   return start;
 }

@@ -6,9 +6,11 @@
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/inertial_smoother.hpp"
-#include "lidarena/odometry/arena_slam/config.hpp"
 
 namespace lidarena::odometry::arena_slam {
+
+/// Sigma of gravity's direction in the world after a start at rest, rad.
+inline constexpr double kGravitySigma = 0.02;
 
 /// Result of the initialization.
 struct Start {
@@ -18,9 +20,7 @@ struct Start {
 };
 
 /// Roll and pitch from the mean specific force; at rest also the gyro's bias from the mean rate and
-/// the accelerometer's bias along gravity. Without `gravity_aligned_start`, as in the published
-/// program, the body is level and the biases are zero. `samples` must not be empty.
-Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu,
-                 const Config& config);
+/// the accelerometer's bias along gravity. `samples` must not be empty; `gravity` in m/s^2.
+Start start_from(const std::vector<ImuSample>& samples, const Pose& body_from_imu, double gravity);
 
 }  // namespace lidarena::odometry::arena_slam

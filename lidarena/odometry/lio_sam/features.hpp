@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
-#include "lidarena/odometry/lio_sam/range_image.hpp"
+#include "lidarena/estimation/edge_points.hpp"
+#include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/odometry/lio_sam/config.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
@@ -15,17 +17,23 @@ struct Features {
   std::vector<Eigen::Vector3f> surfaces;
 };
 
-/// Points of a row that cannot be edges because they are not seen as edges from elsewhere: the far
-/// side of a range jump, and surfaces at a grazing angle. One flag per pixel.
-std::vector<bool> non_edge_points(std::span<const Pixel> row, const Config& config);
+/// Layout of the range image.
+estimation::ImageLayout layout_of(const Config& config);
 
-/// Squared sum (m^2) of the differences between the neighbors' ranges and a point's own; 0 near the
-/// row's ends.
-std::vector<float> roughness(std::span<const Pixel> row, const Config& config);
+/// The program's instant of the scan's last firing: that of the last point in message order. The
+/// stamp if the scan is untimed or has no points.
+Time end_in_message(const Scan& scan);
 
-/// Edges are the roughest points of each sixth of a row, none adjacent to another; all other points
-/// are surface points (Zhang, Singh, "LOAM", RSS 2014, section V-A, as in LIO-SAM).
-Features extract_features(const RangeImage& image, const Config& config, const Parallel& parallel);
+/// Positions (m) of all points, in order, turned to the LiDAR's attitude at the first usable point
+/// in message order. The translation within the scan is not removed. Points later than
+/// `known_until` get the rotation of that instant. Untimed scans are returned unchanged.
+std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const estimation::ImuTrack& track,
+                                      Time known_until, const Pose& imu_from_lidar,
+                                      const estimation::ImageLayout& layout);
+
+/// The edges of each row, and all its other points, averaged in voxels, as surface points.
+Features extract_features(const estimation::RangeImage& image, const Config& config,
+                          const Parallel& parallel);
 
 /// The features averaged in voxels of `edge_voxel_size_m` and `surface_voxel_size_m`.
 Features thinned(const Features& features, const Config& config);

@@ -2,15 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <vector>
 
 #include "lidarena/base/pose.hpp"
-#include "lidarena/base/time.hpp"
-#include "lidarena/map/voxel_sums.hpp"
-#include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/map/submap.hpp"
 #include "lidarena/odometry/lio_sam/features.hpp"
-#include "lidarena/odometry/lio_sam/registration.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
@@ -19,59 +15,34 @@ struct Keyframe {
   Time stamp{0};
   Pose world_from_lidar = Pose::Identity();
   Features features;           ///< downsampled, LiDAR frame
-  std::uint32_t revision = 0;  ///< number of changes of pose or features
+  std::uint32_t revision = 0;  ///< number of changes of the pose
 };
 
-/// Whether a scan at `stamp` and `world_from_lidar` should be a keyframe, given the last one.
+/// Whether a scan at `stamp` and `world_from_lidar` should be a keyframe, given the last one: it
+/// has moved, or, with Livox sensors, the last one is older than a second.
 bool is_keyframe(const Keyframe& last, Time stamp, const Pose& world_from_lidar,
                  const Config& config);
 
-/// Averages the scans up to the next keyframe into the last one.
-class KeyframeMerger {
+/// Map with which a scan is matched: edges and surfaces of the keyframes around the last one.
+class FeatureMap {
  public:
-  /// Starts a new keyframe with these features.
-  void begin(const Features& features);
-  /// Adds a scan. Returns whether the keyframe's features should be replaced by merged(): each time
-  /// the number of scans has quadrupled, so that the map of a sensor at rest rarely changes.
-  bool add(const Features& features, const Pose& keyframe_from_lidar, const Config& config);
-  /// Average of all scans added so far.
-  Features merged(const Config& config) const { return thinned(all_, config); }
+  explicit FeatureMap(const Config& config)
+      : edges_(config.edge_voxel_size_m),
+        surfaces_(config.surface_voxel_size_m),
+        extent_{.radius_m = config.submap_radius_m,
+                .keyframe_spacing_m = config.submap_keyframe_spacing_m} {}
+  /// Selects keyframes (there must be one) for a scan at `now`.
+  void follow(const std::vector<Keyframe>& keyframes, Time now);
+
+  const map::KdTree& edges() const { return edges_.tree(); }
+  const map::KdTree& surfaces() const { return surfaces_.tree(); }
+  std::size_t size() const { return edges_.size() + surfaces_.size(); }
+  std::uint64_t memory_bytes() const { return edges_.memory_bytes() + surfaces_.memory_bytes(); }
 
  private:
-  Features all_;
-  int scans_ = 0;
-};
-
-/// Sorted indices of the keyframes for the submap at `now` around `position` (m): of those within
-/// the radius the oldest of each cell (so that drift does not accumulate) and the recent ones.
-std::vector<std::uint32_t> surrounding(const std::vector<Keyframe>& keyframes,
-                                       const Eigen::Vector3d& position, Time now,
-                                       const Config& config);
-
-/// Map of the features of selected keyframes. A new selection costs the insertion and removal of
-/// the keyframes that differ, and building the search trees.
-class Submap {
- public:
-  explicit Submap(const Config& config)
-      : edges_(config.edge_voxel_size_m, config.grid_axes),
-        surfaces_(config.surface_voxel_size_m, config.grid_axes) {}
-  /// `chosen`: sorted indices of `keyframes`.
-  void select(const std::vector<Keyframe>& keyframes, const std::vector<std::uint32_t>& chosen);
-  const FeatureMap& map() const { return map_; }
-  std::size_t size() const { return map_.edges.size() + map_.surfaces.size(); }
-  std::uint64_t memory_bytes() const;
-
- private:
-  /// What was inserted for a keyframe.
-  struct Part {
-    std::uint32_t revision = 0;
-    Features placed;  ///< world frame
-  };
-
-  std::map<std::uint32_t, Part> parts_;  ///< by index of the keyframe
-  map::VoxelSums edges_;
-  map::VoxelSums surfaces_;
-  FeatureMap map_;
+  map::Submap edges_;
+  map::Submap surfaces_;
+  map::SubmapExtent extent_;
 };
 
 }  // namespace lidarena::odometry::lio_sam

@@ -6,22 +6,20 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/estimation/imu_buffer.hpp"
-#include "lidarena/estimation/imu_track.hpp"
-#include "lidarena/estimation/inertial_smoother.hpp"
-#include "lidarena/estimation/preintegration.hpp"
 #include "lidarena/loop/anchored_trajectory.hpp"
-#include "lidarena/loop/loop_closer.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/odometry/lio_sam/features.hpp"
+#include "lidarena/odometry/lio_sam/imu_odometry.hpp"
 #include "lidarena/odometry/lio_sam/keyframes.hpp"
+#include "lidarena/odometry/lio_sam/loop_search.hpp"
 #include "lidarena/odometry/lio_sam/registration.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
-/// LiDAR-inertial odometry on edges and planes, smoothed with the IMU, after Shan, Englot, Meyers,
-/// Wang, Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping"
-/// (IROS 2020). Poses hold for the scan's stamp, its first firing. See README.md in this folder.
+/// LiDAR-inertial odometry on edges and planes, smoothed with the IMU: Shan, Englot, Meyers, Wang,
+/// Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping" (IROS
+/// 2020). Poses hold for the scan's stamp, its first firing. See README.md in this folder.
 class LioSam : public Odometry {
  public:
   LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -32,79 +30,54 @@ class LioSam : public Odometry {
             .gravity_aligned = true,
             .publishes_scans = false};
   }
-  void register_imu(const ImuSample& sample) override { imu_.add(sample); }
+  void register_imu(const ImuSample& sample) override { imu_.register_imu(sample); }
   ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override;
   std::vector<Eigen::Vector3f> map() const override;
   std::map<std::string, std::uint64_t> memory() const override;
 
-  const loop::LoopCloser& loops() const { return closer_; }
-
  private:
-  /// Prediction of a scan's motion by the IMU.
-  struct Prediction {
-    Pose world_from_lidar;       ///< at the scan's stamp
-    estimation::ImuTrack track;  ///< within the scan, for de-skewing
-    Pose track_from_imu;         ///< at the scan's stamp
+  /// The motion within a scan, by the IMU.
+  struct Within {
+    Time end{0};  ///< of the last point in message order
+    estimation::ImuTrack track;
   };
-
-  /// Instant of the scan's last firing; for a scan without points, its expected instant.
-  Time scan_end(const Scan& scan);
-  /// Initializes if there are enough IMU samples; returns whether it has.
-  bool start(Time stamp, Time end);
   bool is_due(Time stamp) const;
-  Prediction predict(Time stamp, Time end);
-  /// Adds the IMU's intervals to `sum`, which began in `state`; fills `track` unless it is null.
-  void integrate(const std::vector<estimation::ImuInterval>& intervals,
-                 const estimation::NavState& state, estimation::Preintegration& sum,
-                 estimation::ImuTrack* track);
-  std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const Prediction& prediction) const;
+  Features features_of(const Scan& scan, const Within& within, ScanCounters& counters) const;
+  /// Initial guess of the registration: the last pose and the motion of the IMU odometry since the
+  /// latest guess that used it, which lies further back if the IMU odometry has been silent.
+  Pose guess();
+  /// Registers features, if they are enough; the pose is else the guess.
   Registration match(const Features& features, const Pose& guess, Time stamp);
-  ScanStatus status_of(const Registration& found, const Features& features) const;
-  /// Adds the registered pose to the smoother; with smoothed_pose, replaces it by the smoother's.
-  void fuse(Registration& found);
-  estimation::PoseMeasurement::Information information_of(const Registration& found,
-                                                          const Pose& odom_from_imu) const;
-  void restart_if_failed();
-  /// Makes the scan a keyframe if one is due; a loop then may correct `world_from_lidar`.
-  void keep(Time stamp, Pose& world_from_lidar, Features features);
-  /// Averages the scan into the last keyframe; returns false if it should be the next keyframe.
-  bool merge(Time stamp, const Pose& world_from_lidar, const Features& features);
-  /// The result of a scan that is part of the trajectory.
-  ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                         const ScanCounters& counters);
-  ScanResult result_of(Time stamp, const Pose& world_from_lidar, ScanStatus status,
-                       const ScanCounters& counters) const;
-  estimation::Preintegration empty_preintegration() const {
-    return {smoother_.latest().bias, noise_};
-  }
+  /// Tells the IMU odometry how far scan matching moved from the pose `before` the guess.
+  void feed_back(const Pose& before, const Registration& found);
+  /// Makes the scan a keyframe if one is due; a loop then may correct world_from_lidar_.
+  void keep(Time stamp, Features features);
+  ScanStatus status_of(const Registration& found) const;
+  /// Adds the latest pose to the trajectory.
+  ScanResult processed(Time stamp, ScanStatus status, const Within& within, ScanCounters counters);
+  ScanResult result_of(const StampedPose& lidar, ScanStatus status, const Within& within,
+                       ScanCounters counters) const;
+  /// world_from_lidar_ and the motion since, by the IMU.
+  Pose predicted() const { return world_from_lidar_ * imu_.motion_since_sent(); }
 
   Config config_;
-  Pose body_from_imu_;
   Pose body_from_lidar_;
-  Pose imu_from_lidar_;
-  estimation::ImuNoise noise_;
+  Pose body_from_imu_;
   Parallel parallel_;
+  ImuOdometry imu_;
+  std::optional<Time> last_processed_;
 
-  estimation::ImuBuffer imu_;
-  bool started_ = false;
-  double accel_scale_ = 1.0;
-  Time scan_duration_;  ///< duration of the last scan that had points
-
-  estimation::InertialSmoother smoother_;  ///< in the odometry frame, which has no jumps from loops
-  estimation::Preintegration pending_;     ///< since the smoother's last state
-  Time integrated_until_{0};
-  double longest_gap_s_ = 0.0;  ///< of the IMU, since the last scan
-  int restarts_ = 0;
-  Pose odom_from_lidar_ = Pose::Identity();   ///< last registered pose, in the smoother's frame
-  Pose world_from_lidar_ = Pose::Identity();  ///< the same pose in the map's frame
-  std::optional<Time> last_mapped_;
+  Pose world_from_lidar_;             ///< of the last processed scan
+  Pose last_match_;                   ///< of the last scan with enough features, before loops
+  Pose odom_from_lidar_;              ///< chain of the motions fed back, without loops
+  bool degenerate_ = false;           ///< the last registration was
+  std::optional<Pose> guess_origin_;  ///< of the IMU odometry, at the latest guess that used it
 
   std::vector<Keyframe> keyframes_;
-  KeyframeMerger merger_;  ///< of the last keyframe
-  Submap submap_;
-  loop::AnchoredTrajectory poses_;  ///< of the LiDAR
-  loop::LoopCloser closer_;
+  FeatureMap submap_;
+  LoopSearch loops_;
+  loop::AnchoredTrajectory poses_;  ///< of the body
 };
 
 }  // namespace lidarena::odometry::lio_sam

@@ -71,7 +71,7 @@ std::vector<Errors> errors_over(const Recording& recording) {
   Rig rig = synthetic::rig_of(recording);
   rig.imus.front().gyro_noise_density = recording.gyro_noise_density;
   rig.imus.front().accel_noise_density = recording.accel_noise_density;
-  const Config config = indoor(rig.lidars.front());
+  const Config config = settings_for(rig.lidars.front());
   ArenaLio odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
   std::optional<Time> first;
   std::vector<Errors> errors;

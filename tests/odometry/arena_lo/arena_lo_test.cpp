@@ -15,7 +15,7 @@ LidarInfo lidar() { return synthetic::rig_of({}).lidars[0]; }
 TEST(ArenaLo, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
   const synthetic::Recording recording{.motion = [](double) { return synthetic::flight(0.0); },
                                        .seconds = 0.5};
-  ArenaLo odometry(indoor(lidar()), lidar(), Parallel(1));
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
   for (Scan scan : synthetic::scans_of(recording)) {
     scan.timed = false;
     for (Point& point : scan.points) point.dt_ns = 0;
@@ -27,7 +27,7 @@ TEST(ArenaLo, AScanWithoutTimesIsRigidAndHasNoMotionWithin) {
 }
 
 TEST(ArenaLo, AFloorAloneIsDegenerate) {
-  ArenaLo odometry(indoor(lidar()), lidar(), Parallel(1));
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
   std::vector<Point> points;
   for (int i = 0; i < 4000; ++i) {
     const double radius = 1.0 + 0.002 * i;
@@ -45,7 +45,7 @@ TEST(ArenaLo, AFloorAloneIsDegenerate) {
 TEST(ArenaLo, AScanThatCannotBeRegisteredIsPredictedAndLeftOutOfTheMap) {
   std::vector<Scan> scans = synthetic::scans_of({.seconds = 1.5});
   scans[8].points.resize(30);
-  ArenaLo odometry(indoor(lidar()), lidar(), Parallel(1));
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanResult result = odometry.register_scan(scans[i]);
     EXPECT_EQ(result.status == ScanStatus::kTooFewPoints, i == 8) << i;
@@ -55,8 +55,8 @@ TEST(ArenaLo, AScanThatCannotBeRegisteredIsPredictedAndLeftOutOfTheMap) {
 
 TEST(ArenaLo, AScanOutOfOrderIsCountedAndChangesNothing) {
   const std::vector<Scan> scans = synthetic::scans_of({.seconds = 1.0});
-  ArenaLo odometry(indoor(lidar()), lidar(), Parallel(1));
-  ArenaLo undisturbed(indoor(lidar()), lidar(), Parallel(1));
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  ArenaLo undisturbed(settings_for(lidar()), lidar(), Parallel(1));
   for (std::size_t i = 0; i < scans.size(); ++i) {
     odometry.register_scan(scans[i]);
     undisturbed.register_scan(scans[i]);

@@ -7,9 +7,19 @@
 #include <vector>
 
 #include "lidarena/base/scan.hpp"
-#include "lidarena/odometry/lio_sam/config.hpp"
 
-namespace lidarena::odometry::lio_sam {
+namespace lidarena::estimation {
+
+/// How the points of a scan become rows of neighbors.
+struct ImageLayout {
+  /// Columns are intervals of azimuth, whose first point stays; false: the firing order of the row,
+  /// for patterns that do not repeat.
+  bool by_azimuth = true;
+  int columns = 1800;  ///< number of intervals of azimuth
+  int row_stride = 1;  ///< every n-th row is used
+  double min_range_m = 0.0;
+  double max_range_m = 1000.0;
+};
 
 /// A point and its column in the image.
 struct Pixel {
@@ -28,9 +38,12 @@ struct RangeImage {
   }
 };
 
-/// Sorts a scan's finite points within the range limits into rows by ring and columns by azimuth or
-/// firing order. `positions` are the de-skewed positions of all points of the scan.
-RangeImage project(const Scan& scan, std::span<const Eigen::Vector3f> positions,
-                   const Config& config);
+/// Whether a point is finite, within the range limits and in a row that is used.
+bool is_usable(const Point& point, const ImageLayout& layout);
 
-}  // namespace lidarena::odometry::lio_sam
+/// Sorts the usable points of a scan into rows by ring, and columns. `positions` are the de-skewed
+/// positions of all points of the scan.
+RangeImage project(const Scan& scan, std::span<const Eigen::Vector3f> positions,
+                   const ImageLayout& layout);
+
+}  // namespace lidarena::estimation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times of the single steps of LIO-SAM on scans of a room with pillars: 20,000 points on 4 lines in
-// a pattern that does not repeat (Mid-360), and 128 x 1024 points (OS0-128).
+// Times of the single steps of arena_slam on scans of a room with pillars: 20,000 points on 4 lines
+// in a pattern that does not repeat (Mid-360), and 128 x 1024 points (OS0-128).
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,12 +9,11 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/estimation/deskew.hpp"
 #include "lidarena/loop/icp.hpp"
-#include "lidarena/odometry/lio_sam/features.hpp"
-#include "lidarena/odometry/lio_sam/keyframes.hpp"
-#include "lidarena/odometry/lio_sam/range_image.hpp"
-#include "lidarena/odometry/lio_sam/registration.hpp"
+#include "lidarena/odometry/arena_slam/features.hpp"
+#include "lidarena/odometry/arena_slam/keyframes.hpp"
+#include "lidarena/odometry/arena_slam/registration.hpp"
 
-namespace lidarena::odometry::lio_sam {
+namespace lidarena::odometry::arena_slam {
 namespace {
 
 using Eigen::Vector3d;
@@ -69,6 +68,7 @@ Scan scan_from(const Vector3d& place, bool spinning, std::uint64_t seed) {
 /// A scan, and the keyframes of an earlier walk through the room.
 struct Scene {
   Config config;
+  FeatureRule rule;
   Scan scan;
   std::vector<Eigen::Vector3f> points;
   std::vector<Keyframe> keyframes;
@@ -79,7 +79,8 @@ struct Scene {
     lidar.kind = spinning ? "spinning" : "rosette";
     lidar.columns = spinning ? 1024 : 0;
     lidar.max_range_m = 50.0;
-    config = indoor(lidar);
+    config = settings_for(lidar);
+    rule = feature_rule(lidar, config);
     for (int i = 0; i < 20; ++i) {
       const Vector3d place(-6.0 + 0.5 * i, 0.5 * std::sin(i), 0.0);
       const Scan seen = scan_from(place, spinning, static_cast<std::uint64_t>(i) + 2);
@@ -91,8 +92,8 @@ struct Scene {
     points = estimation::positions(scan);
   }
   Features features_of(const Scan& seen) const {
-    return extract_features(project(seen, estimation::positions(seen), config), config,
-                            Parallel(1));
+    return extract_features(estimation::project(seen, estimation::positions(seen), rule.layout),
+                            rule.edges, Parallel(1));
   }
 };
 
@@ -104,14 +105,15 @@ const Scene& scene(const benchmark::State& state) {
 
 void project_points(benchmark::State& state) {
   const Scene& s = scene(state);
-  for (auto _ : state) benchmark::DoNotOptimize(project(s.scan, s.points, s.config));
+  for (auto _ : state)
+    benchmark::DoNotOptimize(estimation::project(s.scan, s.points, s.rule.layout));
 }
 
 void extract(benchmark::State& state) {
   const Scene& s = scene(state);
-  const RangeImage image = project(s.scan, s.points, s.config);
+  const estimation::RangeImage image = estimation::project(s.scan, s.points, s.rule.layout);
   Features features;
-  for (auto _ : state) features = extract_features(image, s.config, Parallel(1));
+  for (auto _ : state) features = extract_features(image, s.rule.edges, Parallel(1));
   state.counters["edges"] = static_cast<double>(features.edges.size());
   state.counters["surfaces"] = static_cast<double>(features.surfaces.size());
 }
@@ -129,7 +131,7 @@ void build_submap(benchmark::State& state) {
   const Scene& s = scene(state);
   std::size_t points = 0;
   for (auto _ : state) {
-    Submap submap(s.config);
+    FeatureMap submap(s.config);
     submap.select(s.keyframes, s.chosen);
     points = submap.size();
   }
@@ -141,7 +143,7 @@ void follow_submap(benchmark::State& state) {
   const Scene& s = scene(state);
   const std::vector<std::uint32_t> without_last(s.chosen.begin(), s.chosen.end() - 1);
   const std::vector<std::uint32_t> without_first(s.chosen.begin() + 1, s.chosen.end());
-  Submap submap(s.config);
+  FeatureMap submap(s.config);
   bool forward = false;
   for (auto _ : state) {
     submap.select(s.keyframes, forward ? without_first : without_last);
@@ -152,13 +154,13 @@ void follow_submap(benchmark::State& state) {
 
 void register_scan(benchmark::State& state) {
   const Scene& s = scene(state);
-  Submap submap(s.config);
+  FeatureMap submap(s.config);
   submap.select(s.keyframes, s.chosen);
   const Features features = thinned(s.features_of(s.scan), s.config);
   const Pose guess = make_pose(Eigen::Matrix3d::Identity(), {0.03, -0.02, 0.01});
   Registration found;
   const Parallel parallel(1);
-  for (auto _ : state) found = register_features(features, submap.map(), guess, s.config, parallel);
+  for (auto _ : state) found = register_features(features, submap, guess, {}, parallel);
   state.counters["iterations"] = found.iterations;
   state.counters["error_mm"] = 1e3 * found.map_from_lidar.translation().norm();
 }
@@ -176,8 +178,7 @@ void verify_loop(benchmark::State& state) {
   const Pose guess = make_pose(Eigen::Matrix3d::Identity(), {0.5, -0.4, 0.1});
   const Parallel parallel(1);
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        loop::align_clouds(source.surfaces, tree, guess, loop::conservative_loops(), parallel));
+    benchmark::DoNotOptimize(loop::align_clouds(source.surfaces, tree, guess, parallel));
 }
 
 constexpr auto kUnit = benchmark::kMillisecond;
@@ -190,4 +191,4 @@ BENCHMARK(register_scan)->ArgName("spinning")->Arg(0)->Arg(1)->Unit(kUnit);
 BENCHMARK(verify_loop)->ArgName("spinning")->Arg(0)->Arg(1)->Unit(kUnit);
 
 }  // namespace
-}  // namespace lidarena::odometry::lio_sam
+}  // namespace lidarena::odometry::arena_slam

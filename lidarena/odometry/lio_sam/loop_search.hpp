@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/estimation/pose_graph.hpp"
+#include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/odometry/lio_sam/keyframes.hpp"
+
+namespace lidarena::odometry::lio_sam {
+
+/// The keyframe nearest to the last one, within the search radius and older by the time gap.
+std::optional<std::size_t> find_candidate(const std::vector<Keyframe>& keyframes,
+                                          const LoopRule& rule);
+
+/// Result of the alignment of two clouds.
+struct Alignment {
+  Pose target_from_source = Pose::Identity();
+  bool converged = false;
+  double fitness = 0.0;  ///< m^2, mean squared distance to the nearest target points
+};
+/// Iterated closest points, point to point (Besl, McKay 1992), from `guess`, with correspondences
+/// up to `reach` (m).
+Alignment align_points(const std::vector<Eigen::Vector3f>& source, const map::KdTree& target,
+                       const Pose& guess, double reach, const Parallel& parallel);
+
+/// Loop closure of the program (section III-C.4) and the graph of keyframes that it corrects.
+class LoopSearch {
+ public:
+  LoopSearch(const Config& config, Parallel parallel)
+      : config_(config), parallel_(std::move(parallel)) {}
+
+  /// Searches from the last keyframe, which must be new, if a search is due. Returns whether a loop
+  /// moved poses; world_from_keyframe are then in poses().
+  bool close(const std::vector<Keyframe>& keyframes, const Pose& previous_from_last);
+  const std::vector<Pose>& poses() const { return graph_.nodes; }
+
+  std::size_t tried() const { return tried_; }
+  std::size_t accepted() const { return accepted_; }
+  std::uint64_t memory_bytes() const;
+
+ private:
+  void add_node(const Pose& previous_from_last);
+  /// The loop from the last keyframe to `candidate`, if it is accepted.
+  std::optional<estimation::PoseGraph::Between> verify(const std::vector<Keyframe>& keyframes,
+                                                       std::size_t candidate) const;
+
+  Config config_;
+  Parallel parallel_;
+  estimation::PoseGraph graph_;
+  std::optional<Time> last_search_;
+  std::size_t tried_ = 0;
+  std::size_t accepted_ = 0;
+};
+
+}  // namespace lidarena::odometry::lio_sam

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/lio_sam/loop_search.hpp"
+
+#include <gtest/gtest.h>
+
+#include "lidarena/base/so3.hpp"
+#include "tests/loop/places.hpp"
+
+namespace lidarena::odometry::lio_sam {
+namespace {
+
+namespace places = loop::places;
+
+Keyframe keyframe_at(double seconds, const Pose& pose) {
+  return {from_seconds(seconds), pose, {}, 0};
+}
+
+Pose at(double x) { return make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}); }
+
+TEST(LioSamLoops, TheCandidateIsTheNearestThatIsOldEnough) {
+  const LoopRule rule;  // 15 m, 30 s
+  std::vector<Keyframe> keyframes{keyframe_at(0.0, at(0.0)), keyframe_at(10.0, at(5.0)),
+                                  keyframe_at(25.0, at(6.5)), keyframe_at(50.0, at(7.0))};
+  EXPECT_EQ(find_candidate(keyframes, rule), 1U) << "the third is nearer, but 25 s old";
+  keyframes.push_back(keyframe_at(90.0, at(22.5)));
+  EXPECT_EQ(find_candidate(keyframes, rule), std::nullopt) << "all old ones are beyond 15 m";
+}
+
+TEST(LioSamLoops, IcpLaysPointsOnPoints) {
+  const places::Points world = places::ring_corridor();
+  const Pose first = places::standing(-10.0, -10.0, 0.2);
+  const Pose second = places::standing(-9.4, -9.8, 0.5);
+  const Pose truth = first.inverse() * second;
+  map::KdTree target;
+  target.build(places::seen_from(first, world, 10.0, 1));
+  const places::Points source = places::seen_from(second, world, 8.0, 2);
+  const Pose guess = truth * make_pose(so3::exp({0.0, 0.0, 0.05}), {0.1, -0.1, 0.05});
+  const Alignment found = align_points(source, target, guess, 30.0, Parallel(1));
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT((found.target_from_source.translation() - truth.translation()).norm(), 2e-2);
+  EXPECT_LT(found.fitness, 0.01);
+  const Alignment far =
+      align_points(source, target, places::standing(500.0, 0.0, 0.0), 30.0, Parallel(1));
+  EXPECT_FALSE(far.converged) << "nothing within 30 m";
+}
+
+/// 1.3 times around a block with odometry that is 1 % too long and turns too far.
+struct Trip {
+  std::vector<Pose> truth;
+  std::vector<Keyframe> keyframes;
+  std::size_t accepted = 0;
+
+  explicit Trip(const Config& config) {
+    const places::Points world = places::ring_corridor();
+    LoopSearch loops(config, Parallel(1));
+    for (int i = 0; i <= 104; ++i) {
+      truth.push_back(places::around_the_block(i));
+      const Pose error = make_pose(so3::exp({0, 0, 0.001}), {0.01, 0, 0});
+      const Pose step = i == 0 ? truth[0] : truth.end()[-2].inverse() * truth.back() * error;
+      const Pose pose = i == 0 ? step : keyframes.back().world_from_lidar * step;
+      keyframes.push_back(keyframe_at(i, pose));
+      keyframes.back().features.surfaces =
+          places::seen_from(truth.back(), world, 9.0, static_cast<std::uint64_t>(i));
+      if (!loops.close(keyframes, step)) continue;
+      for (std::size_t k = 0; k < keyframes.size(); ++k)
+        keyframes[k].world_from_lidar = loops.poses()[k];
+    }
+    accepted = loops.accepted();
+  }
+  double rms_error() const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < truth.size(); ++i)
+      sum += (keyframes[i].world_from_lidar.translation() - truth[i].translation()).squaredNorm();
+    return std::sqrt(sum / static_cast<double>(truth.size()));
+  }
+};
+
+TEST(LioSamLoops, ComingBackCuresTheDriftAndEverySearchAddsALoop) {
+  Config config;
+  config.surface_voxel_size_m = 0.4;
+  config.loop.target_keyframes = 8;
+  config.loop.interval_s = 4.0;
+  const Trip drifted(config);
+  EXPECT_EQ(drifted.accepted, 0U) << "not asked for";
+  config.loop_closure = true;
+  const Trip closed(config);
+  EXPECT_GT(closed.accepted, 2U);
+  EXPECT_LT(closed.rms_error(), 0.5 * drifted.rms_error());
+}
+
+TEST(LioSamLoops, AFewPointsAreNoPlace) {
+  Config config;
+  config.loop_closure = true;
+  LoopSearch loops(config, Parallel(1));
+  std::vector<Keyframe> keyframes;
+  for (int i = 0; i < 40; ++i) {
+    keyframes.push_back(keyframe_at(i, at(0.0)));
+    keyframes.back().features.surfaces.assign(20, {1.0F, 2.0F, 3.0F});
+    EXPECT_FALSE(loops.close(keyframes, Pose::Identity()));
+  }
+  EXPECT_GT(loops.tried(), 0U);
+  EXPECT_EQ(loops.accepted(), 0U);
+}
+
+}  // namespace
+}  // namespace lidarena::odometry::lio_sam
