@@ -56,7 +56,7 @@ int show(const std::string& path, const std::vector<std::string>& overrides) {
   const world::World world(world::load_mesh(path + "/world.ply"));
   const LidarInfo* lidar = dataset.rig.find_lidar("");
   const auto made = [&](const std::vector<std::string>& settings) {
-    return odometry::make_odometry({"arena_slam", "indoor", "", settings}, dataset.rig, lidar->id,
+    return odometry::make_odometry({"arena_slam", "", "", settings}, dataset.rig, lidar->id,
                                    parallel)
         .odometry;
   };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Cost of an odometry: CPU time of its calls (of all threads of the process; reading happens
 // between the calls and is not counted), memory by part, statuses. Usage:
-//   odometry_cost ALGORITHM PRESET DATASET [--out FILE.tum] [--sensor ID] [--threads N]
+//   odometry_cost ALGORITHM[:PRESET] DATASET [--out FILE.tum] [--sensor ID] [--threads N]
 //                 [KEY=VALUE ...]
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -44,12 +44,14 @@ Arguments parsed(const std::vector<std::string>& words) {
       places.push_back(words[i]);
     }
   }
-  if (places.size() != 3) {
-    throw InputError("arguments", "three are needed", "give ALGORITHM, PRESET and DATASET");
+  if (places.size() != 2) {
+    throw InputError("arguments", "two are needed",
+                     "give ALGORITHM or ALGORITHM:PRESET, and DATASET");
   }
-  a.odometry.algorithm = places[0];
-  a.odometry.preset = places[1];
-  a.dataset = places[2];
+  const std::size_t colon = places[0].find(':');
+  a.odometry.algorithm = places[0].substr(0, colon);
+  if (colon != std::string::npos) a.odometry.preset = places[0].substr(colon + 1);
+  a.dataset = places[1];
   return a;
 }
 

@@ -35,7 +35,6 @@ struct ScanCounters {
   Count surfaces{};               ///< surface features found
   Count iterations{};             ///< of the registration or the filter's update
   Count degenerate_directions{};  ///< of 6 that the scan does not determine
-  Count retry_level{};            ///< 0: the first registration was trusted
   Count map_points{};
   Count keyframes{};
   Count loops{};                   ///< accepted so far
@@ -61,7 +60,6 @@ struct ScanCounters {
     v("surfaces", self.surfaces);
     v("iterations", self.iterations);
     v("degenerate_directions", self.degenerate_directions);
-    v("retry_level", self.retry_level);
     v("map_points", self.map_points);
     v("keyframes", self.keyframes);
     v("loops", self.loops);
