@@ -51,12 +51,11 @@ class CalmFlight {
     return dataset::read_tum(kOriginals / fmt::format("{}.{}_calm_{}.tum", name, world_, sensor_));
   }
 
-  /// Poses as known at each scan, up to a divergence.
+  /// Poses of the scans that the method uses, up to a divergence.
   Trajectory of_remake(const odometry::OdometryRequest& request) const {
     dataset::Dataset dataset = open_any_dataset(folder(), {}, Parallel(2));
     const odometry::MadeOdometry made =
         odometry::make_odometry(request, dataset.rig, "", Parallel(2));
-    std::vector<StampedPose> poses;
     while (const auto event = dataset.events->next()) {
       if (const auto* sample = std::get_if<ImuSample>(&event->data)) {
         made.odometry->register_imu(*sample);
@@ -64,9 +63,9 @@ class CalmFlight {
       }
       const auto result = made.odometry->register_scan(std::get<Scan>(event->data));
       if (result.status == odometry::ScanStatus::kDiverged) break;
-      poses.push_back(result.estimate);
     }
-    return Trajectory(std::move(poses));
+    made.odometry->finish();
+    return made.odometry->trajectory();
   }
 
  private:
