@@ -14,9 +14,9 @@ using Eigen::Vector3d;
 constexpr double kMinLineRatio = 3.0;  // minimum spread along a line / across it
 constexpr double kMinWeight = 0.1;     // minimum weight of a match
 
-PointResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
-                             double weight) {
-  PointResidual residual{weight * distance, {}};
+FeatureResidual residual_along(const Vector3d& direction, double distance, const Vector3d& arm,
+                               double weight) {
+  FeatureResidual residual{weight * distance, {}};
   residual.row << arm.cross(direction).transpose(), direction.transpose();
   residual.row *= weight;
   return residual;
@@ -37,12 +37,12 @@ std::optional<Line> fit_line(const FivePoints& points) {
   return Line{principal.center, principal.axes.col(2)};
 }
 
-void PointResidual::add_to(PoseEquations& sum) const {
+void FeatureResidual::add_to(PoseEquations& sum) const {
   sum.add<1>(row, Eigen::Matrix<double, 1, 1>(distance), 1.0);
 }
 
-std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& line,
-                                           const Pose& map_from_lidar) {
+std::optional<FeatureResidual> edge_residual(const Vector3d& point, const Line& line,
+                                             const Pose& map_from_lidar) {
   const Vector3d arm = map_from_lidar.linear() * point;
   const Vector3d from_center = arm + map_from_lidar.translation() - line.center;
   const Vector3d away = from_center - line.direction.dot(from_center) * line.direction;
@@ -52,8 +52,8 @@ std::optional<PointResidual> edge_residual(const Vector3d& point, const Line& li
   return residual_along(away / distance, distance, arm, weight);
 }
 
-std::optional<PointResidual> surface_residual(const Vector3d& point, const Plane& plane,
-                                              const Pose& map_from_lidar) {
+std::optional<FeatureResidual> surface_residual(const Vector3d& point, const Plane& plane,
+                                                const Pose& map_from_lidar) {
   const Vector3d arm = map_from_lidar.linear() * point;
   const double distance = plane.normal.dot(arm + map_from_lidar.translation()) + plane.offset;
   const double weight = 1.0 - 0.9 * std::abs(distance) / std::sqrt(point.norm());

@@ -25,19 +25,19 @@ std::optional<Line> fit_line(const FivePoints& points);
 
 /// Distance (m) of a point from its line or plane and its derivative by the pose's errors, both
 /// times the weight of the match.
-struct PointResidual {
+struct FeatureResidual {
   double distance = 0.0;
   Eigen::Matrix<double, 1, 6> row;
   void add_to(PoseEquations& sum) const;
 };
 /// Residual of an edge point (m, LiDAR frame) and its line in the map (LIO-SAM, eq. 10); the weight
 /// decreases with the distance. Nothing if it is too small.
-std::optional<PointResidual> edge_residual(const Eigen::Vector3d& point, const Line& line,
-                                           const Pose& map_from_lidar);
+std::optional<FeatureResidual> edge_residual(const Eigen::Vector3d& point, const Line& line,
+                                             const Pose& map_from_lidar);
 /// Likewise of a surface point and its plane (LIO-SAM, eq. 11); the weight decreases with the
 /// distance over the root of the range.
-std::optional<PointResidual> surface_residual(const Eigen::Vector3d& point, const Plane& plane,
-                                              const Pose& map_from_lidar);
+std::optional<FeatureResidual> surface_residual(const Eigen::Vector3d& point, const Plane& plane,
+                                                const Pose& map_from_lidar);
 
 /// Directions in which the points do not determine the pose.
 struct Degenerate {

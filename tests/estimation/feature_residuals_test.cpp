@@ -33,10 +33,10 @@ TEST(FeatureResiduals, JacobiansAreTheNumericOnes) {
       return moved(pose, h * PoseEquations::Vector::Unit(k));
     };
     const auto check = [&](const auto& residual_at) {
-      const std::optional<PointResidual> here = residual_at(pose);
+      const std::optional<FeatureResidual> here = residual_at(pose);
       if (!here) return;
       // the Jacobian takes the weight as constant, so distances without the weight are compared
-      const auto unweighted = [](const PointResidual& r) {
+      const auto unweighted = [](const FeatureResidual& r) {
         return r.distance / r.row.tail(3).norm();
       };
       const double weight = here->row.tail<3>().norm();
