@@ -42,7 +42,9 @@ TEST(OdometryFactory, MakesEveryPresetOfEveryAlgorithmAndTheConfigurationMakesIt
     EXPECT_FALSE(info.summary.empty());
     const bool ours = info.name.starts_with("arena");
     EXPECT_EQ(info.presets.empty(), ours) << info.name;
-    if (!ours) EXPECT_EQ(info.presets.front(), "indoor") << info.name;
+    if (!ours) {
+      EXPECT_EQ(info.presets.front(), "indoor") << info.name;
+    }
     std::vector<std::string> presets = info.presets;
     presets.push_back("");
     for (const std::string& preset : presets) {
