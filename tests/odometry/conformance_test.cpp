@@ -194,11 +194,14 @@ TEST_P(OdometryConformance, WhenTheFlightTakesPlaceDoesNotMatter) {
   }
 }
 
-// The beams of the next two tests do not repeat: of those that do, all points of a wall lie on a
-// few lines, through which any plane fits, and a published method may be held at its pose by them.
+// The beams of the next two tests do not repeat, and are denser: of those that do, the points of a
+// wall lie on a few lines, through which any plane fits, and a published method may be held at its
+// pose by them.
+constexpr std::size_t kDense = 64 * 512;
 
 TEST_P(OdometryConformance, HowTheSensorIsMountedDoesNotMatter) {
   const Recording mounted{.body_from_lidar = make_pose(so3::exp({0.1, 0.3, 1.2}), {0.2, -0.1, 0.3}),
+                          .points_per_scan = kDense,
                           .repeating = false};
   EXPECT_LT(largest_error(mounted, play(mounted).trajectory), kTracked);
 }
@@ -234,7 +237,8 @@ TEST_P(OdometryConformance, MemoryIsNamedAndTheMapHasSome) {
 
 TEST_P(OdometryConformance, WhatItPublishesLiesOnTheWalls) {
   const auto odometry = make();
-  const Outcome outcome = play(*odometry, synthetic::record({.repeating = false}));
+  const Outcome outcome =
+      play(*odometry, synthetic::record({.points_per_scan = kDense, .repeating = false}));
   const bool by_scan = odometry->traits().publishes_scans;
   std::vector<Eigen::Vector3f> points = odometry->map();
   if (by_scan)
