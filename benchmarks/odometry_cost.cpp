@@ -105,11 +105,14 @@ int measure(const Arguments& a) {
     scan_ms.push_back(1e3 * (between + cpu_seconds() - start));
     between = 0.0;
     ++statuses[odometry::to_string(result.status)];
-    for (const auto& [name, value] : result.counters) sums[name] += value;
-    const auto& counters = result.counters;
-    if (counters.contains("near_planes") && counters.at("near_planes") > 0.0) {
+    const odometry::ScanCounters& counters = result.counters;
+    odometry::ScanCounters::visit(counters, [&](const char* name, const auto& value) {
+      if (value) sums[name] += static_cast<double>(*value);
+    });
+    if (counters.near_planes.value_or(0) > 0) {
       min_inlier_share =
-          std::min(min_inlier_share, counters.at("planes") / counters.at("near_planes"));
+          std::min(min_inlier_share, static_cast<double>(counters.matches.value_or(0)) /
+                                         static_cast<double>(*counters.near_planes));
     }
     if (scan_ms.size() % 600 == 0) print_state(scan_ms.size(), *odometry);
   }
