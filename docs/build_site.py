@@ -98,7 +98,7 @@ def main():
     for name in ALGORITHMS:
         readme = ROOT / "lidarena" / "odometry" / name / "README.md"
         (pages / "algorithms" / f"{name}.md").write_text(without_source_links(readme.read_text()))
-    for page in pages.glob("*.md"):
+    for page in pages.rglob("*.md"):
         link_to_site_pages(page)
     write_reference(program, pages)
     config = (ROOT / "mkdocs.yml").read_text()

@@ -204,8 +204,8 @@ TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
   const SurfaceSamples samples =
       seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
-  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points)
-    map.push_back(hit.position);
+  const Truths floor = hits_on_floor(2.0);
+  for (const dataset::PointTruth& hit : floor.scans[0].points) map.push_back(hit.position);
   const Completeness c = Scored{map, world}.rate(samples);
   for (std::size_t row = 0; row < c.rows.size(); ++row) {
     // half, plus what lies within the distance beyond the border at x = 2 m
@@ -224,7 +224,8 @@ TEST(Completeness, FollowsTheLimits) {
   const SurfaceSamples samples =
       seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
-  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
+  const Truths floor = hits_on_floor(2.0);
+  for (const dataset::PointTruth& hit : floor.scans[0].points) {
     map.push_back(hit.position + Vector3f(0, 0, 0.07F));
   }
   const Completeness c = Scored{map, world}.rate(samples);
@@ -244,7 +245,8 @@ TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
   SequentialRandom random(83);
   const Pose mesh_from_map = flights::random_pose(random, 3.0);
   std::vector<Vector3f> map;
-  for (const dataset::PointTruth& hit : hits_on_floor(2.0).scans[0].points) {
+  const Truths floor = hits_on_floor(2.0);
+  for (const dataset::PointTruth& hit : floor.scans[0].points) {
     map.push_back((mesh_from_map.inverse() * hit.position.cast<double>()).cast<float>());
   }
   const Scored scored{map, world, morton_order(map, kTwoThreads), mesh_from_map};

@@ -254,7 +254,7 @@ TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
 ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
                 double p95_ms) {
   ResultRow r = row("mine", sensor, algorithm, 1.0, 0.0);
-  r.preset = "published";
+  r.preset = "indoor";
   r.reprojected_map = MapFigures{100, map_rmse_cm, 0, 0, 0, 0.5, std::vector<double>(20, 5.0)};
   r.latency_p95_ms = p95_ms;
   r.own_memory_mb = 30.0;
@@ -323,8 +323,8 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
   results.rows[0].mode = "rolling";
   results.rows[1].mode = "official";
   EXPECT_THAT(variants_of(results),
-              ::testing::ElementsAre("published-rolling", "published-official"));
-  const StudyCells cells(results, "published-official");
+              ::testing::ElementsAre("indoor-rolling", "indoor-official"));
+  const StudyCells cells(results, "indoor-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
 }
