@@ -45,7 +45,7 @@ std::string shown(std::optional<double> value) {
 class ClaimChecker {
  public:
   ClaimChecker(const Results& results, const std::string& preset)
-      : cells_(results, preset),
+      : cells_(results, preset, true),
         worlds_(places(cells_.worlds(), paper_world)),
         sensors_(places(cells_.sensors(), paper_sensor)) {}
 

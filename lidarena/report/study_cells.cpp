@@ -41,9 +41,10 @@ bool belongs_to(const ResultRow& row, const std::string& variant) {
 
 }  // namespace
 
-StudyCells::StudyCells(const Results& results, const std::string& variant) {
+StudyCells::StudyCells(const Results& results, const std::string& variant, bool only_of_paper) {
   for (const ResultRow& row : results.rows) {
-    if (belongs_to(row, variant)) rows_.push_back(&row);
+    const bool wanted = !only_of_paper || !paper_algorithm(row.algorithm).empty();
+    if (wanted && belongs_to(row, variant)) rows_.push_back(&row);
   }
 }
 

@@ -24,7 +24,8 @@ std::optional<double> map_rmse_of(const ResultRow& row);  ///< cm, of the publis
 class StudyCells {
  public:
   /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
-  StudyCells(const Results& results, const std::string& variant);
+  /// With `only_of_paper` the methods that the paper does not have are left out.
+  StudyCells(const Results& results, const std::string& variant, bool only_of_paper = false);
 
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;

@@ -210,6 +210,21 @@ TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
   EXPECT_EQ(table_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
 }
 
+TEST(Claims, AreAboutTheMethodsOfThePaperAlone) {
+  Results results = results_of_the_paper();
+  const std::vector<Claim> before = paper_claims(results, "indoor");
+  ResultRow ours = row("cave", "livox_mid360", "arena_lio", 0.01, 0.0);
+  ours.preset = "";
+  results.rows.push_back(ours);
+  EXPECT_EQ(variants_of(results), std::vector<std::string>{"indoor"});
+  EXPECT_EQ(StudyCells(results, "indoor").rows("cave", "livox_mid360", "arena_lio").size(), 1U)
+      << "methods without presets are compared with every preset";
+  const std::vector<Claim> after = paper_claims(results, "indoor");
+  ASSERT_EQ(after.size(), before.size());
+  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_EQ(after[i].holds, before[i].holds);
+  EXPECT_EQ(after[0].holds, true) << "the lowest drift of the paper's methods";
+}
+
 TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   Results results = results_of_the_paper();
   results.rows[2].status = "diverged";
@@ -322,8 +337,7 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
   results.rows = {tried("cheap", "good", 3.0, 40.0), tried("cheap", "good", 9.0, 40.0)};
   results.rows[0].mode = "rolling";
   results.rows[1].mode = "official";
-  EXPECT_THAT(variants_of(results),
-              ::testing::ElementsAre("indoor-rolling", "indoor-official"));
+  EXPECT_THAT(variants_of(results), ::testing::ElementsAre("indoor-rolling", "indoor-official"));
   const StudyCells cells(results, "indoor-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
