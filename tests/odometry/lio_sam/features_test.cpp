@@ -97,7 +97,9 @@ TEST(LioSamFeatures, EdgesAndTheRestAndSurfacesAreAveragedRowByRow) {
   ASSERT_EQ(features.edges.size(), 2U);
   EXPECT_EQ(features.edges[0].x(), 4.0F);
   EXPECT_EQ(features.surfaces.size(), 2U) << "one mean a row, although both rows lie in one voxel";
-  EXPECT_EQ(thinned(features, {.surface_voxel_size_m = 20.0}).surfaces.size(), 1U);
+  Config coarse;
+  coarse.surface_voxel_size_m = 20.0;
+  EXPECT_EQ(thinned(features, coarse).surfaces.size(), 1U);
 }
 
 TEST(LioSamConfig, ThePresetsAreThoseOfTheProgramOrOfItsPort) {
