@@ -12,6 +12,20 @@ if(LIDARENA_SANITIZE)
   target_link_options(lidarena_flags INTERFACE -fsanitize=${LIDARENA_SANITIZE})
 endif()
 
+# Targets whose precompiled headers the modules and the tests use, as the flags of both differ.
+if(LIDARENA_PRECOMPILED_HEADERS)
+  set(precompiled ${PROJECT_SOURCE_DIR}/cmake/precompiled)
+  add_library(lidarena_library_headers OBJECT ${precompiled}/library.cpp)
+  target_link_libraries(lidarena_library_headers PRIVATE Eigen3::Eigen fmt::fmt lidarena_flags)
+  target_precompile_headers(lidarena_library_headers PRIVATE ${precompiled}/library.hpp)
+  if(LIDARENA_BUILD_TESTS)
+    find_package(GTest REQUIRED)
+    add_executable(lidarena_test_headers ${precompiled}/test.cpp)
+    target_link_libraries(lidarena_test_headers PRIVATE Eigen3::Eigen fmt::fmt GTest::gmock lidarena_flags)
+    target_precompile_headers(lidarena_test_headers PRIVATE ${precompiled}/test.hpp)
+  endif()
+endif()
+
 # lidarena_module(NAME SOURCES a.cpp ... [MODULES base ...] [PUBLIC lib ...] [PRIVATE lib ...])
 function(lidarena_module name)
   cmake_parse_arguments(arg "" "" "SOURCES;MODULES;PUBLIC;PRIVATE" ${ARGN})
@@ -25,6 +39,9 @@ function(lidarena_module name)
   list(TRANSFORM arg_MODULES PREPEND lidarena::)
   target_link_libraries(lidarena_${name} PUBLIC Eigen3::Eigen ${arg_MODULES} ${arg_PUBLIC}
                                          PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:lidarena_flags>)
+  if(LIDARENA_PRECOMPILED_HEADERS)
+    target_precompile_headers(lidarena_${name} REUSE_FROM lidarena_library_headers)
+  endif()
 endfunction()
 
 # lidarena_test(NAME SOURCES a_test.cpp ... [MODULES world ...] [LIBRARIES lib ...])
@@ -39,6 +56,9 @@ function(lidarena_test name)
   target_compile_definitions(test_${name} PRIVATE
     LIDARENA_SOURCE_DIR="${PROJECT_SOURCE_DIR}"
     LIDARENA_SHARED_DATA="${PROJECT_SOURCE_DIR}/../shared/data")
+  if(LIDARENA_PRECOMPILED_HEADERS)
+    target_precompile_headers(test_${name} REUSE_FROM lidarena_test_headers)
+  endif()
   gtest_discover_tests(test_${name} TEST_PREFIX ${name}. DISCOVERY_MODE PRE_TEST
                        PROPERTIES TIMEOUT 300)
 endfunction()

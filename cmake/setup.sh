@@ -26,6 +26,8 @@ if [ "${1:-run}" = test ]; then
   command -v python3 >/dev/null || missing+=(python3)
   # tests of the Python module and of the schemas, and the documentation site
   optional+=(python3-pytest python3-jsonschema python3-yaml mkdocs)
+  # names that a script uses and does not define
+  optional+=(python3-pyflakes)
   # browser for tests of the HTML pages; without it the tests of the view are reported as skipped
   optional+=(chromium)
   # ROS 1's own bag reader; without it the test that needs it is reported as skipped

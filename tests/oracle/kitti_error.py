@@ -33,11 +33,11 @@ def angle(m):
 
 
 def errors(truth, estimate, length):
-    path, last = {}, None
+    path, length_so_far, last = {}, 0.0, None
     for frame in sorted(truth):
         here = [row[3] for row in truth[frame]]
-        path[frame] = path[previous] + math.dist(here, last) if last else 0.0
-        last, previous = here, frame
+        length_so_far += math.dist(here, last) if last else 0.0
+        path[frame], last = length_so_far, here
     common = [frame for frame in sorted(estimate) if frame in truth]
     for start in common[::10]:
         end = next((f for f in common if path[f] > path[start] + length), None)

@@ -32,8 +32,8 @@ def bumpy_shell(file, rows=100, columns=200):
             for j in range(columns):
                 polar, azimuth = math.pi * i / rows, 2 * math.pi * j / columns
                 r = 9 + 0.6 * math.sin(7 * polar) * math.cos(9 * azimuth)
-                out.write(f"v {r * math.sin(polar) * math.cos(turn):.6f} "
-                          f"{r * math.sin(polar) * math.sin(turn):.6f} {r * math.cos(polar):.6f}\n")
+                out.write(f"v {r * math.sin(polar) * math.cos(azimuth):.6f} "
+                          f"{r * math.sin(polar) * math.sin(azimuth):.6f} {r * math.cos(polar):.6f}\n")
         for i in range(rows):
             for j in range(columns):
                 a, b = i * columns + j + 1, i * columns + (j + 1) % columns + 1

@@ -5,7 +5,6 @@ Reads the bag with ROS 1's own reader (Debian's python3-rosbag), whose messages 
 definitions and checksums in the file, and compares them with the values of the sample.
 """
 import math
-import struct
 import sys
 
 import rosbag
