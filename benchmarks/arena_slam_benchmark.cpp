@@ -71,7 +71,7 @@ struct Scene {
   FeatureRule rule;
   Scan scan;
   std::vector<Eigen::Vector3f> points;
-  std::vector<Keyframe> keyframes;
+  std::vector<map::Keyframe> keyframes;
   std::vector<std::uint32_t> chosen;
 
   explicit Scene(bool spinning) {
@@ -85,15 +85,15 @@ struct Scene {
       const Vector3d place(-6.0 + 0.5 * i, 0.5 * std::sin(i), 0.0);
       const Scan seen = scan_from(place, spinning, static_cast<std::uint64_t>(i) + 2);
       keyframes.push_back({from_seconds(i), make_pose(Eigen::Matrix3d::Identity(), place),
-                           thinned(features_of(seen), config), 0});
+                           map::thinned(features_of(seen), feature_voxels(config)), 0});
       chosen.push_back(static_cast<std::uint32_t>(i));
     }
     scan = scan_from(Vector3d::Zero(), spinning, 1);
     points = estimation::positions(scan);
   }
-  Features features_of(const Scan& seen) const {
+  map::Features features_of(const Scan& seen) const {
     return extract_features(estimation::project(seen, estimation::positions(seen), rule.layout),
-                            rule.edges, Parallel(1));
+                            rule, Parallel(1));
   }
 };
 
@@ -112,17 +112,17 @@ void project_points(benchmark::State& state) {
 void extract(benchmark::State& state) {
   const Scene& s = scene(state);
   const estimation::RangeImage image = estimation::project(s.scan, s.points, s.rule.layout);
-  Features features;
-  for (auto _ : state) features = extract_features(image, s.rule.edges, Parallel(1));
+  map::Features features;
+  for (auto _ : state) features = extract_features(image, s.rule, Parallel(1));
   state.counters["edges"] = static_cast<double>(features.edges.size());
   state.counters["surfaces"] = static_cast<double>(features.surfaces.size());
 }
 
 void thin_features(benchmark::State& state) {
   const Scene& s = scene(state);
-  const Features raw = s.features_of(s.scan);
-  Features features;
-  for (auto _ : state) features = thinned(raw, s.config);
+  const map::Features raw = s.features_of(s.scan);
+  map::Features features;
+  for (auto _ : state) features = map::thinned(raw, feature_voxels(s.config));
   state.counters["edges"] = static_cast<double>(features.edges.size());
   state.counters["surfaces"] = static_cast<double>(features.surfaces.size());
 }
@@ -131,7 +131,7 @@ void build_submap(benchmark::State& state) {
   const Scene& s = scene(state);
   std::size_t points = 0;
   for (auto _ : state) {
-    FeatureMap submap(s.config);
+    map::FeatureMap submap(feature_voxels(s.config));
     submap.select(s.keyframes, s.chosen);
     points = submap.size();
   }
@@ -143,7 +143,7 @@ void follow_submap(benchmark::State& state) {
   const Scene& s = scene(state);
   const std::vector<std::uint32_t> without_last(s.chosen.begin(), s.chosen.end() - 1);
   const std::vector<std::uint32_t> without_first(s.chosen.begin() + 1, s.chosen.end());
-  FeatureMap submap(s.config);
+  map::FeatureMap submap(feature_voxels(s.config));
   bool forward = false;
   for (auto _ : state) {
     submap.select(s.keyframes, forward ? without_first : without_last);
@@ -154,9 +154,9 @@ void follow_submap(benchmark::State& state) {
 
 void register_scan(benchmark::State& state) {
   const Scene& s = scene(state);
-  FeatureMap submap(s.config);
+  map::FeatureMap submap(feature_voxels(s.config));
   submap.select(s.keyframes, s.chosen);
-  const Features features = thinned(s.features_of(s.scan), s.config);
+  const map::Features features = map::thinned(s.features_of(s.scan), feature_voxels(s.config));
   const Pose guess = make_pose(Eigen::Matrix3d::Identity(), {0.03, -0.02, 0.01});
   Registration found;
   const Parallel parallel(1);
@@ -168,13 +168,13 @@ void register_scan(benchmark::State& state) {
 void verify_loop(benchmark::State& state) {
   const Scene& s = scene(state);
   std::vector<Eigen::Vector3f> target;
-  for (const Keyframe& keyframe : s.keyframes) {
+  for (const map::Keyframe& keyframe : s.keyframes) {
     for (const Eigen::Vector3f& p : keyframe.features.surfaces)
       target.push_back(keyframe.world_from_lidar.cast<float>() * p);
   }
   map::KdTree tree;
   tree.build(target);
-  const Features source = thinned(s.features_of(s.scan), s.config);
+  const map::Features source = map::thinned(s.features_of(s.scan), feature_voxels(s.config));
   const Pose guess = make_pose(Eigen::Matrix3d::Identity(), {0.5, -0.4, 0.1});
   const Parallel parallel(1);
   for (auto _ : state)

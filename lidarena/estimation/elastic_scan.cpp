@@ -38,6 +38,17 @@ std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const
   return positions;
 }
 
+ElasticMotion constant_twist_motion(const StampedPose& known, const se3::Vector6& twist,
+                                    const ScanTimes& times, int segments) {
+  ElasticMotion motion;
+  for (int i = 0; i <= segments; ++i) {
+    const Time instant = times.first + (times.last - times.first) * i / segments;
+    motion.knots.push_back(known.world_from_body *
+                           se3::exp(twist * to_seconds(instant - known.stamp)));
+  }
+  return motion;
+}
+
 ElasticMotion moved(const Pose& by, ElasticMotion motion) {
   for (Pose& knot : motion.knots) knot = by * knot;
   return motion;

@@ -7,6 +7,7 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/scan.hpp"
+#include "lidarena/base/se3.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/estimation/elastic_motion.hpp"
 #include "lidarena/estimation/scan_times.hpp"
@@ -33,6 +34,11 @@ std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, b
 /// World positions (m) of points of a scan with this motion.
 std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const TimedPoint> points,
                                     const Parallel& parallel);
+
+/// The motion of a frame that is at `known` and has a constant `twist` (m/s and rad/s, in the
+/// moving frame), within `times`, in `segments` of equal duration.
+ElasticMotion constant_twist_motion(const StampedPose& known, const se3::Vector6& twist,
+                                    const ScanTimes& times, int segments);
 
 /// The same motion, seen from the frame that `by` transforms to.
 ElasticMotion moved(const Pose& by, ElasticMotion motion);

@@ -35,6 +35,15 @@ double longest_gap_s(const std::vector<ImuInterval>& intervals) {
   return longest;
 }
 
+double longest_pause_s(const std::vector<ImuSample>& samples, Time end) {
+  Time longest{0};
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    const Time next = i + 1 < samples.size() ? samples[i + 1].stamp : end;
+    longest = std::max(longest, next - samples[i].stamp);
+  }
+  return to_seconds(longest);
+}
+
 std::size_t count_saturated(const std::vector<ImuInterval>& intervals) {
   return static_cast<std::size_t>(
       std::count_if(intervals.begin(), intervals.end(),

@@ -22,6 +22,8 @@ struct ImuInterval {
 };
 /// Duration of the longest gap, s; 0 if there is none.
 double longest_gap_s(const std::vector<ImuInterval>& intervals);
+/// Longest time from a sample to the next, or from the last one to `end`, s; 0 without samples.
+double longest_pause_s(const std::vector<ImuSample>& samples, Time end);
 std::size_t count_saturated(const std::vector<ImuInterval>& intervals);
 
 /// Whether the sensor is at the end of its range: an axis repeats a large value to the last bit,

@@ -13,6 +13,8 @@
 namespace lidarena::estimation {
 namespace {
 
+constexpr double kFixedVariance = 1e-8;  // m^2, rad^2, of the first node of a chain
+
 /// The parameters of a node in the solver.
 struct Parameters {
   Eigen::Quaterniond rotation;
@@ -178,6 +180,31 @@ class Problem {
 };
 
 }  // namespace
+
+PoseGraph::Covariance diagonal_covariance(double translation, double rotation) {
+  PoseGraph::Covariance covariance = PoseGraph::Covariance::Zero();
+  covariance.diagonal().head<3>().setConstant(translation);
+  covariance.diagonal().tail<3>().setConstant(rotation);
+  return covariance;
+}
+
+void append_to_chain(const Pose& previous_from_next, const PoseGraph::Covariance& covariance,
+                     PoseGraph& graph) {
+  const std::size_t next = graph.nodes.size();
+  if (next == 0) {
+    graph.nodes.push_back(previous_from_next);
+    graph.priors.push_back(
+        {0, previous_from_next, diagonal_covariance(kFixedVariance, kFixedVariance)});
+    return;
+  }
+  graph.nodes.push_back(orthonormalized(graph.nodes.back() * previous_from_next));
+  graph.betweens.push_back({next - 1, next, previous_from_next, covariance});
+}
+
+std::uint64_t memory_bytes(const PoseGraph& graph) {
+  return graph.nodes.capacity() * sizeof(Pose) +
+         graph.betweens.capacity() * sizeof(PoseGraph::Between);
+}
 
 double squared_mahalanobis(const PoseGraph& graph, const PoseGraph::Between& measurement) {
   const Pose estimated =

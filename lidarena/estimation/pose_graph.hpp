@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "lidarena/base/pose.hpp"
@@ -50,6 +51,17 @@ struct PoseGraph {
   std::vector<Between> betweens;
   std::vector<Position> positions;
 };
+
+/// The covariance with these variances on each axis, m^2 and rad^2.
+PoseGraph::Covariance diagonal_covariance(double translation, double rotation);
+
+/// Adds the next node of a chain, at its measured pose from the last one; `covariance` is that of
+/// the measurement. The first node is measured from the world, and a prior holds it there.
+void append_to_chain(const Pose& previous_from_next, const PoseGraph::Covariance& covariance,
+                     PoseGraph& graph);
+
+/// Of the nodes and the measurements between them.
+std::uint64_t memory_bytes(const PoseGraph& graph);
 
 /// Squared Mahalanobis distance of a measurement from the nodes of `graph`; chi-squared with 6
 /// degrees of freedom if the model holds.

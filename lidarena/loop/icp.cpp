@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/least_squares.hpp"
@@ -24,7 +25,35 @@ constexpr std::size_t kMinCorrespondences = 10;  // minimum number of correspond
 constexpr double kConvergedStep = 3e-4;          // m, rad: converged below this step
 constexpr double kShrink = 0.7;                  // factor on the maximum distance per iteration
 constexpr double kInlierDistance = 0.3;          // m: closer points overlap; final maximum distance
-constexpr int kMaxIterations = 40;
+constexpr int kMaxPointIterations = 100;
+constexpr int kMaxPlaneIterations = 40;
+
+/// Calls `visit` with the squared distance (m^2) of each point, placed by `pose`, to the nearest
+/// target point within `reach` (m).
+template <class Visit>
+void for_each_distance(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                       const Pose& pose, double reach, Visit&& visit) {
+  for (const Eigen::Vector3f& point : source) {
+    std::array<map::Neighbor, 1> near;
+    const Eigen::Vector3f moved = (pose * point.cast<double>()).cast<float>();
+    if (target.nearest(moved, near, static_cast<float>(reach)) > 0)
+      visit(double{near[0].squared_distance});
+  }
+}
+
+double mean(double sum, std::size_t count) {
+  return count == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(count);
+}
+
+/// Moves `target_from_source` by the least-squares step; returns its largest component (m, rad), or
+/// nothing if `sum` determines none.
+std::optional<double> improve(const Equations& sum, Pose& target_from_source) {
+  const Equations::Vector step = sum.solve();
+  if (sum.count < kMinCorrespondences || !step.allFinite()) return std::nullopt;
+  target_from_source =
+      orthonormalized(make_pose(so3::exp(step.head<3>()), step.tail<3>()) * target_from_source);
+  return step.cwiseAbs().maxCoeff();
+}
 
 /// Fits a plane to the points `near`; returns whether they are flat.
 bool find_normal(std::span<const map::Neighbor> near, Vector3d& normal) {
@@ -58,8 +87,21 @@ void add_plane(const Vector3d& moved, const map::KdTree& target, double reach, E
   sum.add<1>(j, Eigen::Matrix<double, 1, 1>(distance), weight * weight);
 }
 
-Equations equations(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
-                    const Pose& pose, double reach, const Parallel& parallel) {
+Equations point_equations(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                          const Pose& pose, double reach, const Parallel& parallel) {
+  return estimation::accumulate_normal_equations<6>(
+      parallel, source.size(), [&](std::size_t i, Equations& sum) {
+        const Vector3d moved = pose * source[i].cast<double>();
+        std::array<map::Neighbor, 1> near;
+        if (target.nearest(moved.cast<float>(), near, static_cast<float>(reach)) == 0) return;
+        Eigen::Matrix<double, 3, 6> jacobian;
+        jacobian << -so3::hat(moved), Eigen::Matrix3d::Identity();
+        sum.add<3>(jacobian, moved - near[0].point.cast<double>(), 1.0);
+      });
+}
+
+Equations plane_equations(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                          const Pose& pose, double reach, const Parallel& parallel) {
   return estimation::accumulate_normal_equations<6>(
       parallel, source.size(), [&](std::size_t i, Equations& sum) {
         add_plane(pose * source[i].cast<double>(), target, reach, sum);
@@ -71,17 +113,13 @@ void measure(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
   double sum = 0.0;
   std::size_t reached = 0;
   std::size_t inliers = 0;
-  for (const Eigen::Vector3f& p : source) {
-    std::array<map::Neighbor, 1> near;
-    const Eigen::Vector3f moved = (result.target_from_source * p.cast<double>()).cast<float>();
-    if (target.nearest(moved, near, static_cast<float>(kInlierDistance)) == 0) continue;
-    const auto squared = static_cast<double>(near[0].squared_distance);
-    sum += squared;
-    ++reached;
-    if (squared <= kInlierDistance * kInlierDistance) ++inliers;
-  }
-  result.fitness =
-      reached == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(reached);
+  for_each_distance(source, target, result.target_from_source, kInlierDistance,
+                    [&](double squared) {
+                      sum += squared;
+                      ++reached;
+                      if (squared <= kInlierDistance * kInlierDistance) ++inliers;
+                    });
+  result.fitness = mean(sum, reached);
   result.overlap =
       source.empty() ? 0.0 : static_cast<double>(inliers) / static_cast<double>(source.size());
 }
@@ -103,22 +141,39 @@ double constraint_of(Equations sum, double lever, const Vector3d& center) {
 
 }  // namespace
 
+PointAlignment align_points(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                            const Pose& guess, double reach, const Parallel& parallel) {
+  PointAlignment result{.target_from_source = guess};
+  for (int i = 0; i < kMaxPointIterations && !result.converged; ++i) {
+    const Equations sum =
+        point_equations(source, target, result.target_from_source, reach, parallel);
+    const std::optional<double> step = improve(sum, result.target_from_source);
+    if (!step) break;
+    result.converged = *step < kConvergedStep;
+  }
+  double squares = 0.0;
+  std::size_t reached = 0;
+  for_each_distance(source, target, result.target_from_source, reach, [&](double squared) {
+    squares += squared;
+    ++reached;
+  });
+  result.fitness = mean(squares, reached);
+  return result;
+}
+
 IcpResult align_clouds(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
                        const Pose& guess, const Parallel& parallel) {
   IcpResult result;
   result.target_from_source = guess;
   double reach = kIcpReach;
   Equations sum;
-  while (result.iterations < kMaxIterations && !result.converged) {
+  while (result.iterations < kMaxPlaneIterations && !result.converged) {
     ++result.iterations;
     const bool at_last = reach <= kInlierDistance;
-    sum = equations(source, target, result.target_from_source, reach, parallel);
-    if (sum.count < kMinCorrespondences) break;
-    const Eigen::Matrix<double, 6, 1> step = sum.solve();
-    if (!step.allFinite()) break;
-    result.target_from_source = orthonormalized(
-        make_pose(so3::exp(step.head<3>()), step.tail<3>()) * result.target_from_source);
-    result.converged = at_last && step.cwiseAbs().maxCoeff() < kConvergedStep;
+    sum = plane_equations(source, target, result.target_from_source, reach, parallel);
+    const std::optional<double> step = improve(sum, result.target_from_source);
+    if (!step) break;
+    result.converged = at_last && *step < kConvergedStep;
     reach = std::max(kInlierDistance, kShrink * reach);
   }
   measure(source, target, result);

@@ -11,6 +11,19 @@
 
 namespace lidarena::loop {
 
+/// Result of the alignment of points to points.
+struct PointAlignment {
+  Pose target_from_source = Pose::Identity();
+  bool converged = false;
+  double fitness = 0.0;  ///< m^2, mean squared distance to the nearest target points in reach
+};
+
+/// Iterated closest points, point to point (Besl, McKay 1992), from `guess`, with correspondences
+/// up to `reach` (m). Not converged: too few of them, or steps still too large at the last
+/// iteration.
+PointAlignment align_points(std::span<const Eigen::Vector3f> source, const map::KdTree& target,
+                            const Pose& guess, double reach, const Parallel& parallel);
+
 /// How far ICP reaches at its start (m).
 inline constexpr double kIcpReach = 2.0;
 

@@ -14,8 +14,6 @@
 namespace lidarena::loop {
 namespace {
 
-using Covariance = estimation::PoseGraph::Covariance;
-
 constexpr double kMinTranslationSigma = 0.1;    // m: sigma of the drift at path length zero
 constexpr double kMinRotationSigma = 0.01;      // rad: likewise
 constexpr double kLeverArm = 1.0;               // m of path length per radian of rotation
@@ -39,13 +37,9 @@ constexpr double kLoopTranslationSigma = 0.03;      // m
 constexpr double kLoopRotationSigma = 3e-3;         // rad
 constexpr double kLoopKernelScale = 3.0;            // sigmas, of the Cauchy kernel of loops
 
-double squared(double sigma) { return sigma * sigma; }
-
-Covariance diagonal(double translation_variance, double rotation_variance) {
-  Covariance covariance = Covariance::Zero();
-  covariance.diagonal().head<3>().setConstant(translation_variance);
-  covariance.diagonal().tail<3>().setConstant(rotation_variance);
-  return covariance;
+estimation::PoseGraph::Covariance covariance_of(double translation_sigma, double rotation_sigma) {
+  return estimation::diagonal_covariance(translation_sigma * translation_sigma,
+                                         rotation_sigma * rotation_sigma);
 }
 
 /// Shuffles with a seed that depends only on the number of points, so that the first points are
@@ -80,15 +74,8 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
   stamps_.push_back(stamp);
   steps_.push_back(previous_from_this.translation().norm() +
                    kLeverArm * so3::angle(previous_from_this.linear()));
-  if (index == 0) {
-    graph_.nodes.push_back(previous_from_this);
-    graph_.priors.push_back({0, previous_from_this, diagonal(1e-8, 1e-8)});
-  } else {
-    graph_.nodes.push_back(orthonormalized(graph_.nodes.back() * previous_from_this));
-    graph_.betweens.push_back(
-        {index - 1, index, previous_from_this,
-         diagonal(squared(kOdometryTranslationSigma), squared(kOdometryRotationSigma))});
-  }
+  estimation::append_to_chain(
+      previous_from_this, covariance_of(kOdometryTranslationSigma, kOdometryRotationSigma), graph_);
   if (config_.descriptor_candidates > 0) {
     descriptors_.push_back(
         describe(turned(around(index, kSourceKeyframes, 0, cloud), graph_.nodes.back().linear()),
@@ -290,9 +277,8 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
   for (const LoopRecord& loop : loops) {
-    graph_.betweens.push_back(
-        {loop.first, loop.second, loop.first_from_second,
-         diagonal(squared(kLoopTranslationSigma), squared(kLoopRotationSigma)), kLoss});
+    graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
+                               covariance_of(kLoopTranslationSigma, kLoopRotationSigma), kLoss});
     accepted_.push_back(loop);
     for (LoopRecord& record : records_) {
       if (record.first == loop.first && record.second == loop.second &&
@@ -307,8 +293,7 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
 std::uint64_t LoopCloser::memory_bytes() const {
   return pending_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
          steps_.capacity() * sizeof(double) + descriptors_.capacity() * sizeof(PlaceDescriptor) +
-         graph_.nodes.capacity() * sizeof(Pose) +
-         graph_.betweens.capacity() * sizeof(estimation::PoseGraph::Between) +
+         estimation::memory_bytes(graph_) +
          (records_.capacity() + waiting_.capacity() + accepted_.capacity()) * sizeof(LoopRecord);
 }
 

@@ -19,6 +19,18 @@ std::vector<std::uint32_t> one_per_voxel(std::span<const VoxelKey> voxels);
 /// if there are not more.
 std::vector<std::uint32_t> drawn(std::size_t size, std::size_t count);
 
+/// The voxels of items with a `position` (m).
+template <class Item>
+std::vector<VoxelKey> voxels_of(std::span<const Item> items, double voxel_size,
+                                VoxelRounding rounding = VoxelRounding::kFloor) {
+  const auto inverse_size = static_cast<float>(1.0 / voxel_size);
+  std::vector<VoxelKey> voxels;
+  voxels.reserve(items.size());
+  for (const Item& item : items)
+    voxels.push_back(voxel_key(voxel_of(item.position, inverse_size, rounding)));
+  return voxels;
+}
+
 /// The items with these indices.
 template <class T>
 std::vector<T> selected(std::span<const T> items, std::span<const std::uint32_t> indices) {

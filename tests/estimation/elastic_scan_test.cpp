@@ -72,5 +72,16 @@ TEST(ElasticScan, BodyPosesAreThoseOfABodyOnWhichTheLidarIsMounted) {
   EXPECT_LT((world[0].cast<double>() - expected).norm(), 1e-6);
 }
 
+TEST(ElasticScan, AConstantTwistPassesThroughTheKnownPose) {
+  const Pose known = make_pose(so3::exp({0, 0, 0.3}), {1, 2, 3});
+  se3::Vector6 twist;
+  twist << 2.0, 0, 0, 0, 0, 0.5;
+  const ScanTimes times{from_seconds(1.0), from_seconds(1.4), true};
+  const ElasticMotion motion = constant_twist_motion({from_seconds(1.2), known}, twist, times, 4);
+  ASSERT_EQ(motion.segments(), 4U);
+  EXPECT_TRUE(motion.knots[2].isApprox(known, 1e-12));
+  EXPECT_TRUE(motion.end().isApprox(known * se3::exp(0.2 * twist), 1e-12));
+}
+
 }  // namespace
 }  // namespace lidarena::estimation

@@ -129,5 +129,12 @@ TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
   EXPECT_EQ(count_saturated(in_g.between(ms(5.0), ms(10.0))), 1U) << "2.5 g";
 }
 
+TEST(ImuBuffer, TheLongestPauseIsBetweenSamplesOrAfterTheLast) {
+  const std::vector<ImuSample> samples{sample(1000.0), sample(1100.0), sample(1400.0)};
+  EXPECT_DOUBLE_EQ(longest_pause_s(samples, from_seconds(1.5)), 0.3);
+  EXPECT_DOUBLE_EQ(longest_pause_s(samples, from_seconds(2.0)), 0.6);
+  EXPECT_EQ(longest_pause_s({}, from_seconds(2.0)), 0.0);
+}
+
 }  // namespace
 }  // namespace lidarena::estimation

@@ -212,5 +212,20 @@ TEST(PoseGraph, WhatCannotBeSolvedIsRefused) {
   EXPECT_TRUE(optimize(PoseGraph{}).nodes.empty());
 }
 
+TEST(PoseGraph, AChainIsPutTogetherStepByStepAndStartsWhereItIsTold) {
+  PoseGraph graph;
+  for (int i = 0; i < 3; ++i)
+    append_to_chain(along_x(1.0 + i), diagonal_covariance(4.0, 9.0), graph);
+  ASSERT_EQ(graph.nodes.size(), 3U);
+  EXPECT_LT(distance(graph.nodes[2], along_x(6.0)), 1e-12);
+  ASSERT_EQ(graph.priors.size(), 1U);
+  ASSERT_EQ(graph.betweens.size(), 2U);
+  EXPECT_EQ(graph.betweens[1].first, 1U);
+  EXPECT_EQ(graph.betweens[1].covariance(2, 2), 4.0);
+  EXPECT_EQ(graph.betweens[1].covariance(3, 3), 9.0);
+  EXPECT_LT(distance(optimize(graph).nodes[0], along_x(1.0)), kExact);
+  EXPECT_GE(memory_bytes(graph), 3 * sizeof(Pose) + 2 * sizeof(PoseGraph::Between));
+}
+
 }  // namespace
 }  // namespace lidarena::estimation

@@ -44,6 +44,18 @@ TEST(Icp, LaysPlanesOnPlanes) {
   EXPECT_GT(result.constraint, 0.01);
 }
 
+TEST(Icp, LaysPointsOnPoints) {
+  const Pair pair = corner();
+  const Pose guess = pair.truth * make_pose(so3::exp({0.0, 0.0, 0.05}), {0.1, -0.1, 0.05});
+  const PointAlignment found = align_points(pair.source, pair.target, guess, 30.0, Parallel(1));
+  EXPECT_TRUE(found.converged);
+  EXPECT_LT(apart(found.target_from_source, pair.truth), 2e-2);
+  EXPECT_LT(found.fitness, 0.01);
+  const PointAlignment far =
+      align_points(pair.source, pair.target, places::standing(500.0, 0.0, 0.0), 30.0, Parallel(1));
+  EXPECT_FALSE(far.converged) << "nothing within 30 m";
+}
+
 TEST(Icp, AFarCloudHasNothingToHold) {
   const Pair pair = corner();
   const IcpResult result =

@@ -41,6 +41,17 @@ TEST(RandomThinning, DrawsDifferentIndicesFromAllOfThem) {
   EXPECT_EQ(drawn(0, 5).size(), 0U);
 }
 
+TEST(RandomThinning, CellsAboutZeroAreTwiceAsWideIfCoordinatesAreTruncated) {
+  struct Item {
+    Eigen::Vector3f position;
+  };
+  const std::vector<Item> items{{{-0.9F, 0.1F, 0.1F}}, {{0.9F, 0.1F, 0.1F}}, {{1.1F, 0.1F, 0.1F}}};
+  const auto keys = voxels_of<Item>(items, 1.0);
+  EXPECT_EQ(keys[0], voxel_key({-1, 0, 0}));
+  EXPECT_EQ(keys[2], voxel_key({1, 0, 0}));
+  EXPECT_EQ(voxels_of<Item>(items, 1.0, VoxelRounding::kTruncate)[0], keys[1]);
+}
+
 TEST(RandomThinning, SelectsInTheOrderOfTheIndices) {
   const std::vector<char> letters{'a', 'b', 'c'};
   const std::vector<std::uint32_t> indices{2, 0};

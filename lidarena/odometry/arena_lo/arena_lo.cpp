@@ -12,16 +12,18 @@ constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic
 }  // namespace
 
 ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : config_(config),
-      body_from_lidar_(lidar.body_from_lidar),
-      parallel_(std::move(parallel)),
-      map_({config.map.voxel_size_m, config.map.max_points_per_voxel,
-            config.map.min_point_spacing_m}),
-      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
+    : VoxelMapOdometry("arena_lo", lidar,
+                       {config.map.voxel_size_m, config.map.max_points_per_voxel,
+                        config.map.min_point_spacing_m},
+                       std::move(parallel)),
+      config_(config) {}
 
 ScanResult ArenaLo::register_scan(const Scan& scan) {
-  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
-  if (!poses_.empty() && times.last <= poses_.back().stamp) return refused_scan();
+  const estimation::ScanTimes times = times_of(scan);
+  if (is_out_of_order(times.last)) {
+    ++scans_refused_;
+    return unchanged(ScanStatus::kTooFewPoints, {.scans_refused = scans_refused_});
+  }
   const bool rigid = !times.timed || map_.empty();
   const SamplingConfig& sampling = config_.sampling;
   const auto points =
@@ -73,28 +75,7 @@ void ArenaLo::advance(const estimation::ElasticMotion& motion, std::span<const T
   } else {
     history_.add(motion, times);
   }
-  if (times.timed) scan_duration_ = times.last - times.first;
-  poses_.push_back({times.last, body_from_lidar_ * motion.end() * body_from_lidar_.inverse()});
-}
-
-ScanResult ArenaLo::refused_scan() {
-  ++scans_refused_;
-  return {poses_.back(),
-          ScanStatus::kTooFewPoints,
-          std::nullopt,
-          {.scans_refused = scans_refused_},
-          {}};
-}
-
-std::vector<Eigen::Vector3f> ArenaLo::map() const {
-  return transformed(body_from_lidar_, map_.points());
-}
-
-std::map<std::string, std::uint64_t> ArenaLo::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
+  store(motion.end(), times.last, times);
 }
 
 }  // namespace lidarena::odometry::arena_lo

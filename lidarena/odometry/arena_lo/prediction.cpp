@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lo/prediction.hpp"
 
+#include "lidarena/estimation/elastic_scan.hpp"
+
 namespace lidarena::odometry::arena_lo {
 
 namespace {
@@ -29,7 +31,10 @@ void MotionHistory::add_lost(const estimation::ElasticMotion& motion,
 
 Expectation MotionHistory::expect(const estimation::ScanTimes& times, int segments,
                                   const PriorConfig& weights) const {
-  Expectation expected{predict(times, segments), {}};
+  Expectation expected{
+      empty_ ? estimation::ElasticMotion::still(Pose::Identity(), segments)
+             : estimation::constant_twist_motion({instant_, end_}, twist_, times, segments),
+      {}};
   const Pose& begin = expected.guess.begin();
   expected.prior.begin = begin;
   expected.prior.step = expected.guess.end().translation() - begin.translation();
@@ -39,17 +44,6 @@ Expectation MotionHistory::expect(const estimation::ScanTimes& times, int segmen
   expected.prior.velocity_change = weights.velocity_change;
   expected.prior.angular_velocity_change = weights.angular_velocity_change;
   return expected;
-}
-
-estimation::ElasticMotion MotionHistory::predict(const estimation::ScanTimes& times,
-                                                 int segments) const {
-  if (empty_) return estimation::ElasticMotion::still(Pose::Identity(), segments);
-  estimation::ElasticMotion motion;
-  for (int i = 0; i <= segments; ++i) {
-    const Time instant = times.first + (times.last - times.first) * i / segments;
-    motion.knots.push_back(end_ * se3::exp(twist_ * to_seconds(instant - instant_)));
-  }
-  return motion;
 }
 
 }  // namespace lidarena::odometry::arena_lo

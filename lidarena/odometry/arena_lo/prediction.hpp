@@ -28,8 +28,6 @@ class MotionHistory {
                      const PriorConfig& weights) const;
 
  private:
-  estimation::ElasticMotion predict(const estimation::ScanTimes& times, int segments) const;
-
   bool empty_ = true;
   Pose end_ = Pose::Identity();                ///< of the last scan, map from lidar
   Time instant_{0};                            ///< of that pose

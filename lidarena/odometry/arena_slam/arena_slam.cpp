@@ -43,7 +43,7 @@ ArenaSlam::ArenaSlam(const Config& config, const LidarInfo& lidar, const ImuInfo
       imu_(kMaxImuGap),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)),
       pending_(estimation::ImuBias{}, noise_),
-      submap_(config),
+      submap_(feature_voxels(config)),
       closer_(config.loop, parallel_) {}
 
 ScanResult ArenaSlam::register_scan(const Scan& scan) {
@@ -61,8 +61,8 @@ ScanResult ArenaSlam::register_scan(const Scan& scan) {
                           estimation::deskew(scan, prediction.track, imu_from_lidar_,
                                              prediction.track_from_imu, parallel_),
                           rule_.layout);
-  const Features raw = extract_features(image, rule_.edges, parallel_);
-  Features features = thinned(raw, config_);
+  const map::Features raw = extract_features(image, rule_, parallel_);
+  map::Features features = map::thinned(raw, feature_voxels(config_));
 
   Registration found = match(features, prediction.world_from_lidar, scan.stamp);
   const ScanStatus status = status_of(found, features);
@@ -81,8 +81,9 @@ ScanResult ArenaSlam::register_scan(const Scan& scan) {
   return result;
 }
 
-ScanCounters ArenaSlam::counters_of(const estimation::RangeImage& image, const Features& raw,
-                                    const Features& features, const Registration& found) const {
+ScanCounters ArenaSlam::counters_of(const estimation::RangeImage& image, const map::Features& raw,
+                                    const map::Features& features,
+                                    const Registration& found) const {
   return {.points = image.pixels.size(),
           .keypoints = features.edges.size() + features.surfaces.size(),
           .matches = found.points.count,
@@ -133,15 +134,17 @@ ArenaSlam::Prediction ArenaSlam::predict(Time stamp, Time end) {
   return prediction;
 }
 
-Registration ArenaSlam::match(const Features& features, const Pose& guess, Time stamp) {
+Registration ArenaSlam::match(const map::Features& features, const Pose& guess, Time stamp) {
   Registration none;
   none.map_from_lidar = guess;
   if (keyframes_.empty() || features.surfaces.size() < kMinSurfaces) return none;
-  submap_.follow(keyframes_, stamp, config_);
+  submap_.follow(
+      keyframes_, stamp,
+      {config_.submap_radius_m, config_.submap_keyframe_spacing_m, config_.submap_recent_s});
   return register_features(features, submap_, guess, limits_, parallel_);
 }
 
-ScanStatus ArenaSlam::status_of(const Registration& found, const Features& features) const {
+ScanStatus ArenaSlam::status_of(const Registration& found, const map::Features& features) const {
   if (!found.map_from_lidar.matrix().allFinite() ||
       !(smoother_.latest().velocity.norm() < estimation::kMaxPlausibleSpeed))
     return ScanStatus::kDiverged;
@@ -200,7 +203,7 @@ void ArenaSlam::restart_if_failed() {
   ++restarts_;
 }
 
-void ArenaSlam::keep(Time stamp, Pose& world_from_lidar, Features features) {
+void ArenaSlam::keep(Time stamp, Pose& world_from_lidar, map::Features features) {
   if (merge(world_from_lidar, features)) return;
   const Pose previous_from_this =
       keyframes_.empty() ? world_from_lidar
@@ -212,18 +215,16 @@ void ArenaSlam::keep(Time stamp, Pose& world_from_lidar, Features features) {
     return std::span<const Eigen::Vector3f>(keyframes_[keyframe].features.surfaces);
   });
   if (!moved) return;
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    keyframes_[i].world_from_lidar = closer_.poses()[i];
-    ++keyframes_[i].revision;
-  }
+  map::move_to(closer_.poses(), keyframes_);
   world_from_lidar = keyframes_.back().world_from_lidar;
   world_from_lidar_ = world_from_lidar;  // corrected pose of the scan just registered
 }
 
-bool ArenaSlam::merge(const Pose& world_from_lidar, const Features& features) {
+bool ArenaSlam::merge(const Pose& world_from_lidar, const map::Features& features) {
   if (keyframes_.empty()) return false;
-  Keyframe& last = keyframes_.back();
-  const bool due = is_keyframe(last, world_from_lidar, config_);
+  map::Keyframe& last = keyframes_.back();
+  const bool due = map::has_moved(last, world_from_lidar, config_.keyframe_translation_m,
+                                  config_.keyframe_rotation_rad);
   const bool renew =
       due ? config_.scans_per_keyframe > 1
           : merger_.add(features, last.world_from_lidar.inverse() * world_from_lidar, config_);
@@ -262,7 +263,7 @@ ScanResult ArenaSlam::result_of(Time stamp, const Pose& world_from_lidar, ScanSt
 
 Trajectory ArenaSlam::trajectory() const {
   std::vector<Pose> anchors;
-  for (const Keyframe& keyframe : keyframes_) anchors.push_back(keyframe.world_from_lidar);
+  for (const map::Keyframe& keyframe : keyframes_) anchors.push_back(keyframe.world_from_lidar);
   std::vector<StampedPose> poses = poses_.placed(anchors);
   const Pose lidar_from_body = body_from_lidar_.inverse();
   for (StampedPose& pose : poses)
@@ -270,22 +271,8 @@ Trajectory ArenaSlam::trajectory() const {
   return Trajectory(std::move(poses), "arena_slam");
 }
 
-std::vector<Eigen::Vector3f> ArenaSlam::map() const {
-  std::vector<Eigen::Vector3f> points;
-  for (const Keyframe& keyframe : keyframes_) {
-    append_transformed(keyframe.world_from_lidar, keyframe.features.edges, points);
-    append_transformed(keyframe.world_from_lidar, keyframe.features.surfaces, points);
-  }
-  return points;
-}
-
 std::map<std::string, std::uint64_t> ArenaSlam::memory() const {
-  std::uint64_t kept = 0;
-  for (const Keyframe& keyframe : keyframes_)
-    kept += sizeof(Keyframe) +
-            (keyframe.features.edges.capacity() + keyframe.features.surfaces.capacity()) *
-                sizeof(Eigen::Vector3f);
-  return {{"map", kept + submap_.memory_bytes()},
+  return {{"map", map::memory_bytes(keyframes_) + submap_.memory_bytes()},
           {"scan_buffer", 0},
           {"backlog", imu_.memory_bytes()},
           {"other", poses_.memory_bytes() + closer_.memory_bytes()}};

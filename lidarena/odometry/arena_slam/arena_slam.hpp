@@ -32,7 +32,7 @@ class ArenaSlam : public Odometry {
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override;
-  std::vector<Eigen::Vector3f> map() const override;
+  std::vector<Eigen::Vector3f> map() const override { return map::points_of(keyframes_); }
   std::map<std::string, std::uint64_t> memory() const override;
 
   const loop::LoopCloser& loops() const { return closer_; }
@@ -50,19 +50,19 @@ class ArenaSlam : public Odometry {
   /// Initializes if there are enough IMU samples; returns whether it has.
   bool start(Time stamp, Time end);
   Prediction predict(Time stamp, Time end);
-  Registration match(const Features& features, const Pose& guess, Time stamp);
-  ScanCounters counters_of(const estimation::RangeImage& image, const Features& raw,
-                           const Features& features, const Registration& found) const;
-  ScanStatus status_of(const Registration& found, const Features& features) const;
+  Registration match(const map::Features& features, const Pose& guess, Time stamp);
+  ScanCounters counters_of(const estimation::RangeImage& image, const map::Features& raw,
+                           const map::Features& features, const Registration& found) const;
+  ScanStatus status_of(const Registration& found, const map::Features& features) const;
   /// Adds the registered pose to the smoother and replaces it by the smoother's.
   void fuse(Registration& found);
   estimation::PoseMeasurement::Information information_of(const Registration& found,
                                                           const Pose& odom_from_imu) const;
   void restart_if_failed();
   /// Makes the scan a keyframe if one is due; a loop then may correct `world_from_lidar`.
-  void keep(Time stamp, Pose& world_from_lidar, Features features);
+  void keep(Time stamp, Pose& world_from_lidar, map::Features features);
   /// Averages the scan into the last keyframe; returns false if it should be the next keyframe.
-  bool merge(const Pose& world_from_lidar, const Features& features);
+  bool merge(const Pose& world_from_lidar, const map::Features& features);
   /// The result of a scan that is part of the trajectory.
   ScanResult finish_scan(Time stamp, const Pose& world_from_lidar, ScanStatus status,
                          const ScanCounters& counters);
@@ -96,9 +96,9 @@ class ArenaSlam : public Odometry {
   Pose world_from_lidar_ = Pose::Identity();  ///< the same pose in the map's frame
   Time last_stamp_{Time::min()};
 
-  std::vector<Keyframe> keyframes_;
+  std::vector<map::Keyframe> keyframes_;
   KeyframeMerger merger_;  ///< of the last keyframe
-  FeatureMap submap_;
+  map::FeatureMap submap_;
   loop::AnchoredTrajectory poses_;  ///< of the LiDAR
   loop::LoopCloser closer_;
 };

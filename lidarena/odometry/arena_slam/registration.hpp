@@ -4,8 +4,7 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/feature_residuals.hpp"
-#include "lidarena/odometry/arena_slam/features.hpp"
-#include "lidarena/odometry/arena_slam/keyframes.hpp"
+#include "lidarena/map/feature_map.hpp"
 
 namespace lidarena::odometry::arena_slam {
 
@@ -29,7 +28,8 @@ struct Registration {
 
 /// Gauss-Newton on edges to lines and surface points to planes, from `guess` (LIO-SAM, eq. 10-13).
 /// Lines and planes are kept while steps are small.
-Registration register_features(const Features& features, const FeatureMap& map, const Pose& guess,
-                               const RegistrationLimits& limits, const Parallel& parallel);
+Registration register_features(const map::Features& features, const map::FeatureMap& map,
+                               const Pose& guess, const RegistrationLimits& limits,
+                               const Parallel& parallel);
 
 }  // namespace lidarena::odometry::arena_slam

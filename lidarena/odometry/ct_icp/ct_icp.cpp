@@ -17,19 +17,18 @@ constexpr estimation::RangeGate kAllRanges{0.0, std::numeric_limits<double>::inf
 }  // namespace
 
 CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : config_(config),
-      body_from_lidar_(lidar.body_from_lidar),
-      parallel_(std::move(parallel)),
-      map_({config.map.voxel_size_m, config.map.max_points_per_voxel,
-            config.map.min_point_spacing_m, map::VoxelRounding::kTruncate}),
-      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
+    : VoxelMapOdometry("ct_icp", lidar,
+                       {config.map.voxel_size_m, config.map.max_points_per_voxel,
+                        config.map.min_point_spacing_m, map::VoxelRounding::kTruncate},
+                       std::move(parallel)),
+      config_(config) {}
 
 ScanResult CtIcp::register_scan(const Scan& scan) {
-  if (ended_) return ignored(ScanStatus::kDiverged);
-  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
-  if (!poses_.empty() && times.last <= poses_.back().stamp) {
+  if (ended_) return unchanged(ScanStatus::kDiverged, {.scans_refused = scans_refused_});
+  const estimation::ScanTimes times = times_of(scan);
+  if (is_out_of_order(times.last)) {
     ++scans_refused_;
-    return ignored(ScanStatus::kTooFewPoints);
+    return unchanged(ScanStatus::kTooFewPoints, {.scans_refused = scans_refused_});
   }
   const bool rigid = !times.timed || map_.empty() || scans_ < kRigidScans;
   const auto points = estimation::timed_points(scan, times, rigid, kAllRanges);
@@ -41,7 +40,7 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const Registration found = align(keypoints);
   const ScanStatus status = status_of(found, points.size());
   ended_ = status == ScanStatus::kDiverged;
-  if (ended_) return ignored(status);
+  if (ended_) return unchanged(status, {.scans_refused = scans_refused_});
   const bool inserted = advance(found, frame, times);
 
   const auto body_motion = estimation::moved(body_from_lidar_, found.motion);
@@ -84,25 +83,9 @@ bool CtIcp::advance(const Registration& found, std::span<const TimedPoint> frame
   if (inserted) map_.insert(estimation::placed(motion, frame, parallel_));
   map_.remove_far(motion.end().translation().cast<float>(), config_.map.radius_m);
   history_.add(motion);
-  if (times.timed) scan_duration_ = times.last - times.first;
-  poses_.push_back({times.last, body_from_lidar_ * motion.end() * body_from_lidar_.inverse()});
+  store(motion.end(), times.last, times);
   ++scans_;
   return inserted;
-}
-
-ScanResult CtIcp::ignored(ScanStatus status) const {
-  return {poses_.back(), status, std::nullopt, {.scans_refused = scans_refused_}, {}};
-}
-
-std::vector<Eigen::Vector3f> CtIcp::map() const {
-  return transformed(body_from_lidar_, map_.points());
-}
-
-std::map<std::string, std::uint64_t> CtIcp::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 
 }  // namespace lidarena::odometry::ct_icp

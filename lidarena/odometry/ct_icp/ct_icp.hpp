@@ -1,34 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
-#include <map>
-#include <string>
-#include <vector>
-
-#include "lidarena/base/parallel.hpp"
-#include "lidarena/base/rig.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/ct_icp/prediction.hpp"
 #include "lidarena/odometry/ct_icp/quality.hpp"
 #include "lidarena/odometry/ct_icp/registration.hpp"
-#include "lidarena/odometry/odometry.hpp"
+#include "lidarena/odometry/voxel_map_odometry.hpp"
 
 namespace lidarena::odometry::ct_icp {
 
 /// LiDAR odometry by elastic scan-to-map registration: a scan has a pose at its beginning and one
 /// at its end, after Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP: Real-time Elastic LiDAR
 /// Odometry with Loop Closure" (ICRA 2022). See README.md in this folder.
-class CtIcp : public Odometry {
+class CtIcp : public VoxelMapOdometry {
  public:
   CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {}; }
   ScanResult register_scan(const Scan& scan) override;
-  Trajectory trajectory() const override { return Trajectory(poses_, "ct_icp"); }
-  std::vector<Eigen::Vector3f> map() const override;
-  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
 
  private:
   /// The first scans use finer voxels and more iterations.
@@ -39,23 +27,14 @@ class CtIcp : public Odometry {
   /// Stores the scan's motion, and inserts `frame` into the map; returns whether it did.
   bool advance(const Registration& found, std::span<const TimedPoint> frame,
                const estimation::ScanTimes& times);
-  /// A scan that changes nothing: it is out of time order, or its registration or an earlier one
-  /// has failed, where the published program ends.
-  ScanResult ignored(ScanStatus status) const;
 
   Config config_;
-  Pose body_from_lidar_;
-  Parallel parallel_;
-  map::VoxelHashMap map_;  ///< in the lidar's frame at its first pose
   InsertionGate gate_;
   MotionHistory history_;
 
   int scans_ = 0;
-  std::size_t scans_refused_ = 0;   ///< out of time order
-  bool ended_ = false;              ///< a registration has failed
-  Time scan_duration_;              ///< of the last scan that had times
-  std::vector<StampedPose> poses_;  ///< of the body
-  std::vector<Eigen::Vector3f> registered_scan_;
+  std::size_t scans_refused_ = 0;  ///< out of time order
+  bool ended_ = false;             ///< a registration has failed, where the program ends
 };
 
 }  // namespace lidarena::odometry::ct_icp

@@ -54,13 +54,8 @@ std::vector<TimedPoint> candidates(std::span<const TimedPoint> frame, KeypointSa
 }  // namespace
 
 std::vector<TimedPoint> thin(std::span<const TimedPoint> points, double voxel) {
-  const auto inverse = static_cast<float>(1.0 / voxel);
-  std::vector<map::VoxelKey> voxels;
-  voxels.reserve(points.size());
-  for (const TimedPoint& point : points)
-    voxels.push_back(
-        map::voxel_key(map::voxel_of(point.position, inverse, map::VoxelRounding::kTruncate)));
-  return map::selected(points, map::one_per_voxel(voxels));
+  return map::selected(
+      points, map::one_per_voxel(map::voxels_of(points, voxel, map::VoxelRounding::kTruncate)));
 }
 
 std::vector<TimedPoint> sample_keypoints(std::span<const TimedPoint> frame,

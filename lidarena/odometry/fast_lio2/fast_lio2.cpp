@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 
-#include <algorithm>
 #include <functional>
 #include <utility>
 
-#include "lidarena/base/time.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 #include "lidarena/odometry/fast_lio2/initialization.hpp"
 
@@ -16,17 +14,6 @@ constexpr double kConvergence = 1e-3;     // m, rad, m/s, ...: largest step of a
 constexpr double kPointVariance = 1e-3;   // m^2, of a point's distance from its plane
 constexpr std::size_t kMinPoints = 5;     // averaged points that a scan needs
 constexpr double kReportedImuGap = 0.05;  // s; longer pauses between samples are reported
-
-/// The longest time (s) without samples until `end`; 0 if shorter than kReportedImuGap.
-double longest_pause(const std::vector<ImuSample>& samples, Time end) {
-  Time longest{0};
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    const Time next = i + 1 < samples.size() ? samples[i + 1].stamp : end;
-    longest = std::max(longest, next - samples[i].stamp);
-  }
-  const double seconds = to_seconds(longest);
-  return seconds > kReportedImuGap ? seconds : 0.0;
-}
 
 }  // namespace
 
@@ -98,7 +85,8 @@ void FastLio2::start(Time end) {
 void FastLio2::predict(const ScanSpan& scan) {
   std::vector<ImuSample> samples = imu_.samples(Time::min(), scan.end);
   for (ImuSample& sample : samples) sample.accel *= accel_scale_;
-  counters_.imu_gap_s = longest_pause(samples, scan.end);
+  const double pause = estimation::longest_pause_s(samples, scan.end);
+  counters_.imu_gap_s = pause > kReportedImuGap ? pause : 0.0;
   track_ = propagate_forward(samples, scan, config_, estimate_);
   estimated_ = scan.end;
   imu_.remove_before(scan.end);

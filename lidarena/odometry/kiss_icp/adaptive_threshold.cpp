@@ -12,22 +12,19 @@ double displacement(const Pose& error, double range) {
 }
 
 AdaptiveThreshold::AdaptiveThreshold(const Config& config)
-    : release_(config.release),
-      initial_(config.initial_threshold_m),
-      min_motion_(config.min_motion_m),
-      range_(config.max_range_m),
-      counting_(counts_errors_at(release_, Pose::Identity(), min_motion_)),
-      count_(initial_samples(release_)),
-      squared_sum_(count_ * initial_ * initial_) {}
+    : config_(config),
+      counting_(counts_errors_at(config.release, Pose::Identity(), config.min_motion_m)),
+      count_(initial_samples(config.release)),
+      squared_sum_(count_ * config.initial_threshold_m * config.initial_threshold_m) {}
 
 double AdaptiveThreshold::sigma() const {
-  return counting_ && count_ > 0.0 ? std::sqrt(squared_sum_ / count_) : initial_;
+  return counting_ && count_ > 0.0 ? std::sqrt(squared_sum_ / count_) : config_.initial_threshold_m;
 }
 
 void AdaptiveThreshold::observe(const Pose& prediction, const Pose& estimate) {
-  counting_ = counts_errors_at(release_, estimate, min_motion_);
-  const double deviation = displacement(prediction.inverse() * estimate, range_);
-  if (!counting_ || !(deviation > min_motion_)) return;
+  counting_ = counts_errors_at(config_.release, estimate, config_.min_motion_m);
+  const double deviation = displacement(prediction.inverse() * estimate, config_.max_range_m);
+  if (!counting_ || !(deviation > config_.min_motion_m)) return;
   squared_sum_ += deviation * deviation;
   count_ += 1.0;
 }

@@ -21,10 +21,7 @@ class AdaptiveThreshold {
   void observe(const Pose& prediction, const Pose& estimate);
 
  private:
-  Release release_;
-  double initial_;
-  double min_motion_;
-  double range_;
+  Config config_;
   bool counting_;       ///< at the last pose
   double count_;        ///< of errors
   double squared_sum_;  ///< of errors, m^2

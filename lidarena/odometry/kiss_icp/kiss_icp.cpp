@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "lidarena/estimation/deskew.hpp"
+#include "lidarena/estimation/elastic_scan.hpp"
 
 namespace lidarena::odometry::kiss_icp {
 
@@ -20,19 +21,15 @@ map::VoxelHashMap::Options map_options(const Config& config) {
 }  // namespace
 
 KissIcp::KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : config_(config),
-      body_from_lidar_(lidar.body_from_lidar),
-      parallel_(std::move(parallel)),
-      map_(map_options(config)),
-      threshold_(config),
-      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
+    : VoxelMapOdometry("kiss_icp", lidar, map_options(config), std::move(parallel)),
+      config_(config),
+      threshold_(config) {}
 
 ScanResult KissIcp::register_scan(const Scan& scan) {
   registered_scan_.clear();
-  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
+  const estimation::ScanTimes times = times_of(scan);
   const Time instant = pose_instant(config_.release, times);
-  if (!poses_.empty() && instant <= poses_.back().stamp)  // out of time order
-    return {poses_.back(), ScanStatus::kTooFewPoints, std::nullopt, {}, {}};
+  if (is_out_of_order(instant)) return unchanged(ScanStatus::kTooFewPoints, {});
 
   const se3::Vector6 twist = deskews(scan) ? twist_within(times, motion_) : se3::Vector6::Zero();
   const Points points = preprocess(scan, times, twist, instant);
@@ -87,35 +84,16 @@ void KissIcp::advance(const Pose& pose, const Points& map_points,
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
   motion_ = map_from_lidar_.inverse() * pose;
   map_from_lidar_ = pose;
-  if (times.timed) scan_duration_ = times.last - times.first;
-  poses_.push_back({pose_instant(config_.release, times), body_pose(pose)});
+  store(pose, pose_instant(config_.release, times), times);
 }
 
 std::vector<StampedPose> KissIcp::motion_within(const estimation::ScanTimes& times,
                                                 const se3::Vector6& twist) const {
-  std::vector<StampedPose> motion;
-  if (twist.isZero(0.0)) return motion;
-  for (int step = 0; step <= kMotionSteps; ++step) {
-    const Time instant = times.first + (times.last - times.first) * step / kMotionSteps;
-    const double seconds = to_seconds(instant - pose_instant(config_.release, times));
-    motion.push_back({instant, body_pose(map_from_lidar_ * se3::exp(twist * seconds))});
-  }
-  return motion;
-}
-
-Pose KissIcp::body_pose(const Pose& map_from_lidar) const {
-  return body_from_lidar_ * map_from_lidar * body_from_lidar_.inverse();
-}
-
-std::vector<Eigen::Vector3f> KissIcp::map() const {
-  return transformed(body_from_lidar_, map_.points());
-}
-
-std::map<std::string, std::uint64_t> KissIcp::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
+  if (twist.isZero(0.0)) return {};
+  const StampedPose lidar{pose_instant(config_.release, times), map_from_lidar_};
+  return estimation::body_poses(
+      estimation::constant_twist_motion(lidar, twist, times, kMotionSteps), times,
+      body_from_lidar_);
 }
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -1,31 +1,21 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <vector>
-
-#include "lidarena/base/parallel.hpp"
-#include "lidarena/base/rig.hpp"
-#include "lidarena/map/voxel_hash_map.hpp"
 #include "lidarena/odometry/kiss_icp/adaptive_threshold.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
 #include "lidarena/odometry/kiss_icp/preprocess.hpp"
 #include "lidarena/odometry/kiss_icp/registration.hpp"
-#include "lidarena/odometry/odometry.hpp"
+#include "lidarena/odometry/voxel_map_odometry.hpp"
 
 namespace lidarena::odometry::kiss_icp {
 
 /// LiDAR odometry by scan-to-map ICP with an adaptive search radius: Vizzo, Guadagnino, Mersch,
 /// Wiesmann, Behley, Stachniss, "KISS-ICP" (IEEE RA-L 2023). See README.md in this folder.
-class KissIcp : public Odometry {
+class KissIcp : public VoxelMapOdometry {
  public:
   KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {}; }
   ScanResult register_scan(const Scan& scan) override;
-  Trajectory trajectory() const override { return Trajectory(poses_, "kiss_icp"); }
-  std::vector<Eigen::Vector3f> map() const override;
-  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
 
  private:
   /// The scan's points within the range gate, in the lidar's frame at `instant`, for a lidar that
@@ -40,20 +30,12 @@ class KissIcp : public Odometry {
   /// Poses of the body within the scan, as used for de-skewing; empty if it was not de-skewed.
   std::vector<StampedPose> motion_within(const estimation::ScanTimes& times,
                                          const se3::Vector6& twist) const;
-  /// Pose of the body in the world, which is the body's frame at the start.
-  Pose body_pose(const Pose& map_from_lidar) const;
 
   Config config_;
-  Pose body_from_lidar_;
-  Parallel parallel_;
-  map::VoxelHashMap map_;  ///< in the lidar's frame at its first pose
   AdaptiveThreshold threshold_;
 
   Pose map_from_lidar_ = Pose::Identity();
   Pose motion_ = Pose::Identity();  ///< of the lidar, between the last two scans
-  Time scan_duration_;              ///< of the last scan that had times
-  std::vector<StampedPose> poses_;  ///< of the body
-  Points registered_scan_;
 };
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -4,21 +4,14 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "lidarena/base/parallel.hpp"
-#include "lidarena/estimation/edge_points.hpp"
 #include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/odometry/feature_extraction.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
-/// Points of a scan for matching with the map (m, LiDAR frame).
-struct Features {
-  std::vector<Eigen::Vector3f> edges;
-  std::vector<Eigen::Vector3f> surfaces;
-};
-
-/// Layout of the range image.
-estimation::ImageLayout layout_of(const Config& config);
+/// The program's features, or those of its port.
+FeatureRule feature_rule(const Config& config);
 
 /// The program's instant of the scan's last firing: that of the last point in message order. The
 /// stamp if the scan is untimed or has no points.
@@ -30,12 +23,5 @@ Time end_in_message(const Scan& scan);
 std::vector<Eigen::Vector3f> deskewed(const Scan& scan, const estimation::ImuTrack& track,
                                       Time known_until, const Pose& imu_from_lidar,
                                       const estimation::ImageLayout& layout);
-
-/// The edges of each row, and all its other points, averaged in voxels, as surface points.
-Features extract_features(const estimation::RangeImage& image, const Config& config,
-                          const Parallel& parallel);
-
-/// The features averaged in voxels of `edge_voxel_size_m` and `surface_voxel_size_m`.
-Features thinned(const Features& features, const Config& config);
 
 }  // namespace lidarena::odometry::lio_sam

@@ -11,6 +11,7 @@ using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr Time kImuMargin{10'000'000};  // the program uses IMU samples so long after a scan's end
+constexpr double kLivoxInterval = 1.0;  // s, maximum age of the last keyframe
 constexpr double kLevelWeight = 0.1;    // weight of the IMU's roll and pitch in fed back poses
 
 /// `rotation` with roll and pitch pulled towards level, the constant orientation of a 6-axis IMU.
@@ -26,6 +27,14 @@ Matrix3d leveled(const Matrix3d& rotation) {
 
 }  // namespace
 
+bool is_keyframe(const map::Keyframe& last, Time stamp, const Pose& world_from_lidar,
+                 const Config& config) {
+  const bool old =
+      config.sensor == Sensor::kLivox && to_seconds(stamp - last.stamp) > kLivoxInterval;
+  return old || map::has_moved(last, world_from_lidar, config.keyframe_translation_m,
+                               config.keyframe_rotation_rad);
+}
+
 LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel)
     : config_(config),
       body_from_lidar_(lidar.body_from_lidar),
@@ -35,7 +44,9 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       world_from_lidar_(body_from_lidar_),
       last_match_(body_from_lidar_),
       odom_from_lidar_(body_from_lidar_),
-      submap_(config),
+      rule_(feature_rule(config)),
+      voxels_{config.edge_voxel_size_m, config.surface_voxel_size_m},
+      submap_(voxels_),
       loops_(config, parallel_) {}
 
 ScanResult LioSam::register_scan(const Scan& scan) {
@@ -51,7 +62,7 @@ ScanResult LioSam::register_scan(const Scan& scan) {
 
   last_processed_ = scan.stamp;
   ScanCounters counters;
-  Features features = features_of(scan, within, counters);
+  map::Features features = features_of(scan, within, counters);
   if (features.surfaces.empty())
     return processed(scan.stamp, ScanStatus::kTooFewPoints, within, counters);
   const Pose before = world_from_lidar_;
@@ -73,13 +84,14 @@ bool LioSam::is_due(Time stamp) const {
   return !last_processed_ || to_seconds(stamp - *last_processed_) >= config_.process_interval_s;
 }
 
-Features LioSam::features_of(const Scan& scan, const Within& within, ScanCounters& counters) const {
-  const estimation::ImageLayout layout = layout_of(config_);
+map::Features LioSam::features_of(const Scan& scan, const Within& within,
+                                  ScanCounters& counters) const {
+  const estimation::ImageLayout& layout = rule_.layout;
   const Pose imu_from_lidar = body_from_imu_.inverse() * body_from_lidar_;
   const estimation::RangeImage image = estimation::project(
       scan, deskewed(scan, within.track, within.end + kImuMargin, imu_from_lidar, layout), layout);
-  const Features all = extract_features(image, config_, parallel_);
-  Features features = thinned(all, config_);
+  const map::Features all = extract_features(image, rule_, parallel_);
+  map::Features features = map::thinned(all, voxels_);
   counters.points = image.pixels.size();
   counters.edges = all.edges.size();
   counters.surfaces = all.surfaces.size();
@@ -96,11 +108,13 @@ Pose LioSam::guess() {
                        : world_from_lidar_;
 }
 
-Registration LioSam::match(const Features& features, const Pose& guess, Time stamp) {
+Registration LioSam::match(const map::Features& features, const Pose& guess, Time stamp) {
   const bool enough = features.edges.size() > static_cast<std::size_t>(config_.min_edges) &&
                       features.surfaces.size() > static_cast<std::size_t>(config_.min_surfaces);
   if (keyframes_.empty() || !enough) return {.map_from_lidar = guess};
-  submap_.follow(keyframes_, stamp);
+  submap_.follow(keyframes_, stamp,
+                 {.radius_m = config_.submap_radius_m,
+                  .keyframe_spacing_m = config_.submap_keyframe_spacing_m});
   const Registration found = register_features(features, submap_, guess, config_.sensor, parallel_);
   last_match_ = found.map_from_lidar;
   return found;
@@ -125,7 +139,7 @@ void LioSam::feed_back(const Pose& before, const Registration& found) {
   imu_.send(measured, degenerate_);
 }
 
-void LioSam::keep(Time stamp, Features features) {
+void LioSam::keep(Time stamp, map::Features features) {
   if (!keyframes_.empty() && !is_keyframe(keyframes_.back(), stamp, world_from_lidar_, config_))
     return;
   const Pose previous_from_this =
@@ -137,10 +151,7 @@ void LioSam::keep(Time stamp, Features features) {
                                : body_from_lidar_ * previous_from_this * lidar_from_body);
   keyframes_.push_back({stamp, world_from_lidar_, std::move(features), 0});
   if (!loops_.close(keyframes_, previous_from_this)) return;
-  for (std::size_t i = 0; i < keyframes_.size(); ++i) {
-    ++keyframes_[i].revision;
-    keyframes_[i].world_from_lidar = loops_.poses()[i];
-  }
+  map::move_to(loops_.poses(), keyframes_);
   world_from_lidar_ = loops_.poses().back();
 }
 
@@ -179,26 +190,13 @@ ScanResult LioSam::result_of(const StampedPose& lidar, ScanStatus status, const 
 
 Trajectory LioSam::trajectory() const {
   std::vector<Pose> bodies;
-  for (const Keyframe& keyframe : keyframes_)
+  for (const map::Keyframe& keyframe : keyframes_)
     bodies.push_back(keyframe.world_from_lidar * body_from_lidar_.inverse());
   return Trajectory(poses_.placed(bodies), "lio_sam");
 }
 
-std::vector<Eigen::Vector3f> LioSam::map() const {
-  std::vector<Eigen::Vector3f> points;
-  for (const auto& [stamp, world_from_lidar, features, revision] : keyframes_) {
-    append_transformed(world_from_lidar, features.edges, points);
-    append_transformed(world_from_lidar, features.surfaces, points);
-  }
-  return points;
-}
-
 std::map<std::string, std::uint64_t> LioSam::memory() const {
-  std::uint64_t points = 0;
-  for (const Keyframe& keyframe : keyframes_)
-    points += keyframe.features.edges.capacity() + keyframe.features.surfaces.capacity();
-  return {{"map", keyframes_.size() * sizeof(Keyframe) + points * sizeof(Eigen::Vector3f) +
-                      submap_.memory_bytes()},
+  return {{"map", map::memory_bytes(keyframes_) + submap_.memory_bytes()},
           {"scan_buffer", 0},
           {"backlog", imu_.memory_bytes()},
           {"other", poses_.memory_bytes() + loops_.memory_bytes()}};

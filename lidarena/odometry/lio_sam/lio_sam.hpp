@@ -7,15 +7,18 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/loop/anchored_trajectory.hpp"
-#include "lidarena/odometry/lio_sam/config.hpp"
 #include "lidarena/odometry/lio_sam/features.hpp"
 #include "lidarena/odometry/lio_sam/imu_odometry.hpp"
-#include "lidarena/odometry/lio_sam/keyframes.hpp"
 #include "lidarena/odometry/lio_sam/loop_search.hpp"
 #include "lidarena/odometry/lio_sam/registration.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::lio_sam {
+
+/// Whether a scan at `stamp` and `world_from_lidar` should be a keyframe, given the last one: it
+/// has moved, or, with Livox sensors, the last one is older than a second.
+bool is_keyframe(const map::Keyframe& last, Time stamp, const Pose& world_from_lidar,
+                 const Config& config);
 
 /// LiDAR-inertial odometry on edges and planes, smoothed with the IMU: Shan, Englot, Meyers, Wang,
 /// Ratti, Rus, "LIO-SAM: Tightly-coupled Lidar Inertial Odometry via Smoothing and Mapping" (IROS
@@ -33,7 +36,7 @@ class LioSam : public Odometry {
   void register_imu(const ImuSample& sample) override { imu_.register_imu(sample); }
   ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override;
-  std::vector<Eigen::Vector3f> map() const override;
+  std::vector<Eigen::Vector3f> map() const override { return map::points_of(keyframes_); }
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
@@ -43,16 +46,16 @@ class LioSam : public Odometry {
     estimation::ImuTrack track;
   };
   bool is_due(Time stamp) const;
-  Features features_of(const Scan& scan, const Within& within, ScanCounters& counters) const;
+  map::Features features_of(const Scan& scan, const Within& within, ScanCounters& counters) const;
   /// Initial guess of the registration: the last pose and the motion of the IMU odometry since the
   /// latest guess that used it, which lies further back if the IMU odometry has been silent.
   Pose guess();
   /// Registers features, if they are enough; the pose is else the guess.
-  Registration match(const Features& features, const Pose& guess, Time stamp);
+  Registration match(const map::Features& features, const Pose& guess, Time stamp);
   /// Tells the IMU odometry how far scan matching moved from the pose `before` the guess.
   void feed_back(const Pose& before, const Registration& found);
   /// Makes the scan a keyframe if one is due; a loop then may correct world_from_lidar_.
-  void keep(Time stamp, Features features);
+  void keep(Time stamp, map::Features features);
   ScanStatus status_of(const Registration& found) const;
   /// Adds the latest pose to the trajectory.
   ScanResult processed(Time stamp, ScanStatus status, const Within& within, ScanCounters counters);
@@ -74,8 +77,10 @@ class LioSam : public Odometry {
   bool degenerate_ = false;           ///< the last registration was
   std::optional<Pose> guess_origin_;  ///< of the IMU odometry, at the latest guess that used it
 
-  std::vector<Keyframe> keyframes_;
-  FeatureMap submap_;
+  std::vector<map::Keyframe> keyframes_;
+  FeatureRule rule_;
+  map::FeatureVoxels voxels_;
+  map::FeatureMap submap_;
   LoopSearch loops_;
   loop::AnchoredTrajectory poses_;  ///< of the body
 };

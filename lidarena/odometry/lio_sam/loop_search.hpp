@@ -7,25 +7,14 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/estimation/pose_graph.hpp"
+#include "lidarena/map/feature_map.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
-#include "lidarena/odometry/lio_sam/keyframes.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
 /// The keyframe nearest to the last one, within the search radius and older by the time gap.
-std::optional<std::size_t> find_candidate(const std::vector<Keyframe>& keyframes,
+std::optional<std::size_t> find_candidate(const std::vector<map::Keyframe>& keyframes,
                                           const LoopRule& rule);
-
-/// Result of the alignment of two clouds.
-struct Alignment {
-  Pose target_from_source = Pose::Identity();
-  bool converged = false;
-  double fitness = 0.0;  ///< m^2, mean squared distance to the nearest target points
-};
-/// Iterated closest points, point to point (Besl, McKay 1992), from `guess`, with correspondences
-/// up to `reach` (m).
-Alignment align_points(const std::vector<Eigen::Vector3f>& source, const map::KdTree& target,
-                       const Pose& guess, double reach, const Parallel& parallel);
 
 /// Loop closure of the program (section III-C.4) and the graph of keyframes that it corrects.
 class LoopSearch {
@@ -35,17 +24,16 @@ class LoopSearch {
 
   /// Searches from the last keyframe, which must be new, if a search is due. Returns whether a loop
   /// moved poses; world_from_keyframe are then in poses().
-  bool close(const std::vector<Keyframe>& keyframes, const Pose& previous_from_last);
+  bool close(const std::vector<map::Keyframe>& keyframes, const Pose& previous_from_last);
   const std::vector<Pose>& poses() const { return graph_.nodes; }
 
   std::size_t tried() const { return tried_; }
   std::size_t accepted() const { return accepted_; }
-  std::uint64_t memory_bytes() const;
+  std::uint64_t memory_bytes() const { return estimation::memory_bytes(graph_); }
 
  private:
-  void add_node(const Pose& previous_from_last);
   /// The loop from the last keyframe to `candidate`, if it is accepted.
-  std::optional<estimation::PoseGraph::Between> verify(const std::vector<Keyframe>& keyframes,
+  std::optional<estimation::PoseGraph::Between> verify(const std::vector<map::Keyframe>& keyframes,
                                                        std::size_t candidate) const;
 
   Config config_;

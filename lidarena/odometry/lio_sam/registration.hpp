@@ -2,8 +2,8 @@
 #pragma once
 
 #include "lidarena/base/parallel.hpp"
-#include "lidarena/base/pose.hpp"
-#include "lidarena/odometry/lio_sam/keyframes.hpp"
+#include "lidarena/map/feature_map.hpp"
+#include "lidarena/odometry/lio_sam/config.hpp"
 
 namespace lidarena::odometry::lio_sam {
 
@@ -18,7 +18,7 @@ struct Registration {
 /// Gauss-Newton on edges to lines and surface points to planes, from `guess` (eq. 10-13).
 /// Directions in which the points of the first iteration have an eigenvalue below 100 keep the
 /// guess.
-Registration register_features(const Features& features, const FeatureMap& map, const Pose& guess,
-                               Sensor sensor, const Parallel& parallel);
+Registration register_features(const map::Features& features, const map::FeatureMap& map,
+                               const Pose& guess, Sensor sensor, const Parallel& parallel);
 
 }  // namespace lidarena::odometry::lio_sam

@@ -3,26 +3,13 @@
 
 #include <gtest/gtest.h>
 
-#include "lidarena/base/so3.hpp"
-
 namespace lidarena::odometry::arena_slam {
 namespace {
-
-TEST(ArenaSlamKeyframes, ComeWithDistanceAndTurnButNotWithTime) {
-  const Config config;
-  const Keyframe last{from_seconds(10.0), Pose::Identity(), {}, 0};
-  const auto moved = [](double x, double yaw) {
-    return make_pose(so3::exp({0, 0, yaw}), {x, 0, 0});
-  };
-  EXPECT_FALSE(is_keyframe(last, moved(0.99, 0.19), config));
-  EXPECT_TRUE(is_keyframe(last, moved(1.0, 0.0), config));
-  EXPECT_TRUE(is_keyframe(last, moved(0.0, -0.2), config));
-}
 
 TEST(ArenaSlamKeyframes, AreTheAverageOfTheScansUpToTheNextAndRarelyRenewed) {
   Config config;
   config.scans_per_keyframe = 16;
-  const Features scan{{}, {{1.0F, 0.0F, 0.0F}}};
+  const map::Features scan{{}, {{1.0F, 0.0F, 0.0F}}};
   KeyframeMerger merger;
   merger.begin(scan);
   std::vector<int> renewed;
@@ -31,7 +18,7 @@ TEST(ArenaSlamKeyframes, AreTheAverageOfTheScansUpToTheNextAndRarelyRenewed) {
     if (merger.add(scan, keyframe_from_lidar, config)) renewed.push_back(scans);
   }
   EXPECT_EQ(renewed, (std::vector<int>{4, 16}));
-  const Features merged = merger.merged(config);
+  const map::Features merged = merger.merged(config);
   ASSERT_EQ(merged.surfaces.size(), 1U);
   EXPECT_NEAR(merged.surfaces[0].x(), 1.03, 1e-4) << "the first at 1, fifteen at 1.032";
 }

@@ -30,25 +30,23 @@ std::vector<Eigen::Vector3f> walls(int open) {
 }
 
 /// Every seventh of the map's points, as seen from `pose`.
-Features seen(const std::vector<Eigen::Vector3f>& points, const Pose& pose) {
-  Features features;
+map::Features seen(const std::vector<Eigen::Vector3f>& points, const Pose& pose) {
+  map::Features features;
   for (std::size_t i = 0; i < points.size(); i += 7)
     features.surfaces.push_back((pose.inverse() * points[i].cast<double>()).cast<float>());
   return features;
 }
 
 /// A map of one keyframe with these surface points (m, world).
-FeatureMap map_of(const std::vector<Eigen::Vector3f>& points) {
-  Config config;
-  config.surface_voxel_size_m = 0.01;  // all points stay
-  FeatureMap map(config);
+map::FeatureMap map_of(const std::vector<Eigen::Vector3f>& points) {
+  map::FeatureMap map({.edge_size_m = 0.1, .surface_size_m = 0.01});  // all points stay
   map.select({{Time{0}, Pose::Identity(), {{}, points}, 0}}, {0});
   return map;
 }
 
 TEST(ArenaSlamRegistration, FindsTheWayHome) {
   const std::vector<Eigen::Vector3f> points = walls(0);
-  const FeatureMap map = map_of(points);
+  const map::FeatureMap map = map_of(points);
   const Pose truth = make_pose(so3::exp({0.1, -0.2, 0.5}), {0.3, 0.2, -0.4});
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.03, -0.03}), {0.1, -0.08, 0.1});
   const Registration found = register_features(seen(points, truth), map, guess, {}, Parallel(1));
@@ -60,7 +58,7 @@ TEST(ArenaSlamRegistration, FindsTheWayHome) {
 
 TEST(ArenaSlamRegistration, InATunnelTheWayAlongIsLeftToTheGuess) {
   const std::vector<Eigen::Vector3f> points = walls(1);
-  const FeatureMap map = map_of(points);
+  const map::FeatureMap map = map_of(points);
   const Pose truth = make_pose(so3::exp({0.1, 0.0, 0.3}), {0.0, 0.2, -0.4});
   const Pose guess = truth * make_pose(so3::exp({0.02, 0.0, -0.02}), {0.1, -0.08, 0.1});
   const Registration found = register_features(seen(points, truth), map, guess, {}, Parallel(1));
@@ -70,7 +68,7 @@ TEST(ArenaSlamRegistration, InATunnelTheWayAlongIsLeftToTheGuess) {
 }
 
 TEST(ArenaSlamRegistration, WithTooFewMatchesThePoseIsTheGuess) {
-  const FeatureMap map = map_of({{0, 0, 1}, {0, 1, 1}, {1, 0, 1}});
+  const map::FeatureMap map = map_of({{0, 0, 1}, {0, 1, 1}, {1, 0, 1}});
   const std::vector<Eigen::Vector3f> points = walls(0);
   const Pose truth = Pose::Identity();
   const Pose guess = make_pose(so3::exp({0.02, 0.0, -0.02}), {0.1, -0.08, 0.1});

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "lidarena/base/so3.hpp"
 
@@ -82,24 +81,21 @@ TEST(LioSamDeskew, AMountedLidarTurnsAboutItself) {
   EXPECT_NEAR(double{points[1].norm()}, 5.0, 1e-5);
 }
 
-TEST(LioSamFeatures, EdgesAndTheRestAndSurfacesAreAveragedRowByRow) {
-  estimation::RangeImage image;
-  for (int row = 0; row < 2; ++row) {
-    for (int i = 0; i < 120; ++i) {  // two walls with an edge between them
-      const float range = 4.0F + 0.04F * static_cast<float>(std::abs(i - 60));
-      image.pixels.push_back({{range, 0.01F * static_cast<float>(i), 0.0F}, range, i});
-    }
-    image.row_end.push_back(image.pixels.size());
-  }
+TEST(LioSamFeatures, ThePortToLivoxFindsEdgesInOtherRows) {
   Config config;
-  config.row_surface_voxel_size_m = 20.0;
-  const Features features = extract_features(image, config, Parallel(1));
-  ASSERT_EQ(features.edges.size(), 2U);
-  EXPECT_EQ(features.edges[0].x(), 4.0F);
-  EXPECT_EQ(features.surfaces.size(), 2U) << "one mean a row, although both rows lie in one voxel";
-  Config coarse;
-  coarse.surface_voxel_size_m = 20.0;
-  EXPECT_EQ(thinned(features, coarse).surfaces.size(), 1U);
+  config.edge_threshold_m2 = 0.5;
+  config.row_surface_voxel_size_m = 0.3;
+  config.sensor = Sensor::kSpinning;
+  const FeatureRule spinning = feature_rule(config);
+  EXPECT_TRUE(spinning.layout.by_azimuth);
+  EXPECT_EQ(spinning.edges.neighbors, estimation::kSpinningEdges.neighbors);
+  EXPECT_EQ(spinning.edges.threshold_m2, 0.5);
+  EXPECT_EQ(spinning.row_surface_voxel_size_m, 0.3);
+  config.sensor = Sensor::kLivox;
+  const FeatureRule livox = feature_rule(config);
+  EXPECT_FALSE(livox.layout.by_azimuth);
+  EXPECT_EQ(livox.edges.neighbors, estimation::kLivoxEdges.neighbors);
+  EXPECT_EQ(livox.edges.threshold_m2, 0.5);
 }
 
 TEST(LioSamConfig, ThePresetsAreThoseOfTheProgramOrOfItsPort) {

@@ -5,6 +5,7 @@
 
 #include <functional>
 
+#include "lidarena/base/so3.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
 namespace lidarena::odometry::lio_sam {
@@ -31,6 +32,20 @@ std::vector<ScanResult> results_of(const Recording& recording, const Config& con
 }
 
 Config spinning() { return indoor(synthetic::rig_of({}).lidars[0]); }
+
+TEST(LioSamKeyframes, ComeWithDistanceTurnAndInThePortWithTime) {
+  Config config;
+  const map::Keyframe last{from_seconds(10.0), Pose::Identity(), {}, 0};
+  const auto moved = [](double x, double yaw) {
+    return make_pose(so3::exp({0, 0, yaw}), {x, 0, 0});
+  };
+  EXPECT_FALSE(is_keyframe(last, from_seconds(100.0), moved(0.99, 0.19), config));
+  EXPECT_TRUE(is_keyframe(last, from_seconds(11.0), moved(1.0, 0.0), config));
+  EXPECT_TRUE(is_keyframe(last, from_seconds(11.0), moved(0.0, -0.2), config));
+  config.sensor = Sensor::kLivox;
+  EXPECT_FALSE(is_keyframe(last, from_seconds(11.0), moved(0.0, 0.0), config));
+  EXPECT_TRUE(is_keyframe(last, from_seconds(11.1), moved(0.0, 0.0), config));
+}
 
 TEST(LioSam, StandingStillOnlyThePortsMapGrows) {
   const Recording still{.motion = [](double) { return synthetic::flight(0.0); }};

@@ -11,7 +11,7 @@ namespace {
 
 namespace places = loop::places;
 
-Keyframe keyframe_at(double seconds, const Pose& pose) {
+map::Keyframe keyframe_at(double seconds, const Pose& pose) {
   return {from_seconds(seconds), pose, {}, 0};
 }
 
@@ -19,35 +19,17 @@ Pose at(double x) { return make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}); }
 
 TEST(LioSamLoops, TheCandidateIsTheNearestThatIsOldEnough) {
   const LoopRule rule;  // 15 m, 30 s
-  std::vector<Keyframe> keyframes{keyframe_at(0.0, at(0.0)), keyframe_at(10.0, at(5.0)),
-                                  keyframe_at(25.0, at(6.5)), keyframe_at(50.0, at(7.0))};
+  std::vector<map::Keyframe> keyframes{keyframe_at(0.0, at(0.0)), keyframe_at(10.0, at(5.0)),
+                                       keyframe_at(25.0, at(6.5)), keyframe_at(50.0, at(7.0))};
   EXPECT_EQ(find_candidate(keyframes, rule), 1U) << "the third is nearer, but 25 s old";
   keyframes.push_back(keyframe_at(90.0, at(22.5)));
   EXPECT_EQ(find_candidate(keyframes, rule), std::nullopt) << "all old ones are beyond 15 m";
 }
 
-TEST(LioSamLoops, IcpLaysPointsOnPoints) {
-  const places::Points world = places::ring_corridor();
-  const Pose first = places::standing(-10.0, -10.0, 0.2);
-  const Pose second = places::standing(-9.4, -9.8, 0.5);
-  const Pose truth = first.inverse() * second;
-  map::KdTree target;
-  target.build(places::seen_from(first, world, 10.0, 1));
-  const places::Points source = places::seen_from(second, world, 8.0, 2);
-  const Pose guess = truth * make_pose(so3::exp({0.0, 0.0, 0.05}), {0.1, -0.1, 0.05});
-  const Alignment found = align_points(source, target, guess, 30.0, Parallel(1));
-  EXPECT_TRUE(found.converged);
-  EXPECT_LT((found.target_from_source.translation() - truth.translation()).norm(), 2e-2);
-  EXPECT_LT(found.fitness, 0.01);
-  const Alignment far =
-      align_points(source, target, places::standing(500.0, 0.0, 0.0), 30.0, Parallel(1));
-  EXPECT_FALSE(far.converged) << "nothing within 30 m";
-}
-
 /// 1.3 times around a block with odometry that is 1 % too long and turns too far.
 struct Trip {
   std::vector<Pose> truth;
-  std::vector<Keyframe> keyframes;
+  std::vector<map::Keyframe> keyframes;
   std::size_t accepted = 0;
 
   explicit Trip(const Config& config) {
@@ -92,7 +74,7 @@ TEST(LioSamLoops, AFewPointsAreNoPlace) {
   Config config;
   config.loop_closure = true;
   LoopSearch loops(config, Parallel(1));
-  std::vector<Keyframe> keyframes;
+  std::vector<map::Keyframe> keyframes;
   for (int i = 0; i < 40; ++i) {
     keyframes.push_back(keyframe_at(i, at(0.0)));
     keyframes.back().features.surfaces.assign(20, {1.0F, 2.0F, 3.0F});
