@@ -33,19 +33,20 @@ int main(int argc, char** argv) {
   const bool given = argc > 2;
   const Trajectory estimate = given ? dataset::read_trajectory(argv[1]) : circle(1.01);
   const Trajectory truth = given ? dataset::read_trajectory(argv[2]) : circle(1.0);
-  const Json metrics = evaluation::evaluate_trajectory(estimate, truth);
-  const Json one_meter = metrics.at("rpe").at("1m").at("translation");
-  std::printf("relative error over 1 m: %.2f cm RMSE of %d pieces\n",
-              100.0 * one_meter.at("rmse_m").get<double>(), one_meter.at("count").get<int>());
+  const results::TrajectoryMetrics metrics = evaluation::evaluate_trajectory(estimate, truth);
+  const results::Summary one_meter =
+      metrics.rpe ? metrics.rpe->lengths[0].translation : results::SummaryInMeters();
+  std::printf("relative error over 1 m: %.2f cm RMSE of %zu pieces\n", 100.0 * one_meter.rmse,
+              one_meter.count);
   if (argc > 4) {
     const dataset::Cloud map = dataset::read_cloud(argv[3]);
     const world::World world(world::load_mesh(argv[4]), argv[4]);
     const evaluation::MapError error =
         evaluation::map_error(map.points, Pose::Identity(), world, Parallel());
     std::printf("map: %zu points, %.2f cm from the mesh on average, %.1f %% beyond 20 cm\n",
-                error.points, 100.0 * error.distance_m.mean, error.outliers_percent);
+                error.points, 100.0 * error.distance_m.mean, error.outliers_percent.value_or(0.0));
   }
   if (given) return 0;
   // 1 % of a piece of 1 m
-  return std::abs(one_meter.at("rmse_m").get<double>() - 0.01) < 2e-4 ? 0 : 1;
+  return std::abs(one_meter.rmse - 0.01) < 2e-4 ? 0 : 1;
 }

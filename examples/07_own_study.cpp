@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/results/run_metrics.hpp"
 #include "lidarena/study/study.hpp"
 #include "lidarena/world/export_world.hpp"
 #include "lidarena/world/primitives.hpp"
@@ -27,10 +27,10 @@ int main(int argc, char** argv) {
   const study::ConfigFolder configs = study::ConfigFolder::find(".");
   const study::StudyOutcome outcome = study::run_study(spec, configs, folder, {}, silent);
   for (const study::PlannedRun& planned : study::plan(spec, configs)) {
-    const Json metrics = dataset::read_json(folder / "runs" / planned.name / "metrics.json");
-    const Json& error = metrics.at("live").at("rpe").at("1s").at("translation");
+    const auto metrics = results::read_metrics(folder / "runs" / planned.name);
+    if (!metrics.live || !metrics.live->rpe) continue;
     std::printf("%-16s %.2f cm RPE over 1 s\n", planned.sensor.c_str(),
-                100.0 * error.at("rmse_m").get<double>());
+                100.0 * metrics.live->rpe->over_1s.translation.rmse);
   }
   return outcome.runs == 2 && outcome.failed == 0 ? 0 : 1;
 }

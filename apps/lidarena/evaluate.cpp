@@ -10,8 +10,8 @@
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/diagnosis/lever_arm.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
-#include "lidarena/evaluation/metrics_table.hpp"
-#include "lidarena/evaluation/run_statistics.hpp"
+#include "lidarena/results/metrics_table.hpp"
+#include "lidarena/results/run_statistics.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
@@ -85,16 +85,15 @@ class Files {
   Trajectory estimate(const std::string& file) const {
     return in_body_of_truth(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
   }
-  evaluation::ScoredRun score(const std::string& file, const Parallel& parallel,
-                              LogSink& log) const {
+  results::ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
     dataset::RunFiles run;
     run.trajectory = estimate(file);
     run.live = run.trajectory;
     run.map = map_;
-    evaluation::ScoredRun scored;
+    results::ScoredRun scored;
     scored.name = file;
     scored.metrics = evaluation::evaluate_run(run, truth_.trajectory, world_.get(), parallel, log);
-    scored.metrics["frames"] = {{"truth", truth_.body}, {"lever", o_.lever}};
+    scored.metrics.frames = {truth_.body, o_.lever};
     return scored;
   }
 
@@ -106,7 +105,7 @@ class Files {
 };
 
 /// Fills in algorithm, flight and seed from the manifests of the run and of its dataset.
-void describe(const fs::path& folder, evaluation::ScoredRun& run) {
+void describe(const fs::path& folder, results::ScoredRun& run) {
   if (!fs::exists(folder / "manifest.json")) return;
   const Json manifest = dataset::read_json(folder / "manifest.json");
   const std::string preset = manifest.value("preset", "");
@@ -130,29 +129,28 @@ std::string failure_of(const fs::path& folder) {
   return manifest.contains("failed") ? manifest.at("failed").get<std::string>() : std::string();
 }
 
-Json failed(const std::string& reason) { return {{"status", "failed"}, {"reason", reason}}; }
-
 /// Scores a RUN folder. If that is impossible, throws if it is the only folder (`alone`), else
 /// returns the status "failed" with the reason.
-evaluation::ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel,
-                                   LogSink& log) {
-  evaluation::ScoredRun run;
+results::ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel,
+                                LogSink& log) {
+  results::ScoredRun run;
   const bool ends_with_slash = folder.filename().empty();  // "run/"
   run.name = (ends_with_slash ? folder.parent_path() : folder).filename().string();
   try {
     describe(folder, run);
     const std::string failure = failure_of(folder);
-    run.metrics = failure.empty() ? study::score_run(folder, parallel, log) : failed(failure);
+    run.metrics = failure.empty() ? study::score_run(folder, parallel, log)
+                                  : results::failed_metrics(failure);
   } catch (const InputError& error) {
     if (alone) throw;
-    run.metrics = failed(error.what());
+    run.metrics = results::failed_metrics(error.what());
   }
   return run;
 }
 
-std::vector<evaluation::ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel,
-                                             LogSink& log) {
-  std::vector<evaluation::ScoredRun> runs;
+std::vector<results::ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel,
+                                          LogSink& log) {
+  std::vector<results::ScoredRun> runs;
   for (const std::string& folder : o.runs) {
     runs.push_back(score_folder(folder, o.runs.size() == 1, parallel, log));
   }
@@ -162,28 +160,27 @@ std::vector<evaluation::ScoredRun> score_all(const EvaluateOptions& o, const Par
   return runs;
 }
 
-void print_runs_json(const std::vector<evaluation::ScoredRun>& runs) {
-  if (runs.size() == 1) return print_json(runs[0].metrics);
+void print_runs_json(const std::vector<results::ScoredRun>& runs) {
+  if (runs.size() == 1) return print_json(to_json(runs[0].metrics));
   Json list = Json::array();
-  for (const evaluation::ScoredRun& run : runs) {
+  for (const results::ScoredRun& run : runs) {
     list.push_back({{"run", run.name},
                     {"algorithm", run.algorithm},
                     {"flight", run.flight},
                     {"seed", run.seed},
-                    {"metrics", run.metrics}});
+                    {"metrics", to_json(run.metrics)}});
   }
-  print_json({{"runs", list}, {"statistics", evaluation::statistics_json(runs)}});
+  print_json({{"runs", list}, {"statistics", to_json(results::statistics_of(runs))}});
 }
 
 void print_runs(const Common& common, const EvaluateOptions& o,
-                const std::vector<evaluation::ScoredRun>& runs) {
+                const std::vector<results::ScoredRun>& runs) {
   if (common.json) return print_runs_json(runs);
-  if (o.csv) return fmt::print("{}", evaluation::metrics_csv(runs));
-  if (o.markdown) return fmt::print("{}", evaluation::metrics_markdown(runs));
-  if (o.latex) return fmt::print("{}", evaluation::metrics_latex(runs));
-  for (const evaluation::ScoredRun& run : runs) fmt::print("{}\n", evaluation::metrics_text(run));
-  if (runs.size() > 1)
-    fmt::print("{}", evaluation::statistics_text(evaluation::statistics_json(runs)));
+  if (o.csv) return fmt::print("{}", results::metrics_csv(runs));
+  if (o.markdown) return fmt::print("{}", results::metrics_markdown(runs));
+  if (o.latex) return fmt::print("{}", results::metrics_latex(runs));
+  for (const results::ScoredRun& run : runs) fmt::print("{}\n", results::metrics_text(run));
+  if (runs.size() > 1) fmt::print("{}", results::statistics_text(results::statistics_of(runs)));
 }
 
 int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
@@ -212,10 +209,10 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
   }
   if (!o.evo.tool.empty()) return evaluate_as_evo(common, o);
   Console console(common.quiet);
-  const std::vector<evaluation::ScoredRun> runs = score_all(o, Parallel(common.threads), console);
+  const std::vector<results::ScoredRun> runs = score_all(o, Parallel(common.threads), console);
   print_runs(common, o, runs);
-  for (const evaluation::ScoredRun& run : runs) {
-    if (run.metrics.value("status", "") != "ok") return kWorkFailed;
+  for (const results::ScoredRun& run : runs) {
+    if (!run.metrics.is_ok()) return kWorkFailed;
   }
   return kDone;
 }

@@ -9,6 +9,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
+#include "lidarena/results/run_metrics.hpp"
 #include "lidarena/scenes/world_config.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/study_spec.hpp"
@@ -16,7 +17,8 @@
 namespace lidarena {
 namespace {
 
-/// Functions that make the schema of each kind of YAML file, and of each algorithm's configuration.
+/// Functions that make the schema of each kind of YAML file, of each algorithm's configuration, and
+/// of metrics.json.
 std::map<std::string, std::function<Json()>> schemas() {
   std::map<std::string, std::function<Json()>> all{
       {"world", [] { return schema_document<scenes::WorldConfig>("A world of Lidarena"); }},
@@ -24,7 +26,9 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"sensor", [] { return schema_document<sensor::SensorConfig>("A sensor of Lidarena"); }},
       {"beams",
        [] { return schema_document<sensor::SpinningHead>("The beams of a spinning head"); }},
-      {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }}};
+      {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }},
+      {"metrics",
+       [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }}};
   for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
     all[info.name] = [name = info.name] { return odometry::algorithm_schema(name); };
   }
@@ -37,7 +41,7 @@ Json schema_of(const std::string& kind) {
   if (found != all.end()) return found->second();
   std::string known;
   for (const auto& [name, make] : all) known += (known.empty() ? "" : ", ") + name;
-  throw InputError(kind, "is not a kind of configuration file", "known: " + known);
+  throw InputError(kind, "is not a kind of file with a schema", "known: " + known);
 }
 
 int write_all(const std::filesystem::path& folder) {
@@ -51,10 +55,11 @@ int write_all(const std::filesystem::path& folder) {
 
 void add_schema(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "schema", "JSON Schema of a kind of YAML file, for editors: keys, units, defaults, limits");
+      "schema",
+      "JSON Schema of a kind of YAML file or of metrics.json: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
-  verb->add_option("kind", *kind, "world, flight, sensor, beams, study, or an algorithm");
+  verb->add_option("kind", *kind, "world, flight, sensor, beams, study, metrics, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

@@ -6,8 +6,9 @@
 
 #include "lidarena/base/config_json.hpp"
 
-/// Configuration structs as JSON Schema (draft 2020-12), from the same lists of fields that
-/// read_config() uses. Editors use it to complete keys and to mark what read_config() would reject.
+/// Structs with a list of fields as JSON Schema (draft 2020-12), from the same lists that
+/// read_config() and to_json() use. Editors use it to complete keys and to mark what read_config()
+/// would reject.
 namespace lidarena {
 
 template <class T>
@@ -41,6 +42,11 @@ struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
 
+template <class T>
+struct IsArray : std::false_type {};
+template <class T, std::size_t size>
+struct IsArray<std::array<T, size>> : std::true_type {};
+
 inline Json number(const char* type, const Limits& limits) {
   Json json{{"type", type}};
   if (std::isfinite(limits.low))
@@ -69,6 +75,13 @@ Json schema_of_value(const T& value, const Limits& limits) {
     return {{"anyOf", {schema_of_value(typename T::value_type{}, limits), {{"type", "null"}}}}};
   } else if constexpr (schema::IsVector<T>::value) {
     return {{"type", "array"}, {"items", schema_of_value(typename T::value_type{}, limits)}};
+  } else if constexpr (schema::IsArray<T>::value) {
+    return {{"type", "array"},
+            {"items", schema_of_value(typename T::value_type{}, limits)},
+            {"minItems", value.size()},
+            {"maxItems", value.size()}};
+  } else if constexpr (ConfigStruct<T> && requires { value.empty(); }) {
+    return {{"anyOf", {schema_of(value), {{"type", "null"}}}}};
   } else if constexpr (ConfigStruct<T>) {
     return schema_of(value);
   } else if constexpr (std::is_same_v<T, bool>) {

@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "lidarena/evaluation/diagnosis/suspicion.hpp"
-#include "lidarena/evaluation/metrics_json.hpp"
 #include "lidarena/evaluation/resources.hpp"
+#include "lidarena/evaluation/trajectory/hover_jitter.hpp"
+#include "lidarena/evaluation/trajectory/kitti_error.hpp"
+#include "lidarena/evaluation/trajectory/trajectory_metrics.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -51,12 +53,10 @@ Status status_of(const dataset::RunFiles& run, const Trajectory& truth) {
   return status_of(run.trajectory, truth);
 }
 
-Json describe_truth(const Trajectory& truth) {
-  if (truth.empty()) return nullptr;
-  return {{"poses", truth.size()},
-          {"rate_hz", 1.0 / std::max(1e-9, to_seconds(median_period(truth)))},
-          {"duration_s", to_seconds(truth.end_time() - truth.begin_time())},
-          {"path_m", truth.path_length()}};
+results::TruthFacts facts_of(const Trajectory& truth) {
+  if (truth.empty()) return {};
+  return {truth.size(), 1.0 / std::max(1e-9, to_seconds(median_period(truth))),
+          to_seconds(truth.end_time() - truth.begin_time()), truth.path_length()};
 }
 
 /// The poses of a perfect estimate at the same instants.
@@ -68,8 +68,8 @@ Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& trut
   return Trajectory(std::move(poses), "truth at the estimates");
 }
 
-Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
-  Json warnings = Json::array();
+std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajectory& truth) {
+  std::vector<std::string> warnings;
   const Association found = associate(estimate, truth);
   if (found.coverage < kLowCoverage) {
     warnings.push_back(
@@ -100,24 +100,55 @@ Json warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   return warnings;
 }
 
-/// A relative error with its floor: the same error of a perfect estimate, which is caused by
-/// interpolation between the estimates alone.
-Json with_floor(const RelativePoseError& error, const RelativePoseError& of_perfect) {
-  Json json = to_json(error);
-  json["floor"] = nullptr;
-  if (of_perfect.used > 0) {
-    json["floor"] = {{"translation_rmse_m", of_perfect.translation_m.rmse},
-                     {"rotation_rmse_rad", of_perfect.rotation_rad.rmse}};
+/// Warnings about the maps that the run has.
+std::vector<std::string> warnings_of_maps(const dataset::RunFiles& run, const world::World& world) {
+  std::vector<std::string> warnings;
+  for (const auto& [name, cloud] :
+       {std::pair("own", &run.map), {"reprojected", &run.reprojected}}) {
+    for (const std::string& warning : map_warnings(cloud->points, world)) {
+      warnings.push_back(fmt::format("{} map: {}", name, warning));
+    }
   }
-  return json;
+  return warnings;
 }
 
-/// Null when the run has no such map.
-Json evaluate_map_of(const dataset::Cloud& cloud, const dataset::RunFiles& run,
-                     const Trajectory& truth, const world::World& world, const Parallel& parallel,
-                     const SeenSurface* seen, const IdentifiedMap* identified = nullptr) {
-  if (cloud.points.empty()) return nullptr;
-  return evaluate_map(cloud.points, run.trajectory, truth, world, parallel, seen, identified);
+/// Errors over pieces of each length and duration, with the floors of a perfect estimate.
+results::RpeByLength rpe_by_length(const Trajectory& estimate, const Trajectory& truth,
+                                   const RelativePoseError& at_poses) {
+  const Trajectory perfect = truth_at_estimates(estimate, truth);
+  results::RpeByLength rpe;
+  for (std::size_t i = 0; i < kRpeLengths_m.size(); ++i) {
+    const double length = kRpeLengths_m[i];
+    const RelativePoseError floor = relative_pose_error(perfect, truth, length, length);
+    rpe.lengths[i] = metrics_of(relative_pose_error(estimate, truth, length, length), &floor);
+  }
+  rpe.at_poses_1m = metrics_of(at_poses);
+  const RelativePoseError floor = relative_pose_error_over_time(perfect, truth);
+  rpe.over_1s = metrics_of(relative_pose_error_over_time(estimate, truth), &floor);
+  return rpe;
+}
+
+/// Scores of both maps, as far as the run has them.
+results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory& truth,
+                                 const world::World& world, const Parallel& parallel,
+                                 const Observe& observe) {
+  std::optional<SeenSurface> seen;
+  if (observe) {
+    if (std::optional<RayTruth> rays = observe()) {
+      seen = make_seen_surface(*std::move(rays), world, parallel);
+    }
+  }
+  const SeenSurface* surface = seen ? &*seen : nullptr;
+  const IdentifiedMap* identified = seen ? &seen->identified : nullptr;
+  results::MapsOfRun maps;
+  if (!run.map.points.empty()) {
+    maps.own = evaluate_map(run.map.points, run.trajectory, truth, world, parallel, surface);
+  }
+  if (!run.reprojected.points.empty()) {
+    maps.reprojected = evaluate_map(run.reprojected.points, run.trajectory, truth, world, parallel,
+                                    surface, identified);
+  }
+  return maps;
 }
 
 }  // namespace
@@ -136,84 +167,57 @@ std::string divergence_of(const Trajectory& estimate, const Trajectory& truth) {
   return {};
 }
 
-Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth) {
+results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
+                                               const Trajectory& truth) {
   const Status status = status_of(estimate, truth);
-  Json json{{"status", status.name}, {"reason", status.reason}};
-  const std::optional<TimeOffset> offset =
-      status.name == "ok" ? time_offset(estimate, truth) : std::nullopt;
-  json["association"] = to_json(associate(estimate, truth), offset);
-  if (status.name != "ok") return json;
-  json["association"]["lever_arm"] = to_json(find_lever_arm(estimate, truth));
-
-  Json over_time;
-  const Trajectory perfect = truth_at_estimates(estimate, truth);
-  for (const double length : kRpeLengths_m) {
-    const RelativePoseError rpe = relative_pose_error(estimate, truth, length, length);
-    json["rpe"][fmt::format("{}m", length)] =
-        with_floor(rpe, relative_pose_error(perfect, truth, length, length));
-  }
+  const bool ok = status.name == "ok";
+  results::TrajectoryMetrics metrics;
+  metrics.status = status.name;
+  metrics.reason = status.reason;
+  metrics.association =
+      metrics_of(associate(estimate, truth), ok ? time_offset(estimate, truth) : std::nullopt,
+                 ok ? find_lever_arm(estimate, truth) : std::nullopt);
+  if (!ok) return metrics;
   const RelativePoseError at_poses = relative_pose_error_at_poses(estimate, truth);
-  json["rpe"]["1m_at_poses"] = to_json(at_poses);
-  over_time["rpe_1m"] = errors_over_time(at_poses.segments, truth.begin_time());
-  json["rpe"]["1s"] = with_floor(relative_pose_error_over_time(estimate, truth),
-                                 relative_pose_error_over_time(perfect, truth));
-  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3, Gauge::kPosYaw}) {
-    const AbsoluteTrajectoryError ate = absolute_trajectory_error(estimate, truth, gauge);
-    json["ate"][to_string(gauge)] = to_json(ate);
-    if (gauge != Gauge::kPosYaw) {
-      over_time[fmt::format("ate_{}", to_string(gauge))] =
-          errors_over_time(ate.poses, truth.begin_time());
-    }
-  }
-  json["kitti"] = to_json(kitti_error(estimate, truth));
-  json["kitti_short"] = to_json(kitti_error(estimate, truth, kRpeLengths_m));
-  json["hover_jitter"] =
-      to_json(hover_jitter(matched_poses(estimate, truth), gap_limit_of(estimate)));
-  json["errors_over_time"] = over_time;
-  return json;
+  const auto ate = [&](Gauge gauge) { return absolute_trajectory_error(estimate, truth, gauge); };
+  const AbsoluteTrajectoryError first_pose = ate(Gauge::kFirstPose);
+  const AbsoluteTrajectoryError se3 = ate(Gauge::kSe3);
+  metrics.rpe = rpe_by_length(estimate, truth, at_poses);
+  metrics.ate = {metrics_of(first_pose), metrics_of(se3), metrics_of(ate(Gauge::kPosYaw))};
+  metrics.kitti = kitti_error(estimate, truth);
+  metrics.kitti_short = kitti_error(estimate, truth, kRpeLengths_m);
+  metrics.hover_jitter = hover_jitter(matched_poses(estimate, truth), gap_limit_of(estimate));
+  const Time start = truth.begin_time();
+  metrics.errors_over_time = {errors_over_time(at_poses.segments, start),
+                              errors_over_time(first_pose.poses, start),
+                              errors_over_time(se3.poses, start)};
+  return metrics;
 }
 
-Json evaluate_run(const dataset::RunFiles& run, const Trajectory& truth, const world::World* world,
-                  const Parallel& parallel, LogSink& log, const Observe& observe) {
+results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
+                                 const world::World* world, const Parallel& parallel, LogSink& log,
+                                 const Observe& observe) {
   const Status status = status_of(run, truth);
-  Json json{{"schema", "lidarena.metrics"},
-            {"schema_version", kMetricsSchemaVersion},
-            {"status", status.name},
-            {"reason", status.reason},
-            {"warnings", Json::array()},
-            {"truth", describe_truth(truth)},
-            {"live", nullptr},
-            {"final", nullptr},
-            {"resources", resources_json(run.resources)},
-            {"maps", {{"own", nullptr}, {"reprojected", nullptr}}}};
-  if (status.name != "ok") {
+  results::RunMetrics metrics;
+  metrics.status = status.name;
+  metrics.reason = status.reason;
+  metrics.truth = facts_of(truth);
+  metrics.resources = resource_metrics(run.resources);
+  if (!metrics.is_ok()) {
     log.warn(fmt::format("not scored: {} ({})", status.name, status.reason));
-    return json;
+    return metrics;
   }
-  json["warnings"] = warnings_of(run.trajectory, truth);
+  metrics.warnings = warnings_of(run.trajectory, truth);
   if (world != nullptr) {
-    for (const auto& [name, cloud] :
-         {std::pair("own", &run.map), {"reprojected", &run.reprojected}}) {
-      for (const std::string& warning : map_warnings(cloud->points, *world)) {
-        json["warnings"].push_back(fmt::format("{} map: {}", name, warning));
-      }
+    for (std::string& warning : warnings_of_maps(run, *world)) {
+      metrics.warnings.push_back(std::move(warning));
     }
   }
-  for (const Json& warning : json["warnings"]) log.warn(warning.get<std::string>());
-  json["live"] = evaluate_trajectory(run.live, truth);
-  json["final"] = evaluate_trajectory(run.trajectory, truth);
-  if (world == nullptr) return json;
-  std::optional<SeenSurface> seen;
-  if (observe) {
-    if (std::optional<RayTruth> rays = observe()) {
-      seen = make_seen_surface(*std::move(rays), *world, parallel);
-    }
-  }
-  const SeenSurface* surface = seen ? &*seen : nullptr;
-  json["maps"]["own"] = evaluate_map_of(run.map, run, truth, *world, parallel, surface);
-  json["maps"]["reprojected"] = evaluate_map_of(run.reprojected, run, truth, *world, parallel,
-                                                surface, seen ? &seen->identified : nullptr);
-  return json;
+  for (const std::string& warning : metrics.warnings) log.warn(warning);
+  metrics.live = evaluate_trajectory(run.live, truth);
+  metrics.final = evaluate_trajectory(run.trajectory, truth);
+  if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, observe);
+  return metrics;
 }
 
 }  // namespace lidarena::evaluation

@@ -5,34 +5,32 @@
 #include <optional>
 #include <string>
 
-#include "lidarena/base/config_json.hpp"
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/evaluation/map/evaluate_map.hpp"
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
+#include "lidarena/results/run_metrics.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena::evaluation {
 
-/// Version of the document that evaluate_run() writes; increased when a name or a meaning changes.
-inline constexpr int kMetricsSchemaVersion = 2;
-
 /// Determines the ground truth of the flight's rays; empty when it is not available.
 using Observe = std::function<std::optional<RayTruth>()>;
 
-/// All metrics of one run as metrics.json: association first, then trajectory errors of the live
-/// and the final trajectory, then map errors of both maps (null without a mesh or a map). `world`
-/// may be null. A run that diverged (its manifest says "status": "diverged", or its poses diverge,
-/// see divergence_of()) has a status and a reason, and no errors. `observe`, if given, is called
-/// once when maps are scored; without it, or if it returns nothing, completeness, signed distance
-/// and identity error are null.
-Json evaluate_run(const dataset::RunFiles& run, const Trajectory& truth, const world::World* world,
-                  const Parallel& parallel, LogSink& log, const Observe& observe = {});
+/// All metrics of one run: association first, then trajectory errors of the live and the final
+/// trajectory, then map errors of both maps (empty without a mesh or a map). `world` may be null. A
+/// run that diverged (its manifest says "status": "diverged", or its poses diverge, see
+/// divergence_of()) has a status and a reason, and no errors. `observe`, if given, is called once
+/// when maps are scored; without it, or if it returns nothing, completeness, signed distance and
+/// identity error are empty.
+results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
+                                 const world::World* world, const Parallel& parallel, LogSink& log,
+                                 const Observe& observe = {});
 
 /// Scores one trajectory: association, RPE for each piece length, ATE in each gauge, errors over
 /// time.
-Json evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
+results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
 
 /// Why the estimate must not be scored; empty when it may be. It has diverged when, aligned by its
 /// first pose, some position is farther from the truth than twice the path length plus 1 m. That is

@@ -44,10 +44,10 @@ std::string shown(std::optional<double> value) {
 
 class ClaimChecker {
  public:
-  ClaimChecker(const Results& results, const std::string& preset)
+  ClaimChecker(const results::StudyResults& results, const std::string& preset)
       : cells_(results, preset, true),
-        worlds_(places(cells_.worlds(), paper_world)),
-        sensors_(places(cells_.sensors(), paper_sensor)) {}
+        worlds_(places(cells_.worlds(), results::paper_world)),
+        sensors_(places(cells_.sensors(), results::paper_sensor)) {}
 
   /// `algorithm` has the lowest (sign +1) or highest (sign -1) drift in all worlds, with all
   /// sensors.
@@ -73,8 +73,8 @@ class ClaimChecker {
 
   Claim ct_icp_independent_of_sensor(Claim claim) const {
     for (const Place& world : worlds_) {
-      const auto mid = at(world.paper, "Mid-360", "ct_icp", rpe_of);
-      const auto os0 = at(world.paper, "Os0-128", "ct_icp", rpe_of);
+      const auto mid = at(world.paper, "Mid-360", "ct_icp", results::rpe_of);
+      const auto os0 = at(world.paper, "Os0-128", "ct_icp", results::rpe_of);
       if (!mid || !os0) {
         add_failures(claim, world.paper, "ct_icp");
         continue;
@@ -88,7 +88,7 @@ class ClaimChecker {
 
   /// In `world`, the figure `of` with the sensor `worse` exceeds `factor` times the other sensor's.
   Claim sensor_matters(const std::string& world, const std::string& algorithm,
-                       const std::string& worse, const RowFigure& of, double factor,
+                       const std::string& worse, const results::RowFigure& of, double factor,
                        const char* unit, Claim claim) const {
     const std::string better = worse == "Mid-360" ? "Os0-128" : "Mid-360";
     const auto high = at(world, worse, algorithm, of);
@@ -98,8 +98,8 @@ class ClaimChecker {
       return claim;
     }
     const auto lost = [&](const std::string& sensor) {
-      return at(world, sensor, algorithm, outliers_of).value_or(0.0) >
-             kTrackingLostOutliers_percent;
+      return at(world, sensor, algorithm, results::outliers_of).value_or(0.0) >
+             results::kTrackingLostOutliers_percent;
     };
     if (lost(worse) && lost(better)) {
       claim.evidence.push_back(world + ": tracking lost with both sensors");
@@ -113,8 +113,8 @@ class ClaimChecker {
 
   Claim loop_closure_improves_cave(Claim claim) const {
     for (const Place& sensor : sensors_) {
-      const auto with = at("Cave", sensor.paper, "lio_sam_lc", outliers_of);
-      const auto without = at("Cave", sensor.paper, "lio_sam", outliers_of);
+      const auto with = at("Cave", sensor.paper, "lio_sam_lc", results::outliers_of);
+      const auto without = at("Cave", sensor.paper, "lio_sam", results::outliers_of);
       if (!with || !without) continue;
       if (*without == 0.0) {
         claim.evidence.push_back(sensor.name +
@@ -129,8 +129,8 @@ class ClaimChecker {
   }
 
   Claim loop_closure_worsens_house(Claim claim) const {
-    const auto with = at("House", "Mid-360", "lio_sam_lc", outliers_of);
-    const auto without = at("House", "Mid-360", "lio_sam", outliers_of);
+    const auto with = at("House", "Mid-360", "lio_sam_lc", results::outliers_of);
+    const auto without = at("House", "Mid-360", "lio_sam", results::outliers_of);
     if (!with || !without) return claim;
     judge(claim, *with > *without);
     claim.evidence.push_back(
@@ -141,7 +141,7 @@ class ClaimChecker {
   Claim house_is_easy(Claim claim) const {
     for (const Place& sensor : sensors_) {
       for (const std::string& algorithm : cells_.algorithms()) {
-        const auto outliers = at("House", sensor.paper, algorithm, outliers_of);
+        const auto outliers = at("House", sensor.paper, algorithm, results::outliers_of);
         if (!outliers) continue;
         judge(claim, *outliers < kMaxEasyOutliers_percent);
         claim.evidence.push_back(
@@ -154,8 +154,8 @@ class ClaimChecker {
   Claim lio_sam_grows_less(Claim claim) const {
     for (const Place& sensor : sensors_) {
       const auto growth = [&](const std::string& algorithm) -> std::optional<double> {
-        const auto cave = at("Cave", sensor.paper, algorithm, rpe_of);
-        const auto house = at("House", sensor.paper, algorithm, rpe_of);
+        const auto cave = at("Cave", sensor.paper, algorithm, results::rpe_of);
+        const auto house = at("House", sensor.paper, algorithm, results::rpe_of);
         if (!cave || !house) return std::nullopt;
         return drift_increase_of_the_paper(*cave, *house);
       };
@@ -172,7 +172,7 @@ class ClaimChecker {
   Claim memory_grows(Claim claim) const {
     for (const Place& world : worlds_) {
       for (const Place& sensor : sensors_) {
-        for (const ResultRow* row : cells_.rows(world.name, sensor.name, "fast_lio2")) {
+        for (const results::RunRecord* row : cells_.rows(world.name, sensor.name, "fast_lio2")) {
           const auto line = memory_line(*row);
           if (!line) continue;
           judge(claim, line->r_squared > kMinLinearRSquared && line->slope > 0);
@@ -192,13 +192,13 @@ class ClaimChecker {
   };
 
   /// Least-squares line of the algorithm's own memory over time; empty if it was not measured.
-  static std::optional<Line> memory_line(const ResultRow& row) {
+  static std::optional<Line> memory_line(const results::RunRecord& row) {
     if (row.status != "ok" || !fs::exists(row.folder / "resources.csv")) return std::nullopt;
     const auto rows = dataset::read_resources(row.folder / "resources.csv");
     if (rows.size() < 3) return std::nullopt;
     double t = 0.0;
     double m = 0.0;
-    for (const dataset::ResourceRow& r : rows) t += r.t_sensor_s, m += own_memory_mb(r);
+    for (const dataset::ResourceRow& r : rows) t += r.t_sensor_s, m += results::own_memory_mb(r);
     t /= static_cast<double>(rows.size());
     m /= static_cast<double>(rows.size());
     double tt = 0.0;
@@ -206,7 +206,7 @@ class ClaimChecker {
     double mm = 0.0;
     for (const dataset::ResourceRow& r : rows) {
       const double dt = r.t_sensor_s - t;
-      const double dm = own_memory_mb(r) - m;
+      const double dm = results::own_memory_mb(r) - m;
       tt += dt * dt;
       tm += dt * dm;
       mm += dm * dm;
@@ -216,7 +216,7 @@ class ClaimChecker {
   }
 
   /// ", 12 bytes per shot"; empty if the sensor is not known.
-  static std::string bytes_per_shot(const ResultRow& row, double mb_per_s) {
+  static std::string bytes_per_shot(const results::RunRecord& row, double mb_per_s) {
     if (!row.lidar.is_object()) return {};
     const double shots = row.lidar.value("rows", 0.0) * row.lidar.value("columns", 0.0) *
                          row.lidar.value("rate_hz", 0.0);
@@ -237,11 +237,11 @@ class ClaimChecker {
 
   std::optional<double> drift(const Place& world, const Place& sensor,
                               const std::string& algorithm) const {
-    return cells_.median(world.name, sensor.name, algorithm, rpe_of);
+    return cells_.median(world.name, sensor.name, algorithm, results::rpe_of);
   }
 
   std::optional<double> at(const std::string& world, const std::string& sensor,
-                           const std::string& algorithm, const RowFigure& of) const {
+                           const std::string& algorithm, const results::RowFigure& of) const {
     for (const Place& w : worlds_) {
       for (const Place& s : sensors_) {
         if (w.paper != world || s.paper != sensor) continue;
@@ -254,13 +254,13 @@ class ClaimChecker {
   /// A claim holds when all of its checks do.
   static void judge(Claim& claim, bool check) { claim.holds = claim.holds.value_or(true) && check; }
 
-  StudyCells cells_;
+  results::StudyCells cells_;
   std::vector<Place> worlds_, sensors_;
 };
 
 }  // namespace
 
-std::vector<Claim> paper_claims(const Results& results, const std::string& preset) {
+std::vector<Claim> paper_claims(const results::StudyResults& results, const std::string& preset) {
   const ClaimChecker judge(results, preset);
   const auto claim = [](const char* text, const char* rule, const char* possible_reason) {
     return Claim{text, rule, {}, {}, possible_reason};
@@ -286,22 +286,22 @@ std::vector<Claim> paper_claims(const Results& results, const std::string& prese
                 "many times: if the body rotates far during the scan, the spinning sensor "
                 "constrains the rotation between its start and end less")),
       judge.sensor_matters(
-          "Cave", "ct_icp", "Mid-360", outliers_of, kTenfoldMinRatio, "% outliers",
+          "Cave", "ct_icp", "Mid-360", results::outliers_of, kTenfoldMinRatio, "% outliers",
           claim("CT-ICP's Cave map has ten times the outliers with the Mid-360",
                 "more than five times the outliers with the Mid-360, which is tenfold within a "
                 "factor of two (paper: 14.95 against 1.40 %)",
                 "the share of points beyond 20 cm depends on a few moments of one flight")),
       judge.sensor_matters(
-          "Cave", "kiss_icp", "Os0-128", outliers_of, 1.0, "% outliers",
+          "Cave", "kiss_icp", "Os0-128", results::outliers_of, 1.0, "% outliers",
           claim("KISS-ICP's Cave map is worse with the OS0-128",
                 "more outliers than with the Mid-360 (paper: 58.25 against 31.91 %)",
                 "the points of a scan of the paper's simulated OS0-128 may have shared one time "
                 "stamp; without de-skewing, its many points blur the map more")),
-      judge.sensor_matters("Cave", "lio_sam", "Mid-360", rpe_of, 1.0, "cm per m",
+      judge.sensor_matters("Cave", "lio_sam", "Mid-360", results::rpe_of, 1.0, "cm per m",
                            claim("LIO-SAM drifts less with the dense sensor in the Cave",
                                  "less drift with the OS0-128 (paper: 1.24 against 2.61 cm per m)",
                                  "the cave has enough geometric structure even for few points")),
-      judge.sensor_matters("House", "lio_sam", "Mid-360", rpe_of, 1.0, "cm per m",
+      judge.sensor_matters("House", "lio_sam", "Mid-360", results::rpe_of, 1.0, "cm per m",
                            claim("LIO-SAM drifts less with the dense sensor in the House",
                                  "less drift with the OS0-128 (paper: 1.51 against 2.70 cm per m)",
                                  "the paper's version may extract edge and plane features from a "

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/study_cells.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 
@@ -19,6 +19,6 @@ struct Claim {
 };
 
 /// The paper's findings, checked with the runs of one preset.
-std::vector<Claim> paper_claims(const Results& results, const std::string& preset);
+std::vector<Claim> paper_claims(const results::StudyResults& results, const std::string& preset);
 
 }  // namespace lidarena::report

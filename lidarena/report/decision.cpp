@@ -7,43 +7,44 @@
 #include <set>
 #include <tuple>
 
-#include "lidarena/report/study_cells.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
 
 constexpr double kSimilarRatio = 1.1;  // ratio below which two map errors count as equal
 
-std::optional<double> map_rmse(const ResultRow& row) {
+std::optional<double> map_rmse(const results::RunRecord& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->rmse_cm) : std::nullopt;
 }
-std::optional<double> outliers(const ResultRow& row) {
+std::optional<double> outliers(const results::RunRecord& row) {
   return row.reprojected_map ? std::optional(row.reprojected_map->outliers_percent) : std::nullopt;
 }
-std::optional<double> period_share(const ResultRow& row) {
+std::optional<double> period_share(const results::RunRecord& row) {
   if (!row.latency_p95_ms || !row.lidar.is_object()) return std::nullopt;
   return *row.latency_p95_ms * 1e-3 * row.lidar.value("rate_hz", 10.0);
 }
-std::optional<double> memory(const ResultRow& row) { return row.own_memory_mb; }
+std::optional<double> memory(const results::RunRecord& row) { return row.own_memory_mb; }
 
-Candidate candidate(const StudyCells& cells, const std::string& world, const std::string& sensor,
-                    const std::string& algorithm) {
+Candidate candidate(const results::StudyCells& cells, const std::string& world,
+                    const std::string& sensor, const std::string& algorithm) {
   Candidate c;
   c.sensor = sensor;
   c.algorithm = algorithm;
-  for (const ResultRow* row : cells.rows(world, sensor, algorithm)) {
+  for (const results::RunRecord* row : cells.rows(world, sensor, algorithm)) {
     ++c.runs;
-    const bool kept = row->status == "ok" && row->reprojected_map &&
-                      row->reprojected_map->outliers_percent < kTrackingLostOutliers_percent;
+    const bool kept =
+        row->status == "ok" && row->reprojected_map &&
+        row->reprojected_map->outliers_percent < results::kTrackingLostOutliers_percent;
     c.good_runs += kept ? 1 : 0;
-    c.variant = variant_of(*row);
+    c.variant = results::variant_of(*row);
   }
-  const auto median = [&](const RowFigure& figure) {
+  const auto median = [&](const results::RowFigure& figure) {
     return cells.median(world, sensor, algorithm, figure).value_or(0.0);
   };
   c.map_rmse_cm = median(map_rmse);
   c.outliers_percent = median(outliers);
-  c.drift_cm_per_m = median(rpe_of);
+  c.drift_cm_per_m = median(results::rpe_of);
   c.period_share = cells.median(world, sensor, algorithm, period_share);
   c.memory_mb = median(memory);
   return c;
@@ -67,8 +68,8 @@ std::string figures_of(const Candidate& c) {
 }
 
 /// Weight, power and price from the sensor's file: " (0.265 kg, up to 14 W, ...)".
-std::string facts_of(const Results& results, const std::string& sensor) {
-  for (const ResultRow& row : results.rows) {
+std::string facts_of(const results::StudyResults& results, const std::string& sensor) {
+  for (const results::RunRecord& row : results.rows) {
     if (row.sensor != sensor || !row.simulation.is_object()) continue;
     for (const Json& made : row.simulation.value("sensors", Json::array())) {
       if (made.value("name", "") != sensor || !made.contains("facts")) continue;
@@ -89,7 +90,7 @@ std::string facts_of(const Results& results, const std::string& sensor) {
   return "";
 }
 
-std::string recommendation(const Results& results, const std::string& world,
+std::string recommendation(const results::StudyResults& results, const std::string& world,
                            const std::vector<Candidate>& all) {
   if (all.empty() || !all.front().is_usable()) {
     return fmt::format("{}: no combination that was tried keeps tracking in real time. ", world);
@@ -146,11 +147,11 @@ ReportTable candidates_table(const std::string& world, const std::vector<Candida
 
 }  // namespace
 
-std::vector<Candidate> candidates(const Results& results, const std::string& world) {
+std::vector<Candidate> candidates(const results::StudyResults& results, const std::string& world) {
   std::vector<Candidate> all;
   std::set<std::string> seen;  // methods without presets occur in every variant
-  for (const std::string& variant : variants_of(results)) {
-    const StudyCells cells(results, variant);
+  for (const std::string& variant : results::variants_of(results)) {
+    const results::StudyCells cells(results, variant);
     for (const std::string& sensor : cells.sensors()) {
       for (const std::string& algorithm : cells.algorithms()) {
         const auto rows = cells.rows(world, sensor, algorithm);
@@ -158,7 +159,7 @@ std::vector<Candidate> candidates(const Results& results, const std::string& wor
         if (const std::string& mode = rows.front()->mode; !mode.empty() && mode != "rolling") {
           continue;
         }
-        if (!seen.insert(sensor + "|" + label_of(*rows.front())).second) continue;
+        if (!seen.insert(sensor + "|" + results::label_of(*rows.front())).second) continue;
         all.push_back(candidate(cells, world, sensor, algorithm));
       }
     }
@@ -169,9 +170,9 @@ std::vector<Candidate> candidates(const Results& results, const std::string& wor
   return all;
 }
 
-ReportSection decision_section(const Results& results) {
+ReportSection decision_section(const results::StudyResults& results) {
   ReportSection section{"decision", "Which LiDAR, which SLAM", "", "", {}};
-  for (const std::string& world : StudyCells(results, "").worlds()) {
+  for (const std::string& world : results::StudyCells(results, "").worlds()) {
     const std::vector<Candidate> all = candidates(results, world);
     if (all.empty()) continue;
     if (!section.text.empty()) section.text += '\n';

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "lidarena/report/page.hpp"
-#include "lidarena/report/result_table.hpp"
+#include "lidarena/results/run_record.hpp"
 
 namespace lidarena::report {
 
@@ -28,9 +28,9 @@ struct Candidate {
 /// All combinations of a world, the best first: usable ones, then too slow ones, then those that
 /// lost tracking, each group sorted by map RMSE. Runs in a timing mode other than `rolling` (faults
 /// of simulators) are left out.
-std::vector<Candidate> candidates(const Results& results, const std::string& world);
+std::vector<Candidate> candidates(const results::StudyResults& results, const std::string& world);
 
 /// "Which LiDAR, which SLAM": for each world a recommendation, with the figures behind it.
-ReportSection decision_section(const Results& results);
+ReportSection decision_section(const results::StudyResults& results);
 
 }  // namespace lidarena::report

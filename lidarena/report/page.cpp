@@ -51,8 +51,8 @@ main>h2{break-after:avoid}figure,tr{break-inside:avoid}table,.note,figcaption{fo
 .scroll,figure{overflow:visible}th,td{padding:2px 4px}}
 )css";
 
-std::vector<std::string> worlds_of(const Results& results) {
-  return StudyCells(results, "").worlds();
+std::vector<std::string> worlds_of(const results::StudyResults& results) {
+  return results::StudyCells(results, "").worlds();
 }
 
 /// Pictures side by side, up to `budget` bytes.
@@ -84,14 +84,15 @@ std::string color_key() {
 }
 
 /// The 3D view of a world as HTML elements: its header and its data blocks.
-std::string world_view(const Results& results, const std::string& world, std::size_t worlds,
-                       std::size_t runs, const Parallel& parallel, LogSink& log) {
+std::string world_view(const results::StudyResults& results, const std::string& world,
+                       std::size_t worlds, std::size_t runs, const Parallel& parallel,
+                       LogSink& log) {
   Scene scene;
   scene.title = world;
   SceneOptions options;
   options.map = MapChoice::kScored;
   options.max_points = std::min(kPointsOfRun, kPoints / std::max<std::size_t>(runs, 1));
-  for (const ResultRow* row : first_seed_rows(results, world)) {
+  for (const results::RunRecord* row : first_seed_rows(results, world)) {
     if (fs::exists(row->folder / "scored.ply")) add_run(scene, row->folder, options, log);
   }
   if (scene.clouds.empty()) return {};
@@ -134,9 +135,9 @@ std::string section_html(const ReportSection& section, const std::vector<WorldPi
 }
 
 /// The machines and versions of lidarena that the runs were made with.
-std::string made_on(const Results& results) {
+std::string made_on(const results::StudyResults& results) {
   std::vector<std::string> machines;
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (!row.manifest.is_object() || !row.manifest.contains("made_on")) continue;
     const Json& on = row.manifest.at("made_on");
     const std::string machine =
@@ -168,11 +169,11 @@ constexpr const char* kDefinitions =
     "alignments, and the id of each definition. A run that failed or diverged stays in the tables "
     "with its reason.";
 
-ReportSection summary_section(const Results& results) {
+ReportSection summary_section(const results::StudyResults& results) {
   const auto ok = std::count_if(results.rows.begin(), results.rows.end(),
-                                [](const ResultRow& r) { return r.status == "ok"; });
+                                [](const results::RunRecord& r) { return r.status == "ok"; });
   std::string text = fmt::format("{} of {} runs succeeded.", ok, results.rows.size());
-  for (const std::string& preset : variants_of(results)) {
+  for (const std::string& preset : results::variants_of(results)) {
     std::size_t holds = 0;
     std::size_t fails = 0;
     for (const Claim& claim : paper_claims(results, preset)) {
@@ -192,14 +193,14 @@ ReportSection summary_section(const Results& results) {
 
 }  // namespace
 
-std::vector<ReportSection> report_sections(const Results& results) {
+std::vector<ReportSection> report_sections(const results::StudyResults& results) {
   std::vector<ReportSection> sections{summary_section(results), decision_section(results)};
   ReportSection claims{"claims", "The paper's findings, checked with these runs", "", "", {}};
-  for (const std::string& preset : variants_of(results)) {
+  for (const std::string& preset : results::variants_of(results)) {
     claims.tables.push_back(claims_table(paper_claims(results, preset), preset));
   }
   sections.push_back(std::move(claims));
-  for (const std::string& preset : variants_of(results)) {
+  for (const std::string& preset : results::variants_of(results)) {
     sections.push_back({"paper-" + preset, "The paper's tables from our runs, " + preset, "", "",
                         paper_tables(results, preset)});
   }
@@ -215,7 +216,8 @@ std::vector<ReportSection> report_sections(const Results& results) {
   return sections;
 }
 
-std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
+std::string html_page(const results::StudyResults& results,
+                      const std::vector<ReportSection>& sections,
                       const std::vector<WorldPictures>& pictures, const Json& data,
                       const Parallel& parallel, LogSink& log) {
   const std::vector<std::string> worlds = worlds_of(results);

@@ -8,8 +8,8 @@
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/report/pictures.hpp"
-#include "lidarena/report/result_table.hpp"
 #include "lidarena/report/table.hpp"
+#include "lidarena/results/run_record.hpp"
 
 namespace lidarena::report {
 
@@ -24,13 +24,14 @@ struct ReportSection {
 
 /// All sections in the order of the page: summary, findings, the paper's tables, world by world,
 /// the rest.
-std::vector<ReportSection> report_sections(const Results& results);
+std::vector<ReportSection> report_sections(const results::StudyResults& results);
 
 /// The report as one self-contained HTML file of at most 60 MB, whatever the size of the study; it
 /// needs no network. `pictures` are those of all worlds (see draw_pictures()), `data` is the data
 /// of the charts (see report_data()). If the build has no viewer, the page has only tables and
 /// pictures.
-std::string html_page(const Results& results, const std::vector<ReportSection>& sections,
+std::string html_page(const results::StudyResults& results,
+                      const std::vector<ReportSection>& sections,
                       const std::vector<WorldPictures>& pictures, const Json& data,
                       const Parallel& parallel, LogSink& log);
 

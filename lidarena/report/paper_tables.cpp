@@ -39,8 +39,8 @@ std::string paper_text(std::optional<double> value) {
 }
 
 /// One row per sensor and one column per algorithm, as in the paper.
-ReportTable accuracy_table(const StudyCells& cells, const std::string& world, PaperTable kind,
-                           const RowFigure& ours) {
+ReportTable accuracy_table(const results::StudyCells& cells, const std::string& world,
+                           PaperTable kind, const results::RowFigure& ours) {
   ReportTable table;
   table.head = {"sensor"};
   for (const std::string& algorithm : cells.algorithms()) table.head.push_back(algorithm);
@@ -49,8 +49,9 @@ ReportTable accuracy_table(const StudyCells& cells, const std::string& world, Pa
     for (const std::string& algorithm : cells.algorithms()) {
       TableCell cell = figure(cells.median(world, sensor, algorithm, ours));
       if (!cell.value) cell.text = cells.status_text(world, sensor, algorithm);
-      cell.paper = paper_text(
-          paper_figure(kind, paper_world(world), paper_sensor(sensor), paper_algorithm(algorithm)));
+      cell.paper =
+          paper_text(paper_figure(kind, results::paper_world(world), results::paper_sensor(sensor),
+                                  results::paper_algorithm(algorithm)));
       row.push_back(std::move(cell));
     }
     table.rows.push_back(std::move(row));
@@ -60,7 +61,7 @@ ReportTable accuracy_table(const StudyCells& cells, const std::string& world, Pa
 }
 
 /// Table 1, from the datasets' descriptions of their sensors.
-ReportTable sensor_table(const Results& results) {
+ReportTable sensor_table(const results::StudyResults& results) {
   // the paper's Table 1: points per second in millions, range in meters
   static const std::map<std::string, std::array<const char*, 2>> paper{{"Os0-128", {"2.4", "100"}},
                                                                        {"Mid-360", {"0.2", "40"}}};
@@ -69,17 +70,17 @@ ReportTable sensor_table(const Results& results) {
                     "In brackets: the paper's figures.",
                     {"sensor", "shots, M/s", "maximum range, m", "rows", "scans/s"},
                     {}};
-  for (const std::string& sensor : StudyCells(results, "").sensors()) {
-    const auto row =
-        std::find_if(results.rows.begin(), results.rows.end(),
-                     [&](const ResultRow& r) { return r.sensor == sensor && r.lidar.is_object(); });
+  for (const std::string& sensor : results::StudyCells(results, "").sensors()) {
+    const auto row = std::find_if(
+        results.rows.begin(), results.rows.end(),
+        [&](const results::RunRecord& r) { return r.sensor == sensor && r.lidar.is_object(); });
     if (row == results.rows.end()) continue;
     const auto number = [&](const char* key) { return row->lidar.value(key, 0.0); };
     const double rate = number("rate_hz");
     std::vector<TableCell> cells{
         word(sensor), figure(number("rows") * number("columns") * rate / 1e6),
         figure(number("max_range_m")), figure(number("rows")), figure(rate)};
-    if (const auto known = paper.find(paper_sensor(sensor)); known != paper.end()) {
+    if (const auto known = paper.find(results::paper_sensor(sensor)); known != paper.end()) {
       cells[1].paper = known->second[0];
       cells[2].paper = known->second[1];
     }
@@ -89,14 +90,15 @@ ReportTable sensor_table(const Results& results) {
 }
 
 /// The study's world that corresponds to the paper's `paper_name`; empty if there is none.
-std::string world_called(const StudyCells& cells, const std::string& paper_name) {
+std::string world_called(const results::StudyCells& cells, const std::string& paper_name) {
   for (const std::string& world : cells.worlds()) {
-    if (paper_world(world) == paper_name) return world;
+    if (results::paper_world(world) == paper_name) return world;
   }
   return {};
 }
 
-std::optional<ReportTable> increase_table(const StudyCells& cells, const std::string& preset) {
+std::optional<ReportTable> increase_table(const results::StudyCells& cells,
+                                          const std::string& preset) {
   const std::string cave = world_called(cells, "Cave");
   const std::string house = world_called(cells, "House");
   if (cave.empty() || house.empty()) return std::nullopt;
@@ -113,11 +115,11 @@ std::optional<ReportTable> increase_table(const StudyCells& cells, const std::st
     std::vector<TableCell> row{word(sensor)};
     for (const std::string& algorithm : cells.algorithms()) {
       const auto ours = [&](const std::string& world) {
-        return cells.median(world, sensor, algorithm, rpe_of);
+        return cells.median(world, sensor, algorithm, results::rpe_of);
       };
       const auto theirs = [&](const char* world) {
-        return paper_figure(PaperTable::kDrift, world, paper_sensor(sensor),
-                            paper_algorithm(algorithm));
+        return paper_figure(PaperTable::kDrift, world, results::paper_sensor(sensor),
+                            results::paper_algorithm(algorithm));
       };
       for (const auto increase : {drift_increase_of_the_paper, drift_increase}) {
         TableCell cell;
@@ -153,19 +155,21 @@ double drift_increase_of_the_paper(double cave, double house) {
 
 double drift_increase(double cave, double house) { return 100.0 * (house - cave) / cave; }
 
-std::vector<ReportTable> paper_tables(const Results& results, const std::string& preset) {
-  const StudyCells cells(results, preset);
+std::vector<ReportTable> paper_tables(const results::StudyResults& results,
+                                      const std::string& preset) {
+  const results::StudyCells cells(results, preset);
   struct Kind {
     const char* id;
     const char* title;
     PaperTable paper;
-    RowFigure ours;
+    results::RowFigure ours;
   };
   const std::vector<Kind> kinds{
-      {"table2", "Table 2: RMSE of the drift, cm per 1 m", PaperTable::kDrift, rpe_of},
-      {"table4", "Table 4: points of the map beyond 20 cm, %", PaperTable::kOutliers, outliers_of},
+      {"table2", "Table 2: RMSE of the drift, cm per 1 m", PaperTable::kDrift, results::rpe_of},
+      {"table4", "Table 4: points of the map beyond 20 cm, %", PaperTable::kOutliers,
+       results::outliers_of},
       {"table5", "Table 5: RMSE of the point-to-mesh distance, cm", PaperTable::kMapRmse,
-       map_rmse_of}};
+       results::map_rmse_of}};
   std::vector<ReportTable> tables;
   if (ReportTable sensors = sensor_table(results); !sensors.rows.empty()) tables.push_back(sensors);
   for (const Kind& kind : kinds) {

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/study_cells.hpp"
 #include "lidarena/report/table.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 
@@ -30,6 +30,7 @@ double drift_increase(double cave, double house);
 
 /// Tables 1 to 5 from the runs of one preset, with the paper's own figures beside ours where it has
 /// any. Worlds that are not in the paper get tables of the same form.
-std::vector<ReportTable> paper_tables(const Results& results, const std::string& preset);
+std::vector<ReportTable> paper_tables(const results::StudyResults& results,
+                                      const std::string& preset);
 
 }  // namespace lidarena::report

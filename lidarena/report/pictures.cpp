@@ -9,11 +9,10 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
-#include "lidarena/report/gauge.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
-#include "lidarena/report/study_cells.hpp"
 #include "lidarena/report/top_view.hpp"
+#include "lidarena/results/study_cells.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena::report {
@@ -26,8 +25,10 @@ constexpr int kPlaceWidth = 420;
 constexpr int kMapWidth = 560;
 
 /// Positions of the estimate in the mesh's frame, by the alignment in its metrics.
-std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Trajectory& estimate) {
-  const Pose gauge = truth_from_estimate(row.metrics).value_or(Pose::Identity());
+std::vector<Eigen::Vector3d> aligned_positions(const results::RunRecord& row,
+                                               const Trajectory& estimate) {
+  const Pose gauge = (row.metrics ? results::truth_from_estimate(*row.metrics) : std::nullopt)
+                         .value_or(Pose::Identity());
   std::vector<Eigen::Vector3d> positions;
   for (const StampedPose& p : estimate.poses()) {
     positions.push_back(gauge * p.world_from_body.translation());
@@ -35,26 +36,26 @@ std::vector<Eigen::Vector3d> aligned_positions(const ResultRow& row, const Traje
   return positions;
 }
 
-Picture map_picture(const ResultRow& row) {
+Picture map_picture(const results::RunRecord& row) {
   const auto truth = dataset::load_truth(row.folder / row.manifest.value("dataset", ""));
   const Trajectory estimate = dataset::read_tum(row.folder / "trajectory.tum");
   dataset::Cloud map;
   if (fs::exists(row.folder / "scored.ply")) map = dataset::read_cloud(row.folder / "scored.ply");
   TopView view;
-  view.title = fmt::format("{}, {}", row.sensor, label_of(row));
+  view.title = fmt::format("{}, {}", row.sensor, results::label_of(row));
   view.map = &map;
   view.truth = truth ? &*truth : nullptr;
   view.estimate = aligned_positions(row, estimate);
   view.width = kMapWidth;
-  const std::string variant = variant_of(row);
+  const std::string variant = results::variant_of(row);
   return {fmt::format("map-{}-{}-{}{}{}", row.world, row.sensor, row.algorithm,
                       variant.empty() ? "" : "-", variant),
           top_view_svg(view)};
 }
 
-std::vector<Picture> map_pictures(const Results& results, const std::string& world) {
+std::vector<Picture> map_pictures(const results::StudyResults& results, const std::string& world) {
   std::vector<Picture> pictures;
-  for (const ResultRow* row : first_seed_rows(results, world)) {
+  for (const results::RunRecord* row : first_seed_rows(results, world)) {
     if (fs::exists(row->folder / "trajectory.tum")) pictures.push_back(map_picture(*row));
   }
   return pictures;
@@ -81,9 +82,10 @@ Picture place_picture(const std::string& id, const std::string& title, const dat
   return {id, top_view_svg(view)};
 }
 
-std::vector<Picture> place_pictures(const Results& results, const std::string& world) {
+std::vector<Picture> place_pictures(const results::StudyResults& results,
+                                    const std::string& world) {
   std::vector<Picture> pictures;
-  const auto first = std::ranges::find_if(results.rows, [&](const ResultRow& row) {
+  const auto first = std::ranges::find_if(results.rows, [&](const results::RunRecord& row) {
     return row.world == world && row.manifest.is_object() && row.manifest.contains("dataset");
   });
   if (first == results.rows.end()) return pictures;
@@ -100,7 +102,7 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
     const char* title;
   };
   std::set<std::string> sensors;
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (row.world != world || !sensors.insert(row.sensor).second) continue;
     for (const Scan& scan :
          {Scan{"scan", "_scan.ply", "one scan, de-skewed by the true motion"},
@@ -116,21 +118,22 @@ std::vector<Picture> place_pictures(const Results& results, const std::string& w
 
 }  // namespace
 
-std::vector<const ResultRow*> first_seed_rows(const Results& results, const std::string& world) {
-  std::vector<const ResultRow*> rows;
+std::vector<const results::RunRecord*> first_seed_rows(const results::StudyResults& results,
+                                                       const std::string& world) {
+  std::vector<const results::RunRecord*> rows;
   std::set<std::string> seen;
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (row.world != world || row.status != "ok") continue;
-    if (seen.insert(row.sensor + "|" + label_of(row)).second) {
+    if (seen.insert(row.sensor + "|" + results::label_of(row)).second) {
       rows.push_back(&row);
     }
   }
   return rows;
 }
 
-std::vector<WorldPictures> draw_pictures(const Results& results) {
+std::vector<WorldPictures> draw_pictures(const results::StudyResults& results) {
   std::vector<WorldPictures> pictures;
-  for (const std::string& world : StudyCells(results, "").worlds()) {
+  for (const std::string& world : results::StudyCells(results, "").worlds()) {
     pictures.push_back({world, place_pictures(results, world), map_pictures(results, world)});
   }
   return pictures;

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/result_table.hpp"
+#include "lidarena/results/run_record.hpp"
 
 namespace lidarena::report {
 
@@ -22,9 +22,10 @@ struct WorldPictures {
 };
 
 /// The first run with status ok for each sensor, algorithm and reading_of() of a world.
-std::vector<const ResultRow*> first_seed_rows(const Results& results, const std::string& world);
+std::vector<const results::RunRecord*> first_seed_rows(const results::StudyResults& results,
+                                                       const std::string& world);
 
 /// The pictures of every world, as far as the folders still hold their files.
-std::vector<WorldPictures> draw_pictures(const Results& results);
+std::vector<WorldPictures> draw_pictures(const results::StudyResults& results);
 
 }  // namespace lidarena::report

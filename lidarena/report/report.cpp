@@ -7,10 +7,10 @@
 #include "lidarena/report/page.hpp"
 #include "lidarena/report/pictures.hpp"
 #include "lidarena/report/report_data.hpp"
-#include "lidarena/report/result_table.hpp"
 #include "lidarena/report/svg_figures.hpp"
 #include "lidarena/report/table.hpp"
 #include "lidarena/report/web_bundle.hpp"
+#include "lidarena/results/run_record.hpp"
 
 namespace lidarena::report {
 namespace {
@@ -45,9 +45,9 @@ void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesys
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
                          const std::filesystem::path& folder, const Parallel& parallel,
                          LogSink& log) {
-  std::vector<Results> parts;
-  for (const std::filesystem::path& part : folders) parts.push_back(read_results(part));
-  const Results results = merged(std::move(parts));
+  std::vector<results::StudyResults> parts;
+  for (const std::filesystem::path& part : folders) parts.push_back(results::read_results(part));
+  const results::StudyResults results = results::merged(std::move(parts));
   log.info("drawing the report");
   std::filesystem::create_directories(folder);
   ReportFiles files;
@@ -56,7 +56,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   const std::vector<ReportSection> sections = report_sections(results);
   const std::vector<WorldPictures> pictures = draw_pictures(results);
   const Json data = report_data(results);
-  dataset::write_text_file(files.csv, results_csv(results));
+  dataset::write_text_file(files.csv, results::results_csv(results));
   write_tables(sections, folder / "tables");
   dataset::write_json(folder / "report.json", data);
   if (!draw_svg_figures(folder / "report.json", folder / "figures")) {
@@ -66,7 +66,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   }
   write_pictures(pictures, folder / "figures");
   dataset::write_text_file(files.page, html_page(results, sections, pictures, data, parallel, log));
-  files.text_table = results_text(results);
+  files.text_table = results::results_text(results);
   return files;
 }
 

@@ -21,7 +21,7 @@ Json rounded(double value) {
 
 Json rounded(std::optional<double> value) { return value ? rounded(*value) : Json(nullptr); }
 
-Json map_json(const std::optional<MapFigures>& map) {
+Json map_json(const std::optional<results::MapFigures>& map) {
   if (!map) return nullptr;
   Json histogram = Json::array();
   for (const double percent : map->histogram_percent) histogram.push_back(rounded(percent));
@@ -38,16 +38,14 @@ void for_thinned(std::size_t count, const Take& take) {
   for (std::size_t i = 0; i < count; i += stride) take(i);
 }
 
-Json error_curve(const Json& metrics) {
-  const Json::json_pointer pointer("/final/errors_over_time/ate_se3");
-  if (!metrics.is_object() || !metrics.contains(pointer)) return nullptr;
-  const Json& times = metrics.at(pointer).at("t_s");
-  const Json& errors = metrics.at(pointer).at("translation_m");
+Json error_curve(const std::optional<results::RunMetrics>& metrics) {
+  if (!metrics || !metrics->final || !metrics->final->errors_over_time) return nullptr;
+  const results::ErrorsOverTime& errors = metrics->final->errors_over_time->ate_se3;
+  if (errors.empty()) return nullptr;
   Json curve{{"t_s", Json::array()}, {"cm", Json::array()}};
-  for_thinned(times.size(), [&](std::size_t i) {
-    if (!times[i].is_number() || !errors[i].is_number()) return;
-    curve["t_s"].push_back(rounded(times[i].get<double>()));
-    curve["cm"].push_back(rounded(100.0 * errors[i].get<double>()));
+  for_thinned(errors.t_s.size(), [&](std::size_t i) {
+    curve["t_s"].push_back(rounded(errors.t_s[i]));
+    curve["cm"].push_back(rounded(100.0 * errors.translation_m[i]));
   });
   return curve;
 }
@@ -72,7 +70,7 @@ Json memory_curve(const fs::path& folder) {
   return curve;
 }
 
-Json run_json(const ResultRow& row) {
+Json run_json(const results::RunRecord& row) {
   const Json cpu_share =
       row.real_time_factor ? rounded(1.0 / *row.real_time_factor) : Json(nullptr);
   return {{"name", row.name},
@@ -80,7 +78,7 @@ Json run_json(const ResultRow& row) {
           {"flight", row.flight},
           {"sensor", row.sensor},
           {"algorithm", row.algorithm},
-          {"preset", variant_of(row)},
+          {"preset", results::variant_of(row)},
           {"seed", row.seed},
           {"status", row.status},
           {"rpe_cm_per_m", rounded(row.rpe_cm_per_m)},
@@ -94,9 +92,9 @@ Json run_json(const ResultRow& row) {
 
 }  // namespace
 
-Json report_data(const Results& results) {
+Json report_data(const results::StudyResults& results) {
   Json data{{"title", results.title}, {"worlds", Json::array()}, {"runs", Json::array()}};
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (std::find(data["worlds"].begin(), data["worlds"].end(), row.world) ==
         data["worlds"].end()) {
       data["worlds"].push_back(row.world);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/report/scene_files.hpp"
+#include "lidarena/results/run_metrics.hpp"
 
 #include <fmt/format.h>
 
@@ -13,7 +14,6 @@
 #include "lidarena/dataset/points/point_table.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
-#include "lidarena/report/gauge.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -274,11 +274,11 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
                      "run the algorithm again");
   }
   const Json manifest = dataset::read_json(manifest_file);
-  const Json metrics =
-      fs::exists(folder / "metrics.json") ? dataset::read_json(folder / "metrics.json") : Json();
   const std::string label = run_label(folder, manifest);
   const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), log);
-  const auto gauge = truth_from_estimate(metrics);
+  const auto gauge = fs::exists(folder / "metrics.json")
+                         ? results::truth_from_estimate(results::read_metrics(folder))
+                         : std::nullopt;
   if (truth && !gauge) log.warn(label + ": not scored, so the map is not aligned with the mesh");
   const Pose scene_from_map = gauge.value_or(Pose::Identity());
 

@@ -3,30 +3,31 @@
 
 #include <fmt/format.h>
 
-#include "lidarena/report/study_cells.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
 
 /// The smallest figure with its algorithm: "fast_lio2 (indoor): 0.84"; empty if there is none.
-std::string smallest_figure(const Results& results, const std::string& world,
-                            const std::string& sensor, const RowFigure& of) {
+std::string smallest_figure(const results::StudyResults& results, const std::string& world,
+                            const std::string& sensor, const results::RowFigure& of) {
   std::optional<double> best;
   std::string text;
-  for (const std::string& preset : variants_of(results)) {
-    const StudyCells cells(results, preset);
+  for (const std::string& preset : results::variants_of(results)) {
+    const results::StudyCells cells(results, preset);
     for (const std::string& algorithm : cells.algorithms()) {
       const auto value = cells.median(world, sensor, algorithm, of);
       if (!value || (best && *best <= *value)) continue;
       best = value;
-      const ResultRow& row = *cells.rows(world, sensor, algorithm).front();
-      text = fmt::format("{}: {}", label_of(row), figure(value).text);
+      const results::RunRecord& row = *cells.rows(world, sensor, algorithm).front();
+      text = fmt::format("{}: {}", results::label_of(row), figure(value).text);
     }
   }
   return text;
 }
 
-std::optional<double> map_value(const std::optional<MapFigures>& map, double MapFigures::*member) {
+std::optional<double> map_value(const std::optional<results::MapFigures>& map,
+                                double results::MapFigures::*member) {
   return map ? std::optional((*map).*member) : std::nullopt;
 }
 
@@ -35,7 +36,7 @@ std::string argument(const std::string& text) {
   return text.find_first_of(" '\"$&;()") == std::string::npos ? text : "'" + text + "'";
 }
 
-std::string simulate_command(const ResultRow& row) {
+std::string simulate_command(const results::RunRecord& row) {
   const Json& made = row.simulation;
   if (!made.is_object()) return "(the dataset was not simulated by lidarena)";
   std::string command =
@@ -53,24 +54,24 @@ std::string simulate_command(const ResultRow& row) {
 
 }  // namespace
 
-ReportTable winners_table(const Results& results) {
+ReportTable winners_table(const results::StudyResults& results) {
   ReportTable table{"winners",
                     "Best algorithm for each world and sensor",
                     "Medians over flights and seeds of the successful runs.",
                     {"world, sensor", "lowest drift, cm per m", "fewest points beyond 20 cm, %"},
                     {}};
-  const StudyCells all(results, "");
+  const results::StudyCells all(results, "");
   for (const std::string& world : all.worlds()) {
     for (const std::string& sensor : all.sensors()) {
       table.rows.push_back({word(world + ", " + sensor),
-                            word(smallest_figure(results, world, sensor, rpe_of)),
-                            word(smallest_figure(results, world, sensor, outliers_of))});
+                            word(smallest_figure(results, world, sensor, results::rpe_of)),
+                            word(smallest_figure(results, world, sensor, results::outliers_of))});
     }
   }
   return table;
 }
 
-ReportTable runs_table(const Results& results, const std::string& world) {
+ReportTable runs_table(const results::StudyResults& results, const std::string& world) {
   ReportTable table{
       "runs-" + world,
       "All runs, " + world,
@@ -81,16 +82,17 @@ ReportTable runs_table(const Results& results, const std::string& world) {
        "own map RMSE, cm", "own map > 20 cm, %", "all returns RMSE, cm", "all returns > 20 cm, %",
        "times real time", "P95, ms", "own memory, MB"},
       {}};
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (row.world != world) continue;
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {}, {}", row.sensor, label_of(row), row.seed))};
-    for (const auto& value : {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
-                              map_value(row.own_map, &MapFigures::rmse_cm),
-                              map_value(row.own_map, &MapFigures::outliers_percent),
-                              map_value(row.reprojected_map, &MapFigures::rmse_cm),
-                              map_value(row.reprojected_map, &MapFigures::outliers_percent),
-                              row.real_time_factor, row.latency_p95_ms, row.own_memory_mb}) {
+        word(fmt::format("{}, {}, {}", row.sensor, results::label_of(row), row.seed))};
+    for (const auto& value :
+         {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
+          map_value(row.own_map, &results::MapFigures::rmse_cm),
+          map_value(row.own_map, &results::MapFigures::outliers_percent),
+          map_value(row.reprojected_map, &results::MapFigures::rmse_cm),
+          map_value(row.reprojected_map, &results::MapFigures::outliers_percent),
+          row.real_time_factor, row.latency_p95_ms, row.own_memory_mb}) {
       cells.push_back(figure(value));
     }
     if (row.status != "ok") cells[1] = word(row.status + ": " + row.reason);
@@ -99,16 +101,16 @@ ReportTable runs_table(const Results& results, const std::string& world) {
   return table;
 }
 
-ReportTable failures_table(const Results& results) {
+ReportTable failures_table(const results::StudyResults& results) {
   ReportTable table{"failures", "Runs that did not succeed", "", {"run", "state", "reason"}, {}};
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     if (row.status == "ok") continue;
     table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
   }
   return table;
 }
 
-ReportTable commands_table(const Results& results) {
+ReportTable commands_table(const results::StudyResults& results) {
   ReportTable table{
       "commands",
       "Commands that reproduce each run",
@@ -116,7 +118,7 @@ ReportTable commands_table(const Results& results) {
       "All sensors of a study are simulated on the same flight.",
       {"run", "commands"},
       {}};
-  for (const ResultRow& row : results.rows) {
+  for (const results::RunRecord& row : results.rows) {
     const std::string preset = row.preset.empty() ? "" : " --preset " + row.preset;
     table.rows.push_back(
         {word(row.name),

@@ -4,19 +4,19 @@
 #include <vector>
 
 #include "lidarena/report/claims.hpp"
-#include "lidarena/report/result_table.hpp"
 #include "lidarena/report/table.hpp"
+#include "lidarena/results/run_record.hpp"
 
 namespace lidarena::report {
 
 /// The best algorithm for each world and sensor by drift, and by outliers of the map.
-ReportTable winners_table(const Results& results);
+ReportTable winners_table(const results::StudyResults& results);
 /// All runs of a world with all their figures; failed runs are rows, too.
-ReportTable runs_table(const Results& results, const std::string& world);
+ReportTable runs_table(const results::StudyResults& results, const std::string& world);
 /// Runs that failed, diverged or were not scored, with their reasons.
-ReportTable failures_table(const Results& results);
+ReportTable failures_table(const results::StudyResults& results);
 /// The commands that reproduce each run, including its dataset.
-ReportTable commands_table(const Results& results);
+ReportTable commands_table(const results::StudyResults& results);
 /// Claims with their figures and "holds", "does not hold", "cannot be judged" or "not measured".
 ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);
 

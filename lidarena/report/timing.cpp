@@ -5,7 +5,7 @@
 
 #include <array>
 
-#include "lidarena/report/study_cells.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
@@ -13,27 +13,29 @@ namespace {
 struct Kind {
   const char* id;
   const char* title;
-  std::optional<double> (*figure)(const ResultRow&);
+  std::optional<double> (*figure)(const results::RunRecord&);
 };
-constexpr std::array kKinds{Kind{"drift", "RMSE of the drift, cm per 1 m", rpe_of},
-                            Kind{"map", "RMSE of the point-to-mesh distance, cm", map_rmse_of},
-                            Kind{"outliers", "Points of the map beyond 20 cm, %", outliers_of}};
+constexpr std::array kKinds{
+    Kind{"drift", "RMSE of the drift, cm per 1 m", results::rpe_of},
+    Kind{"map", "RMSE of the point-to-mesh distance, cm", results::map_rmse_of},
+    Kind{"outliers", "Points of the map beyond 20 cm, %", results::outliers_of}};
 
-ReportTable timing_table(const Results& results, const std::vector<std::string>& modes,
-                         const std::string& world, const std::string& preset, const Kind& kind) {
+ReportTable timing_table(const results::StudyResults& results,
+                         const std::vector<std::string>& modes, const std::string& world,
+                         const std::string& preset, const Kind& kind) {
   ReportTable table{fmt::format("modes-{}-{}-{}", kind.id, world, preset),
                     fmt::format("{}: {}, {}", kind.title, world, preset),
                     "",
                     {"sensor, algorithm"},
                     {}};
   table.head.insert(table.head.end(), modes.begin(), modes.end());
-  const StudyCells all(results, "");
+  const results::StudyCells all(results, "");
   for (const std::string& sensor : all.sensors()) {
     for (const std::string& algorithm : all.algorithms()) {
       std::vector<TableCell> row{word(sensor + ", " + algorithm)};
       bool known = false;
       for (const std::string& mode : modes) {
-        const StudyCells cells(results, variant_of(preset, mode));
+        const results::StudyCells cells(results, results::variant_of(preset, mode));
         TableCell cell = figure(cells.median(world, sensor, algorithm, kind.figure));
         if (!cell.value) cell.text = cells.status_text(world, sensor, algorithm);
         known = known || !cell.text.empty();
@@ -47,8 +49,8 @@ ReportTable timing_table(const Results& results, const std::vector<std::string>&
 
 }  // namespace
 
-std::vector<ReportTable> timing_tables(const Results& results) {
-  const StudyCells all(results, "");
+std::vector<ReportTable> timing_tables(const results::StudyResults& results) {
+  const results::StudyCells all(results, "");
   std::vector<std::string> modes = all.modes();
   std::erase(modes, "");  // of further studies that set no mode
   std::vector<ReportTable> tables;

@@ -48,14 +48,6 @@ dataset::Cloud reprojected_map(const RunRequest& request, const std::string& lid
   return evaluation::reproject(*again.events, lidar_id, lidar->body_from_lidar, trajectory);
 }
 
-/// Aligned by SE(3) over all positions where that is determined, else by the first pose.
-Pose mesh_from_map_of(const Trajectory& estimate, const Trajectory& truth) {
-  const evaluation::Alignment best = evaluation::align(estimate, truth, evaluation::Gauge::kSe3);
-  return best.determined() ? best.truth_from_estimate
-                           : evaluation::align(estimate, truth, evaluation::Gauge::kFirstPose)
-                                 .truth_from_estimate;
-}
-
 /// At most kScoredPoints of the re-projected map, in the mesh's frame, each with its distance.
 dataset::Cloud scored_cloud(const dataset::RunFiles& run, const Pose& mesh_from_map,
                             const world::World& world, const Parallel& parallel) {
@@ -167,7 +159,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   return result.summary;
 }
 
-Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
+results::RunMetrics score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
   const dataset::RunFiles run = dataset::read_run(folder);
   const fs::path dataset = folder / run.manifest.at("dataset").get<std::string>();
   const auto truth = dataset::load_truth(dataset);
@@ -179,18 +171,17 @@ Json score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
   if (const auto mesh = dataset::find_world_mesh(dataset)) {
     world = std::make_unique<world::World>(world::load_mesh(*mesh), mesh->string());
   }
-  const Json metrics = evaluation::evaluate_run(run, *truth, world.get(), parallel, log, [&] {
+  const auto observe = [&] {
     return ray_truth(dataset, run.manifest.value("sensor", ""), run.trajectory, *truth, *world,
                      parallel, log);
-  });
-  if (world && metrics.value("status", "") == "ok" && !run.reprojected.points.empty()) {
-    const Pose mesh_from_map = mesh_from_map_of(run.trajectory, *truth);
-    dataset::write_ply(folder / "scored.ply", scored_cloud(run, mesh_from_map, *world, parallel));
+  };
+  const results::RunMetrics metrics =
+      evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe);
+  const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
+  if (world && mesh_from_map && !run.reprojected.points.empty()) {
+    dataset::write_ply(folder / "scored.ply", scored_cloud(run, *mesh_from_map, *world, parallel));
   }
-  Json accuracy = metrics;
-  accuracy.erase("resources");  // differs between repeated runs, so it goes to its own file
-  dataset::write_json(folder / "resources.json", metrics.at("resources"));
-  dataset::write_json(folder / "metrics.json", accuracy);
+  results::write_metrics(folder, metrics);
   return metrics;
 }
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
-#include "lidarena/evaluation/metrics_json.hpp"
 #include "lidarena/study/config_folder.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "python/src/bindings.hpp"
@@ -23,14 +23,14 @@ py::object evaluate(const Trajectory& estimate, const Trajectory& truth,
     const auto rows = rows_of(*map, "map");
     run.map.points.assign(rows.begin(), rows.end());
   }
-  Json metrics;
+  results::RunMetrics metrics;
   {
     const py::gil_scoped_release released;
     PythonLog log;
     metrics = evaluation::evaluate_run(run, truth, world == nullptr ? nullptr : &world->world,
                                        Parallel(threads), log);
   }
-  return to_python(metrics);
+  return to_python(to_json(metrics));
 }
 
 py::tuple map_error_of(const Array3f& map, const SimulatedWorld& world,
@@ -44,8 +44,7 @@ py::tuple map_error_of(const Array3f& map, const SimulatedWorld& world,
     error = evaluation::map_error(rows, pose, world.world, Parallel(threads), &distances);
   }
   const auto [kept, owner] = keep(std::move(distances));
-  return py::make_tuple(to_python(evaluation::to_json(error)),
-                        view_rows(*kept, py::dtype::of<float>(), owner));
+  return py::make_tuple(to_python(to_json(error)), view_rows(*kept, py::dtype::of<float>(), owner));
 }
 
 py::object run_algorithm_on(const std::string& algorithm, const fs::path& dataset,
@@ -80,19 +79,19 @@ void bind_evaluation(py::module_& m) {
         py::arg("mesh_from_map") = py::none(), py::arg("threads") = 0,
         "(figures, distance of each point to the mesh: float32, m, NaN if there is none).");
   m.def("run_algorithm", &run_algorithm_on, py::arg("algorithm"), py::arg("dataset"),
-        py::arg("out"), py::arg("preset") = "", py::arg("sensor") = "",
-        py::arg("config_file") = "", py::arg("overrides") = std::vector<std::string>{},
-        py::arg("threads") = 0, "Runs one algorithm over a dataset and writes a RUN folder.");
+        py::arg("out"), py::arg("preset") = "", py::arg("sensor") = "", py::arg("config_file") = "",
+        py::arg("overrides") = std::vector<std::string>{}, py::arg("threads") = 0,
+        "Runs one algorithm over a dataset and writes a RUN folder.");
   m.def(
       "score_run",
       [](const fs::path& run, int threads) {
-        Json metrics;
+        results::RunMetrics metrics;
         {
           const py::gil_scoped_release released;
           PythonLog log;
           metrics = study::score_run(run, Parallel(threads), log);
         }
-        return to_python(metrics);
+        return to_python(to_json(metrics));
       },
       py::arg("run"), py::arg("threads") = 0, "Scores a RUN folder against its dataset's truth.");
 }

@@ -32,40 +32,41 @@ Trajectory drive(int meters, double scale = 1.0, double yaw_per_m = 0.0) {
 TEST(KittiError, PiecesStartAtEveryTenthFrameAndEndAtTheFirstBeyondTheLength) {
   // 300 m: pieces of 101 m start at 0, 10 .. 190 m, of 201 m at 0 .. 90 m, of 300 m none fits
   const KittiError error = kitti_error(drive(300, 1.01), drive(300));
-  EXPECT_TRUE(error.refusal.empty());
+  EXPECT_FALSE(error.refused);
   ASSERT_EQ(error.lengths.size(), 8U);
   EXPECT_EQ(error.lengths[0].pieces, 20U);
   EXPECT_EQ(error.lengths[1].pieces, 10U);
   EXPECT_EQ(error.lengths[2].pieces, 0U);
   EXPECT_EQ(error.pieces, 30U);
   // one percent of 101 m, divided by 100 m
-  EXPECT_NEAR(error.lengths[0].translation_percent, 1.01, 1e-9);
-  EXPECT_NEAR(error.lengths[1].translation_percent, 1.005, 1e-9);
-  EXPECT_NEAR(error.translation_percent, (20 * 1.01 + 10 * 1.005) / 30, 1e-9);
-  EXPECT_NEAR(error.rotation_rad_per_m, 0.0, 1e-12);
+  EXPECT_NEAR(error.lengths[0].translation_percent.value(), 1.01, 1e-9);
+  EXPECT_NEAR(error.lengths[1].translation_percent.value(), 1.005, 1e-9);
+  EXPECT_NEAR(error.translation_percent.value(), (20 * 1.01 + 10 * 1.005) / 30, 1e-9);
+  EXPECT_NEAR(error.rotation_rad_per_m.value(), 0.0, 1e-12);
 }
 
 TEST(KittiError, RotationIsTheAnglePerMeter) {
   const double w = 0.002;
   const KittiError error = kitti_error(drive(300, 1.0, w), drive(300));
-  EXPECT_NEAR(error.lengths[0].rotation_rad_per_m, w * 1.01, 1e-12);
-  EXPECT_NEAR(error.lengths[1].rotation_rad_per_m, w * 1.005, 1e-12);
+  EXPECT_NEAR(error.lengths[0].rotation_rad_per_m.value(), w * 1.01, 1e-12);
+  EXPECT_NEAR(error.lengths[1].rotation_rad_per_m.value(), w * 1.005, 1e-12);
 }
 
 TEST(KittiError, TheLadderOfShortLengthsFollowsTheSameRule) {
   const KittiError error = kitti_error(drive(60, 1.01), drive(60), kRpeLengths_m);
   ASSERT_EQ(error.lengths.size(), 6U);
-  EXPECT_NEAR(error.lengths[0].translation_percent, 2.0, 1e-9);  // 2 m for 1 m: 1 is not beyond 1
-  EXPECT_EQ(error.lengths[5].pieces, 1U);                        // 51 m, only from 0 m
-  EXPECT_NEAR(error.lengths[5].translation_percent, 1.02, 1e-9);
+  EXPECT_NEAR(error.lengths[0].translation_percent.value(), 2.0,
+              1e-9);                       // 2 m for 1 m: 1 is not beyond 1
+  EXPECT_EQ(error.lengths[5].pieces, 1U);  // 51 m, only from 0 m
+  EXPECT_NEAR(error.lengths[5].translation_percent.value(), 1.02, 1e-9);
 }
 
 TEST(KittiError, AFlightTooShortIsRefusedInWordsNotScoredAsNotANumber) {
   const KittiError error = kitti_error(drive(60), drive(60));
   EXPECT_EQ(error.pieces, 0U);
-  EXPECT_THAT(error.refusal, HasSubstr("the common path is 60 m, no piece of 100 m fits"));
-  EXPECT_FALSE(kitti_error(Trajectory(), drive(60)).refusal.empty());
-  EXPECT_FALSE(kitti_error(drive(60), Trajectory()).refusal.empty());
+  EXPECT_THAT(error.refused.value(), HasSubstr("the common path is 60 m, no piece of 100 m fits"));
+  EXPECT_TRUE(kitti_error(Trajectory(), drive(60)).refused);
+  EXPECT_TRUE(kitti_error(drive(60), Trajectory()).refused);
 }
 
 TEST(KittiError, PathIsTheTruthsOwnAlsoWhereEstimatesAreMissing) {
@@ -108,10 +109,10 @@ TEST_P(KittiSequence09, GivesWhatAnIndependentScriptGave) {
   EXPECT_EQ(error.pieces, known.pieces);
   EXPECT_EQ(error.lengths[0].pieces, known.pieces_100);
   EXPECT_EQ(error.lengths[7].pieces, known.pieces_800);
-  EXPECT_NEAR(error.translation_percent, known.percent, 1e-5);
-  EXPECT_NEAR(error.lengths[0].translation_percent, known.percent_100, 1e-5);
-  EXPECT_NEAR(error.lengths[7].translation_percent, known.percent_800, 1e-5);
-  const double degrees = error.rotation_rad_per_m * 180.0 / std::numbers::pi * 100.0;
+  EXPECT_NEAR(error.translation_percent.value(), known.percent, 1e-5);
+  EXPECT_NEAR(error.lengths[0].translation_percent.value(), known.percent_100, 1e-5);
+  EXPECT_NEAR(error.lengths[7].translation_percent.value(), known.percent_800, 1e-5);
+  const double degrees = error.rotation_rad_per_m.value() * 180.0 / std::numbers::pi * 100.0;
   EXPECT_NEAR(degrees, known.deg_per_100m, 1e-5);
 }
 

@@ -44,10 +44,11 @@ TEST(MapError, OfNoisyPointsOnAPlaneIsTheNoise) {
   EXPECT_NEAR(e.distance_m.p95, 1.95996 * sigma, 4.0 * 1.865 * sigma / root);
   EXPECT_NEAR(e.distance_m.p99, 2.57583 * sigma, 4.0 * 3.440 * sigma / root);
   EXPECT_EQ(e.inliers, n);  // 20 cm are ten sigmas
-  EXPECT_DOUBLE_EQ(e.rmse_inliers_m, e.distance_m.rmse);
+  EXPECT_DOUBLE_EQ(e.rmse_inliers_m.value(), e.distance_m.rmse);
   EXPECT_EQ(e.outliers_percent, 0.0);
-  EXPECT_EQ(std::accumulate(e.histogram.begin(), e.histogram.end(), std::uint64_t{0}), n);
-  const double first_bin = static_cast<double>(e.histogram[0]) / static_cast<double>(n);
+  EXPECT_EQ(std::accumulate(e.histogram.counts.begin(), e.histogram.counts.end(), std::uint64_t{0}),
+            n);
+  const double first_bin = static_cast<double>(e.histogram.counts[0]) / static_cast<double>(n);
   EXPECT_NEAR(first_bin, std::erf(0.5 / std::sqrt(2.0)), 4.0 * 0.486 / root);  // |z| < sigma / 2
 }
 
@@ -78,9 +79,10 @@ TEST(MapError, PointsTwentyFiveCentimetersOffAreAllOutliers) {
   const MapError e = map_error(noisy_plane(1000, 0.0), lifted, world, Parallel(1));
   EXPECT_EQ(e.outliers_percent, 100.0);
   EXPECT_EQ(e.inliers, 0U);
-  EXPECT_EQ(e.rmse_inliers_m, 0.0);
+  EXPECT_FALSE(e.rmse_inliers_m);
   EXPECT_NEAR(e.distance_m.rmse, 0.25, kSingle);
-  EXPECT_EQ(std::accumulate(e.histogram.begin(), e.histogram.end(), std::uint64_t{0}), 0U);
+  EXPECT_EQ(std::accumulate(e.histogram.counts.begin(), e.histogram.counts.end(), std::uint64_t{0}),
+            0U);
 }
 
 TEST(MapError, AMapInAnotherFrameIsBroughtBackByItsGauge) {
@@ -130,18 +132,18 @@ TEST(MapError, IsTheSameBitsOnOneTwoAndFiveThreads) {
     EXPECT_EQ(one.distance_m.mean, more.distance_m.mean);
     EXPECT_EQ(one.distance_m.p99, more.distance_m.p99);
     EXPECT_EQ(one.rmse_inliers_m, more.rmse_inliers_m);
-    EXPECT_EQ(one.histogram, more.histogram);
+    EXPECT_EQ(one.histogram.counts, more.histogram.counts);
   }
 }
 
 TEST(MapError, BinsAreCentimetersAndTwentyCentimetersAreStillIn) {
   const std::vector<double> distances{0.0, 0.0099, 0.0101, 0.1999, 0.20, 0.2001, 5.0};
   const MapError e = summarize_distances(distances);
-  EXPECT_EQ(e.histogram[0], 2U);
-  EXPECT_EQ(e.histogram[1], 1U);
-  EXPECT_EQ(e.histogram[19], 2U);
+  EXPECT_EQ(e.histogram.counts[0], 2U);
+  EXPECT_EQ(e.histogram.counts[1], 1U);
+  EXPECT_EQ(e.histogram.counts[19], 2U);
   EXPECT_EQ(e.inliers, 5U);
-  EXPECT_DOUBLE_EQ(e.outliers_percent, 100.0 * 2.0 / 7.0);
+  EXPECT_DOUBLE_EQ(e.outliers_percent.value(), 100.0 * 2.0 / 7.0);
 }
 
 }  // namespace

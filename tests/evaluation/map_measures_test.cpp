@@ -87,7 +87,7 @@ TEST(VoxelError, IsTheRmseWhereEachCubeHoldsOnePoint) {
   const VoxelError e = voxel_error(s.order, s.scores);
   EXPECT_EQ(e.voxels, map.size());
   EXPECT_NEAR(e.rms_m.rmse, s.error.distance_m.rmse, 1e-12);
-  EXPECT_NEAR(e.outliers_percent, s.error.outliers_percent, 1e-9);
+  EXPECT_NEAR(e.outliers_percent, s.error.outliers_percent.value(), 1e-9);
 }
 
 TEST(SignedDistance, OfABiasedMapIsTheBias) {
@@ -108,7 +108,8 @@ TEST(SignedDistance, OfABiasedMapIsTheBias) {
     EXPECT_NEAR(d.p95_m, sign * bias + 1.64485 * sigma, 4.0 * 2.113 * sigma / root);
     const double behind = side == FreeSide::kFront ? 0.135 : 99.865;  // three sigmas
     EXPECT_NEAR(d.behind_percent, behind, 4.0 * 100.0 * 0.0367 / root);
-    EXPECT_EQ(std::accumulate(d.histogram.begin(), d.histogram.end(), std::uint64_t{0}), n);
+    EXPECT_EQ(
+        std::accumulate(d.histogram.counts.begin(), d.histogram.counts.end(), std::uint64_t{0}), n);
   }
 }
 
@@ -117,11 +118,11 @@ TEST(SignedDistance, BinsStartAtMinusTwentyCentimetersAndTheRestIsCountedApart) 
                                   {0, 0, -0.5F},   {0, 0, 0.3F},   {0, 0, 0.4F}};
   const Scored s{map, world::World(meshes::plane(10.0))};
   const SignedDistance d = signed_distance(s.scores, std::vector(2, FreeSide::kFront));
-  EXPECT_EQ(d.histogram[0], 1U);
-  EXPECT_EQ(d.histogram[20], 1U);
-  EXPECT_EQ(d.histogram[39], 1U);
-  EXPECT_EQ(d.below, 1U);
-  EXPECT_EQ(d.above, 2U);
+  EXPECT_EQ(d.histogram.counts[0], 1U);
+  EXPECT_EQ(d.histogram.counts[20], 1U);
+  EXPECT_EQ(d.histogram.counts[39], 1U);
+  EXPECT_EQ(d.histogram.below, 1U);
+  EXPECT_EQ(d.histogram.above, 2U);
 }
 
 TEST(SignedDistance, BesideAnEdgeOrWhereNoRayFellThereIsNoSign) {
@@ -158,7 +159,7 @@ TEST(Ghosting,
                                   }),
                  world::World(meshes::plane(10.0))};
   // 10 % of P(z > 2.5) are beyond 20 cm: 0.06 %
-  EXPECT_NEAR(s.error.outliers_percent, 0.062, 0.03);
+  EXPECT_NEAR(s.error.outliers_percent.value(), 0.062, 0.03);
   // sqrt(sigma^2 + 0.1 x 15^2): not more than for a bad sensor
   EXPECT_NEAR(s.error.distance_m.rmse, std::hypot(sigma, 0.15 * std::sqrt(0.1)), 0.001);
   const Ghosting g = ghosting(s.scores, s.world, kTwoThreads);
@@ -166,7 +167,7 @@ TEST(Ghosting,
   // a patch of 125 points has 12.5 +- 3.4 ghost points; fewer than 7 are less than 5 % (3 of 100
   // patches), and with few ghost points one or two in the valley are too many
   EXPECT_GT(g.double_percent, 85.0);
-  EXPECT_NEAR(g.median_separation_m, 0.15, 0.005);
+  EXPECT_NEAR(g.median_separation_m.value(), 0.15, 0.005);
   EXPECT_GT(g.thickness_m.median, 0.14);
 }
 

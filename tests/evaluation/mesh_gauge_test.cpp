@@ -79,15 +79,15 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
     const std::vector<Vector3f> map = as_map(points, moved);
     const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
     ASSERT_TRUE(a.determined()) << a.refusal;
-    EXPECT_EQ(a.agreeing_starts, MeshAlignment::kStarts);
-    EXPECT_THAT(a.frozen, IsEmpty());
+    EXPECT_EQ(a.fit.starts_agreeing, MeshAlignment::kStarts);
+    EXPECT_THAT(a.fit.frozen, IsEmpty());
     // some 10 000 voxels with 2 cm of noise, a third of them for each axis: 0.4 mm; tolerance four
     // times that
     const Pose left = a.mesh_from_map * moved;
     EXPECT_LT(left.translation().norm(), 0.0016);
     EXPECT_LT(so3::angle(left.linear()), 0.0016 / 1.5);
     EXPECT_NEAR(rmse(map, a.mesh_from_map, world), sigma, 0.02 * sigma + 1e-4);
-    EXPECT_NEAR(a.turned_rad, size * 3.0 * kDegree, 0.001);
+    EXPECT_NEAR(a.fit.turned_rad, size * 3.0 * kDegree, 0.001);
   }
 }
 
@@ -118,9 +118,9 @@ TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
   const std::vector<Vector3f> map = as_map(points, moved);
   const MeshAlignment a = align_to_mesh(map, Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
-  EXPECT_THAT(a.frozen, ElementsAre(HasSubstr("translation along (1.00,")));
-  EXPECT_LT(a.eigenvalues[0], 1e-4);
-  EXPECT_GT(a.eigenvalues[1], 0.05);
+  EXPECT_THAT(a.fit.frozen, ElementsAre(HasSubstr("translation along (1.00,")));
+  EXPECT_LT(a.fit.eigenvalues[0], 1e-4);
+  EXPECT_GT(a.fit.eigenvalues[1], 0.05);
   const Pose left = a.mesh_from_map * moved;
   EXPECT_NEAR(left.translation().x(), 0.4, 0.02);  // as in the start, except for the rotation
   EXPECT_LT(left.translation().tail<2>().norm(), 0.002);
@@ -137,10 +137,10 @@ TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
   const MeshAlignment a =
       align_to_mesh(as_map(points, moved), Pose::Identity(), world, kTwoThreads);
   ASSERT_TRUE(a.determined()) << a.refusal;
-  ASSERT_EQ(a.frozen.size(), 3U);
-  EXPECT_THAT(a.frozen[0], HasSubstr("translation along"));
-  EXPECT_THAT(a.frozen[1], HasSubstr("translation along"));
-  EXPECT_EQ(a.frozen[2], "rotation about (0.00, 0.00, 1.00)");
+  ASSERT_EQ(a.fit.frozen.size(), 3U);
+  EXPECT_THAT(a.fit.frozen[0], HasSubstr("translation along"));
+  EXPECT_THAT(a.fit.frozen[1], HasSubstr("translation along"));
+  EXPECT_EQ(a.fit.frozen[2], "rotation about (0.00, 0.00, 1.00)");
   const Pose left = a.mesh_from_map * moved;
   EXPECT_LT((left.linear() * Vector3d::UnitZ() - Vector3d::UnitZ()).norm(), 0.001);
   EXPECT_LT(std::abs((left * Vector3d::Zero()).z()), 0.001);
@@ -181,7 +181,7 @@ TEST(MeshGauge, IsTheSameBitsOnAnyNumberOfThreads) {
   const MeshAlignment one = align_to_mesh(map, Pose::Identity(), world, Parallel(1));
   const MeshAlignment three = align_to_mesh(map, Pose::Identity(), world, Parallel(3));
   EXPECT_EQ(one.mesh_from_map.matrix(), three.mesh_from_map.matrix());
-  EXPECT_EQ(one.eigenvalues, three.eigenvalues);
+  EXPECT_EQ(one.fit.eigenvalues, three.fit.eigenvalues);
 }
 
 }  // namespace

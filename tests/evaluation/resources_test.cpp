@@ -25,21 +25,23 @@ std::vector<dataset::ResourceRow> rows_of_a_run() {
 }
 
 TEST(Resources, LatencyAndRealTimeFactorOfAKnownRun) {
-  const ResourceFigures figures = *resource_figures(rows_of_a_run());
+  const results::ResourceMetrics figures = resource_metrics(rows_of_a_run());
   EXPECT_EQ(figures.scans, 100U);
-  EXPECT_DOUBLE_EQ(figures.latency_s.median, 0.02);
-  EXPECT_DOUBLE_EQ(figures.latency_s.max, 0.15);
+  EXPECT_DOUBLE_EQ(figures.latency.median, 0.02);
+  EXPECT_DOUBLE_EQ(figures.latency.max, 0.15);
   // five of a hundred are slow: rank 0.95 * 99 = 94.05 is 5 % of the way to the first of them
-  EXPECT_NEAR(figures.latency_s.p95, 0.02 + 0.05 * 0.13, 1e-12);
-  EXPECT_DOUBLE_EQ(figures.latency_s.p99, 0.15);
+  EXPECT_NEAR(figures.latency.p95, 0.02 + 0.05 * 0.13, 1e-12);
+  EXPECT_DOUBLE_EQ(figures.latency.p99, 0.15);
   EXPECT_NEAR(figures.real_time_factor, 10.0 / (95 * 0.02 + 5 * 0.15), 1e-12);
   EXPECT_NEAR(figures.late_scans, 5.0 / 99.0, 1e-12);
 }
 
 TEST(Resources, MemoryHasItsPeakItsEndAndItsGrowth) {
-  const ResourceFigures figures = *resource_figures(rows_of_a_run());
+  const results::ResourceMetrics figures = resource_metrics(rows_of_a_run());
   EXPECT_EQ(figures.map.peak_bytes, 100'000.0);
   EXPECT_NEAR(figures.map.growth_bytes_per_s, 10'000.0, 1e-6);
+  EXPECT_NEAR(figures.map.growth_r_squared, 1.0, 1e-9);
+  EXPECT_LT(figures.backlog.growth_r_squared, 0.1);
   EXPECT_EQ(figures.scan_buffer.peak_bytes, 500.0);
   EXPECT_NEAR(figures.scan_buffer.growth_bytes_per_s, 0.0, 1e-9);
   EXPECT_EQ(figures.backlog.peak_bytes, 7777.0);
@@ -50,21 +52,21 @@ TEST(Resources, MemoryHasItsPeakItsEndAndItsGrowth) {
 }
 
 TEST(Resources, OverTimeKeepsEveryPeak) {
-  const Json json = resources_json(rows_of_a_run(), 10);
-  EXPECT_EQ(json["over_time"]["largest_of"], 10);
-  EXPECT_EQ(json["over_time"]["t_s"].size(), 10U);
-  EXPECT_EQ(json["over_time"]["backlog_bytes"][3], 7777);
-  EXPECT_EQ(json["over_time"]["latency_s"][0], 0.15);
-  EXPECT_EQ(json["over_time"]["latency_s"][1], 0.02);
-  EXPECT_EQ(json["own"]["peak_bytes"], 100'500.0);
+  const results::ResourceMetrics metrics = resource_metrics(rows_of_a_run(), 10);
+  const results::ResourcesOverTime& curves = metrics.over_time;
+  EXPECT_EQ(curves.largest_of, 10U);
+  EXPECT_EQ(curves.t_s.size(), 10U);
+  EXPECT_EQ(curves.backlog_bytes[3], 7777U);
+  EXPECT_EQ(curves.latency_s[0], 0.15);
+  EXPECT_EQ(curves.latency_s[1], 0.02);
 }
 
-TEST(Resources, OfARunWithoutScansAreNullAndOfOneScanKnown) {
-  EXPECT_TRUE(resources_json({}).is_null());
+TEST(Resources, OfARunWithoutScansAreEmptyAndOfOneScanKnown) {
+  EXPECT_TRUE(resource_metrics({}).empty());
   dataset::ResourceRow row;
   row.t_sensor_s = 0.1;
   row.latency_s = 0.05;
-  const ResourceFigures figures = *resource_figures(std::vector{row});
+  const results::ResourceMetrics figures = resource_metrics(std::vector{row});
   EXPECT_DOUBLE_EQ(figures.real_time_factor, 2.0);
   EXPECT_EQ(figures.late_scans, 0.0);
   EXPECT_EQ(figures.rss.growth_bytes_per_s, 0.0);

@@ -1,15 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Every shipped YAML is valid under its schema, and schemas reject what the program rejects.
+"""Every shipped YAML is valid under its schema, schemas reject what the program rejects, and metrics
+are valid under theirs.
 
 usage: schemas.py PROGRAM CONFIGS; exits 77 (skipped) without PyYAML and jsonschema.
 """
 import copy
 import functools
 import json
+import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 
 try:
     import jsonschema
@@ -57,6 +60,19 @@ check_rejected("sensor", {"mode": "rollin"}, "a word that is not allowed")
 check_rejected("sensor", {"rate_hz": 0}, "a value out of range")
 check_rejected("sensor", {"imu": {"rate_hz": -5}}, "a value out of range in a nested group")
 check_rejected("study", {"seeds": [1, -2]}, "a list element out of range")
+with tempfile.TemporaryDirectory() as folder:
+    file = pathlib.Path(folder) / "truth.tum"
+    file.write_text("".join(f"{0.1 * i:.3f} {math.cos(0.1 * i)} {math.sin(0.1 * i)} 0 0 0 0 1\n"
+                            for i in range(100)))
+    out = subprocess.run([PROGRAM, "evaluate", "--trajectory", file, "--truth", file, "--json"],
+                         check=True, capture_output=True, text=True)
+metrics = json.loads(out.stdout)
+for error in schema("metrics").iter_errors(metrics):
+    sys.exit(f"metrics: {error.json_path}: {error.message}")
+assert metrics["final"]["rpe"]["1m"]["used"] > 5, metrics["final"]["rpe"]
+metrics["final"]["rpe"]["1m"]["used"] = "all"
+check_rejected("metrics", metrics, "text instead of a number")
+
 check_rejected("flight", {"waypoints": [[1, 2]]}, "a point with two coordinates")
 
 algorithms = json.loads(subprocess.run([PROGRAM, "list", "algorithms", "--json"], check=True,

@@ -19,9 +19,10 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-ResultRow row(const std::string& world, const std::string& sensor, const std::string& algorithm,
-              double rpe, double outliers, std::uint64_t seed = 1) {
-  ResultRow r;
+results::RunRecord row(const std::string& world, const std::string& sensor,
+                       const std::string& algorithm, double rpe, double outliers,
+                       std::uint64_t seed = 1) {
+  results::RunRecord r;
   r.name = world + "-" + sensor + "-" + algorithm + "-" + std::to_string(seed);
   r.world = r.flight = world;
   r.sensor = sensor;
@@ -29,21 +30,21 @@ ResultRow row(const std::string& world, const std::string& sensor, const std::st
   r.preset = "indoor";
   r.seed = seed;
   r.rpe_cm_per_m = rpe;
-  r.own_map = MapFigures{100, 2.0 * rpe, rpe, rpe, rpe, outliers, std::vector<double>(20, 5.0)};
+  r.own_map = results::MapFigures{100, 2.0 * rpe, rpe, outliers, std::vector<double>(20, 5.0)};
   return r;
 }
 
 /// The paper's own Tables 2 and 4, as if they were our runs.
-Results results_of_the_paper() {
-  Results results;
+results::StudyResults results_of_the_paper() {
+  results::StudyResults results;
   results.title = "the paper";
   for (const std::string world : {"cave", "house"}) {
     for (const std::string sensor : {"livox_mid360", "ouster_os0_128"}) {
       for (const std::string algorithm :
            {"ct_icp", "kiss_icp", "lio_sam_lc", "lio_sam", "fast_lio2"}) {
         const auto paper = [&](PaperTable table) {
-          return *paper_figure(table, paper_world(world), paper_sensor(sensor),
-                               paper_algorithm(algorithm));
+          return *paper_figure(table, results::paper_world(world), results::paper_sensor(sensor),
+                               results::paper_algorithm(algorithm));
         };
         results.rows.push_back(
             row(world, sensor, algorithm, paper(PaperTable::kDrift), paper(PaperTable::kOutliers)));
@@ -101,21 +102,22 @@ TEST(Claims, AllThatFiguresCanJudgeHoldOnThePapersOwn) {
 }
 
 TEST(Claims, OneContraryFigureOverthrowsAClaimAndMissingRunsLeaveItOpen) {
-  Results results = results_of_the_paper();
-  for (ResultRow& r : results.rows) {
+  results::StudyResults results = results_of_the_paper();
+  for (results::RunRecord& r : results.rows) {
     if (r.algorithm == "ct_icp" && r.world == "house" && r.sensor == "livox_mid360") {
       r.rpe_cm_per_m = 1.0;  // below FAST-LIO2's 1.61
     }
   }
   EXPECT_EQ(paper_claims(results, "indoor").at(0).holds, false);
-  std::erase_if(results.rows, [](const ResultRow& r) { return r.algorithm != "fast_lio2"; });
+  std::erase_if(results.rows,
+                [](const results::RunRecord& r) { return r.algorithm != "fast_lio2"; });
   EXPECT_FALSE(paper_claims(results, "indoor").at(0).holds)
       << "there is no other algorithm to compare with";
 }
 
 TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
-  Results results = results_of_the_paper();
-  for (ResultRow& r : results.rows) {
+  results::StudyResults results = results_of_the_paper();
+  for (results::RunRecord& r : results.rows) {
     if (r.world == "cave" && r.algorithm == "kiss_icp") r.own_map->outliers_percent = 99.0;
     if (r.world == "cave" && r.algorithm == "lio_sam") r.own_map->outliers_percent = 0.0;
     if (r.world == "cave" && r.algorithm == "ct_icp") {
@@ -151,7 +153,7 @@ TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
               std::to_string(static_cast<long>(1e6 * megabytes(s))) + ",0,0\n";
     }
     dataset::write_text_file(folder.path() / "resources.csv", rows);
-    Results results;
+    results::StudyResults results;
     results.rows.push_back(row("cave", "livox_mid360", "fast_lio2", 1, 1));
     results.rows[0].folder = folder.path();
     return paper_claims(results, "indoor").back().holds;
@@ -161,7 +163,7 @@ TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
 }
 
 TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
-  Results results;
+  results::StudyResults results;
   for (const auto& [mode, rpe] : {std::pair{"rolling", 1.0}, {"frozen", 5.0}}) {
     results.rows.push_back(row("cave", "livox_mid360", "ct_icp", rpe, 2.0 * rpe));
     results.rows.back().mode = mode;
@@ -179,15 +181,15 @@ TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
 }
 
 TEST(StudyCells, ACellIsTheMedianOfWhatWentWellAndSaysWhatDidNot) {
-  Results results;
+  results::StudyResults results;
   for (std::uint64_t seed = 1; seed <= 4; ++seed) {
     results.rows.push_back(row("cave", "os0", "kiss_icp", static_cast<double>(seed), 0, seed));
   }
   results.rows[3].status = "diverged";
-  const StudyCells cells(results, "indoor");
-  EXPECT_DOUBLE_EQ(*cells.median("cave", "os0", "kiss_icp", rpe_of), 2.0);
+  const results::StudyCells cells(results, "indoor");
+  EXPECT_DOUBLE_EQ(*cells.median("cave", "os0", "kiss_icp", results::rpe_of), 2.0);
   EXPECT_EQ(cells.status_text("cave", "os0", "kiss_icp"), "1 of 4 diverged");
-  EXPECT_FALSE(cells.median("cave", "os0", "ct_icp", rpe_of));
+  EXPECT_FALSE(cells.median("cave", "os0", "ct_icp", results::rpe_of));
 }
 
 ReportTable small_table() {
@@ -211,13 +213,14 @@ TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
 }
 
 TEST(Claims, AreAboutTheMethodsOfThePaperAlone) {
-  Results results = results_of_the_paper();
+  results::StudyResults results = results_of_the_paper();
   const std::vector<Claim> before = paper_claims(results, "indoor");
-  ResultRow ours = row("cave", "livox_mid360", "arena_lio", 0.01, 0.0);
+  results::RunRecord ours = row("cave", "livox_mid360", "arena_lio", 0.01, 0.0);
   ours.preset = "";
   results.rows.push_back(ours);
-  EXPECT_EQ(variants_of(results), std::vector<std::string>{"indoor"});
-  EXPECT_EQ(StudyCells(results, "indoor").rows("cave", "livox_mid360", "arena_lio").size(), 1U)
+  EXPECT_EQ(results::variants_of(results), std::vector<std::string>{"indoor"});
+  EXPECT_EQ(results::StudyCells(results, "indoor").rows("cave", "livox_mid360", "arena_lio").size(),
+            1U)
       << "methods without presets are compared with every preset";
   const std::vector<Claim> after = paper_claims(results, "indoor");
   ASSERT_EQ(after.size(), before.size());
@@ -226,7 +229,7 @@ TEST(Claims, AreAboutTheMethodsOfThePaperAlone) {
 }
 
 TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
-  Results results = results_of_the_paper();
+  results::StudyResults results = results_of_the_paper();
   results.rows[2].status = "diverged";
   results.rows[2].reason = "estimate left the world";
   results.rows[2].own_memory_mb = 12.5;
@@ -266,11 +269,11 @@ TEST(PointsOn, LieOnTheTrianglesEvenlyByArea) {
 }
 
 /// A run with a map RMSE and a computing time per scan; the scan period is 100 ms.
-ResultRow tried(const std::string& sensor, const std::string& algorithm, double map_rmse_cm,
-                double p95_ms) {
-  ResultRow r = row("mine", sensor, algorithm, 1.0, 0.0);
+results::RunRecord tried(const std::string& sensor, const std::string& algorithm,
+                         double map_rmse_cm, double p95_ms) {
+  results::RunRecord r = row("mine", sensor, algorithm, 1.0, 0.0);
   r.preset = "indoor";
-  r.reprojected_map = MapFigures{100, map_rmse_cm, 0, 0, 0, 0.5, std::vector<double>(20, 5.0)};
+  r.reprojected_map = results::MapFigures{100, map_rmse_cm, 0, 0.5, std::vector<double>(20, 5.0)};
   r.latency_p95_ms = p95_ms;
   r.own_memory_mb = 30.0;
   r.lidar = {{"rate_hz", 10.0}};
@@ -280,7 +283,7 @@ ResultRow tried(const std::string& sensor, const std::string& algorithm, double 
 }
 
 TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
-  Results results;
+  results::StudyResults results;
   results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 3.0, 40.0),
                   tried("cheap", "lost", 0.5, 10.0), tried("dear", "good", 1.5, 60.0)};
   results.rows[2].status = "diverged";
@@ -302,7 +305,7 @@ TEST(Decision, TheBestMapAmongWhatKeepsTrackInTime) {
 }
 
 TEST(Decision, WhoseTimeIsNotKnownIsNotCalledUsable) {
-  Results results;
+  results::StudyResults results;
   results.rows = {tried("cheap", "theirs", 1.0, 10.0), tried("cheap", "good", 3.0, 40.0)};
   results.rows[0].latency_p95_ms.reset();
   const std::vector<Candidate> found = candidates(results, "mine");
@@ -312,7 +315,7 @@ TEST(Decision, WhoseTimeIsNotKnownIsNotCalledUsable) {
 }
 
 TEST(Decision, AMapThatLiesElsewhereIsALostTrack) {
-  Results results;
+  results::StudyResults results;
   results.rows = {tried("cheap", "wild", 900.0, 10.0), tried("cheap", "good", 3.0, 40.0)};
   results.rows[0].reprojected_map->outliers_percent = 99.0;
   const std::vector<Candidate> found = candidates(results, "mine");
@@ -324,7 +327,7 @@ TEST(Decision, AMapThatLiesElsewhereIsALostTrack) {
 }
 
 TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
-  Results results;
+  results::StudyResults results;
   results.rows = {tried("cheap", "slow", 1.0, 120.0), tried("cheap", "good", 1.0, 10.0)};
   results.rows[1].mode = "frozen";
   EXPECT_EQ(candidates(results, "mine").size(), 1U);
@@ -333,24 +336,25 @@ TEST(Decision, NothingUsableIsSaidAndFaultsOfSimulatorsAreNoCandidates) {
 }
 
 TEST(Readings, ModesOfTheSensorsStayApart) {
-  Results results;
+  results::StudyResults results;
   results.rows = {tried("cheap", "good", 3.0, 40.0), tried("cheap", "good", 9.0, 40.0)};
   results.rows[0].mode = "rolling";
   results.rows[1].mode = "official";
-  EXPECT_THAT(variants_of(results), ::testing::ElementsAre("indoor-rolling", "indoor-official"));
-  const StudyCells cells(results, "indoor-official");
+  EXPECT_THAT(results::variants_of(results),
+              ::testing::ElementsAre("indoor-rolling", "indoor-official"));
+  const results::StudyCells cells(results, "indoor-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
 }
 
 TEST(Results, PartsOfAStudyBecomeOneAndWhatWasScoredCounts) {
-  Results one, other;
+  results::StudyResults one, other;
   one.title = "the study";
   one.rows = {row("cave", "s", "a", 1.0, 0.0), row("cave", "s", "b", 0.0, 0.0)};
   other.rows = {row("cave", "s", "a", 7.0, 0.0), row("cave", "s", "b", 2.0, 0.0)};
-  one.rows[0].metrics = other.rows[1].metrics = Json::object();
+  one.rows[0].metrics = other.rows[1].metrics = results::RunMetrics();
   one.rows[1].status = "missing";
-  const Results all = merged({one, other});
+  const results::StudyResults all = results::merged({one, other});
   EXPECT_EQ(all.title, "the study");
   ASSERT_EQ(all.rows.size(), 2U);
   EXPECT_EQ(all.rows[0].rpe_cm_per_m, 1.0);
@@ -358,7 +362,7 @@ TEST(Results, PartsOfAStudyBecomeOneAndWhatWasScoredCounts) {
 }
 
 TEST(Page, NeedsNoNetworkAndStaysSmallWhateverTheTitle) {
-  Results results = results_of_the_paper();
+  results::StudyResults results = results_of_the_paper();
   results.title = "</title><script>alert(1)</script>";
   LogSink log;
   const std::string page = html_page(results, report_sections(results), draw_pictures(results),

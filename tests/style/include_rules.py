@@ -15,11 +15,12 @@ ALLOWED = {
     "flight": {"world", "base"},
     "loop": {"estimation", "map", "base"},
     "sensor": {"world", "flight", "dataset", "base"},
-    "evaluation": {"world", "dataset", "estimation", "map", "base"},
+    "results": {"dataset", "base"},
+    "evaluation": {"results", "world", "dataset", "estimation", "map", "base"},
     "odometry": {"loop", "estimation", "map", "dataset", "base"},
     "study": {"base", "world", "scenes", "flight", "sensor", "dataset", "map", "estimation", "loop",
-              "odometry", "evaluation"},
-    "report": {"base", "dataset", "world"},
+              "odometry", "results", "evaluation"},
+    "report": {"results", "base", "dataset", "world"},
 }
 # Modules that may include only some headers of another one: a sensor creates events but must not
 # depend on files, and an estimator must not be able to read the truth of a dataset.

@@ -166,12 +166,17 @@ void write_study(const fs::path& folder) {
                              {"seed", 1}});
     const fs::path run = folder / "runs" / algorithm;
     fs::create_directories(run);
-    std::ofstream(run / "manifest.json") << nlohmann::json{
-        {"kind", "run"}, {"summary", {{"sensor_seconds", 2.0}, {"compute_seconds", 1.0}}}};
+    std::ofstream(run / "manifest.json") << nlohmann::json{{"kind", "run"}};
     const nlohmann::json curve{{"t_s", {0.0, 1.0, 2.0}}, {"translation_m", {0.0, 0.01, 0.02}}};
-    const nlohmann::json final{{"rpe", {{"1m_at_poses", {{"translation", {{"rmse_m", 0.012}}}}}}},
-                               {"errors_over_time", {{"ate_se3", curve}}}};
-    std::ofstream(run / "metrics.json") << nlohmann::json{{"status", "ok"}, {"final", final}};
+    const nlohmann::json final{
+        {"rpe", {{"1m_at_poses", {{"translation", {{"count", 9}, {"rmse_m", 0.012}}}}}}},
+        {"errors_over_time", {{"ate_se3", curve}}}};
+    std::ofstream(run / "metrics.json")
+        << nlohmann::json{{"schema_version", 3}, {"status", "ok"}, {"final", final}};
+    std::ofstream(run / "resources.json") << nlohmann::json{{"scans", 3},
+                                                            {"real_time_factor", 2.0},
+                                                            {"latency", {{"count", 3}}},
+                                                            {"own", {{"peak_bytes", 3000110}}}};
     std::ofstream(run / "resources.csv")
         << "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes\n"
            "0.1,0.01,1,1,1000000,100,10\n1,0.01,1,1,2000000,100,10\n2,0.01,1,1,3000000,100,10\n";

@@ -95,7 +95,7 @@ Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
   const auto percent = [](std::ptrdiff_t part, std::size_t of) {
     return of == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(of);
   };
-  for (std::size_t row = 0; row < result.rows.size(); ++row) {
+  for (std::size_t row = 0; row < Completeness::kWithin_m.size(); ++row) {
     const double within = Completeness::kWithin_m[row];
     const double precision =
         percent(std::count_if(scores.begin(), scores.end(),
@@ -105,7 +105,8 @@ Completeness completeness(const SurfaceSamples& samples, const PointGrid& grid,
         std::count_if(nearest.begin(), nearest.end(), [&](float d) { return double{d} <= within; }),
         nearest.size());
     const double sum = precision + recall;
-    result.rows[row] = {precision, recall, sum > 0.0 ? 2.0 * precision * recall / sum : 0.0};
+    result.rows.push_back(
+        {within, precision, recall, sum > 0.0 ? 2.0 * precision * recall / sum : 0.0});
   }
   return result;
 }

@@ -9,9 +9,14 @@
 #include <optional>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/evaluation/map/map_json.hpp"
-#include "lidarena/evaluation/metrics_json.hpp"
+#include "lidarena/evaluation/map/ghosting.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
+#include "lidarena/evaluation/map/mesh_gauge.hpp"
+#include "lidarena/evaluation/map/signed_distance.hpp"
+#include "lidarena/evaluation/map/vertex_distance.hpp"
+#include "lidarena/evaluation/map/voxel_error.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
+#include "lidarena/results/summary.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -66,42 +71,42 @@ std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map)
 }
 
 /// `scores`: those of the map moved by `mesh_from_map`.
-Json measure(const Subject& subject, std::span<const PointScore> scores,
-             const Pose& mesh_from_map) {
-  Json json = to_json(map_error(subject.order, scores, subject.map.size()));
-  json["mesh_from_map_m_quaternion"] = value_to_json(mesh_from_map);
-  json["per_voxel"] = to_json(voxel_error(subject.order, scores));
-  json["ghosting"] = to_json(ghosting(scores, subject.world, subject.parallel));
-  json["identity"] = nullptr;
+results::MapInGauge measure(const Subject& subject, std::span<const PointScore> scores,
+                            const Pose& mesh_from_map) {
+  results::MapInGauge measured;
+  static_cast<MapError&>(measured) = map_error(subject.order, scores, subject.map.size());
+  measured.mesh_from_map = mesh_from_map;
+  measured.per_voxel = voxel_error(subject.order, scores);
+  measured.ghosting = ghosting(scores, subject.world, subject.parallel);
   if (subject.identified != nullptr) {
-    json["identity"] = to_json(identity_error(*subject.identified, mesh_from_map));
+    measured.identity = identity_error(*subject.identified, mesh_from_map);
   }
-  json["signed"] = nullptr;
-  json["completeness"] = nullptr;
-  if (subject.seen == nullptr) return json;
-  json["signed"] = to_json(signed_distance(scores, subject.seen->observed.free_side));
-  json["completeness"] = to_json(completeness(subject.seen->samples, *subject.grid, scores,
-                                              mesh_from_map, subject.world, subject.parallel));
-  return json;
+  if (subject.seen == nullptr) return measured;
+  measured.signed_distance = signed_distance(scores, subject.seen->observed.free_side);
+  measured.completeness = completeness(subject.seen->samples, *subject.grid, scores, mesh_from_map,
+                                       subject.world, subject.parallel);
+  return measured;
 }
 
-Json measure_vertices(const Subject& subject, std::span<const PointScore> scores,
-                      const Pose& mesh_from_map) {
-  return to_json(vertex_distance(subject.map, subject.order, scores, mesh_from_map, subject.world,
-                                 subject.parallel));
+results::MapInGauge refused(const std::string& reason) {
+  results::MapInGauge map;
+  map.refused = reason;
+  return map;
 }
 
 /// The transform from the first-pose gauge to this one is the rigid part of the drift.
-Json measure_robust(const Subject& subject, const Pose& start, const Pose& first_pose) {
+results::MapInGauge measure_robust(const Subject& subject, const Pose& start,
+                                   const Pose& first_pose) {
   const MeshAlignment alignment =
       align_to_mesh(subject.map, start, subject.world, subject.parallel);
   const Pose& moved = alignment.mesh_from_map;
-  Json json = alignment.determined() ? measure(subject, score(subject, moved), moved)
-                                     : Json{{"refused", alignment.refusal}};
-  json["alignment"] = to_json(alignment);
+  results::MapInGauge measured = alignment.determined()
+                                     ? measure(subject, score(subject, moved), moved)
+                                     : refused(alignment.refusal);
+  measured.alignment = alignment.fit;
   const Pose drift = moved * first_pose.inverse();
-  json["alignment"]["turned_from_first_pose_rad"] = so3::angle(drift.linear());
-  return json;
+  measured.alignment->turned_from_first_pose_rad = so3::angle(drift.linear());
+  return measured;
 }
 
 /// Diagonal (m) of the box that holds the middle 98 % of each coordinate.
@@ -115,7 +120,7 @@ double robust_diagonal(std::span<const Eigen::Vector3f> map) {
       if (map[i].allFinite()) values.push_back(double{map[i][axis]});
     }
     if (values.empty()) return 0.0;
-    sizes[axis] = quantile(values, 0.99) - quantile(values, 0.01);
+    sizes[axis] = results::quantile(values, 0.99) - results::quantile(values, 0.01);
   }
   return sizes.norm();
 }
@@ -125,7 +130,7 @@ double farthest_coordinate(std::span<const Eigen::Vector3f> map) {
   for (const Eigen::Vector3f& p : map) {
     if (p.allFinite()) values.push_back(double{p.lpNorm<Eigen::Infinity>()});
   }
-  return values.empty() ? 0.0 : quantile(values, 0.5);
+  return values.empty() ? 0.0 : results::quantile(values, 0.5);
 }
 
 }  // namespace
@@ -136,30 +141,36 @@ SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const P
   return seen;
 }
 
-Json evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                  const Trajectory& truth, const world::World& world, const Parallel& parallel,
-                  const SeenSurface* seen, const IdentifiedMap* identified) {
-  const Alignment rigid = align(estimate, truth, Gauge::kSe3);
-  const Subject subject(map, max_scored_points(map, rigid.truth_from_estimate, world, parallel),
+results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
+                                 const Trajectory& truth, const world::World& world,
+                                 const Parallel& parallel, const SeenSurface* seen,
+                                 const IdentifiedMap* identified) {
+  const Alignment se3 = align(estimate, truth, Gauge::kSe3);
+  const Alignment first_pose = align(estimate, truth, Gauge::kFirstPose);
+  const Subject subject(map, max_scored_points(map, se3.truth_from_estimate, world, parallel),
                         world, parallel, seen, identified);
-  Json json = Json::object();
-  std::optional<Pose> first_pose, start;
-  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
-    const Alignment alignment = align(estimate, truth, gauge);
-    if (!alignment.determined()) {
-      json[to_string(gauge)] = {{"refused", alignment.refusal}};
-      continue;
-    }
-    start = alignment.truth_from_estimate;
-    if (gauge == Gauge::kFirstPose) first_pose = start;
-    const std::vector<PointScore> scores = score(subject, *start);
-    Json& measured = json[to_string(gauge)] = measure(subject, scores, *start);
-    if (gauge == Gauge::kSe3) measured["point_vertex"] = measure_vertices(subject, scores, *start);
+  results::MapMetrics metrics;
+  if (first_pose.determined()) {
+    const Pose& moved = first_pose.truth_from_estimate;
+    metrics.first_pose = measure(subject, score(subject, moved), moved);
+  } else {
+    metrics.first_pose = refused(first_pose.refusal);
   }
-  json["robust"] = start && first_pose
-                       ? measure_robust(subject, *start, *first_pose)
-                       : Json{{"refused", "neither first_pose nor se3 gives a pose to start from"}};
-  return json;
+  if (se3.determined()) {
+    const Pose& moved = se3.truth_from_estimate;
+    const std::vector<PointScore> scores = score(subject, moved);
+    metrics.se3 = measure(subject, scores, moved);
+    metrics.se3.point_vertex =
+        vertex_distance(subject.map, subject.order, scores, moved, world, parallel);
+  } else {
+    metrics.se3 = refused(se3.refusal);
+  }
+  const Alignment& start = se3.determined() ? se3 : first_pose;
+  metrics.robust =
+      first_pose.determined()
+          ? measure_robust(subject, start.truth_from_estimate, first_pose.truth_from_estimate)
+          : refused("neither first_pose nor se3 gives a pose to start from");
+  return metrics;
 }
 
 std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map,

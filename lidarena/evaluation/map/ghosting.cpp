@@ -124,12 +124,12 @@ Ghosting ghosting(std::span<const PointScore> scores, const world::World& world,
     if (sheets.are_two) separation.push_back(sheets.separation_m);
   }
   result.patches = thickness.size();
-  result.thickness_m = summarize(thickness);
+  result.thickness_m = results::summarize(thickness);
   result.double_patches = separation.size();
   if (result.patches == 0) return result;
   result.double_percent =
       100.0 * static_cast<double>(separation.size()) / static_cast<double>(result.patches);
-  if (!separation.empty()) result.median_separation_m = quantile(separation, 0.5);
+  if (!separation.empty()) result.median_separation_m = results::quantile(separation, 0.5);
   return result;
 }
 

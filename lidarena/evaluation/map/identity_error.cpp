@@ -36,7 +36,11 @@ IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map
     normal.push_back(across);
     tangential.push_back(std::sqrt(std::max(0.0, error.squaredNorm() - across * across)));
   }
-  return {summarize(distance), summarize(normal), summarize(tangential)};
+  IdentityError error;
+  error.distance_m = results::summarize(distance);
+  error.normal_m = results::summarize(normal);
+  error.tangential_m = results::summarize(tangential);
+  return error;
 }
 
 }  // namespace lidarena::evaluation

@@ -9,7 +9,7 @@
 #include "lidarena/base/pose.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
-#include "lidarena/evaluation/summary.hpp"
+#include "lidarena/results/map_metrics.hpp"
 
 namespace lidarena::evaluation {
 
@@ -25,13 +25,7 @@ struct IdentifiedMap {
 IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const ReturnOrigin> origins,
                        dataset::ScanTruthSource& truth);
 
-/// Distance of each point from the true hit of its own ray, not from the nearest surface; the
-/// distance to the mesh is a lower bound of it. All in m.
-struct IdentityError {
-  Summary distance_m;
-  Summary normal_m;      ///< magnitude of its component along the surface's normal
-  Summary tangential_m;  ///< its component along the surface
-};
+using results::IdentityError;
 IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map);
 
 }  // namespace lidarena::evaluation

@@ -20,6 +20,7 @@ MapError summarize_distances(std::span<const double> distances) {
   std::vector<double> finite;
   finite.reserve(distances.size());
   double inlier_squares = 0.0;
+  std::vector<std::uint64_t>& counts = error.histogram.counts;
   for (const double d : distances) {
     if (!std::isfinite(d)) {
       ++error.invalid;
@@ -29,16 +30,23 @@ MapError summarize_distances(std::span<const double> distances) {
     if (d > MapError::kOutlier_m) continue;
     ++error.inliers;
     inlier_squares += d * d;
-    const auto bin = static_cast<std::size_t>(d / MapError::kBin_m);
-    ++error.histogram[std::min(bin, MapError::kBins - 1)];
+    const auto bin = static_cast<std::size_t>(d / results::DistanceHistogram::kBin_m);
+    ++counts[std::min(bin, counts.size() - 1)];
   }
   error.points = finite.size();
-  error.distance_m = summarize(finite);
+  error.distance_m = results::summarize(finite);
   if (error.points == 0) return error;
   const auto outliers = static_cast<double>(error.points - error.inliers);
   error.outliers_percent = 100.0 * outliers / static_cast<double>(error.points);
   if (error.inliers > 0) {
     error.rmse_inliers_m = std::sqrt(inlier_squares / static_cast<double>(error.inliers));
+  }
+  error.histogram.beyond = error.points - error.inliers;
+  std::uint64_t within = 0;
+  for (const std::uint64_t count : counts) {
+    within += count;
+    error.cdf_percent.push_back(100.0 * static_cast<double>(within) /
+                                static_cast<double>(error.points));
   }
   return error;
 }

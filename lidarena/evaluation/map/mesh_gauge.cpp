@@ -121,8 +121,8 @@ Matches match(const Points& points, const Pose& pose, double reach, const world:
     if (nearest.valid()) distances.push_back(nearest.distance);
   }
   if (distances.empty()) return matches;
-  matches.gate = quantile(distances, kTrim);
-  matches.median = quantile(distances, 0.5);
+  matches.gate = results::quantile(distances, kTrim);
+  matches.median = results::quantile(distances, 0.5);
   return matches;
 }
 
@@ -326,13 +326,13 @@ std::vector<std::string> unobservable_directions(const Matrix6d& hessian,
 }
 
 std::string refusal_of(const MeshAlignment& alignment) {
-  if (alignment.inlier_share < MeshAlignment::kMinInliers) {
+  if (alignment.fit.inliers_percent < 100.0 * MeshAlignment::kMinInliers) {
     return fmt::format("only {:.0f} % of the map's points lie within 20 cm of the mesh",
-                       100.0 * alignment.inlier_share);
+                       alignment.fit.inliers_percent);
   }
-  if (2 * alignment.agreeing_starts <= MeshAlignment::kStarts) {
-    return fmt::format("only {} of {} starts converge to the same pose", alignment.agreeing_starts,
-                       MeshAlignment::kStarts);
+  if (2 * alignment.fit.starts_agreeing <= MeshAlignment::kStarts) {
+    return fmt::format("only {} of {} starts converge to the same pose",
+                       alignment.fit.starts_agreeing, MeshAlignment::kStarts);
   }
   return {};
 }
@@ -350,7 +350,7 @@ MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& st
   }
   const Points few = every(kStartPoints, map, chosen);
   const Starts starts = narrowest_agreeing_fit(start, few, world, parallel);
-  alignment.agreeing_starts = starts.agreeing;
+  alignment.fit.starts_agreeing = starts.agreeing;
 
   const Points many = every(kPoints, map, chosen);
   Fit fit;
@@ -358,13 +358,14 @@ MeshAlignment align_to_mesh(std::span<const Eigen::Vector3f> map, const Pose& st
   descend(many, kScales[starts.scales - 1], kFine, world, parallel, fit);
   rate(many, world, parallel, fit);
   alignment.mesh_from_map = fit.pose;
-  alignment.points = many.positions.size();
-  alignment.iterations = starts.iterations + fit.iterations;
-  alignment.inlier_share = fit.inlier_share;
-  alignment.eigenvalues = fit.eigenvalues;
-  alignment.frozen = unobservable_directions(fit.hessian, TwistFrame(many, fit.pose).rad_per_m);
-  alignment.moved_m = (fit.pose * many.centroid - start * many.centroid).norm();
-  alignment.turned_rad = so3::angle(fit.pose.linear() * start.linear().transpose());
+  results::MeshFit& found = alignment.fit;
+  found.points = many.positions.size();
+  found.iterations = starts.iterations + fit.iterations;
+  found.inliers_percent = 100.0 * fit.inlier_share;
+  Vector6d::Map(found.eigenvalues.data()) = fit.eigenvalues;
+  found.frozen = unobservable_directions(fit.hessian, TwistFrame(many, fit.pose).rad_per_m);
+  found.moved_m = (fit.pose * many.centroid - start * many.centroid).norm();
+  found.turned_rad = so3::angle(fit.pose.linear() * start.linear().transpose());
   alignment.refusal = refusal_of(alignment);
   return alignment;
 }

@@ -8,32 +8,20 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/results/map_metrics.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena::evaluation {
 
 /// The gauge "robust": alignment of the map with the mesh itself, and how well it is determined.
 struct MeshAlignment {
-  static constexpr int kStarts = 5;           ///< starting poses: the given one and four around it
+  static constexpr int kStarts = results::MeshFit::kStarts;
   static constexpr double kAgree_m = 0.02;    ///< results agree below this RMS motion of the map
   static constexpr double kMinInliers = 0.5;  ///< share within 20 cm; refused below this
-  static constexpr double kUnobservable = 0.003;  ///< limit for `eigenvalues`
+  static constexpr double kUnobservable = 0.003;  ///< limit for the eigenvalues of the fit
   Pose mesh_from_map = Pose::Identity();
-  std::string refusal;     ///< empty when the transform is reliable
-  std::size_t points = 0;  ///< fitted points, at most one per 10 cm voxel of the map
-  int iterations = 0;
-  double inlier_share = 0.0;  ///< of the fitted points, within 20 cm after alignment
-  int agreeing_starts = 0;    ///< out of kStarts
-  /// Eigenvalues of the Gauss-Newton Hessian per point, in ascending order, scaled so that a unit
-  /// step moves the points by 1 m RMS: the mean square that such a step adds to the distances, 0
-  /// (not observable) to 1. A closed room has 0.1 and more in all directions; an endless corridor
-  /// has one zero.
-  Eigen::Matrix<double, 6, 1> eigenvalues = Eigen::Matrix<double, 6, 1>::Zero();
-  /// Unobservable directions, in which the start is kept: "translation along (1.00, 0.00, 0.00)",
-  /// "rotation about (...)", mesh frame.
-  std::vector<std::string> frozen;
-  double moved_m = 0.0;     ///< translation of the points' centroid from the start
-  double turned_rad = 0.0;  ///< rotation from the start
+  std::string refusal;  ///< empty when the transform is reliable
+  results::MeshFit fit;
   bool determined() const { return refusal.empty(); }
 };
 

@@ -5,19 +5,19 @@
 #include <cmath>
 #include <numeric>
 
-#include "lidarena/evaluation/summary.hpp"
+#include "lidarena/results/summary.hpp"
 
 namespace lidarena::evaluation {
 namespace {
 
-void count(double value, SignedDistance& result) {
-  if (value < -SignedDistance::kRange_m) {
-    ++result.below;
-  } else if (value > SignedDistance::kRange_m) {
-    ++result.above;
+void count(double value, SignedHistogram& histogram) {
+  if (value < -SignedHistogram::kRange_m) {
+    ++histogram.below;
+  } else if (value > SignedHistogram::kRange_m) {
+    ++histogram.above;
   } else {
-    const double bin = (value + SignedDistance::kRange_m) / SignedDistance::kBin_m;
-    ++result.histogram[std::min(static_cast<std::size_t>(bin), SignedDistance::kBins - 1)];
+    const double bin = (value + SignedHistogram::kRange_m) / SignedHistogram::kBin_m;
+    ++histogram.counts[std::min(static_cast<std::size_t>(bin), SignedHistogram::kBins - 1)];
   }
 }
 
@@ -35,7 +35,7 @@ SignedDistance signed_distance(std::span<const PointScore> scores,
       continue;
     }
     values.push_back(std::copysign(score.distance, side * height));
-    count(values.back(), result);
+    count(values.back(), result.histogram);
   }
   result.points = values.size();
   if (values.empty()) return result;
@@ -43,9 +43,9 @@ SignedDistance signed_distance(std::span<const PointScore> scores,
   result.mean_m = std::accumulate(values.begin(), values.end(), 0.0) / n;
   const auto behind = std::count_if(values.begin(), values.end(), [](double v) { return v < 0; });
   result.behind_percent = 100.0 * static_cast<double>(behind) / n;
-  result.median_m = quantile(values, 0.5);
-  result.p5_m = quantile(values, 0.05);
-  result.p95_m = quantile(values, 0.95);
+  result.median_m = results::quantile(values, 0.5);
+  result.p5_m = results::quantile(values, 0.05);
+  result.p95_m = results::quantile(values, 0.95);
   return result;
 }
 

@@ -13,6 +13,7 @@
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/morton_order.hpp"
 #include "lidarena/evaluation/map/point_scores.hpp"
+#include "lidarena/results/map_metrics.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -27,22 +28,7 @@ std::uint64_t count_subdivided(const world::TriangleMesh& mesh, double edge);
 std::vector<Eigen::Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, double edge,
                                                  const Eigen::Vector3d& origin);
 
-/// Distances of a map's points to the nearest *vertex* of the subdivided mesh, as the paper
-/// computes them (section 3); only for comparison with its tables. A point that lies on the surface
-/// has a distance of up to 0.58 edges.
-struct VertexDistance {
-  static constexpr double kEdge_m = 0.05;
-  static constexpr std::uint64_t kMaxVertices = 20'000'000;  ///< needs about 1.4 GB temporarily
-  /// Points of a failed map lie far outside the mesh, where thousands of vertices are almost as
-  /// near as the nearest and the search is slow. Beyond this many edges (1 m) the distance to the
-  /// surface is used instead. It is too small by no more than 1/120 edge (0.42 mm), because a
-  /// vertex lies within 0.58 edges of the nearest surface point.
-  static constexpr double kFarEdges = 20.0;
-  double edge_m = kEdge_m;  ///< maximum edge length of the subdivided mesh
-  std::uint64_t vertices = 0;
-  std::string refusal;  ///< empty when `error` is valid
-  MapError error;
-};
+using results::VertexDistance;
 
 /// Distances of the points of `order` (of `map`), moved by `mesh_from_map`, to their exact nearest
 /// vertices (k-d tree); `scores` are the scores of these points. Points beyond kFarEdges count with

@@ -30,7 +30,7 @@ VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> sco
   }
   VoxelError error;
   error.voxels = rms.size();
-  error.rms_m = summarize(rms);
+  error.rms_m = results::summarize(rms);
   if (!rms.empty()) error.outliers_percent = 100.0 * shares / static_cast<double>(rms.size());
   return error;
 }

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/evaluation/summary.hpp"
+#include "lidarena/results/summary.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -229,7 +229,7 @@ EvoStatistics statistics_of(const std::vector<double>& errors) {
   s.std = std::sqrt(s.std);
   s.rmse = std::sqrt(s.sse / n);
   std::vector<double> sorted = errors;
-  s.median = quantile(sorted, 0.5);
+  s.median = results::quantile(sorted, 0.5);
   return s;
 }
 

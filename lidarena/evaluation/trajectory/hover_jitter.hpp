@@ -5,17 +5,11 @@
 #include <span>
 
 #include "lidarena/evaluation/trajectory/association.hpp"
+#include "lidarena/results/trajectory_metrics.hpp"
 
 namespace lidarena::evaluation {
 
-/// Jitter of the estimated position while the body hovers.
-struct HoverJitter {
-  static constexpr double kSpeed_mps = 0.05;  ///< in a hover the truth is slower than this ...
-  static constexpr double kMin_s = 1.0;       ///< ... for at least this long
-  double seconds = 0.0;                       ///< total duration of the hovers
-  std::size_t poses = 0;
-  double rms_m = 0.0;  ///< of the position error about its mean over each hover
-};
+using results::HoverJitter;
 
 /// `pairs` of one flight, sorted by time; a time step longer than `gap_limit` ends a hover.
 /// Independent of both world frames: within each hover the estimate is rotated into the truth's

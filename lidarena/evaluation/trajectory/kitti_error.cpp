@@ -24,10 +24,15 @@ std::vector<double> paths_of(const std::vector<PosePair>& pairs, const Trajector
   return s;
 }
 
-KittiLength score(const std::vector<PosePair>& pairs, const std::vector<double>& s,
-                  double length_m) {
-  KittiLength score;
-  score.length_m = length_m;
+/// Sums of the errors of all pieces of one length.
+struct Sums {
+  std::size_t pieces = 0;
+  double translation_percent = 0.0;
+  double rotation_rad_per_m = 0.0;
+};
+
+Sums sums_of(const std::vector<PosePair>& pairs, const std::vector<double>& s, double length_m) {
+  Sums sums;
   for (std::size_t i = 0; i < s.size(); i += kStartEvery) {
     const auto beyond = std::upper_bound(s.begin(), s.end(), s[i] + length_m);
     if (beyond == s.end()) break;
@@ -35,11 +40,27 @@ KittiLength score(const std::vector<PosePair>& pairs, const std::vector<double>&
     const Pose q = pairs[i].truth.inverse() * pairs[j].truth;
     const Pose p = pairs[i].estimate.inverse() * pairs[j].estimate;
     const Pose error = p.inverse() * q;
-    score.translation_percent += 100.0 * error.translation().norm() / length_m;
-    score.rotation_rad_per_m += so3::angle(error.linear()) / length_m;
-    ++score.pieces;
+    sums.translation_percent += 100.0 * error.translation().norm() / length_m;
+    sums.rotation_rad_per_m += so3::angle(error.linear()) / length_m;
+    ++sums.pieces;
   }
-  return score;
+  return sums;
+}
+
+/// Sets the means of `out`, which stay empty without a piece.
+template <class Means>
+void set_means(const Sums& sums, Means& out) {
+  out.pieces = sums.pieces;
+  if (sums.pieces == 0) return;
+  out.translation_percent = sums.translation_percent / static_cast<double>(sums.pieces);
+  out.rotation_rad_per_m = sums.rotation_rad_per_m / static_cast<double>(sums.pieces);
+}
+
+/// E.g. "kitti[est-poses,ref-arc,every10,first-beyond,100-800m]".
+std::string definition_of(std::span<const double> lengths_m) {
+  if (lengths_m.empty()) return "kitti[est-poses,ref-arc,every10,first-beyond]";
+  return fmt::format("kitti[est-poses,ref-arc,every10,first-beyond,{:g}-{:g}m]", lengths_m.front(),
+                     lengths_m.back());
 }
 
 }  // namespace
@@ -49,26 +70,24 @@ KittiError kitti_error(const Trajectory& estimate, const Trajectory& truth,
   const std::vector<PosePair> pairs = matched_poses(estimate, truth);
   const std::vector<double> s = paths_of(pairs, truth);
   KittiError error;
+  error.definition = definition_of(lengths_m);
+  Sums all;
   for (const double length_m : lengths_m) {
-    KittiLength sums = score(pairs, s, length_m);
-    error.pieces += sums.pieces;
-    error.translation_percent += sums.translation_percent;
-    error.rotation_rad_per_m += sums.rotation_rad_per_m;
-    const double n = std::max<double>(1.0, static_cast<double>(sums.pieces));
-    sums.translation_percent /= n;
-    sums.rotation_rad_per_m /= n;
-    error.lengths.push_back(sums);
+    const Sums sums = sums_of(pairs, s, length_m);
+    all.pieces += sums.pieces;
+    all.translation_percent += sums.translation_percent;
+    all.rotation_rad_per_m += sums.rotation_rad_per_m;
+    set_means(sums, error.lengths.emplace_back(results::KittiLength{length_m, 0, {}, {}}));
   }
+  set_means(all, error);
   if (error.pieces == 0) {
     const double flown = s.empty() ? 0.0 : s.back() - s.front();
     const double shortest =
         lengths_m.empty() ? 0.0 : *std::min_element(lengths_m.begin(), lengths_m.end());
-    error.refusal =
+    error.refused =
         fmt::format("the common path is {:.3g} m, no piece of {:g} m fits", flown, shortest);
-    return error;
+    error.lengths.clear();
   }
-  error.translation_percent /= static_cast<double>(error.pieces);
-  error.rotation_rad_per_m /= static_cast<double>(error.pieces);
   return error;
 }
 

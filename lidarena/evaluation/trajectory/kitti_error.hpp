@@ -9,29 +9,14 @@
 
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
+#include "lidarena/results/trajectory_metrics.hpp"
 
 namespace lidarena::evaluation {
 
 /// The lengths of the KITTI odometry benchmark.
 inline constexpr std::array kKittiLengths_m{100.0, 200.0, 300.0, 400.0, 500.0, 600.0, 700.0, 800.0};
 
-/// Mean errors of all pieces of one length.
-struct KittiLength {
-  double length_m = 0.0;
-  std::size_t pieces = 0;
-  double translation_percent = 0.0;  ///< mean, of the length; 0 without pieces
-  double rotation_rad_per_m = 0.0;
-};
-
-/// The error of the KITTI odometry benchmark (Geiger, Lenz, Urtasun, "Are we ready for autonomous
-/// driving?", CVPR 2012).
-struct KittiError {
-  std::size_t pieces = 0;  ///< of all lengths together
-  double translation_percent = 0.0;
-  double rotation_rad_per_m = 0.0;
-  std::vector<KittiLength> lengths;
-  std::string refusal;  ///< why there is no number; empty when there is one
-};
+using results::KittiError;
 
 /// Frames are the estimate's poses with a truth pose at their stamp; path length is measured on the
 /// truth. A piece starts at every tenth frame and ends at the first frame *beyond* the length, if

@@ -82,8 +82,8 @@ RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
   }
   rpe.used = rpe.segments.size();
   rpe.total = pieces.size();
-  rpe.translation_m = summarize(translations);
-  rpe.rotation_rad = summarize(rotations);
+  rpe.translation_m = results::summarize(translations);
+  rpe.rotation_rad = results::summarize(rotations);
   return rpe;
 }
 
@@ -155,8 +155,8 @@ AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
     rotations.push_back(so3::angle(aligned.linear().transpose() * pair.truth.linear()));
     ate.poses.push_back({pair.stamp, translations.back(), rotations.back()});
   }
-  ate.translation_m = summarize(translations);
-  ate.rotation_rad = summarize(rotations);
+  ate.translation_m = results::summarize(translations);
+  ate.rotation_rad = results::summarize(rotations);
   return ate;
 }
 

@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/evaluation/summary.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/evaluation/trajectory/association.hpp"
+#include "lidarena/results/trajectory_metrics.hpp"
 
 namespace lidarena::evaluation {
+
+using results::kRpeLengths_m;
+using results::Summary;
 
 /// Relative error of one piece of the flight.
 struct SegmentError {
@@ -33,9 +36,6 @@ struct RelativePoseError {
   Summary rotation_rad;
   std::vector<SegmentError> segments;  ///< the scored ones, sorted by time
 };
-
-/// Piece lengths for which the RPE is reported; the paper uses 1 m.
-inline constexpr std::array kRpeLengths_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
 
 /// Error per `segment_m` of path. Arc length is measured on the truth within the common time span;
 /// ends are interpolated in both trajectories; a piece with an end in a gap is dropped. Throws

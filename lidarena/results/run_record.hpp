@@ -8,20 +8,20 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/run_files.hpp"
+#include "lidarena/results/run_metrics.hpp"
 
-namespace lidarena::report {
+namespace lidarena::results {
 
-/// Figures of one map, aligned by SE(3) over all positions where that is determined, else by the
-/// first pose.
+/// Figures of one map, in the gauge of scores_of().
 struct MapFigures {
   std::size_t points = 0;
-  double rmse_cm = 0.0, rmse_inliers_cm = 0.0, median_cm = 0.0, p95_cm = 0.0;
+  double rmse_cm = 0.0, rmse_inliers_cm = 0.0;
   double outliers_percent = 0.0;
   std::vector<double> histogram_percent;  ///< 1 cm bins, 0..20 cm
 };
 
 /// One run in the report. A figure that does not exist is empty, never zero.
-struct ResultRow {
+struct RunRecord {
   std::string name;  ///< name of the run's folder
   std::filesystem::path folder;
   std::string world, flight, sensor, algorithm, preset;
@@ -32,22 +32,22 @@ struct ResultRow {
   std::optional<double> rpe_cm_per_m, rpe_deg_per_m, ate_cm, coverage_percent;
   std::optional<MapFigures> own_map, reprojected_map;
   std::optional<double> real_time_factor, latency_p95_ms, own_memory_mb, process_memory_mb;
-  Json metrics;     ///< metrics.json, null if there is none
-  Json manifest;    ///< manifest.json, null if there is none
+  std::optional<RunMetrics> metrics;  ///< empty if the run was not scored
+  Json manifest;                      ///< manifest.json, null if there is none
   Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
   Json simulation;  ///< how its dataset was simulated, null if it was not
 };
 
 /// Runs are compared only within one reading: the preset, or "PRESET-MODE" if the study sets timing
 /// modes.
-std::string variant_of(const ResultRow& row);
+std::string variant_of(const RunRecord& row);
 std::string variant_of(const std::string& preset, const std::string& mode);
 /// The algorithm with its variant: "fast_lio2 (indoor)"; "arena_lio" if it has no presets.
-std::string label_of(const ResultRow& row);
+std::string label_of(const RunRecord& row);
 
-struct Results {
+struct StudyResults {
   std::string title;
-  std::vector<ResultRow> rows;
+  std::vector<RunRecord> rows;
 };
 
 /// Map, scan buffer and backlog together, MB.
@@ -55,14 +55,14 @@ double own_memory_mb(const dataset::ResourceRow& row);
 
 /// Reads a study's folder (study.json names the runs; a run without files becomes a row, too) or
 /// one RUN folder. Throws InputError if it is neither.
-Results read_results(const std::filesystem::path& folder);
+StudyResults read_results(const std::filesystem::path& folder);
 /// Merges the parts of one study, or several studies. Of runs with the same name, the first one
 /// that was scored is kept.
-Results merged(std::vector<Results> parts);
+StudyResults merged(std::vector<StudyResults> parts);
 
 /// One row per run, units in the column names, empty cells for figures that do not exist.
-std::string results_csv(const Results& results);
+std::string results_csv(const StudyResults& results);
 /// The main figures, aligned for a terminal.
-std::string results_text(const Results& results);
+std::string results_text(const StudyResults& results);
 
-}  // namespace lidarena::report
+}  // namespace lidarena::results

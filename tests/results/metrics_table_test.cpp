@@ -1,77 +1,84 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/metrics_table.hpp"
+#include "lidarena/results/metrics_table.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <sstream>
 
-#include "lidarena/evaluation/map/map_json.hpp"
-#include "lidarena/evaluation/run_statistics.hpp"
+#include "lidarena/results/run_statistics.hpp"
 
-namespace lidarena::evaluation {
+namespace lidarena::results {
 namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
-/// A run with an RPE of `cm` per meter, in the form of metrics.json.
+/// A summary of `count` values with this RMSE.
+Summary rmse_of(double rmse, std::size_t count) {
+  Summary summary;
+  summary.rmse = rmse;
+  summary.count = count;
+  return summary;
+}
+
+/// A run with an RPE of `cm` per meter.
 ScoredRun run_of(const std::string& name, const std::string& algorithm, const std::string& flight,
                  double cm) {
-  ScoredRun run{name, algorithm, flight, "1", Json::object()};
-  Json& m = run.metrics;
-  m["status"] = "ok";
-  m["reason"] = "";
-  m["warnings"] = Json::array({"the estimate covers 87 % of the flight"});
-  m["final"]["association"] = {{"matched", 290},          {"estimates", 300},
-                               {"coverage", 0.871},       {"overlap_s", 26.0},
-                               {"longest_gap_s", 3.1},    {"estimate_rate_hz", 10.0},
-                               {"truth_rate_hz", 1000.0}, {"time_offset_s", nullptr}};
-  m["final"]["association"]["lever_arm"] = {{"position_m", {0.25, -0.1, nullptr}},
-                                            {"rotation_vector_rad", {0.0, 0.0, 0.1}}};
-  m["final"]["rpe"]["1m_at_poses"] = {
-      {"definition", "rpe_1m_at_poses[ref-arc,1m,disjoint,nearest-poses,gap1.5]"},
-      {"used", 38},
-      {"total", 45},
-      {"translation", {{"rmse_m", cm / 100}, {"count", 38}}},
-      {"rotation", {{"rmse_rad", 0.01}}}};
-  m["final"]["ate"]["se3"] = {{"refused", "the flight is a line"}, {"translation", nullptr}};
-  m["final"]["kitti"] = {{"refused", "the common path is 45 m, no piece of 100 m fits"}};
-  m["live"] = m["final"];
-  m["resources"] = {{"latency", {{"p95_s", 0.0123}}}, {"own", {{"peak_bytes", 2.5e6}}}};
+  ScoredRun run{name, algorithm, flight, "1", {}};
+  RunMetrics& m = run.metrics;
+  m.warnings = {"the estimate covers 87 % of the flight"};
+  TrajectoryMetrics& final = m.final.emplace();
+  final.association = {300, 290, 0.871, 26.0, 3.1, 10.0, 1000.0, {}, {}, {}};
+  LeverArmMetrics& arm = final.association.lever_arm.emplace();
+  arm.position_m = {0.25, -0.1, std::nullopt};
+  arm.rotation_vector_rad = {0.0, 0.0, 0.1};
+  RpeMetrics& rpe = final.rpe.emplace().at_poses_1m;
+  rpe.definition = "rpe_1m_at_poses[ref-arc,1m,disjoint,nearest-poses,gap1.5]";
+  rpe.used = 38;
+  rpe.total = 45;
+  rpe.translation = rmse_of(cm / 100, 38);
+  rpe.rotation = rmse_of(0.01, 38);
+  final.ate.emplace().se3.refused = "the flight is a line";
+  final.kitti.emplace().refused = "the common path is 45 m, no piece of 100 m fits";
+  m.live = m.final;
+  m.resources.scans = 300;
+  m.resources.latency = rmse_of(0.01, 300);
+  m.resources.latency.p95 = 0.0123;
+  m.resources.own.peak_bytes = 2.5e6;
   return run;
 }
 
 ScoredRun diverged(const std::string& name, const std::string& algorithm,
                    const std::string& flight) {
-  return {name,
-          algorithm,
-          flight,
-          "1",
-          {{"status", "diverged"}, {"reason", "900 m from the truth, 50 % & more"}}};
+  ScoredRun run{name, algorithm, flight, "1", {}};
+  run.metrics.status = "diverged";
+  run.metrics.reason = "900 m from the truth, 50 % & more";
+  return run;
+}
+
+MapInGauge map_of(double rmse_m) {
+  MapInGauge map;
+  map.definition = "map_error";
+  map.points = 900;
+  map.distance_m = rmse_of(rmse_m, 900);
+  return map;
 }
 
 /// Adds a re-projected map with a recall of `percent` within 5 cm and 0 within the other distances.
 ScoredRun with_map(ScoredRun run, double percent) {
-  Completeness complete;
-  complete.samples = 5000;
-  for (std::size_t i = 0; i < complete.rows.size(); ++i) {
-    if (Completeness::kWithin_m[i] == 0.05) complete.rows[i] = {0.0, percent, percent - 1.0};
+  MapMetrics& map = run.metrics.maps.reprojected.emplace();
+  map.se3 = map_of(0.03);
+  map.robust = map_of(0.02);
+  map.se3.completeness.samples = 5000;
+  for (const double within : Completeness::kWithin_m) {
+    map.se3.completeness.rows.push_back({within, 0.0, 0.0, 0.0});
   }
-  Ghosting ghosts;
-  ghosts.patches = 400;
-  ghosts.double_percent = 1.5;
-  Json& se3 = run.metrics["maps"]["reprojected"]["se3"];
-  se3 = {{"definition", "map_error"}, {"points", 900}, {"distance", {{"rmse_m", 0.03}}}};
-  se3["completeness"] = to_json(complete);
-  se3["ghosting"] = to_json(ghosts);
-  se3["identity"] = nullptr;
-  VertexDistance vertices;
-  vertices.refusal = "too many vertices";
-  se3["point_vertex"] = to_json(vertices);
-  run.metrics["maps"]["reprojected"]["robust"] = {
-      {"definition", "map_error"}, {"points", 900}, {"distance", {{"rmse_m", 0.02}}}};
+  map.se3.completeness.rows[1] = {0.05, 0.0, percent, percent - 1.0};
+  map.se3.ghosting.patches = 400;
+  map.se3.ghosting.double_percent = 1.5;
+  map.se3.point_vertex.refused = "too many vertices";
   return run;
 }
 
@@ -101,17 +108,17 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
 
 TEST(MetricsText, AFigureThatMeansLittleSaysSo) {
   ScoredRun run = run_of("run_a", "", "house", 1.25);
-  run.metrics["final"]["ate"]["posyaw"] = {
-      {"warning", "the estimate's z axis is tilted by 11.5 deg"},
-      {"translation", {{"rmse_m", 0.2}, {"count", 300}}}};
+  AteMetrics& ate = run.metrics.final->ate->posyaw;
+  ate.warning = "the estimate's z axis is tilted by 11.5 deg";
+  ate.translation = rmse_of(0.2, 300);
   EXPECT_THAT(metrics_text(run),
               HasSubstr("coverage 87 %, 300 poses (the estimate's z axis is tilted"));
 }
 
 TEST(MetricsText, LiveFiguresAreShownWhereTheyDiffer) {
   ScoredRun run = run_of("run_a", "x:y", "house", 1.25);
-  run.metrics["live"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"] = 0.03;
-  run.metrics["live"]["association"]["coverage"] = 0.5;
+  run.metrics.live->rpe->at_poses_1m.translation.rmse = 0.03;
+  run.metrics.live->association.coverage = 0.5;
   const std::string text = metrics_text(run);
   const std::string live = text.substr(text.find("RPE per meter, live"));
   EXPECT_THAT(live.substr(0, live.find('\n')), AllOf(HasSubstr("3.000 cm"), HasSubstr("50 %")));
@@ -248,7 +255,7 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
     runs.push_back(i == 3 ? diverged("b" + flight, "second", flight)
                           : run_of("b" + flight, "second", flight, 1.5 + i));
   }
-  const Json json = statistics_json(runs);
+  const Json json = to_json(statistics_of(runs));
   const Json& first = json["algorithms"]["first"]["rpe_1m_at_poses_translation"];
   EXPECT_NEAR(first["median"], 3.5, 1e-9);
   EXPECT_EQ(first["flights"], 4);
@@ -262,7 +269,7 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
   EXPECT_NEAR(paired["median_difference"], -0.5, 1e-9);
   EXPECT_NEAR(paired["wilcoxon_p"], 0.25, 1e-12);
   EXPECT_EQ(paired["missing"].size(), 1U);
-  const std::string text = statistics_text(json);
+  const std::string text = statistics_text(statistics_of(runs));
   EXPECT_THAT(text, HasSubstr("second minus first, on the same flights and seeds"));
   EXPECT_THAT(text, HasSubstr("no value: flight3 1: diverged"));
   EXPECT_THAT(text, HasSubstr("3 of 4 runs"));
@@ -279,8 +286,8 @@ TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeGauge
   }
   runs.push_back(diverged("bad", "x", "flight3"));
   runs.push_back(run_of("line", "x", "flight4", 1.0));
-  runs.back().metrics["maps"]["reprojected"]["se3"]["refused"] = "the flight is a line";
-  const Json json = statistics_json(runs);
+  runs.back().metrics.maps.reprojected.emplace().se3.refused = "the flight is a line";
+  const Json json = to_json(statistics_of(runs));
   const Json& recall = json["algorithms"]["x"]["reprojected_map_completeness"];
   EXPECT_NEAR(recall["median"], 80.0, 1e-9);
   EXPECT_NEAR(recall["median_with_failures"], 70.0, 1e-9);  // of -inf -inf 70 80 90
@@ -288,4 +295,4 @@ TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeGauge
 }
 
 }  // namespace
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

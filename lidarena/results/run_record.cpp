@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/report/result_table.hpp"
+#include "lidarena/results/run_record.hpp"
 
 #include <fmt/format.h>
 
@@ -11,62 +11,54 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/run_files.hpp"
 
-namespace lidarena::report {
+namespace lidarena::results {
 namespace {
 
 namespace fs = std::filesystem;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-/// The number at `path` of `json`, times `factor`; empty if there is none.
-std::optional<double> number(const Json& json, const std::string& path, double factor = 1.0) {
-  const Json::json_pointer pointer(path);
-  if (!json.is_structured() || !json.contains(pointer) || !json.at(pointer).is_number()) return {};
-  return json.at(pointer).get<double>() * factor;
+std::optional<MapFigures> figures_of(const std::optional<MapMetrics>& map) {
+  const MapInGauge* scores = scores_of(map);
+  if (scores == nullptr) return std::nullopt;
+  MapFigures figures;
+  figures.points = scores->points;
+  figures.rmse_cm = 100.0 * scores->distance_m.rmse;
+  figures.rmse_inliers_cm = 100.0 * scores->rmse_inliers_m.value_or(0.0);
+  figures.outliers_percent = scores->outliers_percent.value_or(0.0);
+  for (const std::uint64_t count : scores->histogram.counts) {
+    figures.histogram_percent.push_back(100.0 * static_cast<double>(count) /
+                                        static_cast<double>(figures.points));
+  }
+  return figures;
 }
 
-std::optional<MapFigures> map_figures(const Json& metrics, const std::string& map) {
-  for (const char* gauge : {"se3", "first_pose"}) {
-    const std::string base = fmt::format("/maps/{}/{}", map, gauge);
-    const auto rmse = number(metrics, base + "/distance/rmse_m", 100.0);
-    if (!rmse) continue;
-    const Json& entry = metrics.at(Json::json_pointer(base));
-    MapFigures figures;
-    figures.points = entry.at("points").get<std::size_t>();
-    figures.rmse_cm = *rmse;
-    figures.rmse_inliers_cm = number(entry, "/rmse_inliers_m", 100.0).value_or(0.0);
-    figures.median_cm = number(entry, "/distance/median_m", 100.0).value_or(0.0);
-    figures.p95_cm = number(entry, "/distance/p95_m", 100.0).value_or(0.0);
-    figures.outliers_percent = number(entry, "/outliers_percent").value_or(0.0);
-    for (const Json& count : entry.at("histogram").at("counts")) {
-      figures.histogram_percent.push_back(100.0 * count.get<double>() /
-                                          static_cast<double>(figures.points));
+/// Sets the figures of a scored run.
+void set_figures(RunRecord& row) {
+  const RunMetrics& m = *row.metrics;
+  row.status = m.status;
+  row.reason = m.reason;
+  if (m.final) {
+    row.coverage_percent = 100.0 * m.final->association.coverage;
+    if (m.final->rpe && !m.final->rpe->at_poses_1m.translation.empty()) {
+      row.rpe_cm_per_m = 100.0 * m.final->rpe->at_poses_1m.translation.rmse;
+      row.rpe_deg_per_m = kDegrees * m.final->rpe->at_poses_1m.rotation.rmse;
     }
-    return figures;
+    if (m.final->ate && !m.final->ate->se3.translation.empty()) {
+      row.ate_cm = 100.0 * m.final->ate->se3.translation.rmse;
+    }
   }
-  return std::nullopt;
-}
-
-void summarize_resources(const fs::path& folder, ResultRow& row) {
-  const std::vector<dataset::ResourceRow> rows = dataset::read_resources(folder / "resources.csv");
-  std::vector<double> latency_ms;
-  double process_mb = 0.0;
-  double own_mb = 0.0;
-  for (const dataset::ResourceRow& r : rows) {
-    latency_ms.push_back(1e3 * r.latency_s);
-    process_mb = std::max(process_mb, static_cast<double>(r.rss_bytes) / 1e6);
-    own_mb = std::max(own_mb, own_memory_mb(r));
-  }
-  if (latency_ms.empty()) return;
-  row.own_memory_mb = own_mb;
-  row.process_memory_mb = process_mb;
-  const auto p95 = latency_ms.begin() + static_cast<std::ptrdiff_t>(latency_ms.size() * 95 / 100);
-  std::nth_element(latency_ms.begin(), p95, latency_ms.end());
-  row.latency_p95_ms = *p95;
+  row.own_map = figures_of(m.maps.own);
+  row.reprojected_map = figures_of(m.maps.reprojected);
+  if (m.resources.empty()) return;
+  row.real_time_factor = m.resources.real_time_factor;
+  row.latency_p95_ms = 1e3 * m.resources.latency.p95;
+  row.own_memory_mb = 1e-6 * m.resources.own.peak_bytes;
+  row.process_memory_mb = 1e-6 * m.resources.rss.peak_bytes;
 }
 
 /// Reads the description of the LiDAR and of the simulation from the manifest of the row's dataset.
-void read_dataset_manifest(ResultRow& row) {
+void read_dataset_manifest(RunRecord& row) {
   const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
   if (!row.manifest.contains("dataset") || !fs::exists(file)) return;
   const Json manifest = dataset::read_json(file);
@@ -78,7 +70,7 @@ void read_dataset_manifest(ResultRow& row) {
   }
 }
 
-void read_row(ResultRow& row) {
+void read_row(RunRecord& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
     row.status = "missing";
     row.reason = "the run has left no files";
@@ -94,24 +86,13 @@ void read_row(ResultRow& row) {
     row.reason = row.manifest.at("failed").get<std::string>();
     return;
   }
-  const auto sensor_s = number(row.manifest, "/summary/sensor_seconds");
-  const auto compute_s = number(row.manifest, "/summary/compute_seconds");
-  if (sensor_s && compute_s && *compute_s > 0) row.real_time_factor = *sensor_s / *compute_s;
-  if (fs::exists(row.folder / "resources.csv")) summarize_resources(row.folder, row);
   if (!fs::exists(row.folder / "metrics.json")) {
     row.status = "not scored";
     row.reason = "no metrics.json: run `lidarena evaluate`";
     return;
   }
-  row.metrics = dataset::read_json(row.folder / "metrics.json");
-  row.status = row.metrics.value("status", "ok");
-  row.reason = row.metrics.value("reason", "");
-  row.rpe_cm_per_m = number(row.metrics, "/final/rpe/1m_at_poses/translation/rmse_m", 100.0);
-  row.rpe_deg_per_m = number(row.metrics, "/final/rpe/1m_at_poses/rotation/rmse_rad", kDegrees);
-  row.ate_cm = number(row.metrics, "/final/ate/se3/translation/rmse_m", 100.0);
-  row.coverage_percent = number(row.metrics, "/final/association/coverage", 100.0);
-  row.own_map = map_figures(row.metrics, "own");
-  row.reprojected_map = map_figures(row.metrics, "reprojected");
+  row.metrics = read_metrics(row.folder);
+  set_figures(row);
 }
 
 std::string cell(const std::optional<double>& value, const char* format) {
@@ -131,13 +112,13 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 
 }  // namespace
 
-std::string variant_of(const ResultRow& row) { return variant_of(row.preset, row.mode); }
+std::string variant_of(const RunRecord& row) { return variant_of(row.preset, row.mode); }
 
 std::string variant_of(const std::string& preset, const std::string& mode) {
   return preset + (preset.empty() || mode.empty() ? "" : "-") + mode;
 }
 
-std::string label_of(const ResultRow& row) {
+std::string label_of(const RunRecord& row) {
   const std::string variant = variant_of(row);
   return row.algorithm + (variant.empty() ? "" : " (" + variant + ")");
 }
@@ -146,13 +127,13 @@ double own_memory_mb(const dataset::ResourceRow& row) {
   return static_cast<double>(row.map_bytes + row.scan_buffer_bytes + row.backlog_bytes) / 1e6;
 }
 
-Results read_results(const fs::path& folder) {
-  Results results;
+StudyResults read_results(const fs::path& folder) {
+  StudyResults results;
   if (fs::exists(folder / "study.json")) {
     const Json study = dataset::read_json(folder / "study.json");
     results.title = study.at("spec").value("title", "Study");
     for (const Json& run : study.at("runs")) {
-      ResultRow row;
+      RunRecord row;
       row.name = run.at("name").get<std::string>();
       row.folder = folder / "runs" / row.name;
       row.world = fs::path(run.at("world").get<std::string>()).stem().string();
@@ -167,7 +148,7 @@ Results read_results(const fs::path& folder) {
     }
   } else if (fs::exists(folder / "manifest.json") &&
              dataset::read_json(folder / "manifest.json").value("kind", "") == "run") {
-    ResultRow row;
+    RunRecord row;
     row.name = folder.filename().string();
     row.folder = folder;
     read_row(row);
@@ -181,16 +162,16 @@ Results read_results(const fs::path& folder) {
   return results;
 }
 
-Results merged(std::vector<Results> parts) {
-  Results all;
+StudyResults merged(std::vector<StudyResults> parts) {
+  StudyResults all;
   std::map<std::string, std::size_t> places;
-  for (Results& part : parts) {
+  for (StudyResults& part : parts) {
     if (all.title.empty()) all.title = part.title;
-    for (ResultRow& row : part.rows) {
+    for (RunRecord& row : part.rows) {
       const auto [place, is_new] = places.emplace(row.name, all.rows.size());
       if (is_new) {
         all.rows.push_back(std::move(row));
-      } else if (all.rows[place->second].metrics.is_null() && !row.metrics.is_null()) {
+      } else if (!all.rows[place->second].metrics && row.metrics) {
         all.rows[place->second] = std::move(row);
       }
     }
@@ -198,7 +179,7 @@ Results merged(std::vector<Results> parts) {
   return all;
 }
 
-std::string results_csv(const Results& results) {
+std::string results_csv(const StudyResults& results) {
   std::string csv =
       "run,world,flight,sensor,algorithm,preset,mode,seed,status,reason,rpe_cm_per_m,rpe_deg_per_m,"
       "ate_se3_cm,coverage_percent,own_map_points,own_map_rmse_cm,own_map_rmse_inliers_cm,"
@@ -211,7 +192,7 @@ std::string results_csv(const Results& results) {
                        cell(figure(map, &MapFigures::rmse_inliers_cm), "{:.4f}"),
                        cell(figure(map, &MapFigures::outliers_percent), "{:.6g}"));
   };
-  for (const ResultRow& r : results.rows) {
+  for (const RunRecord& r : results.rows) {
     csv += fmt::format(
         "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", quoted(r.name),
         quoted(r.world), quoted(r.flight), quoted(r.sensor), quoted(r.algorithm), quoted(r.preset),
@@ -224,12 +205,12 @@ std::string results_csv(const Results& results) {
   return csv;
 }
 
-std::string results_text(const Results& results) {
+std::string results_text(const StudyResults& results) {
   constexpr std::size_t kColumns = 10, kNames = 3;  // names are aligned left, figures right
-  using Line = std::array<std::string, kColumns>;
-  std::vector<Line> lines{{"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm",
-                           "outliers %", "x real", "own MB", "status"}};
-  for (const ResultRow& r : results.rows) {
+  using Row = std::array<std::string, kColumns>;
+  std::vector<Row> lines{{"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm",
+                          "outliers %", "x real", "own MB", "status"}};
+  for (const RunRecord& r : results.rows) {
     const auto shown = [](const std::optional<double>& v, const char* format) {
       return v ? cell(v, format) : std::string("-");
     };
@@ -241,11 +222,11 @@ std::string results_text(const Results& results) {
                      r.reason.empty() ? r.status : r.status + ": " + r.reason});
   }
   std::array<std::size_t, kColumns> widths{};
-  for (const Line& line : lines) {
+  for (const Row& line : lines) {
     for (std::size_t c = 0; c < kColumns; ++c) widths[c] = std::max(widths[c], line[c].size());
   }
   std::string text;
-  for (const Line& line : lines) {
+  for (const Row& line : lines) {
     for (std::size_t c = 0; c + 1 < kColumns; ++c) {
       text += c < kNames ? fmt::format("{:<{}}  ", line[c], widths[c])
                          : fmt::format("{:>{}}  ", line[c], widths[c]);
@@ -255,4 +236,4 @@ std::string results_text(const Results& results) {
   return text;
 }
 
-}  // namespace lidarena::report
+}  // namespace lidarena::results

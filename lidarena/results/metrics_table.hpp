@@ -1,23 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 
-#include "lidarena/base/config_json.hpp"
+#include "lidarena/results/run_metrics.hpp"
 
-/// The main figures of metrics.json as text: for a terminal, as CSV, Markdown and LaTeX. Coverage
+/// The main figures of runs as text: for a terminal, as CSV, Markdown and LaTeX. Coverage
 /// is shown beside every error; a run without figures is a row with the reason.
-namespace lidarena::evaluation {
+namespace lidarena::results {
 
-/// One run and its metrics.json.
+/// One run and its metrics.
 struct ScoredRun {
   std::string name;       ///< name of the folder or file
   std::string algorithm;  ///< with its preset; empty for trajectories that are not our runs
   std::string flight;     ///< dataset
   std::string seed;
-  Json metrics;
+  RunMetrics metrics;
 };
 
 /// Diagnostics (association, offsets, gauge, warnings), then the figures, each with the coverage
@@ -35,4 +34,4 @@ std::string metrics_markdown(std::span<const ScoredRun> runs);
 /// The same for the booktabs package: best bold, second best underlined, failures in words.
 std::string metrics_latex(std::span<const ScoredRun> runs);
 
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

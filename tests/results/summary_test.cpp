@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/summary.hpp"
+#include "lidarena/results/summary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena::evaluation {
+namespace lidarena::results {
 namespace {
 
 TEST(Summary, NoErrorsGiveCountZeroAndNoNaN) {
@@ -46,5 +46,21 @@ TEST(Summary, QuantilesAreThoseOfTheSortedValues) {
   EXPECT_NEAR(quantile(values, 0.1234), values[123] + 0.4 * (values[124] - values[123]), 1e-12);
 }
 
+TEST(FitLine, FindsTheLineOfNoisyPointsAndHowMuchItExplains) {
+  std::vector<double> x, y, odd;
+  for (int i = 0; i < 100; ++i) {
+    x.push_back(0.1 * i);
+    y.push_back(3.0 - 2.0 * x.back());
+    odd.push_back(i % 2 == 0 ? 1.0 : -1.0);
+  }
+  const Line line = fit_line(x, y);
+  EXPECT_NEAR(line.slope, -2.0, 1e-12);
+  EXPECT_NEAR(line.intercept, 3.0, 1e-12);
+  EXPECT_NEAR(line.r_squared, 1.0, 1e-12);
+  EXPECT_LT(fit_line(x, odd).r_squared, 1e-3);
+  EXPECT_EQ(fit_line(std::vector{1.0, 1.0, 1.0}, std::vector{1.0, 2.0, 3.0}).slope, 0.0);
+  EXPECT_EQ(fit_line(std::vector{1.0, 2.0}, std::vector{1.0, 2.0}).slope, 0.0);
+}
+
 }  // namespace
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

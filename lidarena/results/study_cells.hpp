@@ -6,18 +6,18 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/result_table.hpp"
+#include "lidarena/results/run_record.hpp"
 
-namespace lidarena::report {
+namespace lidarena::results {
 
 /// If more of a map's points than this lie beyond 20 cm, tracking counts as lost.
 constexpr double kTrackingLostOutliers_percent = 50.0;
 
-using RowFigure = std::function<std::optional<double>(const ResultRow&)>;
+using RowFigure = std::function<std::optional<double>(const RunRecord&)>;
 
-std::optional<double> rpe_of(const ResultRow& row);       ///< cm per m
-std::optional<double> outliers_of(const ResultRow& row);  ///< %, of the published map
-std::optional<double> map_rmse_of(const ResultRow& row);  ///< cm, of the published map
+std::optional<double> rpe_of(const RunRecord& row);       ///< cm per m
+std::optional<double> outliers_of(const RunRecord& row);  ///< %, of the published map
+std::optional<double> map_rmse_of(const RunRecord& row);  ///< cm, of the published map
 
 /// The runs of a study by world, sensor and algorithm. Figures are medians over flights and seeds
 /// of the runs that have them; status_text() says how many do not.
@@ -25,14 +25,14 @@ class StudyCells {
  public:
   /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
   /// With `only_of_paper` the methods that the paper does not have are left out.
-  StudyCells(const Results& results, const std::string& variant, bool only_of_paper = false);
+  StudyCells(const StudyResults& results, const std::string& variant, bool only_of_paper = false);
 
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;
   std::vector<std::string> algorithms() const;
   std::vector<std::string> presets() const;
   std::vector<std::string> modes() const;
-  std::vector<const ResultRow*> rows(const std::string& world, const std::string& sensor,
+  std::vector<const RunRecord*> rows(const std::string& world, const std::string& sensor,
                                      const std::string& algorithm) const;
   std::optional<double> median(const std::string& world, const std::string& sensor,
                                const std::string& algorithm, const RowFigure& figure) const;
@@ -41,13 +41,13 @@ class StudyCells {
                           const std::string& algorithm) const;
 
  private:
-  std::vector<const ResultRow*> rows_;
+  std::vector<const RunRecord*> rows_;
 };
 
 /// All readings in the order of their first use, but those of the preset `indoor` first: as in the
 /// paper, the programs are set up for the worlds they fly in. Methods without presets belong to
 /// every reading.
-std::vector<std::string> variants_of(const Results& results);
+std::vector<std::string> variants_of(const StudyResults& results);
 
 /// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm
 /// ("Fast LIO2"); empty if the paper has none. Worlds and sensors are recognized by a part of
@@ -56,4 +56,4 @@ std::string paper_world(const std::string& world);
 std::string paper_sensor(const std::string& sensor);
 std::string paper_algorithm(const std::string& algorithm);
 
-}  // namespace lidarena::report
+}  // namespace lidarena::results

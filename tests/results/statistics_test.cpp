@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/statistics.hpp"
+#include "lidarena/results/statistics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +9,7 @@
 
 #include "lidarena/base/random.hpp"
 
-namespace lidarena::evaluation {
+namespace lidarena::results {
 namespace {
 
 using ::testing::ElementsAre;
@@ -236,4 +236,4 @@ TEST(PairedComparison, SeesASmallConstantGainBelowTheSpreadOfTheFlights) {
 }
 
 }  // namespace
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

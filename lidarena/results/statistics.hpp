@@ -8,9 +8,11 @@
 #include <string>
 #include <vector>
 
+#include "lidarena/results/figures.hpp"
+
 /// Statistics over several runs: seeds and flights of one algorithm, and two algorithms on the same
 /// flights and seeds. Runs that failed or diverged are counted and listed, never left out silently.
-namespace lidarena::evaluation {
+namespace lidarena::results {
 
 /// One figure of one run.
 struct RunFigure {
@@ -39,9 +41,6 @@ struct Spread {
 
 inline constexpr std::size_t kResamples = 10'000;
 
-/// Whether small or large values of a figure are better.
-enum class Better { kLess, kMore };
-
 /// The interval is the percentile bootstrap (Efron, Tibshirani, "An introduction to the bootstrap",
 /// 1993, ch. 13) of the median over *flights*: a flight is drawn with all of its runs, because runs
 /// of one flight are not independent samples. Bit-identical for the same seed, whatever the order
@@ -68,4 +67,4 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
 /// the normal approximation. Empty when no difference is left.
 std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences);
 
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

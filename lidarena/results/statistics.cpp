@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/statistics.hpp"
+#include "lidarena/results/statistics.hpp"
 
 #include <fmt/format.h>
 
@@ -9,9 +9,9 @@
 #include <utility>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/evaluation/summary.hpp"
+#include "lidarena/results/summary.hpp"
 
-namespace lidarena::evaluation {
+namespace lidarena::results {
 namespace {
 
 constexpr std::size_t kMinFlights = 3;  // of two there are only three different resamples
@@ -196,4 +196,4 @@ std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences
   return ranks.doubled.size() <= kExact ? exact_p(ranks) : normal_p(ranks);
 }
 
-}  // namespace lidarena::evaluation
+}  // namespace lidarena::results

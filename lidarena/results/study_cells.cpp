@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/report/study_cells.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 
-namespace lidarena::report {
+namespace lidarena::results {
 namespace {
 
-std::vector<std::string> distinct(const std::vector<const ResultRow*>& rows,
-                                  std::string ResultRow::*member) {
+std::vector<std::string> distinct(const std::vector<const RunRecord*>& rows,
+                                  std::string RunRecord::*member) {
   std::vector<std::string> values;
-  for (const ResultRow* row : rows) {
+  for (const RunRecord* row : rows) {
     if (std::find(values.begin(), values.end(), row->*member) == values.end()) {
       values.push_back(row->*member);
     }
@@ -22,11 +22,11 @@ std::vector<std::string> distinct(const std::vector<const ResultRow*>& rows,
 
 }  // namespace
 
-std::optional<double> rpe_of(const ResultRow& row) { return row.rpe_cm_per_m; }
-std::optional<double> outliers_of(const ResultRow& row) {
+std::optional<double> rpe_of(const RunRecord& row) { return row.rpe_cm_per_m; }
+std::optional<double> outliers_of(const RunRecord& row) {
   return row.own_map ? std::optional(row.own_map->outliers_percent) : std::nullopt;
 }
-std::optional<double> map_rmse_of(const ResultRow& row) {
+std::optional<double> map_rmse_of(const RunRecord& row) {
   return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
 }
 
@@ -34,32 +34,33 @@ namespace {
 
 /// Whether a row is compared within the variant. Methods without presets are compared with every
 /// preset of the others, within their mode.
-bool belongs_to(const ResultRow& row, const std::string& variant) {
+bool belongs_to(const RunRecord& row, const std::string& variant) {
   if (variant.empty() || variant_of(row) == variant) return true;
   return row.preset.empty() && (row.mode.empty() || variant.ends_with("-" + row.mode));
 }
 
 }  // namespace
 
-StudyCells::StudyCells(const Results& results, const std::string& variant, bool only_of_paper) {
-  for (const ResultRow& row : results.rows) {
+StudyCells::StudyCells(const StudyResults& results, const std::string& variant,
+                       bool only_of_paper) {
+  for (const RunRecord& row : results.rows) {
     const bool wanted = !only_of_paper || !paper_algorithm(row.algorithm).empty();
     if (wanted && belongs_to(row, variant)) rows_.push_back(&row);
   }
 }
 
-std::vector<std::string> StudyCells::worlds() const { return distinct(rows_, &ResultRow::world); }
-std::vector<std::string> StudyCells::sensors() const { return distinct(rows_, &ResultRow::sensor); }
+std::vector<std::string> StudyCells::worlds() const { return distinct(rows_, &RunRecord::world); }
+std::vector<std::string> StudyCells::sensors() const { return distinct(rows_, &RunRecord::sensor); }
 std::vector<std::string> StudyCells::algorithms() const {
-  return distinct(rows_, &ResultRow::algorithm);
+  return distinct(rows_, &RunRecord::algorithm);
 }
-std::vector<std::string> StudyCells::presets() const { return distinct(rows_, &ResultRow::preset); }
-std::vector<std::string> StudyCells::modes() const { return distinct(rows_, &ResultRow::mode); }
+std::vector<std::string> StudyCells::presets() const { return distinct(rows_, &RunRecord::preset); }
+std::vector<std::string> StudyCells::modes() const { return distinct(rows_, &RunRecord::mode); }
 
-std::vector<const ResultRow*> StudyCells::rows(const std::string& world, const std::string& sensor,
+std::vector<const RunRecord*> StudyCells::rows(const std::string& world, const std::string& sensor,
                                                const std::string& algorithm) const {
-  std::vector<const ResultRow*> found;
-  std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found), [&](const ResultRow* row) {
+  std::vector<const RunRecord*> found;
+  std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found), [&](const RunRecord* row) {
     return row->world == world && row->sensor == sensor && row->algorithm == algorithm;
   });
   return found;
@@ -69,7 +70,7 @@ std::optional<double> StudyCells::median(const std::string& world, const std::st
                                          const std::string& algorithm,
                                          const RowFigure& figure) const {
   std::vector<double> values;
-  for (const ResultRow* row : rows(world, sensor, algorithm)) {
+  for (const RunRecord* row : rows(world, sensor, algorithm)) {
     if (const auto value = figure(*row); value && row->status == "ok") values.push_back(*value);
   }
   if (values.empty()) return std::nullopt;
@@ -82,7 +83,7 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
                                     const std::string& algorithm) const {
   const auto all = rows(world, sensor, algorithm);
   std::map<std::string, std::size_t> states;
-  for (const ResultRow* row : all) {
+  for (const RunRecord* row : all) {
     if (row->status != "ok") ++states[row->status];
   }
   std::string text;
@@ -93,11 +94,11 @@ std::string StudyCells::status_text(const std::string& world, const std::string&
   return text;
 }
 
-std::vector<std::string> variants_of(const Results& results) {
+std::vector<std::string> variants_of(const StudyResults& results) {
   const bool without_presets =
-      std::ranges::all_of(results.rows, [](const ResultRow& row) { return row.preset.empty(); });
+      std::ranges::all_of(results.rows, [](const RunRecord& row) { return row.preset.empty(); });
   std::vector<std::string> variants;
-  for (const ResultRow& row : results.rows) {
+  for (const RunRecord& row : results.rows) {
     if (row.preset.empty() && !without_presets) continue;
     const std::string variant = variant_of(row);
     if (std::ranges::find(variants, variant) == variants.end()) variants.push_back(variant);
@@ -127,4 +128,4 @@ std::string paper_algorithm(const std::string& algorithm) {
   return found == names.end() ? "" : found->second;
 }
 
-}  // namespace lidarena::report
+}  // namespace lidarena::results

@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/results/figures.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/error.hpp"
+
+namespace lidarena::results {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+constexpr double kNear_m = 0.05;  ///< distance within which completeness is a main figure
+
+using Trajectory = std::optional<TrajectoryMetrics> RunMetrics::*;
+using Map = std::optional<MapMetrics> MapsOfRun::*;
+
+/// Empty for a summary of nothing.
+std::optional<double> known(const Summary& summary, double Summary::*statistic) {
+  return summary.empty() ? std::nullopt : std::optional(summary.*statistic);
+}
+
+std::string count_of(std::size_t count, const char* what) {
+  return fmt::format("{} {}", count, what);
+}
+
+Reading of_rpe(const RpeMetrics& rpe, std::optional<double> value) {
+  return {value,
+          rpe.definition,
+          "",
+          "",
+          rpe.used,
+          rpe.total,
+          fmt::format("{} of {} pieces", rpe.used, rpe.total)};
+}
+Reading translation(const RpeMetrics& rpe) {
+  return of_rpe(rpe, known(rpe.translation, &Summary::rmse));
+}
+Reading rotation(const RpeMetrics& rpe) { return of_rpe(rpe, known(rpe.rotation, &Summary::rmse)); }
+Reading floor_of(const RpeMetrics& rpe) {
+  return of_rpe(rpe, rpe.floor ? std::optional(rpe.floor->translation_rmse_m) : std::nullopt);
+}
+
+Reading of_ate(const AteMetrics& ate, std::optional<double> value) {
+  return {value,
+          ate.definition,
+          ate.refused.value_or(""),
+          ate.warning.value_or(""),
+          std::nullopt,
+          std::nullopt,
+          count_of(ate.translation.count, "poses")};
+}
+Reading translation(const AteMetrics& ate) {
+  return of_ate(ate, known(ate.translation, &Summary::rmse));
+}
+Reading rotation(const AteMetrics& ate) { return of_ate(ate, known(ate.rotation, &Summary::rmse)); }
+
+Reading translation(const KittiError& kitti) {
+  return {kitti.translation_percent,       kitti.definition, kitti.refused.value_or(""), "", {}, {},
+          count_of(kitti.pieces, "pieces")};
+}
+
+/// A reading of a map or of a part of its scores with a definition of its own.
+Reading of_map(std::optional<double> value, const std::string& definition, std::string samples,
+               const std::optional<std::string>& refused = {}) {
+  return {value, definition, refused.value_or(""), "", {}, {}, std::move(samples)};
+}
+Reading of_points(const MapInGauge& map, std::optional<double> value) {
+  return of_map(value, map.definition, count_of(map.points, "points"), map.refused);
+}
+Reading rmse(const MapInGauge& map) {
+  return of_points(map, known(map.distance_m, &Summary::rmse));
+}
+Reading rmse_inliers(const MapInGauge& map) { return of_points(map, map.rmse_inliers_m); }
+Reading outliers(const MapInGauge& map) { return of_points(map, map.outliers_percent); }
+Reading of_completeness(const MapInGauge& map, double CompletenessRow::*share) {
+  const CompletenessRow* row = map.completeness.within(kNear_m);
+  return of_map(row == nullptr ? std::nullopt : std::optional(row->*share),
+                map.completeness.definition, count_of(map.completeness.samples, "samples"),
+                map.refused);
+}
+Reading completeness(const MapInGauge& map) {
+  return of_completeness(map, &CompletenessRow::recall_percent);
+}
+Reading f_score(const MapInGauge& map) {
+  return of_completeness(map, &CompletenessRow::f_score_percent);
+}
+Reading double_walls(const MapInGauge& map) {
+  const Ghosting& g = map.ghosting;
+  return of_map(g.empty() ? std::nullopt : std::optional(g.double_percent), g.definition,
+                count_of(g.patches, "patches"), map.refused);
+}
+Reading identity(const MapInGauge& map) {
+  const IdentityError& e = map.identity;
+  return of_map(known(e.distance_m, &Summary::rmse), e.definition,
+                count_of(e.distance_m.count, "points"), map.refused);
+}
+Reading vertices(const MapInGauge& map) {
+  const VertexDistance& d = map.point_vertex;
+  return of_map(d.rmse_m, d.definition, count_of(d.points, "points"),
+                d.refused ? d.refused : map.refused);
+}
+
+// Each makes the function of a figure from the place of its group and how it is read there.
+
+template <Trajectory trajectory, auto pick, Reading (*read)(const RpeMetrics&)>
+Reading rpe(const RunMetrics& m) {
+  return m.*trajectory && (m.*trajectory)->rpe ? read(pick(*(m.*trajectory)->rpe)) : Reading{};
+}
+template <std::size_t i>
+constexpr auto kLength = [](const RpeByLength& rpe) -> const RpeMetrics& { return rpe.lengths[i]; };
+constexpr auto kAtPoses = [](const RpeByLength& rpe) -> const RpeMetrics& {
+  return rpe.at_poses_1m;
+};
+constexpr auto kOverTime = [](const RpeByLength& rpe) -> const RpeMetrics& { return rpe.over_1s; };
+
+template <Trajectory trajectory, AteMetrics AteByGauge::*gauge, Reading (*read)(const AteMetrics&)>
+Reading ate(const RunMetrics& m) {
+  return m.*trajectory && (m.*trajectory)->ate ? read((*(m.*trajectory)->ate).*gauge) : Reading{};
+}
+template <std::optional<KittiError> TrajectoryMetrics::*kitti>
+Reading kitti_of(const RunMetrics& m) {
+  return m.final && (*m.final).*kitti ? translation(*((*m.final).*kitti)) : Reading{};
+}
+template <Map map, MapInGauge MapMetrics::*gauge, Reading (*read)(const MapInGauge&)>
+Reading map_of(const RunMetrics& m) {
+  return m.maps.*map ? read((*(m.maps.*map)).*gauge) : Reading{};
+}
+template <double Summary::*statistic>
+Reading latency(const RunMetrics& m) {
+  return {known(m.resources.latency, statistic), "", "", "", {}, {}, ""};
+}
+template <MemoryMetrics ResourceMetrics::*memory>
+Reading peak(const RunMetrics& m) {
+  if (m.resources.empty()) return {};
+  return {(m.resources.*memory).peak_bytes, "", "", "", {}, {}, ""};
+}
+Reading real_time_factor(const RunMetrics& m) {
+  if (m.resources.empty()) return {};
+  return {m.resources.real_time_factor, "", "", "", {}, {}, ""};
+}
+
+constexpr Trajectory kFinal = &RunMetrics::final;
+constexpr Trajectory kLive = &RunMetrics::live;
+constexpr Map kOwn = &MapsOfRun::own;
+constexpr Map kReprojected = &MapsOfRun::reprojected;
+constexpr auto kSe3 = &MapMetrics::se3;
+constexpr auto kRobust = &MapMetrics::robust;
+constexpr auto kOfPath = Subject::kTrajectory;
+constexpr auto kOfLive = Subject::kLiveTrajectory;
+constexpr auto kOfMap = Subject::kMap;
+constexpr auto kOfRun = Subject::kResources;
+constexpr auto kNone = FigureTable::kNone;
+constexpr auto kMain = FigureTable::kMain;
+constexpr auto kMapTable = FigureTable::kMap;
+
+constexpr std::array kFigures{
+    Figure{"rpe_1m_at_poses_translation", "RPE cm/m", 100, "cm", "RPE per meter, pose to pose",
+           kOfPath, rpe<kFinal, kAtPoses, translation>, kMain},
+    Figure{"rpe_1m_at_poses_rotation", "RPE deg/m", kDegrees, "deg",
+           "RPE per meter, pose to pose, rotation", kOfPath, rpe<kFinal, kAtPoses, rotation>,
+           kMain},
+    Figure{"rpe_1m_translation", nullptr, 100, "cm", "RPE per meter, ends interpolated", kOfPath,
+           rpe<kFinal, kLength<0>, translation>},
+    Figure{"rpe_1m_rotation", nullptr, kDegrees, "deg",
+           "RPE per meter, ends interpolated, rotation", kOfPath,
+           rpe<kFinal, kLength<0>, rotation>},
+    Figure{"rpe_1m_floor", nullptr, 100, "cm", "RPE per meter, interpolation (floor)", kOfPath,
+           rpe<kFinal, kLength<0>, floor_of>},
+    Figure{"rpe_1s_translation", nullptr, 100, "cm", "RPE per second", kOfPath,
+           rpe<kFinal, kOverTime, translation>},
+    Figure{"rpe_10m_translation", nullptr, 100, "cm", "RPE per 10 m", kOfPath,
+           rpe<kFinal, kLength<3>, translation>},
+    Figure{"rpe_50m_translation", nullptr, 100, "cm", "RPE per 50 m", kOfPath,
+           rpe<kFinal, kLength<5>, translation>},
+    Figure{"ate_se3_translation", "ATE cm", 100, "cm", "ATE, SE(3) gauge", kOfPath,
+           ate<kFinal, &AteByGauge::se3, translation>, kMain},
+    Figure{"ate_se3_rotation", nullptr, kDegrees, "deg", "ATE, SE(3) gauge, rotation", kOfPath,
+           ate<kFinal, &AteByGauge::se3, rotation>},
+    Figure{"ate_posyaw_translation", nullptr, 100, "cm", "ATE, position and heading", kOfPath,
+           ate<kFinal, &AteByGauge::posyaw, translation>},
+    Figure{"ate_first_pose_translation", nullptr, 100, "cm", "ATE, first-pose gauge", kOfPath,
+           ate<kFinal, &AteByGauge::first_pose, translation>},
+    Figure{"kitti_translation", nullptr, 1, "%", "KITTI, 100 to 800 m", kOfPath,
+           kitti_of<&TrajectoryMetrics::kitti>},
+    Figure{"kitti_short_translation", nullptr, 1, "%", "KITTI's rule, 1 to 50 m", kOfPath,
+           kitti_of<&TrajectoryMetrics::kitti_short>},
+    Figure{"live_rpe_1m_at_poses_translation", nullptr, 100, "cm", "RPE per meter, live", kOfLive,
+           rpe<kLive, kAtPoses, translation>},
+    Figure{"live_ate_se3_translation", nullptr, 100, "cm", "ATE, SE(3) gauge, live", kOfLive,
+           ate<kLive, &AteByGauge::se3, translation>},
+    Figure{"own_map_rmse", "own map cm", 100, "cm", "own map, RMSE", kOfMap,
+           map_of<kOwn, kSe3, rmse>, kMain},
+    Figure{"own_map_outliers", nullptr, 1, "%", "own map, beyond 20 cm", kOfMap,
+           map_of<kOwn, kSe3, outliers>},
+    Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust gauge", kOfMap,
+           map_of<kOwn, kRobust, rmse>},
+    Figure{"own_map_completeness", nullptr, 1, "%", "own map, completeness at 5 cm", kOfMap,
+           map_of<kOwn, kSe3, completeness>, kNone, Better::kMore},
+    Figure{"own_map_f_score", nullptr, 1, "%", "own map, F-score at 5 cm", kOfMap,
+           map_of<kOwn, kSe3, f_score>, kNone, Better::kMore},
+    Figure{"own_map_double_walls", nullptr, 1, "%", "own map, double walls", kOfMap,
+           map_of<kOwn, kSe3, double_walls>},
+    Figure{"reprojected_map_rmse", "map cm", 100, "cm", "reprojected map, RMSE", kOfMap,
+           map_of<kReprojected, kSe3, rmse>, kMain},
+    Figure{"reprojected_map_rmse_inliers", nullptr, 100, "cm", "reprojected map, RMSE of inliers",
+           kOfMap, map_of<kReprojected, kSe3, rmse_inliers>},
+    Figure{"reprojected_map_outliers", "outliers %", 1, "%", "reprojected map, beyond 20 cm",
+           kOfMap, map_of<kReprojected, kSe3, outliers>, kMain},
+    Figure{"reprojected_map_rmse_robust", "robust cm", 100, "cm",
+           "reprojected map, RMSE, robust gauge", kOfMap, map_of<kReprojected, kRobust, rmse>,
+           kMapTable},
+    Figure{"reprojected_map_rmse_vertices", "to vertices cm", 100, "cm",
+           "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, kSe3, vertices>,
+           kMapTable},
+    Figure{"reprojected_map_completeness", "complete %", 1, "%",
+           "reprojected map, completeness at 5 cm", kOfMap,
+           map_of<kReprojected, kSe3, completeness>, kMapTable, Better::kMore},
+    Figure{"reprojected_map_f_score", "F-score %", 1, "%", "reprojected map, F-score at 5 cm",
+           kOfMap, map_of<kReprojected, kSe3, f_score>, kMapTable, Better::kMore},
+    Figure{"reprojected_map_double_walls", "double walls %", 1, "%",
+           "reprojected map, double walls", kOfMap, map_of<kReprojected, kSe3, double_walls>,
+           kMapTable},
+    Figure{"reprojected_map_identity", "identity cm", 100, "cm", "reprojected map, identity error",
+           kOfMap, map_of<kReprojected, kSe3, identity>, kMapTable},
+    Figure{"latency_median", nullptr, 1e3, "ms", "latency, median", kOfRun,
+           latency<&Summary::median>},
+    Figure{"latency_p95", "P95 ms", 1e3, "ms", "latency, P95", kOfRun, latency<&Summary::p95>,
+           kMain},
+    Figure{"latency_p99", nullptr, 1e3, "ms", "latency, P99", kOfRun, latency<&Summary::p99>},
+    Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun, latency<&Summary::max>},
+    Figure{"real_time_factor", nullptr, 1, "x", "real-time factor", kOfRun, real_time_factor, kNone,
+           Better::kMore},
+    Figure{"own_memory_peak", "own MB", 1e-6, "MB", "own memory, peak", kOfRun,
+           peak<&ResourceMetrics::own>, kMain},
+    Figure{"process_memory_peak", nullptr, 1e-6, "MB", "process memory, peak", kOfRun,
+           peak<&ResourceMetrics::rss>},
+};
+
+std::optional<double> coverage_percent(const std::optional<TrajectoryMetrics>& trajectory) {
+  if (!trajectory) return std::nullopt;
+  return 100.0 * trajectory->association.coverage;
+}
+
+}  // namespace
+
+std::span<const Figure> figures() { return kFigures; }
+
+const Figure& figure_of(const std::string& key, const std::string& place) {
+  std::vector<std::string> keys;
+  for (const Figure& figure : kFigures) {
+    if (key == figure.key) return figure;
+    keys.emplace_back(figure.key);
+  }
+  const std::string nearest = nearest_word(key, keys);
+  throw InputError(
+      place, "there is no figure '" + key + "'",
+      nearest.empty() ? "docs/metrics.md lists them" : "did you mean '" + nearest + "'?");
+}
+
+std::optional<double> value_of(const RunMetrics& metrics, const Figure& figure) {
+  const std::optional<double> value = figure.read(metrics).value;
+  return value ? std::optional(*value * figure.factor) : std::nullopt;
+}
+
+std::optional<double> coverage_of(const RunMetrics& metrics) {
+  return coverage_percent(metrics.final);
+}
+
+std::optional<double> coverage_of(const RunMetrics& metrics, const Figure& figure) {
+  return coverage_percent(figure.subject == Subject::kLiveTrajectory ? metrics.live
+                                                                     : metrics.final);
+}
+
+}  // namespace lidarena::results

@@ -1,0 +1,298 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/results/metrics_table.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <optional>
+#include <vector>
+
+#include "lidarena/base/config_json.hpp"
+#include "lidarena/results/figures.hpp"
+
+namespace lidarena::results {
+namespace {
+
+constexpr double kDegrees = 180.0 / std::numbers::pi;
+
+bool has_coverage(const Figure& figure) { return figure.subject != Subject::kResources; }
+
+// --- terminal
+
+/// The numbers, "?" for those that are not known.
+template <class Numbers>
+std::string list_text(const Numbers& numbers, double factor = 1.0) {
+  std::string text;
+  for (const std::optional<double> number : numbers) {
+    text += number ? fmt::format(" {:.4g}", *number * factor) : " ?";
+  }
+  return text;
+}
+
+std::string lever_text(const std::optional<LeverArmMetrics>& arm) {
+  if (!arm) return "not observable from this motion";
+  return fmt::format("at{} m, rotated by{} deg (a diagnostic, not applied)",
+                     list_text(arm->position_m), list_text(arm->rotation_vector_rad, kDegrees));
+}
+
+std::string gauge_text(const AteMetrics& se3) {
+  if (se3.refused) return fmt::format("  SE(3) gauge refused: {}\n", *se3.refused);
+  if (!se3.truth_from_estimate) return {};
+  const Eigen::Vector3d t = se3.truth_from_estimate->translation();
+  const Eigen::Quaterniond q(se3.truth_from_estimate->linear());
+  return fmt::format("  SE(3) gauge x y z qx qy qz qw:{}, scale hint {:.5f} (not applied)\n",
+                     list_text(std::array{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}),
+                     se3.scale_hint.value_or(1.0));
+}
+
+std::string diagnosis_text(const TrajectoryMetrics& trajectory) {
+  const AssociationMetrics& a = trajectory.association;
+  std::string text = fmt::format(
+      "  {} of {} poses matched, coverage {:.1f} %, overlap {:.2f} s, longest gap {:.2f} "
+      "s\n  rates: estimate {:.4g} Hz, truth {:.4g} Hz; stamps late by {}\n",
+      a.matched, a.estimates, 100 * a.coverage, a.overlap_s, a.longest_gap_s, a.estimate_rate_hz,
+      a.truth_rate_hz,
+      a.time_offset_s ? fmt::format("{:.1f} +- {:.1f} ms (not corrected)", 1e3 * *a.time_offset_s,
+                                    1e3 * a.time_offset_sigma_s.value_or(0))
+                      : "an amount that is not observable from this motion");
+  text += "  estimate's frame in the truth's body: " + lever_text(a.lever_arm) + "\n";
+  return trajectory.ate ? text + gauge_text(trajectory.ate->se3) : text;
+}
+
+const char* block_of(const Figure& figure) {
+  switch (figure.subject) {
+    case Subject::kMap:
+      return "map";
+    case Subject::kResources:
+      return "resources";
+    default:
+      return "trajectory";
+  }
+}
+
+std::string figure_text(const RunMetrics& metrics, const Figure& figure, const Reading& reading) {
+  if (!reading.value && !reading.refused.empty())
+    return fmt::format("  {:<38}   refused: {}\n", figure.label, reading.refused);
+  if (!reading.value) return {};
+  std::string line = fmt::format("  {:<38}{:>10.3f} {:<4}", figure.label,
+                                 *reading.value * figure.factor, figure.unit);
+  const auto coverage = coverage_of(metrics, figure);
+  if (has_coverage(figure) && coverage) {
+    line += fmt::format("  coverage {:.0f} %{}{}", *coverage, reading.samples.empty() ? "" : ", ",
+                        reading.samples);
+  }
+  if (!reading.warning.empty()) line += " (" + reading.warning + ")";
+  line.erase(line.find_last_not_of(' ') + 1);
+  return line + "\n";
+}
+
+// --- tables
+
+using Cell = std::optional<double>;
+
+/// The columns of a table; in the map table only those that some run has.
+std::vector<const Figure*> table_figures(std::span<const ScoredRun> runs, FigureTable table) {
+  std::vector<const Figure*> columns;
+  for (const Figure& figure : figures()) {
+    if (figure.table != table) continue;
+    const bool known = std::any_of(runs.begin(), runs.end(), [&](const ScoredRun& run) {
+      return value_of(run.metrics, figure).has_value();
+    });
+    if (known || table == FigureTable::kMain) columns.push_back(&figure);
+  }
+  return columns;
+}
+
+/// How many of the other runs have a better value than run `i`; empty when fewer than two runs have
+/// a value.
+std::optional<std::size_t> rank_of(std::span<const ScoredRun> runs, std::size_t i,
+                                   const Figure& figure) {
+  const Cell mine = value_of(runs[i].metrics, figure);
+  if (!mine) return std::nullopt;
+  const double sign = figure.better == Better::kLess ? 1.0 : -1.0;
+  std::size_t better = 0;
+  std::size_t others = 0;
+  for (const ScoredRun& run : runs) {
+    const Cell value = value_of(run.metrics, figure);
+    if (!value) continue;
+    ++others;
+    if (sign * *value < sign * *mine) ++better;
+  }
+  if (others < 2) return std::nullopt;
+  return better;
+}
+
+std::string title_of(const ScoredRun& run) {
+  return run.algorithm.empty() ? run.name : run.name + " (" + run.algorithm + ")";
+}
+
+std::string cell_text(const Cell& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
+
+std::string quoted(const std::string& text) {
+  if (text.find_first_of(",\"\n") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+/// Escapes what would end a cell in Markdown.
+std::string for_markdown(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
+  return out;
+}
+
+std::string for_latex(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+      case '%':
+      case '$':
+      case '#':
+      case '_':
+      case '{':
+      case '}':
+        out += std::string("\\") + c;
+        break;
+      case '\\':
+        out += "\\textbackslash{}";
+        break;
+      case '~':
+        out += "\\textasciitilde{}";
+        break;
+      case '^':
+        out += "\\textasciicircum{}";
+        break;
+      default:
+        out += c;
+    }
+  }
+  return out;
+}
+
+std::string latex_row(std::span<const ScoredRun> runs, std::size_t i,
+                      const std::vector<const Figure*>& figures) {
+  const ScoredRun& run = runs[i];
+  std::string row = for_latex(title_of(run));
+  if (!run.metrics.is_ok()) {
+    return row + fmt::format(" & \\multicolumn{{{}}}{{l}}{{{}}} \\\\\n", figures.size() + 1,
+                             for_latex(run.metrics.status_and_reason()));
+  }
+  row += " & " + cell_text(coverage_of(run.metrics));
+  for (const Figure* figure : figures) {
+    const std::string text = cell_text(value_of(run.metrics, *figure));
+    const auto rank = rank_of(runs, i, *figure);
+    if (rank == 0U) {
+      row += " & \\textbf{" + text + "}";
+    } else if (rank == 1U) {
+      row += " & \\underline{" + text + "}";
+    } else {
+      row += " & " + (text == "-" ? "--" : text);
+    }
+  }
+  return row + " \\\\\n";
+}
+
+std::string markdown_table(std::span<const ScoredRun> runs,
+                           const std::vector<const Figure*>& figures) {
+  std::string text = "| run | coverage % |";
+  std::string rule = "| --- | ---: |";
+  for (const Figure* figure : figures) {
+    text += fmt::format(" {} |", figure->heading);
+    rule += " ---: |";
+  }
+  text += " status |\n" + rule + " --- |\n";
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    text += fmt::format("| {} | {} |", for_markdown(title_of(runs[i])),
+                        cell_text(coverage_of(runs[i].metrics)));
+    for (const Figure* figure : figures) {
+      const std::string cell = cell_text(value_of(runs[i].metrics, *figure));
+      text += rank_of(runs, i, *figure) == 0U ? fmt::format(" **{}** |", cell)
+                                              : fmt::format(" {} |", cell);
+    }
+    text += fmt::format(" {} |\n", for_markdown(runs[i].metrics.status_and_reason()));
+  }
+  return text;
+}
+
+std::string latex_table(std::span<const ScoredRun> runs,
+                        const std::vector<const Figure*>& figures) {
+  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\nrun & coverage \\%",
+                                 std::string(figures.size() + 1, 'r'));
+  for (const Figure* figure : figures) text += " & " + for_latex(figure->heading);
+  text += " \\\\\n\\midrule\n";
+  for (std::size_t i = 0; i < runs.size(); ++i) text += latex_row(runs, i, figures);
+  return text + "\\bottomrule\n\\end{tabular}\n";
+}
+
+}  // namespace
+
+std::string metrics_text(const ScoredRun& run) {
+  const RunMetrics& m = run.metrics;
+  std::string text = fmt::format("{}\nstatus: {}\n", title_of(run), m.status_and_reason());
+  for (const std::string& warning : m.warnings) text += fmt::format("warning: {}\n", warning);
+  if (m.final) text += diagnosis_text(*m.final);
+  const bool live_is_final = m.live && m.final && value_to_json(*m.live) == value_to_json(*m.final);
+  std::string block, refused;
+  for (const Figure& figure : figures()) {
+    if (live_is_final && figure.subject == Subject::kLiveTrajectory) continue;
+    const Reading reading = figure.read(m);
+    if (!reading.refused.empty() && reading.refused == refused) continue;  // said already
+    refused = reading.refused;
+    const std::string line = figure_text(m, figure, reading);
+    if (!line.empty() && block != block_of(figure)) {
+      block = block_of(figure);
+      text += block + "\n";
+    }
+    text += line;
+  }
+  return text;
+}
+
+std::string metrics_csv(std::span<const ScoredRun> runs) {
+  std::string csv =
+      "run,algorithm,flight,seed,status,reason,coverage_percent,figure,definition,value,unit,used,"
+      "total\n";
+  for (const ScoredRun& run : runs) {
+    const std::string head = fmt::format(
+        "{},{},{},{},{},{}", quoted(run.name), quoted(run.algorithm), quoted(run.flight),
+        quoted(run.seed), run.metrics.status, quoted(run.metrics.reason));
+    bool any = false;
+    for (const Figure& figure : figures()) {
+      const Reading reading = figure.read(run.metrics);
+      if (!reading.value) continue;
+      any = true;
+      const auto coverage = has_coverage(figure) ? coverage_of(run.metrics, figure) : Cell();
+      const auto count = [](const std::optional<std::size_t>& n) {
+        return n ? std::to_string(*n) : std::string();
+      };
+      csv += fmt::format("{},{},{},{},{:.9g},{},{},{}\n", head,
+                         coverage ? fmt::format("{:.3f}", *coverage) : "", figure.key,
+                         quoted(reading.definition), *reading.value * figure.factor, figure.unit,
+                         count(reading.used), count(reading.total));
+    }
+    if (!any) csv += head + ",,,,,,,\n";
+  }
+  return csv;
+}
+
+std::string metrics_markdown(std::span<const ScoredRun> runs) {
+  std::string text = markdown_table(runs, table_figures(runs, FigureTable::kMain));
+  const auto map_figures = table_figures(runs, FigureTable::kMap);
+  if (map_figures.empty()) return text;
+  text += '\n';
+  return text += markdown_table(runs, map_figures);
+}
+
+std::string metrics_latex(std::span<const ScoredRun> runs) {
+  std::string text = latex_table(runs, table_figures(runs, FigureTable::kMain));
+  const auto map_figures = table_figures(runs, FigureTable::kMap);
+  if (map_figures.empty()) return text;
+  text += '\n';
+  return text += latex_table(runs, map_figures);
+}
+
+}  // namespace lidarena::results

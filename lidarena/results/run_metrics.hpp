@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lidarena/results/map_metrics.hpp"
+#include "lidarena/results/resource_metrics.hpp"
+#include "lidarena/results/trajectory_metrics.hpp"
+
+/// What a run amounts to. Each struct lists its fields once; metrics.json and resources.json, their
+/// schema, the tables, Python's dictionaries and the types of the report's page come from these
+/// lists. Names contain units.
+namespace lidarena::results {
+
+/// Version of metrics.json; increased when a name or a meaning changes.
+inline constexpr int kMetricsSchemaVersion = 3;
+
+/// The truth that a run was scored against.
+struct TruthFacts {
+  std::size_t poses = 0;
+  double rate_hz = 0.0, duration_s = 0.0, path_m = 0.0;
+  bool empty() const { return poses == 0; }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("poses", self.poses, "", "");
+    v("rate_hz", self.rate_hz, "Hz", "1 / median period");
+    v("duration_s", self.duration_s, "s", "");
+    v("path_m", self.path_m, "m", "length of the path");
+  }
+};
+
+struct MapsOfRun {
+  std::optional<MapMetrics> own, reprojected;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("own", self.own, "", "the map that the program publishes");
+    v("reprojected", self.reprojected, "", "the scored returns placed along the estimated path");
+  }
+};
+
+/// The body frames of trajectories that were given as files.
+struct FramesOfFiles {
+  std::string truth, lever;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("truth", self.truth, "", "body frame of the truth");
+    v("lever", self.lever, "", "pose of the estimate's body frame in it, as given");
+  }
+};
+
+/// All metrics of one run.
+struct RunMetrics {
+  std::string schema = "lidarena.metrics";
+  int schema_version = kMetricsSchemaVersion;
+  std::string status = "ok";
+  std::string reason;
+  std::vector<std::string> warnings;
+  TruthFacts truth;
+  std::optional<TrajectoryMetrics> live, final;
+  MapsOfRun maps;
+  std::optional<FramesOfFiles> frames;
+  ResourceMetrics resources;  ///< differs between repeated runs, so it has a file of its own
+
+  bool is_ok() const { return status == "ok"; }
+  /// "diverged: REASON", or the status alone.
+  std::string status_and_reason() const { return reason.empty() ? status : status + ": " + reason; }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("schema", self.schema, "", "");
+    v("schema_version", self.schema_version, "", "");
+    v("status", self.status, "", "ok, diverged, failed, no_output, no_overlap");
+    v("reason", self.reason, "", "");
+    v("warnings", self.warnings, "", "");
+    v("truth", self.truth, "", "");
+    v("live", self.live, "", "poses as known at each scan");
+    v("final", self.final, "", "poses at the end of the run");
+    v("maps", self.maps, "", "");
+    v("frames", self.frames, "", "");
+    v("resources", self.resources, "", "in resources.json");
+  }
+};
+
+/// Writes metrics.json (accuracy: the same bytes whenever it is computed) and resources.json.
+void write_metrics(const std::filesystem::path& folder, const RunMetrics& metrics);
+/// Reads both back; resources stay empty without resources.json. Throws InputError when
+/// metrics.json is missing, damaged or of another schema version.
+RunMetrics read_metrics(const std::filesystem::path& folder);
+
+/// The alignment of the final trajectory with the truth that pictures use: SE(3) over all positions
+/// where that is determined, else the first pose. Empty if the run was not scored.
+std::optional<Pose> truth_from_estimate(const RunMetrics& metrics);
+/// The scores of a map in that gauge; null if it was not scored.
+const MapInGauge* scores_of(const std::optional<MapMetrics>& map);
+
+/// A run that could not be scored.
+RunMetrics failed_metrics(const std::string& reason);
+
+}  // namespace lidarena::results
