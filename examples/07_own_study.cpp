@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Define a study: two sensors and one algorithm in your own room, each run in its own process; when
-// called again, it does only the missing runs. `lidarena report FOLDER` writes the report.
+// Define a study: two sensors and one algorithm in your own room. Each run is a call of the program
+// lidarena, which must be in PATH (or give StudyOptions::program); when called again, it does only
+// the missing runs. `lidarena report FOLDER` writes the report.
 // usage: example_07_own_study [FOLDER]
 #include <cstdio>
 #include <fstream>

@@ -3,10 +3,13 @@
 
 #include <cstdio>
 #include <exception>
+#include <string_view>
 
+#include "apps/lidarena/code_hashes.hpp"
 #include "apps/lidarena/shell_help.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
+#include "lidarena/odometry/factory.hpp"
 
 namespace lidarena {
 
@@ -37,12 +40,44 @@ namespace {
 /// Version and build options, which distinguish builds of the same version.
 std::string version_text() { return "lidarena " LIDARENA_VERSION "\n" LIDARENA_BUILD_FACTS; }
 
+/// The hash of the method in whose folder an algorithm is: the folder with the longest name that
+/// the algorithm's name begins with.
+Json hash_of(const std::string& algorithm, const Json& by_folder) {
+  std::string folder;
+  for (const auto& [name, hash] : by_folder.items()) {
+    if (algorithm.starts_with(name) && name.size() > folder.size()) folder = name;
+  }
+  return by_folder.at(folder);
+}
+
+/// Version, and hashes of the code that decides the results of each part of the program.
+Json version_json() {
+  Json code = Json::parse(kCodeHashes);
+  const Json by_folder = code.at("methods");
+  Json& methods = code["methods"] = {{"external", by_folder.at("external")}};
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms())
+    methods[info.name] = hash_of(info.name, by_folder);
+  return {{"version", LIDARENA_VERSION}, {"code", code}};
+}
+
+/// Whether the arguments are --version and --json, in any order.
+bool asks_for_version_json(int argc, char** argv) {
+  if (argc != 3) return false;
+  const std::string_view first = argv[1], second = argv[2];
+  return (first == "--version" && second == "--json") ||
+         (first == "--json" && second == "--version");
+}
+
 void add_text(CLI::App& app, const std::string& name, const std::string& what,
               std::string (*make)(const CLI::App&)) {
   app.add_subcommand(name, what)->callback([&app, make] { fmt::print("{}", make(app)); });
 }
 
 int parse_and_do(int argc, char** argv) {
+  if (asks_for_version_json(argc, argv)) {
+    print_json(version_json());
+    return kDone;
+  }
   CLI::App app{
       "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
       "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on their scans, and\n"
@@ -54,7 +89,9 @@ int parse_and_do(int argc, char** argv) {
       "or with one command, which also writes a report page:\n"
       "  lidarena study quick --out my_study\n",
       "lidarena"};
-  app.set_version_flag("--version", version_text());
+  CLI::Option* version = app.set_version_flag("--version", version_text());
+  app.add_flag("--json")->needs(version)->description(
+      "With --version: also hashes of the code of simulator, methods and scorer");
   app.require_subcommand(1);
   app.failure_message(CLI::FailureMessage::simple);
   Common common;

@@ -4,6 +4,7 @@
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/study/run_algorithm.hpp"
+#include "lidarena/study/run_external.hpp"
 
 namespace lidarena {
 namespace {
@@ -19,10 +20,14 @@ Pose parse_extrinsics(const std::string& text) {
   return pose;
 }
 
-int run_verb(const Common& common, const study::RunRequest& request, const std::string& out) {
+int run_verb(const Common& common, const study::RunRequest& request, const std::string& external,
+             const std::string& out) {
   Console console(common.quiet);
+  const Parallel parallel(common.threads);
   const odometry::RunSummary s =
-      study::run_algorithm(request, out, Parallel(common.threads), console);
+      external.empty() ? study::run_algorithm(request, out, parallel, console)
+                       : study::run_external(load_config<study::ExternalProgram>(external), request,
+                                             out, parallel, console);
   const double factor = s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0;
   Json statuses = Json::object();
   std::string counts;
@@ -65,11 +70,13 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   auto out = std::make_shared<std::string>();
   auto dataset = std::make_shared<std::string>();
   auto extrinsics = std::make_shared<std::string>();
+  auto external = std::make_shared<std::string>();
   verb->add_option("algorithm", r->odometry.algorithm, "Name (see: list algorithms)")->required();
   verb->add_option("dataset", *dataset, "Dataset folder, .mcap, .bag or folder of sweeps")
       ->required();
   verb->add_option("--out", *out, "Folder to write")->required();
-  verb->add_option("--preset", r->odometry.preset, "One of the algorithm's presets; default: its first");
+  verb->add_option("--preset", r->odometry.preset,
+                   "One of the algorithm's presets; default: its first");
   verb->add_option("--sensor", r->read.sensor, "Id of the LiDAR to use, if there are several");
   verb->add_option("--config", r->odometry.config_file,
                    "YAML file that overrides values of the preset")
@@ -78,6 +85,9 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
                    "key=value, overrides preset and --config; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+  verb->add_option("--external", *external,
+                   "YAML file of an external program (name, command, ...) to run as ALGORITHM")
+      ->check(CLI::ExistingFile);
   verb->add_flag("--paced", r->paced, "Drop scans when the algorithm is late, as on a live robot");
   verb->add_option("--layout", r->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
@@ -88,10 +98,10 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
       ->capture_default_str();
   set_verb(
       *verb, common,
-      [&common, r, out, dataset, extrinsics] {
+      [&common, r, out, dataset, extrinsics, external] {
         r->dataset = *dataset;
         if (!extrinsics->empty()) r->read.body_from_lidar = parse_extrinsics(*extrinsics);
-        return run_verb(common, *r, *out);
+        return run_verb(common, *r, *external, *out);
       },
       exit_code);
 }

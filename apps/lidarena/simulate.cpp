@@ -5,6 +5,7 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/study/example_scan.hpp"
 
 namespace lidarena {
 namespace {
@@ -19,6 +20,7 @@ struct SimulateOptions {
   std::string dialect = "si";
   bool compress = false;
   bool no_data = false;
+  bool example_scans = false;
 };
 
 int simulate_verb(const Common& common, const SimulateOptions& options) {
@@ -41,6 +43,7 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   Console console(common.quiet);
   const study::SimulateSummary s =
       study::simulate_dataset(request, options.out, Parallel(common.threads), console);
+  if (options.example_scans) study::write_example_scans(options.out, Parallel(common.threads));
   if (common.json) {
     print_json({{"dataset", options.out},
                 {"triangles", s.triangles},
@@ -95,6 +98,10 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
       ->capture_default_str();
   verb->add_flag("--truth", o->request.truth,
                  "Also write what each point hit: surface point, range, normal, triangle");
+  verb->add_flag("--scored-truth", o->request.scored_truth,
+                 "The same, of the points that scoring uses alone: at most 20,000 of a scan");
+  verb->add_flag("--example-scans", o->example_scans,
+                 "Also write one scan of each LiDAR, placed by the true motion, for pictures");
   verb->add_flag(
       "--no-data", o->no_data,
       "Write a manifest only: the same points are simulated whenever the dataset is read");

@@ -3,10 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <map>
+
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/report/report.hpp"
+#include "lidarena/study/scratch.hpp"
 
 namespace lidarena {
 namespace {
@@ -22,6 +25,7 @@ struct StudyRequest {
   bool dry = false;
   int jobs = 1;
   std::string shard = "1/1";
+  std::optional<double> scratch_gb;
 };
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
@@ -63,6 +67,22 @@ void print_plan(const study::StudySpec& spec, const std::vector<study::PlannedRu
              spec.title, cells.size(), clock_text(seconds), 1e-3 * disk_mb);
 }
 
+/// What is simulated once, and what anew for each run.
+void print_scratch(const study::StudySpec& spec, const std::vector<study::PlannedRun>& cells,
+                   const study::ConfigFolder& configs, std::uint64_t budget) {
+  std::map<std::string, std::uint64_t> datasets;
+  for (const study::PlannedRun& cell : cells) {
+    if (!datasets.contains(cell.dataset))
+      datasets[cell.dataset] = study::data_bytes(spec, cell, configs);
+  }
+  for (const auto& [name, bytes] : datasets) {
+    fmt::print("{:70} {:6.1f} GB for a while{}\n", name, 1e-9 * static_cast<double>(bytes),
+               bytes <= budget ? "" : ": more than --scratch-gb, simulated anew for each run");
+  }
+  fmt::print("at most {:.1f} GB of data at a time (--scratch-gb)\n",
+             1e-9 * static_cast<double>(budget));
+}
+
 int study_verb(const Common& common, const StudyRequest& request) {
   const study::ConfigFolder configs = common.config_folder();
   const auto spec = request.name.empty()
@@ -72,9 +92,14 @@ int study_verb(const Common& common, const StudyRequest& request) {
   options.threads = common.threads;
   options.jobs = request.jobs;
   options.shard = study::parse_shard(request.shard);
+  options.program = "/proc/self/exe";
+  if (request.scratch_gb)
+    options.scratch_bytes = static_cast<std::uint64_t>(1e9 * *request.scratch_gb);
   if (request.dry) {
-    print_plan(spec, study::cells_of_shard(study::plan(spec, configs), options.shard, configs),
-               configs);
+    const auto cells = study::cells_of_shard(study::plan(spec, configs), options.shard, configs);
+    print_plan(spec, cells, configs);
+    print_scratch(spec, cells, configs,
+                  options.scratch_bytes.value_or(study::default_scratch_bytes(request.out)));
     return kDone;
   }
   Console console(common.quiet);
@@ -94,7 +119,7 @@ int study_verb(const Common& common, const StudyRequest& request) {
                outcome.runs, outcome.reused, outcome.failed, outcome.diverged,
                report.page.string());
   }
-  return outcome.failed + outcome.diverged > 0 ? kWorkFailed : kDone;
+  return outcome.runs == outcome.cells ? kDone : kWorkFailed;
 }
 
 struct ReportRequest {
@@ -143,6 +168,10 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--jobs", request->jobs,
                    "Number of runs at the same time, each on its own cores")
       ->check(CLI::Range(1, 256));
+  verb->add_option("--scratch-gb", request->scratch_gb,
+                   "Disk space for data of datasets in use, GB; those that need more are simulated "
+                   "anew for each run. Default: half of the free space")
+      ->check(CLI::NonNegativeNumber);
   verb->add_option("--shard", request->shard, "K/N: run only the K-th of N parts of the study");
   set_verb(
       *verb, common, [&common, request] { return study_verb(common, *request); }, exit_code);

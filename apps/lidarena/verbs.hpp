@@ -12,8 +12,9 @@ namespace lidarena {
 
 /// Exit codes of the program.
 inline constexpr int kDone = 0;
-inline constexpr int kWorkFailed = 1;  ///< a run failed or diverged, or an internal error
-inline constexpr int kBadInput = 2;    ///< wrong usage or bad input
+inline constexpr int kWorkFailed =
+    1;                               ///< a run diverged, a study lacks cells, or an internal error
+inline constexpr int kBadInput = 2;  ///< wrong usage or bad input
 
 /// Options that every verb takes.
 struct Common {

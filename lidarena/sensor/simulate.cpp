@@ -38,7 +38,8 @@ class Simulation final : public dataset::EventSource {
       const SensorConfig& sensor = sensors[i];
       const std::string& id = rig.lidars[i].id;
       LidarStream stream{id, {sensor, make_pattern(sensor), id, options.seed, options.noise}};
-      stream.scans = static_cast<std::uint64_t>(end_ / stream.lidar.pattern().period());
+      if (options.lidar.empty() || options.lidar == id)
+        stream.scans = static_cast<std::uint64_t>(end_ / stream.lidar.pattern().period());
       lidars_.push_back(std::move(stream));
       if (!sensor.imu) continue;
       const ImuInfo& info = rig.imus[imu++];

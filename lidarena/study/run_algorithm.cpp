@@ -61,15 +61,19 @@ dataset::Cloud scored_cloud(const dataset::RunFiles& run, const Pose& mesh_from_
   return cloud;
 }
 
-/// Computes the re-projected map again and finds what the ray of each point hit.
-evaluation::IdentifiedMap identified_map(dataset::Dataset dataset, const LidarInfo& lidar,
-                                         const Trajectory& trajectory,
-                                         dataset::ScanTruthSource& hits) {
-  std::vector<evaluation::ReturnOrigin> origins;
-  const dataset::Cloud map = evaluation::reproject(*dataset.events, lidar.id, lidar.body_from_lidar,
-                                                   trajectory, 0.02, nullptr, &origins);
-  return evaluation::identify(map.points, origins, hits);
-}
+/// The truth of scans that are in memory.
+class ScansInMemory : public dataset::ScanTruthSource {
+ public:
+  explicit ScansInMemory(const std::vector<dataset::ScanTruth>& scans) : scans_(scans) {}
+  std::optional<dataset::ScanTruth> next() override {
+    if (next_ == scans_.size()) return std::nullopt;
+    return scans_[next_++];
+  }
+
+ private:
+  const std::vector<dataset::ScanTruth>& scans_;
+  std::size_t next_ = 0;
+};
 
 /// What the rays of the run's LiDAR hit; empty, with a warning, if the dataset cannot be read
 /// again.
@@ -80,20 +84,23 @@ std::optional<evaluation::RayTruth> ray_truth(const fs::path& path, const std::s
   try {
     dataset::ReadOptions read;
     read.sensor = lidar_id;
-    dataset::Dataset again = open_scored_returns(path, read, parallel);
-    const LidarInfo* found = again.rig.find_lidar(lidar_id);
-    if (found == nullptr) throw InputError(path.string(), "has no LiDAR named " + lidar_id);
-    const LidarInfo lidar = *found;
-    const auto hits = open_scored_truth(path, lidar.id, parallel);
-    if (!hits) {
+    ScoredHits hits;
+    dataset::Dataset again = open_scored_returns(path, read, parallel, &hits);
+    const LidarInfo* lidar = again.rig.find_lidar(lidar_id);
+    if (lidar == nullptr) throw InputError(path.string(), "has no LiDAR named " + lidar_id);
+    if (!hits.known) {
       return evaluation::RayTruth{
-          evaluation::observe(*again.events, lidar.id, lidar.body_from_lidar, truth, world,
+          evaluation::observe(*again.events, lidar->id, lidar->body_from_lidar, truth, world,
                               parallel),
           {}};
     }
-    const auto hits_again = open_scored_truth(path, lidar.id, parallel);
-    return evaluation::RayTruth{evaluation::observe(*hits, world, parallel),
-                                identified_map(std::move(again), lidar, estimate, *hits_again)};
+    // The re-projected map once more, for the return that each of its points comes from.
+    std::vector<evaluation::ReturnOrigin> origins;
+    const dataset::Cloud map = evaluation::reproject(
+        *again.events, lidar->id, lidar->body_from_lidar, estimate, 0.02, nullptr, &origins);
+    ScansInMemory observed(hits.scans), identified(hits.scans);
+    return evaluation::RayTruth{evaluation::observe(observed, world, parallel),
+                                evaluation::identify(map.points, origins, identified)};
   } catch (const InputError& error) {
     log.warn(std::string("completeness and signed distance are left out: ") + error.what());
     return std::nullopt;

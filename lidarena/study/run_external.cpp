@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/run_external.hpp"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <csignal>
-#include <cstring>
 
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
+#include "lidarena/study/process.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
 namespace lidarena::study {
@@ -78,44 +71,21 @@ std::string substitute(std::string command, const std::string& key, const std::s
   return command;
 }
 
-struct Usage {
-  double wall_s = 0.0, processor_s = 0.0, peak_mb = 0.0;
-};
-
-double seconds_of(const timeval& time) {
-  return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
-}
-
-/// Runs the command line until it ends; its output goes to `log_file`.
-Usage run_command(const std::string& name, const std::string& command, const fs::path& log_file) {
-  const std::string line = "exec " + command;
-  const int log_fd = open(log_file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
-  if (log_fd < 0)
-    throw InputError(log_file.string(), std::string("cannot be created: ") + strerror(errno));
-  const auto begin = std::chrono::steady_clock::now();
-  const pid_t pid = fork();
-  if (pid < 0) throw Error(std::string("fork: ") + strerror(errno));
-  if (pid == 0) {  // system calls only: other threads may hold locks
-    prctl(PR_SET_PDEATHSIG, SIGKILL);
-    dup2(log_fd, STDOUT_FILENO);
-    dup2(log_fd, STDERR_FILENO);
-    execl("/bin/sh", "sh", "-c", line.c_str(), nullptr);
-    _exit(127);
+/// Runs the command line until it ends; its output goes to `log`.
+ProcessEnd run_command(const std::string& name, const std::string& command, const fs::path& log) {
+  Command shell;
+  shell.arguments = {"/bin/sh", "-c", "exec " + command};
+  shell.output = shell.log = log;
+  shell.own_group = false;
+  fs::remove(log);
+  ProcessEnd end = Process(shell).wait();
+  if (end.exit_code != 0) {
+    throw Error(
+        fmt::format("{} ended with {}; its output is in {}", name,
+                    end.exit_code < 0 ? end.reason : fmt::format("exit code {}", end.exit_code),
+                    log.filename().string()));
   }
-  close(log_fd);
-  int status = 0;
-  rusage used{};
-  while (wait4(pid, &status, 0, &used) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    const std::string end = WIFEXITED(status) ? fmt::format("exit code {}", WEXITSTATUS(status))
-                                              : fmt::format("signal {}", WTERMSIG(status));
-    throw Error(fmt::format("{} ended with {}; its output is in {}", name, end,
-                            log_file.filename().string()));
-  }
-  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
-  return {wall.count(), seconds_of(used.ru_utime) + seconds_of(used.ru_stime),
-          1e-3 * static_cast<double>(used.ru_maxrss)};
+  return end;
 }
 
 Pose sensor_from_body(PoseOf pose_of, const Rig& rig) {
@@ -146,7 +116,7 @@ dataset::Cloud map_of(const fs::path& output) {
 odometry::RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
                                   const fs::path& out, const Parallel& parallel, LogSink& log) {
   const fs::path input = out / "input", output = out / "output";
-  fs::remove_all(out);
+  for (const fs::path& stale : {input, output}) fs::remove_all(stale);
   fs::create_directories(output);
   log.info("recording for " + program.name);
   const Recording recording = record(program, request, input, parallel);
@@ -156,7 +126,9 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   command = substitute(command, "{sensor}", quoted(recording.rig.lidars[0].id));
   command = substitute(command, "{threads}", std::to_string(parallel.threads()));
   log.info("running " + program.name);
-  const Usage used = run_command(program.name, command, out / kProgramLog);
+  const auto begin = std::chrono::steady_clock::now();
+  const ProcessEnd used = run_command(program.name, command, out / kProgramLog);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - begin;
   fs::remove_all(input);
 
   const fs::path left = output / "trajectory.tum";
@@ -177,7 +149,7 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   odometry::RunSummary summary;
   summary.scans = recording.scans;
   summary.sensor_seconds = recording.seconds;
-  summary.compute_seconds = used.wall_s;
+  summary.compute_seconds = wall.count();
   files.manifest = {
       {"kind", "run"},
       {"algorithm", program.name},

@@ -4,7 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <deque>
+#include <functional>
+#include <map>
 
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
@@ -53,17 +54,20 @@ std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& fligh
   return scene;
 }
 
-/// An event source that owns the scene it simulates.
+/// An event source that owns the scene it simulates, and what the simulation tells the truth to.
 class SimulatedSource : public dataset::EventSource {
  public:
-  SimulatedSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
+  SimulatedSource(std::unique_ptr<Scene> scene, std::unique_ptr<dataset::ScanTruthSink> truth,
+                  const Parallel& parallel)
       : scene_(std::move(scene)),
+        truth_(std::move(truth)),
         events_(sensor::simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
                                  parallel)) {}
   std::optional<dataset::Event> next() override { return events_->next(); }
 
  private:
   std::unique_ptr<Scene> scene_;
+  std::unique_ptr<dataset::ScanTruthSink> truth_;
   std::unique_ptr<dataset::EventSource> events_;
 };
 
@@ -91,20 +95,40 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"routes", routes}}}};
 }
 
-/// Writes only the truth of the scored returns.
-class ScoredTruthWriter : public dataset::ScanTruthSink {
+/// Passes on the truth of the scored returns.
+class ScoredTruth : public dataset::ScanTruthSink {
  public:
-  ScoredTruthWriter(dataset::ScanTruthSink& writer, std::size_t max_returns)
-      : writer_(writer), max_returns_(max_returns) {}
+  ScoredTruth(const Scene& scene, std::function<void(const dataset::ScanTruth&)> pass_on)
+      : pass_on_(std::move(pass_on)) {
+    for (const LidarInfo& lidar : sensor::make_rig(scene.sensors).lidars)
+      max_returns_[lidar.id] = evaluation::scored_returns(scene.scan_count(lidar));
+  }
   void write(const dataset::ScanTruth& truth) override {
     dataset::ScanTruth scored = truth;
-    evaluation::keep_scored(scored.points, max_returns_);
-    writer_.write(scored);
+    evaluation::keep_scored(scored.points, max_returns_.at(truth.sensor_id));
+    pass_on_(scored);
   }
 
  private:
-  dataset::ScanTruthSink& writer_;
-  std::size_t max_returns_;
+  std::function<void(const dataset::ScanTruth&)> pass_on_;
+  std::map<std::string, std::size_t> max_returns_;  ///< by LiDAR
+};
+
+/// Events with only the scored returns, up to `max_count` of each scan.
+class ScoredReturns : public dataset::EventSource {
+ public:
+  ScoredReturns(std::unique_ptr<dataset::EventSource> source, std::size_t max_count)
+      : source_(std::move(source)), max_count_(max_count) {}
+  std::optional<dataset::Event> next() override {
+    std::optional<dataset::Event> event = source_->next();
+    auto* scan = event ? std::get_if<Scan>(&event->data) : nullptr;
+    if (scan != nullptr) evaluation::keep_scored(scan->points, max_count_);
+    return event;
+  }
+
+ private:
+  std::unique_ptr<dataset::EventSource> source_;
+  std::size_t max_count_;
 };
 
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
@@ -117,17 +141,13 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
     }
   };
   sensor::SimulationOptions options = scene.options;
-  std::size_t scans = 0;
-  for (const LidarInfo& lidar : sensor::make_rig(scene.sensors).lidars)
-    scans = std::max(scans, scene.scan_count(lidar));
-  const std::size_t max_returns = evaluation::scored_returns(scans);
-  ScoredTruthWriter scored_writer(writer, max_returns);
-  dataset::ScanTruthSink* sink = &writer;
-  if (request.scored_only) sink = &scored_writer;
-  options.truth = request.truth ? sink : nullptr;
+  ScoredTruth scored(scene, [&](const dataset::ScanTruth& truth) { writer.write(truth); });
+  if (request.truth) {
+    options.truth = &writer;
+  } else if (request.scored_truth) {
+    options.truth = &scored;
+  }
   auto events = sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
-  if (request.scored_only)
-    events = std::make_unique<evaluation::ScoredEvents>(std::move(events), max_returns);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
@@ -194,33 +214,6 @@ double path_length(const Scene& scene) {
   return length;
 }
 
-/// What the LiDAR `sensor` hits, found by simulating the flight again.
-class SimulatedTruth : public dataset::ScanTruthSource, private dataset::ScanTruthSink {
- public:
-  SimulatedTruth(std::string sensor, std::unique_ptr<Scene> scene, const Parallel& parallel)
-      : sensor_(std::move(sensor)) {
-    scene->options.truth = this;
-    events_ = std::make_unique<SimulatedSource>(std::move(scene), parallel);
-  }
-  std::optional<dataset::ScanTruth> next() override {
-    while (waiting_.empty() && events_->next()) {
-    }
-    if (waiting_.empty()) return std::nullopt;
-    dataset::ScanTruth first = std::move(waiting_.front());
-    waiting_.pop_front();
-    return first;
-  }
-
- private:
-  void write(const dataset::ScanTruth& truth) override {
-    if (truth.sensor_id == sensor_) waiting_.push_back(truth);
-  }
-
-  std::string sensor_;
-  std::unique_ptr<dataset::EventSource> events_;
-  std::deque<dataset::ScanTruth> waiting_;
-};
-
 std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& manifest) {
   LogSink silent;  // its messages were logged when the dataset was made
   const Json& simulation = manifest.at("simulation");
@@ -250,24 +243,44 @@ Json manifest_to_simulate(const fs::path& folder) {
   return manifest.contains("simulation") ? manifest : nullptr;
 }
 
-/// Opens a dataset without measurements; its events are simulated.
+/// Opens a dataset without measurements; its events are simulated (only `sensor` of its LiDARs, if
+/// named), and so is the truth of the scored returns if `hits` is given.
 dataset::Dataset open_simulated(const fs::path& folder, const Json& manifest,
-                                const std::string& sensor, const Parallel& parallel) {
+                                const std::string& sensor, const Parallel& parallel,
+                                ScoredHits* hits = nullptr) {
   std::unique_ptr<Scene> scene = scene_of_manifest(folder, manifest);
   dataset::Dataset dataset;
   dataset.path = folder;
   dataset.rig = sensor::make_rig(scene->sensors);
   dataset.manifest = manifest;
-  if (const LidarInfo* lidar = dataset.rig.find_lidar(sensor))
+  const LidarInfo* lidar = dataset.rig.find_lidar(sensor);
+  if (lidar != nullptr) {
+    scene->options.lidar = lidar->id;
     dataset.scan_count = scene->scan_count(*lidar);
-  dataset.events = std::make_unique<SimulatedSource>(std::move(scene), parallel);
+  }
+  std::unique_ptr<ScoredTruth> truth;
+  if (hits != nullptr && lidar != nullptr) {
+    hits->known = true;
+    truth = std::make_unique<ScoredTruth>(
+        *scene, [hits](const dataset::ScanTruth& scored) { hits->scans.push_back(scored); });
+    scene->options.truth = truth.get();
+  }
+  dataset.events = std::make_unique<SimulatedSource>(std::move(scene), std::move(truth), parallel);
   return dataset;
 }
 
-/// Where the scored returns of a dataset are: in its folder `scored`, else in the dataset itself.
-fs::path scored_folder(const fs::path& dataset) {
-  const fs::path folder = dataset / kScoredFolder;
-  return fs::exists(folder / "manifest.json") ? folder : dataset;
+/// Reads what the scored returns hit from a dataset that contains it.
+ScoredHits recorded_hits(const fs::path& dataset, const std::string& sensor,
+                         std::size_t max_returns) {
+  ScoredHits hits;
+  const auto source = dataset::open_scan_truth(dataset, sensor);
+  if (!source) return hits;
+  hits.known = true;
+  while (auto truth = source->next()) {
+    evaluation::keep_scored(truth->points, max_returns);
+    hits.scans.push_back(*std::move(truth));
+  }
+  return hits;
 }
 
 }  // namespace
@@ -318,39 +331,17 @@ dataset::Dataset open_any_dataset(const fs::path& path, const dataset::ReadOptio
                             : open_simulated(path, manifest, options.sensor, parallel);
 }
 
-void write_scored_returns(const SimulateRequest& request, const fs::path& dataset,
-                          const Parallel& parallel, LogSink& log) {
-  SimulateRequest scored = request;
-  scored.data = scored.truth = scored.scored_only = true;
-  scored.write = {};
-  simulate_dataset(scored, dataset / kScoredFolder, parallel, log);
-}
-
 dataset::Dataset open_scored_returns(const fs::path& dataset, const dataset::ReadOptions& options,
-                                     const Parallel& parallel) {
-  const fs::path place = scored_folder(dataset);
-  dataset::Dataset scored = open_any_dataset(place, options, parallel);
-  if (place != dataset) return scored;  // that folder holds scored returns only
+                                     const Parallel& parallel, ScoredHits* hits) {
+  const Json manifest = manifest_to_simulate(dataset);
+  const bool recorded = manifest.is_null();
+  dataset::Dataset scored = recorded
+                                ? dataset::open_dataset(dataset, options)
+                                : open_simulated(dataset, manifest, options.sensor, parallel, hits);
   const std::size_t max_returns = evaluation::scored_returns(scored.scan_count.value_or(0));
-  scored.events = std::make_unique<evaluation::ScoredEvents>(std::move(scored.events), max_returns);
+  scored.events = std::make_unique<ScoredReturns>(std::move(scored.events), max_returns);
+  if (recorded && hits != nullptr) *hits = recorded_hits(dataset, options.sensor, max_returns);
   return scored;
-}
-
-std::unique_ptr<dataset::ScanTruthSource> open_scored_truth(const fs::path& dataset,
-                                                            const std::string& sensor,
-                                                            const Parallel& parallel) {
-  const fs::path place = scored_folder(dataset);
-  const Json manifest = manifest_to_simulate(place);
-  std::unique_ptr<dataset::ScanTruthSource> truth =
-      manifest.is_null()
-          ? dataset::open_scan_truth(place, sensor)
-          : std::make_unique<SimulatedTruth>(sensor, scene_of_manifest(place, manifest), parallel);
-  if (!truth || place != dataset) return truth;
-  dataset::ReadOptions options;
-  options.sensor = sensor;
-  const dataset::Dataset same = open_any_dataset(dataset, options, parallel);
-  return std::make_unique<evaluation::ScoredTruth>(
-      std::move(truth), evaluation::scored_returns(same.scan_count.value_or(0)));
 }
 
 }  // namespace lidarena::study

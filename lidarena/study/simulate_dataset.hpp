@@ -26,7 +26,7 @@ struct SimulateRequest {
   std::optional<sensor::ScanMode> mode;  ///< of all sensors; empty = as in their files
   bool data = true;                      ///< false: a manifest only; simulated whenever it is read
   bool truth = false;                    ///< also write what each point hit, as /truth/SENSOR/hits
-  bool scored_only = false;              ///< write only the returns that scoring uses
+  bool scored_truth = false;             ///< the same of the returns that scoring uses alone
   dataset::WriteOptions write;           ///< format and dialect of the measurements
 };
 
@@ -50,19 +50,17 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const std::file
 dataset::Dataset open_any_dataset(const std::filesystem::path& path,
                                   const dataset::ReadOptions& options, const Parallel& parallel);
 
-/// Folder in a dataset without measurements: its scored returns and what they hit, written once so
-/// that the flight is not simulated again for each scoring. May be deleted at any time.
-inline constexpr const char* kScoredFolder = "scored";
-void write_scored_returns(const SimulateRequest& request, const std::filesystem::path& dataset,
-                          const Parallel& parallel, LogSink& log);
+/// What the scored returns of one LiDAR hit, scan by scan.
+struct ScoredHits {
+  bool known = false;
+  std::vector<dataset::ScanTruth> scans;
+};
 
-/// The returns of the dataset that scoring uses (see scored_returns.hpp), read from the folder
-/// `scored` if it exists; the returns are the same either way.
+/// The returns of the LiDAR `options.sensor` that scoring uses (see scored_returns.hpp). If `hits`
+/// is given, it must outlive the returned dataset; it is complete once all events have been read,
+/// and not `known` if the dataset does not contain it and cannot be simulated.
 dataset::Dataset open_scored_returns(const std::filesystem::path& dataset,
-                                     const dataset::ReadOptions& options, const Parallel& parallel);
-/// What they hit; null if the dataset does not contain it and cannot be simulated.
-std::unique_ptr<dataset::ScanTruthSource> open_scored_truth(const std::filesystem::path& dataset,
-                                                            const std::string& sensor,
-                                                            const Parallel& parallel);
+                                     const dataset::ReadOptions& options, const Parallel& parallel,
+                                     ScoredHits* hits = nullptr);
 
 }  // namespace lidarena::study

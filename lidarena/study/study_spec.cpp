@@ -84,6 +84,22 @@ void check_names_differ(const std::vector<PlannedRun>& cells) {
   }
 }
 
+/// Length of the cell's flight, s; a guess if the flight's file gives no duration.
+double expected_seconds(const PlannedRun& cell, const ConfigFolder& configs) {
+  constexpr double kUnknown = 120.0;
+  double seconds = cell.seconds;
+  const fs::path flight = configs.resolve("flights", cell.flight);
+  if (seconds == 0.0 && flight.extension() == ".yaml")
+    seconds = load_config<flight::FlightConfig>(flight).duration_s;
+  return seconds == 0.0 ? kUnknown : seconds;
+}
+
+double shots_per_second(const std::string& sensor, const ConfigFolder& configs) {
+  const auto pattern =
+      sensor::make_pattern(sensor::load_sensor(configs.resolve("sensors", sensor)));
+  return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
+}
+
 }  // namespace
 
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name) {
@@ -145,19 +161,21 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
-  const auto pattern =
-      sensor::make_pattern(sensor::load_sensor(configs.resolve("sensors", cell.sensor)));
-  double seconds = cell.seconds;
-  const fs::path flight = configs.resolve("flights", cell.flight);
-  if (seconds == 0.0 && flight.extension() == ".yaml") {
-    seconds = load_config<flight::FlightConfig>(flight).duration_s;
-  }
-  constexpr double kUnknown = 120.0;  // s, if the flight's file gives no duration
-  if (seconds == 0.0) seconds = kUnknown;
-  const double shots =
-      seconds * static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
+  const double seconds = expected_seconds(cell, configs);
+  const double shots = seconds * shots_per_second(cell.sensor, configs);
   return {kSecondsOfRun + kSecondsOfFlightSecond * seconds + kSecondsOfShot * shots,
           kMegabytesOfRun, kMapMegabytesOfFlightSecond * seconds + kMapMegabytesOfShot * shots};
+}
+
+std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
+                         const ConfigFolder& configs) {
+  constexpr double kBytesOfShot = 24.0;     // of a point, see formats.md
+  constexpr double kBytesOfSecond = 1.5e6;  // the true trajectory and the IMUs
+  constexpr double kBytesOfHits = 6.4e6;    // 20,000 of 32 bytes, ten times a second
+  double bytes_per_second = kBytesOfSecond;
+  for (const std::string& sensor : spec.sensors)
+    bytes_per_second += kBytesOfHits + kBytesOfShot * shots_per_second(sensor, configs);
+  return static_cast<std::uint64_t>(expected_seconds(cell, configs) * bytes_per_second);
 }
 
 std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,

@@ -138,6 +138,11 @@ struct CellEstimate {
 };
 CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 
+/// Expected size of the measurements of a cell's flight, of all sensors of the study, with what
+/// scoring needs, bytes.
+std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
+                         const ConfigFolder& configs);
+
 /// The cells of a part: consecutive ones, so that few flights are simulated by two parts, and as
 /// many as take about an N-th of the expected time.
 std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,

@@ -7,12 +7,12 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <numeric>
 #include <set>
 #include <thread>
@@ -23,7 +23,7 @@
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
-#include "lidarena/study/isolate.hpp"
+#include "lidarena/study/process.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "tests/temporary_folder.hpp"
@@ -31,56 +31,75 @@
 namespace lidarena::study {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 ConfigFolder configs() { return ConfigFolder(std::string(LIDARENA_SOURCE_DIR) + "/configs"); }
 
-TEST(Isolate, WorkThatSucceedsLeavesNoReason) {
-  const IsolatedOutcome outcome = run_isolated([] {});
-  EXPECT_TRUE(outcome.ok);
-  EXPECT_EQ(outcome.reason, "");
+/// Runs a line of shell script as a process.
+ProcessEnd run_shell(const std::string& line, const ProcessLimits& limits = {},
+                     const std::filesystem::path& log = {}) {
+  Command command;
+  command.arguments = {"/bin/sh", "-c", line};
+  command.log = log;
+  return Process(command, limits).wait();
 }
 
-TEST(Isolate, AnExceptionACrashAndAnExitAreReasonsNotTheEnd) {
-  const IsolatedOutcome thrown = run_isolated([] { throw InputError("file", "is broken"); });
-  EXPECT_FALSE(thrown.ok);
-  EXPECT_EQ(thrown.reason, "file: is broken");
-  const IsolatedOutcome killed = run_isolated([] { std::raise(SIGKILL); });
-  EXPECT_FALSE(killed.ok);
-  EXPECT_THAT(killed.reason, HasSubstr("signal 9"));
-  EXPECT_THAT(killed.reason, HasSubstr("out of memory"));
-  EXPECT_THAT(run_isolated([] { _Exit(7); }).reason, HasSubstr("exit code 7"));
+TEST(Process, OneThatSucceedsLeavesNoReasonAndTellsWhatItUsed) {
+  const ProcessEnd end = run_shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done");
+  EXPECT_EQ(end.exit_code, 0);
+  EXPECT_EQ(end.reason, "");
+  EXPECT_GT(end.processor_s, 0.0);
+  EXPECT_GT(end.peak_mb, 0.1);
 }
 
-TEST(Isolate, WorkBeyondItsTimeIsStoppedWithAReason) {
-  const auto endless = [] {
-    for (std::atomic<int> turns = 0;; ++turns) {
-    }
-  };
+TEST(Process, TheLastLineOfItsLogIsTheReasonOfItsFailure) {
+  const TemporaryFolder scratch;
+  const auto log = scratch.path() / "log";
+  const ProcessEnd end =
+      run_shell("echo begin >&2; echo 'lidarena: file: is broken' >&2; exit 2", {}, log);
+  EXPECT_EQ(end.exit_code, 2);
+  EXPECT_EQ(end.reason, "file: is broken");
+  EXPECT_EQ(dataset::read_bytes(log), "begin\nlidarena: file: is broken\n");
+  EXPECT_THAT(run_shell("exit 7").reason, HasSubstr("exit code 7"));
+  const ProcessEnd killed = run_shell("kill -9 $$");
+  EXPECT_EQ(killed.exit_code, -1);
+  EXPECT_THAT(killed.reason, AllOf(HasSubstr("signal 9"), HasSubstr("out of memory")));
+  Command missing;
+  missing.arguments = {"/no/such/program"};
+  EXPECT_EQ(Process(missing).wait().exit_code, 127);
+}
+
+TEST(Process, OneBeyondItsTimeIsStoppedWithAReason) {
   const auto begin = std::chrono::steady_clock::now();
-  const IsolatedOutcome late = run_isolated(endless, {.seconds = 0.3});
+  const ProcessEnd late = run_shell("while :; do :; done", {.seconds = 0.3});
+  EXPECT_EQ(late.exit_code, -1);
   EXPECT_THAT(late.reason, HasSubstr("not finished within its time limit"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
 }
 
-TEST(Isolate, WorkThatSleepsStallsAndWorkThatComputesDoesNot) {
-  const IsolatedOutcome idle = run_isolated([] { sleep(300); }, {.stall_seconds = 0.5});
-  EXPECT_THAT(idle.reason, HasSubstr("stalled"));
-  const auto busy = [] {
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
-    while (std::chrono::steady_clock::now() < end) {
-    }
-  };
-  EXPECT_EQ(run_isolated(busy, {.stall_seconds = 1.0}).reason, "");
+TEST(Process, OneThatSleepsStallsAndOneThatComputesDoesNot) {
+  EXPECT_THAT(run_shell("sleep 300", {.stall_seconds = 0.5}).reason, HasSubstr("stalled"));
+  const std::string busy = "end=$(($(date +%s)+3)); while [ $(date +%s) -lt $end ]; do :; done";
+  EXPECT_EQ(run_shell(busy, {.stall_seconds = 1.0}).reason, "");
 }
 
-TEST(Isolate, WorkThatTakesTooMuchMemoryIsStopped) {
-  const auto greedy = [] {
-    std::vector<char> much(300'000'000, 'x');
-    sleep(60);
-  };
-  const IsolatedOutcome outcome = run_isolated(greedy, {.memory_mb = 200.0});
-  EXPECT_THAT(outcome.reason, HasSubstr("more than its limit of 200 MB"));
+TEST(Process, OneThatTakesTooMuchMemoryIsStopped) {
+  const ProcessEnd end =
+      run_shell("x=$(head -c 300000000 /dev/zero | tr '\\0' x); sleep 60", {.memory_mb = 200.0});
+  EXPECT_THAT(end.reason, HasSubstr("more than its limit of 200 MB"));
+}
+
+TEST(Process, UsesOnlyTheCoresItIsGiven) {
+  const TemporaryFolder scratch;
+  Command command;
+  command.arguments = {"/bin/sh", "-c", "grep Cpus_allowed_list /proc/self/status"};
+  command.output = scratch.path() / "out";
+  const int last = usable_cores().back();
+  command.cores = {last};
+  EXPECT_EQ(Process(command).wait().exit_code, 0);
+  EXPECT_EQ(dataset::read_bytes(command.output),
+            "Cpus_allowed_list:\t" + std::to_string(last) + "\n");
 }
 
 /// Whether a process still runs (a zombie, not yet waited for, does not).
@@ -99,41 +118,38 @@ bool ends_soon(pid_t pid) {
   return !runs(pid);
 }
 
-TEST(Isolate, NothingOutlivesTheProcessThatStartedIt) {
-  // A process starts work and is killed; the work sends its process id through the pipe.
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
+/// The process id that a process writes to a file, once it has.
+pid_t id_in(const std::filesystem::path& file) {
+  pid_t id = 0;
+  for (int i = 0; i < 500 && id == 0; ++i) {
+    std::ifstream(file) >> id;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return id;
+}
+
+TEST(Process, NothingOutlivesTheProcessThatStartedIt) {
+  const TemporaryFolder scratch;
+  const std::string file = (scratch.path() / "id").string();
   const pid_t parent = fork();
   if (parent == 0) {
-    run_isolated([&] {
-      const pid_t self = getpid();
-      if (write(ends[1], &self, sizeof self) < 0) _exit(1);
-      sleep(300);
-    });
+    run_shell("echo $$ > " + file + "; exec sleep 300");
     _exit(0);
   }
-  pid_t work = 0;
-  ASSERT_EQ(read(ends[0], &work, sizeof work), static_cast<ssize_t>(sizeof work));
-  EXPECT_TRUE(runs(work));
+  const pid_t child = id_in(file);
+  ASSERT_GT(child, 0);
+  EXPECT_TRUE(runs(child));
   kill(parent, SIGKILL);
-  EXPECT_TRUE(ends_soon(work));
+  EXPECT_TRUE(ends_soon(child));
   waitpid(parent, nullptr, 0);
 }
 
-TEST(Isolate, WhatTheWorkLeavesRunningEndsWithIt) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  const IsolatedOutcome outcome = run_isolated([&] {
-    const pid_t left = fork();
-    if (left == 0) {
-      sleep(300);
-      _exit(0);
-    }
-    if (write(ends[1], &left, sizeof left) < 0) throw Error("pipe");
-  });
-  EXPECT_TRUE(outcome.ok);
-  pid_t left = 0;
-  ASSERT_EQ(read(ends[0], &left, sizeof left), static_cast<ssize_t>(sizeof left));
+TEST(Process, WhatItLeavesRunningEndsWithIt) {
+  const TemporaryFolder scratch;
+  const std::string file = (scratch.path() / "id").string();
+  EXPECT_EQ(run_shell("sleep 300 & echo $! > " + file).exit_code, 0);
+  const pid_t left = id_in(file);
+  ASSERT_GT(left, 0);
   EXPECT_TRUE(ends_soon(left));
 }
 
@@ -266,6 +282,12 @@ TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
   EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
 }
 
+StudyOptions with_program() {
+  StudyOptions options;
+  options.program = LIDARENA_BINARY;
+  return options;
+}
+
 StudySpec tiny_spec() {
   StudySpec spec;
   spec.scenes = {{"house", "house", 0.5}};
@@ -285,44 +307,85 @@ TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
   waiting.algorithms = {"theirs"};
   const pid_t other = fork();
   if (other == 0) {
-    run_study(waiting, configs(), scratch.path() / "study", {}, log);
+    run_study(waiting, configs(), scratch.path() / "study", with_program(), log);
     _exit(0);
   }
   for (int i = 0; i < 6000 && !std::filesystem::exists(started); ++i) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(std::filesystem::exists(started));
-  EXPECT_THROW(run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log), InputError);
+  EXPECT_THROW(run_study(tiny_spec(), configs(), scratch.path() / "study", with_program(), log),
+               InputError);
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
   // Its work ended with it, so the folder is not locked; the incomplete run is not reused.
-  const StudyOutcome outcome = run_study(tiny_spec(), configs(), scratch.path() / "study", {}, log);
+  const StudyOutcome outcome =
+      run_study(tiny_spec(), configs(), scratch.path() / "study", with_program(), log);
   EXPECT_EQ(outcome.runs, 1U);
   EXPECT_EQ(outcome.failed, 0U);
 }
 
-TEST(RunStudy, ReturnsWrittenForScoringGiveWhatAFlightOfItsOwnGivesAndAreGoneAfterwards) {
+TEST(RunStudy, WithoutTheProgramItSaysHowToGiveIt) {
   const TemporaryFolder scratch;
   LogSink log;
-  ASSERT_EQ(run_study(tiny_spec(), configs(), scratch.path(), {}, log).failed, 0U);
-  const auto only_in = [](const std::filesystem::path& folder) {
-    return std::filesystem::directory_iterator(folder)->path();
-  };
-  EXPECT_FALSE(std::filesystem::exists(only_in(scratch.path() / "datasets") / kScoredFolder));
+  StudyOptions options;
+  options.program = scratch.path() / "lidarena";
+  EXPECT_THROW(run_study(tiny_spec(), configs(), scratch.path() / "out", options, log), InputError);
+  options.program = "/bin/true";
+  try {
+    run_study(tiny_spec(), configs(), scratch.path() / "out", options, log);
+    FAIL();
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("does not answer to --version --json"));
+  }
+}
+
+/// All files below a folder that do not tell times, with their content.
+std::map<std::string, std::string> results_in(const std::filesystem::path& folder) {
+  const std::set<std::string> timed{"resources.csv", "resources.json", "manifest.json",
+                                    "lidarena.log"};
+  std::map<std::string, std::string> files;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file() || timed.contains(entry.path().filename())) continue;
+    files[entry.path().lexically_relative(folder)] = dataset::read_bytes(entry.path());
+  }
+  return files;
+}
+
+TEST(RunStudy, ADatasetIsSimulatedOnceForItsRunsAndTheResultsAreThoseOfSimulatingItForEach) {
+  const TemporaryFolder scratch;
+  LogSink log;
+  StudySpec spec = tiny_spec();
+  spec.sensors = {"livox_mid360", "ouster_os0_128_1024"};
+  StudyOptions options = with_program();
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "kept", options, log).failed, 0U);
+  options.scratch_bytes = 0;
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "anew", options, log).failed, 0U);
+  const auto kept = results_in(scratch.path() / "kept/runs");
+  EXPECT_EQ(kept.size(), 2U * 7U);
+  EXPECT_EQ(kept, results_in(scratch.path() / "anew/runs"));
+  const auto dataset = scratch.path() / "kept/datasets/house-house-s1";
+  EXPECT_FALSE(std::filesystem::exists(dataset / "data.mcap")) << "no run needs it any more";
   for (const char* picture : {"livox_mid360_scan.ply", "livox_mid360_scan_skewed.ply"}) {
-    const dataset::Cloud scan = dataset::read_cloud(only_in(scratch.path() / "datasets") / picture);
+    const dataset::Cloud scan = dataset::read_cloud(dataset / picture);
     ASSERT_GT(scan.points.size(), 10'000U) << picture;
     EXPECT_LT(std::accumulate(scan.distance.begin(), scan.distance.end(), 0.0F),
               0.05F * static_cast<float>(scan.points.size()))
         << picture << ": range noise of 2 cm, and almost no motion at the start";
   }
-  const std::filesystem::path run = only_in(scratch.path() / "runs");
-  const Json with_returns = dataset::read_json(run / "metrics.json");
-  EXPECT_FALSE(with_returns.contains("resources")) << "resources differ between repeated runs";
-  ASSERT_TRUE(
-      with_returns.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
+}
+
+TEST(RunStudy, ARunScoredAgainLaterHasTheSameMetrics) {
+  const TemporaryFolder scratch;
+  LogSink log;
+  ASSERT_EQ(run_study(tiny_spec(), configs(), scratch.path(), with_program(), log).failed, 0U);
+  const auto run = std::filesystem::directory_iterator(scratch.path() / "runs")->path();
+  const Json metrics = dataset::read_json(run / "metrics.json");
+  EXPECT_FALSE(metrics.contains("resources")) << "resources differ between repeated runs";
+  ASSERT_TRUE(metrics.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
+  // simulates the flight, whose data are gone
   EXPECT_FALSE(score_run(run, Parallel(1), log).resources.empty());
-  EXPECT_EQ(dataset::read_json(run / "metrics.json"), with_returns);
+  EXPECT_EQ(dataset::read_json(run / "metrics.json"), metrics);
 }
 
 TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
@@ -331,7 +394,7 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
   StudySpec spec = tiny_spec();
   const auto metrics_of = [&](const char* study) {
     const std::filesystem::path out = scratch.path() / study;
-    EXPECT_EQ(run_study(spec, configs(), out, {}, log).failed, 0U);
+    EXPECT_EQ(run_study(spec, configs(), out, with_program(), log).failed, 0U);
     return dataset::read_json(out /
                               "runs/house-house-s1-livox_mid360-kiss_icp-indoor/metrics.json");
   };
@@ -344,9 +407,10 @@ TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
     EXPECT_NE(entry.path().extension(), ".ply") << entry.path();
   }
   EXPECT_THROW(dataset::read_run(run), InputError);
-  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 1U);
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", with_program(), log).reused,
+            1U);
   spec.keep_maps = true;
-  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", {}, log).reused, 0U)
+  EXPECT_EQ(run_study(spec, configs(), scratch.path() / "not_kept", with_program(), log).reused, 0U)
       << "the maps were deleted, so the run must be repeated";
 }
 
@@ -362,7 +426,7 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
                    {.name = "silent", .command = "true {input}"},
                    {.name = "broken", .command = "sh -c 'echo no such luck; exit 3'"}};
   spec.algorithms = {"still", "silent", "broken"};
-  StudyOptions two_jobs;
+  StudyOptions two_jobs = with_program();
   two_jobs.jobs = 2;
   const StudyOutcome outcome = run_study(spec, configs(), scratch.path(), two_jobs, log);
   EXPECT_EQ(outcome.runs, 3U);
@@ -378,7 +442,7 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   const Json broken = dataset::read_json(run("broken") / "manifest.json");
   EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
   EXPECT_EQ(dataset::read_bytes(run("broken") / "program.log"), "no such luck\n");
-  const StudyOutcome again = run_study(spec, configs(), scratch.path(), {}, log);
+  const StudyOutcome again = run_study(spec, configs(), scratch.path(), with_program(), log);
   EXPECT_EQ(again.reused, 1U) << "failed runs must be tried again";
 }
 

@@ -3,13 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <memory>
-#include <optional>
-#include <utility>
 #include <vector>
-
-#include "lidarena/dataset/event.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena::evaluation {
 
@@ -44,29 +38,5 @@ void keep_scored(std::vector<P>& points, std::size_t max_count) {
   for (std::size_t i = 0; i < points.size(); i += stride) points[kept++] = points[i];
   points.resize(kept);
 }
-
-/// The events of `source` with only the scored returns, up to `max_count` per scan.
-class ScoredEvents : public dataset::EventSource {
- public:
-  ScoredEvents(std::unique_ptr<dataset::EventSource> source, std::size_t max_count)
-      : source_(std::move(source)), max_count_(max_count) {}
-  std::optional<dataset::Event> next() override;
-
- private:
-  std::unique_ptr<dataset::EventSource> source_;
-  std::size_t max_count_;
-};
-
-/// The true hits of these returns.
-class ScoredTruth : public dataset::ScanTruthSource {
- public:
-  ScoredTruth(std::unique_ptr<dataset::ScanTruthSource> source, std::size_t max_count)
-      : source_(std::move(source)), max_count_(max_count) {}
-  std::optional<dataset::ScanTruth> next() override;
-
- private:
-  std::unique_ptr<dataset::ScanTruthSource> source_;
-  std::size_t max_count_;
-};
 
 }  // namespace lidarena::evaluation

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+namespace lidarena {
+
+/// {"simulator": HASH, "scorer": HASH, "methods": {FOLDER: HASH, "external": HASH}}: hashes of the
+/// object files that decide the result of each part; written by cmake/HashCode.cmake.
+extern const char* const kCodeHashes;
+
+}  // namespace lidarena
