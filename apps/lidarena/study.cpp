@@ -83,6 +83,27 @@ void print_scratch(const study::StudySpec& spec, const std::vector<study::Planne
              1e-9 * static_cast<double>(budget));
 }
 
+/// Expectations that fall short, a line each.
+std::string shortfall_text(const report::ReportFiles& report) {
+  std::string text;
+  for (const results::Judgement& judged : report.shortfalls) {
+    text += fmt::format("falls short{}: {} ({})\n",
+                        judged.variant.empty() ? "" : " with " + judged.variant,
+                        judged.expectation.finding, fmt::join(judged.evidence, "; "));
+  }
+  return text;
+}
+
+Json shortfall_json(const report::ReportFiles& report) {
+  Json list = Json::array();
+  for (const results::Judgement& judged : report.shortfalls) {
+    list.push_back({{"finding", judged.expectation.finding},
+                    {"variant", judged.variant},
+                    {"evidence", judged.evidence}});
+  }
+  return list;
+}
+
 int study_verb(const Common& common, const StudyRequest& request) {
   const study::ConfigFolder configs = common.config_folder();
   const auto spec = request.name.empty()
@@ -113,13 +134,14 @@ int study_verb(const Common& common, const StudyRequest& request) {
                 {"reused", outcome.reused},
                 {"failed", outcome.failed},
                 {"diverged", outcome.diverged},
+                {"shortfalls", shortfall_json(report)},
                 {"report", report.page.string()}});
   } else {
-    fmt::print("{}\n{} runs: {} reused, {} failed, {} diverged\nreport: {}\n", report.text_table,
-               outcome.runs, outcome.reused, outcome.failed, outcome.diverged,
-               report.page.string());
+    fmt::print("{}\n{}{} runs: {} reused, {} failed, {} diverged\nreport: {}\n", report.text_table,
+               shortfall_text(report), outcome.runs, outcome.reused, outcome.failed,
+               outcome.diverged, report.page.string());
   }
-  return outcome.runs == outcome.cells ? kDone : kWorkFailed;
+  return outcome.runs == outcome.cells && report.shortfalls.empty() ? kDone : kWorkFailed;
 }
 
 struct ReportRequest {
@@ -138,9 +160,10 @@ int report_verb(const Common& common, const ReportRequest& request) {
   const report::ReportFiles report =
       report::write_report(request.folders, out, Parallel(common.threads), console);
   if (common.json) {
-    print_json({{"report", report.page.string()}});
+    print_json({{"report", report.page.string()}, {"shortfalls", shortfall_json(report)}});
   } else {
-    fmt::print("{}\nreport: {}\n", report.text_table, report.page.string());
+    fmt::print("{}\n{}report: {}\n", report.text_table, shortfall_text(report),
+               report.page.string());
   }
   return kDone;
 }

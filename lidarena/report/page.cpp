@@ -6,10 +6,9 @@
 #include <algorithm>
 #include <sstream>
 
-#include "lidarena/report/claims.hpp"
 #include "lidarena/report/decision.hpp"
+#include "lidarena/report/figure_tables.hpp"
 #include "lidarena/report/image.hpp"
-#include "lidarena/report/paper_tables.hpp"
 #include "lidarena/report/scene_blocks.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
@@ -39,7 +38,7 @@ table{border-collapse:collapse;background:#fff;font-variant-numeric:tabular-nums
 caption{text-align:left;white-space:nowrap;font-weight:600;padding:4px 0;font-size:14px}
 th,td{padding:5px 8px;border-bottom:1px solid #e3e6ea;text-align:right;vertical-align:top}
 th{font-weight:600;background:#eef1f4;vertical-align:bottom}td.l,th.l{text-align:left}
-.paper{color:#7a828d;font-size:12px}.scroll{overflow-x:auto;display:inline-block;vertical-align:top;max-width:100%;margin-right:28px}
+.reference{color:#7a828d;font-size:12px}.scroll{overflow-x:auto;display:inline-block;vertical-align:top;max-width:100%;margin-right:28px}
 .row,.figures{display:flex;flex-wrap:wrap;gap:12px;align-items:flex-start;margin-top:10px}
 figure{margin:0;background:#fff;border:1px solid #e3e6ea;border-radius:6px;padding:6px;max-width:100%;overflow-x:auto}
 figcaption{max-width:82ch;padding:2px 6px}svg{display:block;max-width:100%;height:auto}
@@ -176,12 +175,13 @@ ReportSection summary_section(const results::StudyResults& results) {
   for (const std::string& preset : results::variants_of(results)) {
     std::size_t holds = 0;
     std::size_t fails = 0;
-    for (const Claim& claim : paper_claims(results, preset)) {
-      if (claim.holds) ++(*claim.holds ? holds : fails);
+    for (const results::Judgement& judged : results::judge(results, preset)) {
+      if (judged.holds) ++(*judged.holds ? holds : fails);
     }
     if (holds + fails == 0) continue;
     text += fmt::format(
-        " Preset {}: of the paper's findings that these runs can check, {} hold and {} do not.",
+        " Preset {}: of the study's expectations that these runs can judge, {} hold and {} fall "
+        "short.",
         preset, holds, fails);
   }
   ReportSection section{"summary", "Summary", text, "", {winners_table(results)}};
@@ -195,14 +195,15 @@ ReportSection summary_section(const results::StudyResults& results) {
 
 std::vector<ReportSection> report_sections(const results::StudyResults& results) {
   std::vector<ReportSection> sections{summary_section(results), decision_section(results)};
-  ReportSection claims{"claims", "The paper's findings, checked with these runs", "", "", {}};
-  for (const std::string& preset : results::variants_of(results)) {
-    claims.tables.push_back(claims_table(paper_claims(results, preset), preset));
+  if (!results.expect.empty()) {
+    ReportSection expectations{"expectations", "What the study expects", "", "", {}};
+    for (const std::string& variant : results::variants_of(results))
+      expectations.tables.push_back(expectations_table(results, variant));
+    sections.push_back(std::move(expectations));
   }
-  sections.push_back(std::move(claims));
-  for (const std::string& preset : results::variants_of(results)) {
-    sections.push_back({"paper-" + preset, "The paper's tables from our runs, " + preset, "", "",
-                        paper_tables(results, preset)});
+  for (const std::string& variant : results::variants_of(results)) {
+    sections.push_back({"figures-" + variant, "Figures by sensor and algorithm, " + variant, "", "",
+                        figure_tables(results, variant)});
   }
   if (std::vector<ReportTable> tables = timing_tables(results); !tables.empty()) {
     sections.push_back({"timing", "Effect of the simulator's timing", kTiming, "", tables});

@@ -22,8 +22,8 @@ struct ReportSection {
   std::vector<ReportTable> tables;
 };
 
-/// All sections in the order of the page: summary, findings, the paper's tables, world by world,
-/// the rest.
+/// All sections in the order of the page: summary, expectations, figures by sensor and algorithm,
+/// world by world, the rest.
 std::vector<ReportSection> report_sections(const results::StudyResults& results);
 
 /// The report as one self-contained HTML file of at most 60 MB, whatever the size of the study; it

@@ -66,6 +66,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   }
   write_pictures(pictures, folder / "figures");
   dataset::write_text_file(files.page, html_page(results, sections, pictures, data, parallel, log));
+  files.shortfalls = results::shortfalls(results);
   files.text_table = results::results_text(results);
   return files;
 }

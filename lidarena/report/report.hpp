@@ -7,13 +7,15 @@
 
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/results/expectation.hpp"
 
 namespace lidarena::report {
 
 struct ReportFiles {
-  std::filesystem::path page;  ///< report.html, one self-contained file
-  std::filesystem::path csv;   ///< results.csv, one row per run
-  std::string text_table;      ///< the main figures, for a terminal
+  std::filesystem::path page;                  ///< report.html, one self-contained file
+  std::filesystem::path csv;                   ///< results.csv, one row per run
+  std::vector<results::Judgement> shortfalls;  ///< expectations that fall short
+  std::string text_table;                      ///< the main figures, for a terminal
 };
 
 /// Writes the page and the tables to the folder `out`, from result files only. Each of `folders` is

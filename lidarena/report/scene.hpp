@@ -13,7 +13,7 @@
 
 namespace lidarena::report {
 
-/// A distance above which a point counts as an outlier, m: the paper's threshold.
+/// A distance above which a point counts as an outlier, m.
 inline constexpr double kOutlier_m = 0.20;
 
 /// Points to show, with their fields. A field is empty or has one value per point, NaN where a

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "lidarena/results/expectation.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
@@ -129,22 +130,21 @@ ReportTable commands_table(const results::StudyResults& results) {
   return table;
 }
 
-ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset) {
-  ReportTable table{"claims-" + preset,
-                    "The paper's findings, checked with our runs, " + preset,
-                    "A finding holds if all of its checks hold.",
-                    {"finding", "here", "check", "our figures"},
+ReportTable expectations_table(const results::StudyResults& results, const std::string& variant) {
+  ReportTable table{"expectations-" + variant,
+                    "What the study expects, " + variant,
+                    "An expectation holds if all of its checks hold.",
+                    {"expectation", "here", "check", "our figures"},
                     {}};
-  for (const Claim& claim : claims) {
-    std::string evidence;
-    for (const std::string& line : claim.evidence)
-      evidence += (evidence.empty() ? "" : "; ") + line;
-    const char* verdict = claim.holds              ? *claim.holds ? "holds" : "does not hold"
-                          : claim.evidence.empty() ? "not measured"
-                                                   : "cannot be judged";
-    if (claim.holds == false && !claim.possible_reason.empty())
-      evidence += ". Possible reason: " + claim.possible_reason;
-    table.rows.push_back({word(claim.text), word(verdict), word(claim.rule), word(evidence)});
+  for (const results::Judgement& judged : results::judge(results, variant)) {
+    const results::Expectation& e = judged.expectation;
+    std::string evidence = fmt::format("{}", fmt::join(judged.evidence, "; "));
+    const char* verdict = judged.holds              ? *judged.holds ? "holds" : "falls short"
+                          : judged.evidence.empty() ? "not measured"
+                                                    : "cannot be judged";
+    if (judged.holds == false && !e.otherwise.empty())
+      evidence += ". Possible reason: " + e.otherwise;
+    table.rows.push_back({word(e.finding), word(verdict), word(e.rule), word(evidence)});
   }
   return table;
 }

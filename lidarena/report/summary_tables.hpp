@@ -3,7 +3,6 @@
 
 #include <vector>
 
-#include "lidarena/report/claims.hpp"
 #include "lidarena/report/table.hpp"
 #include "lidarena/results/run_record.hpp"
 
@@ -17,7 +16,8 @@ ReportTable runs_table(const results::StudyResults& results, const std::string& 
 ReportTable failures_table(const results::StudyResults& results);
 /// The commands that reproduce each run, including its dataset.
 ReportTable commands_table(const results::StudyResults& results);
-/// Claims with their figures and "holds", "does not hold", "cannot be judged" or "not measured".
-ReportTable claims_table(const std::vector<Claim>& claims, const std::string& preset);
+/// The study's expectations, judged by the runs of one variant: "holds", "falls short", "cannot be
+/// judged" or "not measured", with the figures.
+ReportTable expectations_table(const results::StudyResults& results, const std::string& variant);
 
 }  // namespace lidarena::report

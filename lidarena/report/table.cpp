@@ -48,8 +48,8 @@ std::string html_cell(const TableCell& cell, bool words) {
   if (text.empty()) text = "&ndash;";
   if (cell.best_in_row) text = "<u>" + text + "</u>";
   if (cell.best_in_column) text = "<b>" + text + "</b>";
-  if (!cell.paper.empty()) {
-    text += " <span class='paper'>(" + escaped(cell.paper) + ")</span>";
+  if (!cell.reference.empty()) {
+    text += " <span class='reference'>(" + escaped(cell.reference) + ")</span>";
   }
   const bool left = words || (!cell.value && !cell.text.empty());  // a status among figures
   return fmt::format("<td{}>{}</td>", left ? " class='l'" : "", text);
@@ -59,14 +59,14 @@ std::string markdown_cell(const TableCell& cell) {
   std::string text = shown(cell, "-");
   if (cell.best_in_row) text = "<u>" + text + "</u>";
   if (cell.best_in_column) text = "**" + text + "**";
-  return cell.paper.empty() ? text : text + " (" + cell.paper + ")";
+  return cell.reference.empty() ? text : text + " (" + cell.reference + ")";
 }
 
 std::string latex_cell(const TableCell& cell) {
   std::string text = latex_escaped(shown(cell, "--"));
   if (cell.best_in_row) text = "\\underline{" + text + "}";
   if (cell.best_in_column) text = "\\textbf{" + text + "}";
-  return cell.paper.empty() ? text : text + " (" + latex_escaped(cell.paper) + ")";
+  return cell.reference.empty() ? text : text + " (" + latex_escaped(cell.reference) + ")";
 }
 
 /// Sets `mark` of the cell with the smallest value, if at least two cells have a value.
@@ -103,9 +103,10 @@ TableCell figure(std::optional<double> value, int digits) {
   return cell;
 }
 
-bool ReportTable::has_paper() const {
+bool ReportTable::has_reference() const {
   return std::any_of(rows.begin(), rows.end(), [](const auto& row) {
-    return std::any_of(row.begin(), row.end(), [](const TableCell& c) { return !c.paper.empty(); });
+    return std::any_of(row.begin(), row.end(),
+                       [](const TableCell& c) { return !c.reference.empty(); });
   });
 }
 
@@ -142,12 +143,12 @@ std::string table_html(const ReportTable& table) {
 }
 
 std::string table_csv(const ReportTable& table) {
-  const bool paper = table.has_paper();
+  const bool reference = table.has_reference();
   std::string csv;
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     if (i > 0) csv += ',';
     csv += csv_quoted(table.head[i]);
-    if (paper && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (paper)"));
+    if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (published)"));
   }
   csv += "\n";
   for (const auto& row : table.rows) {
@@ -155,7 +156,7 @@ std::string table_csv(const ReportTable& table) {
       const TableCell& cell = row[i];
       if (i > 0) csv += ',';
       csv += cell.value ? fmt::format("{:.9g}", *cell.value) : csv_quoted(cell.text);
-      if (paper && i > 0) csv += fmt::format(",{}", csv_quoted(cell.paper));
+      if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(cell.reference));
     }
     csv += "\n";
   }
@@ -200,7 +201,7 @@ Json table_json(const ReportTable& table) {
     for (const TableCell& cell : row) {
       Json json{{"text", cell.text}};
       if (cell.value) json["value"] = *cell.value;
-      if (!cell.paper.empty()) json["paper"] = cell.paper;
+      if (!cell.reference.empty()) json["reference"] = cell.reference;
       if (cell.best_in_column) json["best_in_column"] = true;
       if (cell.best_in_row) json["best_in_row"] = true;
       cells.push_back(std::move(json));

@@ -13,7 +13,7 @@ namespace lidarena::report {
 struct TableCell {
   std::string text;             ///< as shown; a dash if empty
   std::optional<double> value;  ///< the unrounded figure
-  std::string paper;            ///< the paper's own figure, shown in brackets; empty = none
+  std::string reference;        ///< a published figure, shown in brackets; empty = none
   bool best_in_column = false;  ///< bold: the best sensor for this algorithm
   bool best_in_row = false;     ///< underlined: the best algorithm for this sensor
 };
@@ -31,7 +31,7 @@ struct ReportTable {
   std::vector<std::string> head;
   std::vector<std::vector<TableCell>> rows;
 
-  bool has_paper() const;
+  bool has_reference() const;
 };
 
 /// Marks the smallest value of each column (bold) and row (underlined), where there are two or
@@ -39,7 +39,7 @@ struct ReportTable {
 void mark_smallest(ReportTable& table);
 
 std::string table_html(const ReportTable& table);
-/// Unrounded figures; the paper's figures, if there are any, are in separate columns.
+/// Unrounded figures; published ones, if there are any, are in separate columns.
 std::string table_csv(const ReportTable& table);
 std::string table_markdown(const ReportTable& table);
 /// For the package booktabs.

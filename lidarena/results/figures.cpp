@@ -139,6 +139,14 @@ Reading peak(const RunMetrics& m) {
   if (m.resources.empty()) return {};
   return {(m.resources.*memory).peak_bytes, "", "", "", {}, {}, ""};
 }
+Reading growth(const RunMetrics& m) {
+  if (m.resources.empty()) return {};
+  return {m.resources.own.growth_bytes_per_s, "", "", "", {}, {}, ""};
+}
+Reading growth_r_squared(const RunMetrics& m) {
+  if (m.resources.empty()) return {};
+  return {m.resources.own.growth_r_squared, "", "", "", {}, {}, ""};
+}
 Reading real_time_factor(const RunMetrics& m) {
   if (m.resources.empty()) return {};
   return {m.resources.real_time_factor, "", "", "", {}, {}, ""};
@@ -237,6 +245,9 @@ constexpr std::array kFigures{
            Better::kMore},
     Figure{"own_memory_peak", "own MB", 1e-6, "MB", "own memory, peak", kOfRun,
            peak<&ResourceMetrics::own>, kMain},
+    Figure{"own_memory_growth", nullptr, 1e-6, "MB/s", "own memory, growth", kOfRun, growth},
+    Figure{"own_memory_growth_r_squared", nullptr, 1, "", "own memory, r squared of its growth",
+           kOfRun, growth_r_squared},
     Figure{"process_memory_peak", nullptr, 1e-6, "MB", "process memory, peak", kOfRun,
            peak<&ResourceMetrics::rss>},
 };

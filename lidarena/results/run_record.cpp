@@ -33,30 +33,6 @@ std::optional<MapFigures> figures_of(const std::optional<MapMetrics>& map) {
   return figures;
 }
 
-/// Sets the figures of a scored run.
-void set_figures(RunRecord& row) {
-  const RunMetrics& m = *row.metrics;
-  row.status = m.status;
-  row.reason = m.reason;
-  if (m.final) {
-    row.coverage_percent = 100.0 * m.final->association.coverage;
-    if (m.final->rpe && !m.final->rpe->at_poses_1m.translation.empty()) {
-      row.rpe_cm_per_m = 100.0 * m.final->rpe->at_poses_1m.translation.rmse;
-      row.rpe_deg_per_m = kDegrees * m.final->rpe->at_poses_1m.rotation.rmse;
-    }
-    if (m.final->ate && !m.final->ate->se3.translation.empty()) {
-      row.ate_cm = 100.0 * m.final->ate->se3.translation.rmse;
-    }
-  }
-  row.own_map = figures_of(m.maps.own);
-  row.reprojected_map = figures_of(m.maps.reprojected);
-  if (m.resources.empty()) return;
-  row.real_time_factor = m.resources.real_time_factor;
-  row.latency_p95_ms = 1e3 * m.resources.latency.p95;
-  row.own_memory_mb = 1e-6 * m.resources.own.peak_bytes;
-  row.process_memory_mb = 1e-6 * m.resources.rss.peak_bytes;
-}
-
 /// Reads the description of the LiDAR and of the simulation from the manifest of the row's dataset.
 void read_dataset_manifest(RunRecord& row) {
   const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
@@ -91,8 +67,7 @@ void read_row(RunRecord& row) {
     row.reason = "no metrics.json: run `lidarena evaluate`";
     return;
   }
-  row.metrics = read_metrics(row.folder);
-  set_figures(row);
+  set_metrics(row, read_metrics(row.folder));
 }
 
 std::string cell(const std::optional<double>& value, const char* format) {
@@ -111,6 +86,33 @@ std::optional<double> figure(const std::optional<MapFigures>& map, double MapFig
 }
 
 }  // namespace
+
+std::optional<double> value_of(const RunRecord& run, const Figure& figure) {
+  return run.metrics ? value_of(*run.metrics, figure) : std::nullopt;
+}
+
+void set_metrics(RunRecord& row, RunMetrics metrics) {
+  const RunMetrics& m = row.metrics.emplace(std::move(metrics));
+  row.status = m.status;
+  row.reason = m.reason;
+  if (m.final) {
+    row.coverage_percent = 100.0 * m.final->association.coverage;
+    if (m.final->rpe && !m.final->rpe->at_poses_1m.translation.empty()) {
+      row.rpe_cm_per_m = 100.0 * m.final->rpe->at_poses_1m.translation.rmse;
+      row.rpe_deg_per_m = kDegrees * m.final->rpe->at_poses_1m.rotation.rmse;
+    }
+    if (m.final->ate && !m.final->ate->se3.translation.empty()) {
+      row.ate_cm = 100.0 * m.final->ate->se3.translation.rmse;
+    }
+  }
+  row.own_map = figures_of(m.maps.own);
+  row.reprojected_map = figures_of(m.maps.reprojected);
+  if (m.resources.empty()) return;
+  row.real_time_factor = m.resources.real_time_factor;
+  row.latency_p95_ms = 1e3 * m.resources.latency.p95;
+  row.own_memory_mb = 1e-6 * m.resources.own.peak_bytes;
+  row.process_memory_mb = 1e-6 * m.resources.rss.peak_bytes;
+}
 
 std::string variant_of(const RunRecord& row) { return variant_of(row.preset, row.mode); }
 
@@ -132,6 +134,9 @@ StudyResults read_results(const fs::path& folder) {
   if (fs::exists(folder / "study.json")) {
     const Json study = dataset::read_json(folder / "study.json");
     results.title = study.at("spec").value("title", "Study");
+    const std::string place = (folder / "study.json").string();
+    value_from_json(study.at("spec").value("expect", Json::array()), results.expect, place);
+    value_from_json(study.value("reference", Json::array()), results.reference, place);
     for (const Json& run : study.at("runs")) {
       RunRecord row;
       row.name = run.at("name").get<std::string>();
@@ -167,6 +172,8 @@ StudyResults merged(std::vector<StudyResults> parts) {
   std::map<std::string, std::size_t> places;
   for (StudyResults& part : parts) {
     if (all.title.empty()) all.title = part.title;
+    if (all.expect.empty()) all.expect = std::move(part.expect);
+    if (all.reference.empty()) all.reference = std::move(part.reference);
     for (RunRecord& row : part.rows) {
       const auto [place, is_new] = places.emplace(row.name, all.rows.size());
       if (is_new) {

@@ -8,6 +8,8 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/run_files.hpp"
+#include "lidarena/results/expectation.hpp"
+#include "lidarena/results/figures.hpp"
 #include "lidarena/results/run_metrics.hpp"
 
 namespace lidarena::results {
@@ -45,9 +47,16 @@ std::string variant_of(const std::string& preset, const std::string& mode);
 /// The algorithm with its variant: "fast_lio2 (indoor)"; "arena_lio" if it has no presets.
 std::string label_of(const RunRecord& row);
 
+/// The figure of a scored run; empty if it has none.
+std::optional<double> value_of(const RunRecord& run, const Figure& figure);
+/// Sets the metrics with the status and the figures that follow from them.
+void set_metrics(RunRecord& run, RunMetrics metrics);
+
 struct StudyResults {
   std::string title;
   std::vector<RunRecord> rows;
+  std::vector<Expectation> expect;
+  std::vector<ReferenceFigure> reference;  ///< published figures, shown beside those of the runs
 };
 
 /// Map, scan buffer and backlog together, MB.

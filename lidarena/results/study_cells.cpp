@@ -41,11 +41,9 @@ bool belongs_to(const RunRecord& row, const std::string& variant) {
 
 }  // namespace
 
-StudyCells::StudyCells(const StudyResults& results, const std::string& variant,
-                       bool only_of_paper) {
+StudyCells::StudyCells(const StudyResults& results, const std::string& variant) {
   for (const RunRecord& row : results.rows) {
-    const bool wanted = !only_of_paper || !paper_algorithm(row.algorithm).empty();
-    if (wanted && belongs_to(row, variant)) rows_.push_back(&row);
+    if (belongs_to(row, variant)) rows_.push_back(&row);
   }
 }
 
@@ -106,26 +104,6 @@ std::vector<std::string> variants_of(const StudyResults& results) {
   std::ranges::stable_partition(
       variants, [](const std::string& variant) { return variant.starts_with("indoor"); });
   return variants;
-}
-
-std::string paper_world(const std::string& world) {
-  if (world.rfind("cave", 0) == 0) return "Cave";
-  return world.rfind("house", 0) == 0 ? "House" : "";
-}
-
-std::string paper_sensor(const std::string& sensor) {
-  if (sensor.find("mid360") != std::string::npos) return "Mid-360";
-  return sensor.find("os0") != std::string::npos ? "Os0-128" : "";
-}
-
-std::string paper_algorithm(const std::string& algorithm) {
-  static const std::map<std::string, std::string> names{{"ct_icp", "CT ICP"},
-                                                        {"kiss_icp", "KISS ICP"},
-                                                        {"lio_sam_lc", "LIO SAM lc"},
-                                                        {"lio_sam", "LIO SAM"},
-                                                        {"fast_lio2", "Fast LIO2"}};
-  const auto found = names.find(algorithm);
-  return found == names.end() ? "" : found->second;
 }
 
 }  // namespace lidarena::results

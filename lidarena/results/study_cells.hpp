@@ -24,8 +24,7 @@ std::optional<double> map_rmse_of(const RunRecord& row);  ///< cm, of the publis
 class StudyCells {
  public:
   /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
-  /// With `only_of_paper` the methods that the paper does not have are left out.
-  StudyCells(const StudyResults& results, const std::string& variant, bool only_of_paper = false);
+  StudyCells(const StudyResults& results, const std::string& variant);
 
   std::vector<std::string> worlds() const;
   std::vector<std::string> sensors() const;
@@ -44,16 +43,8 @@ class StudyCells {
   std::vector<const RunRecord*> rows_;
 };
 
-/// All readings in the order of their first use, but those of the preset `indoor` first: as in the
-/// paper, the programs are set up for the worlds they fly in. Methods without presets belong to
-/// every reading.
+/// All readings in the order of their first use, but those of the preset `indoor` first. Methods
+/// without presets belong to every reading.
 std::vector<std::string> variants_of(const StudyResults& results);
-
-/// The paper's name of a world ("Cave", "House"), sensor ("Mid-360", "Os0-128") or algorithm
-/// ("Fast LIO2"); empty if the paper has none. Worlds and sensors are recognized by a part of
-/// their name: cave..., house..., ...mid360..., ...os0...
-std::string paper_world(const std::string& world);
-std::string paper_sensor(const std::string& sensor);
-std::string paper_algorithm(const std::string& algorithm);
 
 }  // namespace lidarena::results

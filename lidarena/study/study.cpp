@@ -328,7 +328,10 @@ StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const
   const FolderLock lock(out);
   const Stages stages(spec, configs, out, ProgramCode(found.program, out / "program.json"));
   dataset::write_json(out / "study.json",
-                      {{"kind", "study"}, {"spec", to_json(spec)}, {"runs", value_to_json(cells)}});
+                      {{"kind", "study"},
+                       {"spec", to_json(spec)},
+                       {"runs", value_to_json(cells)},
+                       {"reference", value_to_json(load_reference(spec, configs))}});
   Scratch scratch(out / "datasets", options.scratch_bytes.value_or(default_scratch_bytes(out)),
                   needed_data(spec, stages, configs, cells));
   return Runner(spec, stages, scratch, lock, found, log).run(cells);

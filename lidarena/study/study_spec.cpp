@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/dataset/text_file.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/lidar.hpp"
@@ -94,6 +95,16 @@ double expected_seconds(const PlannedRun& cell, const ConfigFolder& configs) {
   return seconds == 0.0 ? kUnknown : seconds;
 }
 
+/// The names by which expectations call the study's cells.
+results::CellFilter names_of(const StudySpec& spec) {
+  results::CellFilter names;
+  for (const StudyScene& scene : spec.scenes) names.world.push_back(stem(scene.world));
+  for (const std::string& sensor : spec.sensors) names.sensor.push_back(stem(sensor));
+  for (const std::string& algorithm : spec.algorithms)
+    names.algorithm.push_back(parse_algorithm(algorithm).algorithm);
+  return names;
+}
+
 double shots_per_second(const std::string& sensor, const ConfigFolder& configs) {
   const auto pattern =
       sensor::make_pattern(sensor::load_sensor(configs.resolve("sensors", sensor)));
@@ -107,6 +118,27 @@ const ExternalProgram* find_external(const StudySpec& spec, const std::string& n
   return found == spec.external.end() ? nullptr : &*found;
 }
 
+std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
+                                                     const ConfigFolder& configs) {
+  if (spec.reference.empty()) return {};
+  constexpr std::string_view kHeader = "world,sensor,algorithm,figure,value";
+  const fs::path beside = configs.root() / "studies" / spec.reference;
+  dataset::TextRows rows(fs::exists(beside) ? beside : fs::path(spec.reference));
+  if (rows.next() != kHeader) {
+    throw InputError(rows.place(), fmt::format("is not the header {}", kHeader));
+  }
+  std::vector<results::ReferenceFigure> figures;
+  while (const auto row = rows.next()) {
+    const auto parts = dataset::split_commas(*row);
+    if (parts.size() != 5) {
+      throw InputError(rows.place(), fmt::format("holds {} columns, not 5", parts.size()));
+    }
+    figures.push_back({std::string(parts[0]), std::string(parts[1]), std::string(parts[2]),
+                       std::string(parts[3]), dataset::finite_number(parts[4], rows.place())});
+  }
+  return figures;
+}
+
 std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs) {
   const auto need = [](bool there, const char* what) {
     if (!there) throw InputError("study", std::string("names no ") + what);
@@ -118,6 +150,8 @@ std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs)
   for (const std::string& sensor : spec.sensors)
     sensor::load_sensor(configs.resolve("sensors", sensor));
   check_external(spec);
+  for (const results::Expectation& expectation : spec.expect)
+    results::check(expectation, names_of(spec), "study");
   for (const std::string& algorithm : spec.algorithms) check_algorithm(spec, algorithm);
 
   std::vector<std::optional<sensor::ScanMode>> modes(spec.modes.begin(), spec.modes.end());

@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/results/expectation.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/config_folder.hpp"
 
@@ -75,6 +76,8 @@ struct StudySpec {
   std::vector<std::uint64_t> seeds = {1};
   std::vector<sensor::ScanMode> modes;  ///< of all sensors; empty = as in their files
   std::vector<ExternalProgram> external;
+  std::string reference;  ///< CSV of published figures, see load_reference(); may be empty
+  std::vector<results::Expectation> expect;
   RunLimits limits;
   bool keep_maps = true;
 
@@ -87,6 +90,8 @@ struct StudySpec {
     v("seeds", self.seeds, "", "seeds of the noise");
     v("modes", self.modes, "", "timing modes of the sensors; none = as in their files");
     v("external", self.external, "", "external SLAM programs, run by a command line");
+    v("reference", self.reference, "", "CSV of published figures, beside the study's own");
+    v("expect", self.expect, "", "what the figures should show");
     v("limits", self.limits, "", "limits of one run");
     v("keep_maps", self.keep_maps, "", "off: delete a run's maps after scoring; metrics stay");
   }
@@ -122,6 +127,12 @@ const ExternalProgram* find_external(const StudySpec& spec, const std::string& n
 /// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError if the
 /// study is incomplete or contradictory, or a name in it does not exist.
 std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs);
+
+/// The published figures that a study names: a file, or a name in configs/studies. Columns world,
+/// sensor, algorithm, figure, value; empty names stand for all. None without a name. Throws
+/// InputError naming file and line.
+std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
+                                                     const ConfigFolder& configs);
 
 /// Part K of N of a plan, 1 <= K <= N.
 struct Shard {

@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/report/claims.hpp"
 #include "lidarena/report/decision.hpp"
+#include "lidarena/report/figure_tables.hpp"
 #include "lidarena/report/page.hpp"
-#include "lidarena/report/paper_tables.hpp"
 #include "lidarena/report/report_data.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/timing.hpp"
+#include "lidarena/study/study_spec.hpp"
+#include "tests/results/made_up_runs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::report {
@@ -22,35 +23,16 @@ using ::testing::Not;
 results::RunRecord row(const std::string& world, const std::string& sensor,
                        const std::string& algorithm, double rpe, double outliers,
                        std::uint64_t seed = 1) {
-  results::RunRecord r;
-  r.name = world + "-" + sensor + "-" + algorithm + "-" + std::to_string(seed);
-  r.world = r.flight = world;
-  r.sensor = sensor;
-  r.algorithm = algorithm;
-  r.preset = "indoor";
-  r.seed = seed;
-  r.rpe_cm_per_m = rpe;
-  r.own_map = results::MapFigures{100, 2.0 * rpe, rpe, outliers, std::vector<double>(20, 5.0)};
-  return r;
+  return results::made_up::run_of(world, sensor, algorithm, rpe, outliers, seed);
 }
 
-/// The paper's own Tables 2 and 4, as if they were our runs.
+/// The paper's own figures, as if they were our runs.
 results::StudyResults results_of_the_paper() {
-  results::StudyResults results;
-  results.title = "the paper";
-  for (const std::string world : {"cave", "house"}) {
-    for (const std::string sensor : {"livox_mid360", "ouster_os0_128"}) {
-      for (const std::string algorithm :
-           {"ct_icp", "kiss_icp", "lio_sam_lc", "lio_sam", "fast_lio2"}) {
-        const auto paper = [&](PaperTable table) {
-          return *paper_figure(table, results::paper_world(world), results::paper_sensor(sensor),
-                               results::paper_algorithm(algorithm));
-        };
-        results.rows.push_back(
-            row(world, sensor, algorithm, paper(PaperTable::kDrift), paper(PaperTable::kOutliers)));
-      }
-    }
-  }
+  const study::ConfigFolder configs(std::string(LIDARENA_SOURCE_DIR) + "/configs");
+  const auto spec = load_config<study::StudySpec>(configs.resolve("studies", "paper"));
+  results::StudyResults results =
+      results::made_up::runs_of_reference(study::load_reference(spec, configs));
+  results.expect = spec.expect;
   return results;
 }
 
@@ -61,105 +43,45 @@ const ReportTable& table_called(const std::vector<ReportTable>& tables, const st
   throw std::runtime_error("no table " + id);
 }
 
-TEST(PaperTables, OnThePapersOwnFiguresTheMarksAreThePapers) {
-  const auto tables = paper_tables(results_of_the_paper(), "indoor");
-  const ReportTable& drift = table_called(tables, "table2-cave-indoor");
+TEST(FigureTables, OnThePapersOwnFiguresTheMarksAreThePapers) {
+  const auto tables = figure_tables(results_of_the_paper(), "indoor");
+  const ReportTable& drift = table_called(tables, "drift-cave-indoor");
   ASSERT_EQ(drift.head.back(), "fast_lio2");
   const TableCell& best = drift.rows.at(1).back();  // Os0-128, FAST-LIO2: bold and underlined
   EXPECT_EQ(best.text, "0.49");
-  EXPECT_EQ(best.paper, "0.49");
+  EXPECT_EQ(best.reference, "0.49");
   EXPECT_TRUE(best.best_in_row);
   EXPECT_TRUE(best.best_in_column);
   EXPECT_TRUE(drift.rows.at(0).back().best_in_row) << "Mid-360: FAST-LIO2 is the best algorithm";
   EXPECT_FALSE(drift.rows.at(0).back().best_in_column);
   EXPECT_TRUE(drift.rows.at(0).at(2).best_in_column)
       << "KISS-ICP: the Mid-360 is the better sensor";
-  const ReportTable& outliers = table_called(tables, "table4-cave-indoor");
+  const ReportTable& outliers = table_called(tables, "outliers-cave-indoor");
   EXPECT_TRUE(outliers.rows.at(0).at(3).best_in_row) << "3.68 of LIO-SAM with loop closure";
 }
 
-TEST(PaperTables, Table3IsDividedByTheHouse) {
+TEST(FigureTables, TheIncreaseIsDividedByTheLastWorldAsInThePaper) {
   // Only this formula gives Table 3 (3.3, 32.5, 17.9, 55.8 %) from Table 2, within its rounding.
-  EXPECT_NEAR(drift_increase_of_the_paper(2.61, 2.70), 3.3, 0.3);
-  EXPECT_NEAR(drift_increase_of_the_paper(1.08, 1.61), 32.5, 0.5);
-  EXPECT_NEAR(drift_increase_of_the_paper(1.24, 1.51), 17.9, 0.4);
-  EXPECT_NEAR(drift_increase_of_the_paper(0.49, 1.11), 55.8, 0.5);
-  EXPECT_NEAR(drift_increase(0.49, 1.11), 126.5, 0.1);
+  EXPECT_NEAR(increase_of_last(2.61, 2.70), 3.3, 0.3);
+  EXPECT_NEAR(increase_of_last(1.08, 1.61), 32.5, 0.5);
+  EXPECT_NEAR(increase_of_last(1.24, 1.51), 17.9, 0.4);
+  EXPECT_NEAR(increase_of_last(0.49, 1.11), 55.8, 0.5);
+  EXPECT_NEAR(increase(0.49, 1.11), 126.5, 0.1);
 }
 
-TEST(Claims, AllThatFiguresCanJudgeHoldOnThePapersOwn) {
-  for (const Claim& claim : paper_claims(results_of_the_paper(), "indoor")) {
-    if (claim.text.find("memory") != std::string::npos) {
-      EXPECT_FALSE(claim.holds) << "there are no measurements over time";
-    } else if (claim.text.find("highest drift") != std::string::npos ||
-               claim.text.find("lowest drift") != std::string::npos) {
-      EXPECT_TRUE(claim.holds.value_or(false)) << claim.text;
-      EXPECT_EQ(claim.evidence.size(), 4U);
-    } else {
-      EXPECT_TRUE(claim.holds.value_or(false)) << claim.text;
-    }
-  }
-}
-
-TEST(Claims, OneContraryFigureOverthrowsAClaimAndMissingRunsLeaveItOpen) {
+TEST(ExpectationsTable, HasAVerdictAndTheFiguresBehindIt) {
   results::StudyResults results = results_of_the_paper();
-  for (results::RunRecord& r : results.rows) {
-    if (r.algorithm == "ct_icp" && r.world == "house" && r.sensor == "livox_mid360") {
-      r.rpe_cm_per_m = 1.0;  // below FAST-LIO2's 1.61
-    }
+  const ReportTable table = expectations_table(results, "indoor");
+  ASSERT_EQ(table.rows.size(), 12U);
+  EXPECT_EQ(table.rows[0][1].text, "holds");
+  EXPECT_THAT(table.rows[0][3].text, HasSubstr("cave, livox_mid360: 1.08 cm, against 1.78 cm of "));
+  EXPECT_EQ(table.rows.back()[1].text, "cannot be judged") << "memory was not measured";
+  for (results::RunRecord& run : results.rows) {
+    if (run.algorithm == "ct_icp") set_metrics(run, results::made_up::metrics_of(0.1, 0.0));
   }
-  EXPECT_EQ(paper_claims(results, "indoor").at(0).holds, false);
-  std::erase_if(results.rows,
-                [](const results::RunRecord& r) { return r.algorithm != "fast_lio2"; });
-  EXPECT_FALSE(paper_claims(results, "indoor").at(0).holds)
-      << "there is no other algorithm to compare with";
-}
-
-TEST(Claims, WhatIsLostWithEitherSensorOrHasNothingToCureIsNotJudged) {
-  results::StudyResults results = results_of_the_paper();
-  for (results::RunRecord& r : results.rows) {
-    if (r.world == "cave" && r.algorithm == "kiss_icp") r.own_map->outliers_percent = 99.0;
-    if (r.world == "cave" && r.algorithm == "lio_sam") r.own_map->outliers_percent = 0.0;
-    if (r.world == "cave" && r.algorithm == "ct_icp") {
-      r.status = "diverged";
-      r.rpe_cm_per_m.reset();
-      r.own_map.reset();
-    }
-  }
-  const auto claims = paper_claims(results, "indoor");
-  const auto about = [&](const char* words) {
-    return *std::ranges::find_if(
-        claims, [&](const Claim& c) { return c.text.find(words) != std::string::npos; });
-  };
-  const Claim lost = about("KISS-ICP's Cave map");
-  EXPECT_FALSE(lost.holds);
-  EXPECT_THAT(lost.evidence, testing::ElementsAre(HasSubstr("tracking lost with both sensors")));
-  const Claim improves = about("improves the Cave map");
-  EXPECT_FALSE(improves.holds);
-  EXPECT_THAT(improves.evidence, testing::Each(HasSubstr("nothing to improve")));
-  const Claim diverged = about("ten times the outliers");
-  EXPECT_FALSE(diverged.holds);
-  EXPECT_THAT(diverged.evidence, testing::Each(HasSubstr("ct_icp diverged")));
-  EXPECT_THAT(table_markdown(claims_table(claims, "indoor")), HasSubstr("cannot be judged"));
-}
-
-TEST(Claims, MemoryThatGrowsLinearlyIsToldFromMemoryThatStops) {
-  const auto verdict = [](const std::function<double(int)>& megabytes) {
-    const TemporaryFolder folder;
-    std::string rows =
-        "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes\n";
-    for (int s = 1; s <= 60; ++s) {
-      rows += std::to_string(s) + ",0.01,1,1," +
-              std::to_string(static_cast<long>(1e6 * megabytes(s))) + ",0,0\n";
-    }
-    dataset::write_text_file(folder.path() / "resources.csv", rows);
-    results::StudyResults results;
-    results.rows.push_back(row("cave", "livox_mid360", "fast_lio2", 1, 1));
-    results.rows[0].folder = folder.path();
-    return paper_claims(results, "indoor").back().holds;
-  };
-  EXPECT_EQ(verdict([](int s) { return 2.0 * s; }), true);
-  EXPECT_EQ(verdict([](int s) { return s < 5 ? 10.0 * s : 50.0; }), false);
+  const ReportTable contrary = expectations_table(results, "indoor");
+  EXPECT_EQ(contrary.rows[0][1].text, "falls short");
+  EXPECT_THAT(contrary.rows[0][3].text, HasSubstr("Possible reason: keyframe smoothing"));
 }
 
 TEST(Timing, ModesStandBesideEachOtherAndAStudyOfOneHasNoSuchTables) {
@@ -195,7 +117,7 @@ TEST(StudyCells, ACellIsTheMedianOfWhatWentWellAndSaysWhatDidNot) {
 ReportTable small_table() {
   ReportTable table{"t", "A & B <i>", "", {"sensor", "x_1", "y"}, {}};
   table.rows = {{word("a,b"), figure(1.2345), figure(0.00059)}, {word("c"), figure(7), word("")}};
-  table.rows[0][1].paper = "1.08";
+  table.rows[0][1].reference = "1.08";
   mark_smallest(table);
   return table;
 }
@@ -203,29 +125,23 @@ ReportTable small_table() {
 TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
   const ReportTable table = small_table();
   EXPECT_EQ(table_csv(table),
-            "sensor,x_1,x_1 (paper),y,y (paper)\n\"a,b\",1.2345,1.08,0.00059,\nc,7,,,\n");
+            "sensor,x_1,x_1 (published),y,y (published)\n\"a,b\",1.2345,1.08,0.00059,\nc,7,,,\n");
   EXPECT_THAT(table_markdown(table), HasSubstr("| a,b | **1.23** (1.08) | <u>5.90e-04</u> |"));
   EXPECT_THAT(table_latex(table), HasSubstr("\\textbf{1.23} (1.08) & \\underline{5.90e-04} \\\\"));
   EXPECT_THAT(table_latex(table), HasSubstr("sensor & x\\_1 & y"));
   EXPECT_THAT(table_html(table), HasSubstr("A &amp; B &lt;i&gt;"));
-  EXPECT_THAT(table_html(table), HasSubstr("<b>1.23</b> <span class='paper'>(1.08)</span>"));
+  EXPECT_THAT(table_html(table), HasSubstr("<b>1.23</b> <span class='reference'>(1.08)</span>"));
   EXPECT_EQ(table_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
 }
 
-TEST(Claims, AreAboutTheMethodsOfThePaperAlone) {
+TEST(StudyCells, MethodsWithoutPresetsAreComparedWithEveryPreset) {
   results::StudyResults results = results_of_the_paper();
-  const std::vector<Claim> before = paper_claims(results, "indoor");
   results::RunRecord ours = row("cave", "livox_mid360", "arena_lio", 0.01, 0.0);
   ours.preset = "";
   results.rows.push_back(ours);
   EXPECT_EQ(results::variants_of(results), std::vector<std::string>{"indoor"});
   EXPECT_EQ(results::StudyCells(results, "indoor").rows("cave", "livox_mid360", "arena_lio").size(),
-            1U)
-      << "methods without presets are compared with every preset";
-  const std::vector<Claim> after = paper_claims(results, "indoor");
-  ASSERT_EQ(after.size(), before.size());
-  for (std::size_t i = 0; i < after.size(); ++i) EXPECT_EQ(after[i].holds, before[i].holds);
-  EXPECT_EQ(after[0].holds, true) << "the lowest drift of the paper's methods";
+            1U);
 }
 
 TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
@@ -273,7 +189,7 @@ results::RunRecord tried(const std::string& sensor, const std::string& algorithm
                          double map_rmse_cm, double p95_ms) {
   results::RunRecord r = row("mine", sensor, algorithm, 1.0, 0.0);
   r.preset = "indoor";
-  r.reprojected_map = results::MapFigures{100, map_rmse_cm, 0, 0.5, std::vector<double>(20, 5.0)};
+  r.reprojected_map = results::MapFigures{100, map_rmse_cm, 0.0, 0.5, std::vector<double>(20, 5.0)};
   r.latency_p95_ms = p95_ms;
   r.own_memory_mb = 30.0;
   r.lidar = {{"rate_hz", 10.0}};

@@ -10,7 +10,7 @@ const FONT = "sans-serif";
 const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
 
 /**
- * Blue for the Mid-360, red for the OS0-128, as in the paper's figures; for others a color by their
+ * Blue for the Mid-360, red for the OS0-128; for others a color by their
  * order.
  */
 export function sensorColor(sensor: string, sensors: string[]): string {
@@ -50,7 +50,7 @@ const valueAxis = (gridIndex: number, name: string, more = {}) => ({
 type MapKind = "map" | "all_returns";
 
 /**
- * Figures 6 and 7 of the paper: histograms of the points' distances to the mesh, one panel per
+ * Histograms of the points' distances to the mesh, one panel per
  * algorithm, the sensors overlaid, the outlier threshold in yellow. The last bar is the share of
  * points beyond it.
  */
@@ -104,7 +104,7 @@ function histograms(data: ReportData, world: string, kind: MapKind): Figure | nu
   };
 }
 
-/** Figure 8 of the paper: the algorithm's memory over time, by its parts. */
+/** The algorithm's memory over time, by its parts. */
 function memory(data: ReportData, world: string): Figure | null {
   const first = firstSeed(data.runs.filter((run) => run.world === world && run.memory));
   if (first.length === 0) return null;
@@ -253,7 +253,7 @@ function firstSeed(runs: Run[]): Run[] {
   });
 }
 
-/** Outlier shares (Table 4 of the paper) as bars, one group per algorithm. */
+/** Outlier shares as bars, one group per algorithm. */
 function outliers(data: ReportData, world: string): Figure | null {
   const runs = data.runs.filter((run) => run.world === world && run.map);
   if (runs.length === 0) return null;

@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "lidarena/report/table.hpp"
+#include "lidarena/results/run_record.hpp"
+
+namespace lidarena::report {
+
+/// The growth of the drift from world `a` to world `b` in percent of the larger one that is named
+/// last, (b - a) / b, as Vultaggio et al. 2023 define it in their Table 3 (found by computing that
+/// table from their Table 2 in both ways).
+double increase_of_last(double a, double b);
+/// The usual definition: (b - a) / a, in percent.
+double increase(double a, double b);
+
+/// Drift, outliers and map error of the runs of one variant by sensor and algorithm, for each
+/// world; the growth of the drift between the worlds of a study of two; the sensors as simulated.
+/// Published figures of the study's `reference` stand beside.
+std::vector<ReportTable> figure_tables(const results::StudyResults& results,
+                                       const std::string& variant);
+
+}  // namespace lidarena::report
