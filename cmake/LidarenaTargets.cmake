@@ -6,7 +6,8 @@ target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wsha
 if(LIDARENA_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 falsely warns of std::string's own header (GCC bug 105651), with precompiled headers even
   # though it is a system header
-  target_compile_options(lidarena_flags INTERFACE -Wno-array-bounds -Wno-restrict)
+  target_compile_options(lidarena_flags INTERFACE -Wno-array-bounds -Wno-restrict
+                                                  -Wno-stringop-overflow -Wno-stringop-overread)
 endif()
 if(LIDARENA_WARNINGS_AS_ERRORS)
   target_compile_options(lidarena_flags INTERFACE -Werror)
