@@ -17,6 +17,7 @@
 #include "lidarena/report/timing.hpp"
 #include "lidarena/report/view_page.hpp"
 #include "lidarena/report/web_bundle.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {

@@ -21,7 +21,7 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   Time duration{0};  ///< 0 = the whole flight
   bool noise = true;
-  std::string lidar;  ///< id of the only LiDAR to simulate, with all IMUs; empty = all
+  std::string lidar{};  ///< id of the only LiDAR to simulate, with all IMUs; empty = all
   dataset::ScanTruthSink* truth =
       nullptr;  ///< receives a scan's truth just before next() returns the scan
 };
