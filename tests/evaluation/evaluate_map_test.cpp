@@ -107,7 +107,7 @@ TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
   // the trajectory is correct, the map is 20 cm and 1 degree off
   const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));
   const Json m =
-      evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwoThreads);
+      to_json(evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwoThreads));
   EXPECT_GT(m["se3"]["distance"]["rmse_m"], 0.05);
   EXPECT_LT(m["robust"]["distance"]["rmse_m"], 0.001);
   EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);

@@ -10,6 +10,7 @@
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/timing.hpp"
+#include "lidarena/results/study_cells.hpp"
 #include "lidarena/study/study_spec.hpp"
 #include "tests/results/made_up_runs.hpp"
 #include "tests/temporary_folder.hpp"
