@@ -119,7 +119,7 @@ TEST(MapError, OfAnEmptyMapHasNoPoints) {
   const MapError e = map_error({}, Pose::Identity(), world, Parallel(1));
   EXPECT_EQ(e.points, 0U);
   EXPECT_EQ(e.distance_m.count, 0U);
-  EXPECT_EQ(e.outliers_percent, 0.0);
+  EXPECT_FALSE(e.outliers_percent);
 }
 
 TEST(MapError, IsTheSameBitsOnOneTwoAndFiveThreads) {
