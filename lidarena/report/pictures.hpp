@@ -21,7 +21,7 @@ struct WorldPictures {
   std::vector<Picture> maps;   ///< of shown_rows(), with the paths
 };
 
-/// The first run with status ok for each sensor, algorithm and reading_of() of a world.
+/// The first run with status ok for each sensor, algorithm and variant_of() of a world.
 std::vector<const results::RunRecord*> first_seed_rows(const results::StudyResults& results,
                                                        const std::string& world);
 

@@ -23,7 +23,7 @@ std::optional<double> map_rmse_of(const RunRecord& row);  ///< cm, of the publis
 /// of the runs that have them; status_text() says how many do not.
 class StudyCells {
  public:
-  /// Takes the runs of one reading (see reading_of()); empty = all. `results` must outlive this.
+  /// Takes the runs of one variant (see variant_of()); empty = all. `results` must outlive this.
   StudyCells(const StudyResults& results, const std::string& variant);
 
   std::vector<std::string> worlds() const;

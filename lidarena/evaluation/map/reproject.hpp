@@ -27,7 +27,7 @@ struct ReturnOrigin {
 };
 
 /// A map built in the same way for every algorithm: each return is moved with the pose at its own
-/// instant (linear position, slerp, never across a gap longer than max_bracket()), and the first
+/// instant (linear position, slerp, never across a gap longer than gap_limit_of()), and the first
 /// return in each voxel is kept. Never averaged, because centroids hide noise. In the world frame
 /// of the estimate. `origins`, if given, receives one entry per point of the map.
 dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,

@@ -15,7 +15,7 @@ struct Association {
   std::size_t truths = 0;     ///< poses of the truth
   std::size_t matched = 0;    ///< estimates with a truth pose at their stamp, see matched_poses()
   /// Share of the truth's duration, 0..1, that lies between two consecutive estimates without a
-  /// gap, see max_bracket().
+  /// gap, see gap_limit_of().
   double coverage = 0.0;
   double overlap_s = 0.0;         ///< length of the common time span
   double longest_gap_s = 0.0;     ///< longest time between consecutive estimates
