@@ -40,6 +40,7 @@ ProgramCode::ProgramCode(const fs::path& program, const fs::path& answer) {
   ask.arguments = {program.string(), "--version", "--json"};
   ask.output = answer;
   const ProcessEnd end = Process(ask).wait();
+  if (end.exit_code < 0) throw Error(program.string() + " --version --json: " + end.reason);
   if (end.exit_code == 0) code_ = Json::parse(dataset::read_bytes(answer), nullptr, false);
   if (!code_.is_object() || !code_.contains("code")) {
     throw InputError(program.string(), "does not answer to --version --json",

@@ -17,7 +17,8 @@ std::filesystem::path find_program(const std::filesystem::path& given);
 /// inputs alone.
 class ProgramCode {
  public:
-  /// Asks the program; its answer is left in the file `answer`. Throws InputError if it gives none.
+  /// Asks the program; its answer is left in the file `answer`. Throws InputError if it gives
+  /// none, Error if it was killed.
   ProgramCode(const std::filesystem::path& program, const std::filesystem::path& answer);
 
   /// Version and hash of "simulator" or "scorer".

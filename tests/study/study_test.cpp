@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/study.hpp"
+#include "lidarena/study/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -337,6 +338,21 @@ TEST(RunStudy, WithoutTheProgramItSaysHowToGiveIt) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("does not answer to --version --json"));
+  }
+}
+
+TEST(ProgramCode, OfAProgramThatWasKilledSaysSo) {
+  const TemporaryFolder scratch;
+  const std::filesystem::path program = scratch.path() / "lidarena";
+  std::ofstream(program) << "#!/bin/sh\nkill -9 $$\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  try {
+    ProgramCode(program, scratch.path() / "answer.json");
+    FAIL();
+  } catch (const InputError& error) {
+    FAIL() << "blames the program: " << error.what();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("killed by signal 9"));
   }
 }
 
