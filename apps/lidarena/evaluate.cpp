@@ -12,7 +12,7 @@
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/results/metrics_table.hpp"
 #include "lidarena/results/run_statistics.hpp"
-#include "lidarena/study/run_algorithm.hpp"
+#include "lidarena/study/score_run.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {

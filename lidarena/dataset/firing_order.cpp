@@ -3,19 +3,26 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <utility>
 
 namespace lidarena::dataset {
 namespace {
 
-/// A point's time, moved so that it is not negative, and its index.
+/// A point's time since the earliest point, and its index.
 struct Key {
   std::uint32_t time;
   std::uint32_t index;
 };
 
-constexpr int kDigitBits = 11;  // three passes cover 33 bits; the counters fit into the L1 cache
+/// Kept from scan to scan, because new memory costs more than sorting.
+struct Scratch {
+  std::vector<Key> keys, sorted;
+  std::vector<Point> points;
+};
+
+constexpr int kDigitBits = 14;  // two passes cover 0.27 s
 constexpr std::size_t kDigits = std::size_t{1} << kDigitBits;
 
 /// One pass of a radix sort (least significant digit first): sorts by the bits from `shift` on.
@@ -32,18 +39,22 @@ void sort_by_digit(const std::vector<Key>& keys, int shift, std::vector<Key>& so
 
 void sort_in_firing_order(std::vector<Point>& points) {
   if (std::ranges::is_sorted(points, {}, &Point::dt_ns)) return;
-  std::vector<Key> keys(points.size());
-  for (std::uint32_t i = 0; i < points.size(); ++i)
-    keys[i] = {static_cast<std::uint32_t>(points[i].dt_ns) ^ 0x80000000U, i};
-  std::vector<Key> sorted(points.size());
-  for (int shift = 0; shift < 32; shift += kDigitBits) {
+  static thread_local Scratch scratch;
+  auto& [keys, sorted, unsorted] = scratch;
+  const auto [first, last] = std::ranges::minmax(points, {}, &Point::dt_ns);
+  const auto since_first = [from = std::int64_t{first.dt_ns}](const Point& point) {
+    return static_cast<std::uint32_t>(point.dt_ns - from);
+  };
+  const int bits = std::bit_width(since_first(last));
+  keys.resize(points.size());
+  sorted.resize(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i) keys[i] = {since_first(points[i]), i};
+  for (int shift = 0; shift < bits; shift += kDigitBits) {
     sort_by_digit(keys, shift, sorted);
     keys.swap(sorted);
   }
-  std::vector<Point> ordered;
-  ordered.reserve(points.size());
-  for (const Key& key : keys) ordered.push_back(points[key.index]);
-  points = std::move(ordered);
+  unsorted = points;
+  for (std::size_t i = 0; i < points.size(); ++i) points[i] = unsorted[keys[i].index];
 }
 
 }  // namespace lidarena::dataset

@@ -28,6 +28,11 @@ constexpr std::string_view kLiveHeader =
     "stamped instant\n"
     "time[s] x y z[m] qx qy qz qw";
 
+constexpr std::string_view kMotionHeader =
+    "final estimate with the motion within the scans: pose of the body in the world "
+    "(world_from_body) at the stamped instant\n"
+    "time[s] x y z[m] qx qy qz qw";
+
 std::string resource_rows(const std::vector<ResourceRow>& rows) {
   std::string text = std::string(kResourceHeader) + "\n";
   for (const ResourceRow& row : rows) {
@@ -76,10 +81,11 @@ void write_run(const fs::path& folder, const RunFiles& run) {
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot be created: " + error.message());
   // files of an earlier run must not be taken for files of this one while it is being written
-  for (const char* stale : {"manifest.json", "metrics.json", "resources.json"})
+  for (const char* stale : {"manifest.json", "metrics.json", "resources.json", "motion.tum"})
     fs::remove(folder / stale, error);
   write_tum(folder / "trajectory.tum", run.trajectory, std::string(kFinalHeader));
   write_tum(folder / "live.tum", run.live, std::string(kLiveHeader));
+  if (!run.motion.empty()) write_tum(folder / "motion.tum", run.motion, std::string(kMotionHeader));
   write_ply(folder / "map.ply", run.map);
   write_ply(folder / "reprojected.ply", run.reprojected);
   write_text_file(folder / "resources.csv", resource_rows(run.resources));
@@ -100,6 +106,7 @@ RunFiles read_run(const fs::path& folder) {
   run.manifest = read_json(manifest);
   run.trajectory = read_tum(folder / "trajectory.tum", EmptyTrajectory::kAllowed);
   run.live = read_tum(folder / "live.tum", EmptyTrajectory::kAllowed);
+  if (fs::exists(folder / "motion.tum")) run.motion = read_tum(folder / "motion.tum");
   run.map = read_cloud(folder / "map.ply");
   run.reprojected = read_cloud(folder / "reprojected.ply");
   run.resources = read_resources(folder / "resources.csv");

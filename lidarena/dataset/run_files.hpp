@@ -23,13 +23,14 @@ struct ResourceRow {
   std::uint64_t backlog_bytes = 0;
 };
 
-/// A RUN folder: trajectory.tum (final), live.tum, map.ply, reprojected.ply, resources.csv,
-/// manifest.json (and, after evaluation, metrics.json).
+/// A RUN folder: trajectory.tum (final), live.tum, motion.tum (if the method tells it), map.ply,
+/// reprojected.ply, resources.csv, manifest.json (and, after evaluation, metrics.json).
 struct RunFiles {
   Trajectory trajectory;  ///< after finish()
   Trajectory live;        ///< pose at each scan as estimated at that time
+  Trajectory motion;      ///< final, with the motion within the scans; empty: the method tells none
   Cloud map;              ///< the map that the program publishes
-  Cloud reprojected;  ///< scored returns placed by the estimated trajectory, first per 2 cm voxel
+  Cloud reprojected;      ///< scored returns placed by the estimated motion, first per 2 cm voxel
   std::vector<ResourceRow> resources;
   Json manifest;
 };

@@ -59,15 +59,6 @@ results::TruthFacts facts_of(const Trajectory& truth) {
           to_seconds(truth.end_time() - truth.begin_time()), truth.path_length()};
 }
 
-/// The poses of a perfect estimate at the same instants.
-Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth) {
-  std::vector<StampedPose> poses;
-  for (const PosePair& pair : matched_poses(estimate, truth)) {
-    poses.push_back({pair.stamp, pair.truth});
-  }
-  return Trajectory(std::move(poses), "truth at the estimates");
-}
-
 std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   std::vector<std::string> warnings;
   const Association found = associate(estimate, truth);
@@ -132,21 +123,22 @@ results::RpeByLength rpe_by_length(const Trajectory& estimate, const Trajectory&
 results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World& world, const Parallel& parallel,
                                  const Observe& observe) {
+  results::MapsOfRun maps;
   std::optional<SeenSurface> seen;
   if (observe) {
     if (std::optional<RayTruth> rays = observe()) {
+      maps.interpolation_floor = interpolation_floor(rays->interpolated, world, parallel);
       seen = make_seen_surface(*std::move(rays), world, parallel);
     }
   }
-  const SeenSurface* surface = seen ? &*seen : nullptr;
-  const IdentifiedMap* identified = seen ? &seen->identified : nullptr;
-  results::MapsOfRun maps;
+  const MapReference reference(world, std::move(seen));
   if (!run.map.points.empty()) {
-    maps.own = evaluate_map(run.map.points, run.trajectory, truth, world, parallel, surface);
+    maps.own = evaluate_map(run.map.points, run.trajectory, truth, reference, parallel);
   }
   if (!run.reprojected.points.empty()) {
-    maps.reprojected = evaluate_map(run.reprojected.points, run.trajectory, truth, world, parallel,
-                                    surface, identified);
+    maps.reprojected =
+        evaluate_map(run.reprojected.points, run.trajectory, truth, reference, parallel,
+                     reference.seen ? &reference.seen->identified : nullptr);
   }
   return maps;
 }

@@ -4,6 +4,7 @@
 #include <chrono>
 
 #include "lidarena/map/point_map.hpp"
+#include "lidarena/odometry/motion_record.hpp"
 #include "lidarena/odometry/pacer.hpp"
 #include "lidarena/odometry/process_memory.hpp"
 
@@ -52,6 +53,7 @@ class Recorder {
   std::optional<Time> first_stamp_;
   Time last_stamp_{0};
   std::vector<StampedPose> live_;
+  MotionRecord motion_;
   map::PointMap map_;
   RunResult result_;
 };
@@ -103,6 +105,7 @@ void Recorder::keep_result(const ScanResult& result) {
   if (!live_.empty() && estimate.stamp <= live_.back().stamp)
     return log_.warn("skipped an estimate that is not later than the one before it");
   live_.push_back(estimate);
+  motion_.add(result);
   if (odometry_.traits().publishes_scans) map_.insert(odometry_.registered_scan());
 }
 
@@ -138,6 +141,7 @@ RunResult Recorder::finish() {
     odometry_.finish();
     files.trajectory = odometry_.trajectory();
   }
+  files.motion = motion_.along(files.trajectory);
   files.map.points = odometry_.traits().publishes_scans ? map_.take() : odometry_.map();
   return std::move(result_);
 }

@@ -34,13 +34,32 @@ struct TruthFacts {
   }
 };
 
+/// What interpolation between poses costs a re-projected map: the error that it has when the poses
+/// are the true ones at the estimates' instants.
+struct InterpolationFloor {
+  std::size_t points = 0;
+  std::optional<double> rmse_m, outliers_percent;
+  bool empty() const { return points == 0; }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("points", self.points, "", "scored ones");
+    v("rmse_m", self.rmse_m, "m", "root mean square");
+    v("outliers_percent", self.outliers_percent, "%", "beyond 20 cm");
+  }
+};
+
 struct MapsOfRun {
   std::optional<MapMetrics> own, reprojected;
+  InterpolationFloor interpolation_floor;  ///< empty if the run tells the motion within its scans
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("own", self.own, "", "the map that the program publishes");
     v("reprojected", self.reprojected, "", "the scored returns placed along the estimated path");
+    v("interpolation_floor", self.interpolation_floor, "",
+      "of the re-projected map, from true poses at the estimates' instants; null where the run "
+      "tells the motion within its scans");
   }
 };
 

@@ -9,7 +9,6 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/odometry/run.hpp"
-#include "lidarena/results/run_metrics.hpp"
 
 namespace lidarena::study {
 
@@ -30,14 +29,5 @@ Json made_on();
 /// Returns the summary; a diverged run is written too, with its reason in the manifest.
 odometry::RunSummary run_algorithm(const RunRequest& request, const std::filesystem::path& out,
                                    const Parallel& parallel, LogSink& log);
-
-/// Scores the RUN folder against the truth and the mesh of the dataset that its manifest names.
-/// Writes metrics.json, resources.json and scored.ply (at most 400,000 map points in the mesh's
-/// frame with their distance, for pictures). Throws InputError if the dataset has no truth.
-results::RunMetrics score_run(const std::filesystem::path& run, const Parallel& parallel,
-                              LogSink& log);
-
-/// Deletes the maps of a scored RUN folder; trajectories, metrics and manifest stay.
-void remove_maps(const std::filesystem::path& run);
 
 }  // namespace lidarena::study

@@ -140,11 +140,15 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   files.trajectory = body_trajectory(dataset::read_trajectory(left),
                                      sensor_from_body(program.pose_of, recording.rig));
   files.live = files.trajectory;
+  if (const fs::path motion = output / "motion.tum"; fs::exists(motion)) {
+    files.motion = body_trajectory(dataset::read_trajectory(motion),
+                                   sensor_from_body(program.pose_of, recording.rig));
+  }
   files.map = map_of(output);
   const LidarInfo& lidar = recording.rig.lidars[0];
   dataset::Dataset again = open_scored_returns(request.dataset, request.read, parallel);
-  files.reprojected =
-      evaluation::reproject(*again.events, lidar.id, lidar.body_from_lidar, files.trajectory);
+  files.reprojected = evaluation::reproject(*again.events, lidar.id, lidar.body_from_lidar,
+                                            evaluation::BodyMotion(files));
 
   odometry::RunSummary summary;
   summary.scans = recording.scans;

@@ -23,6 +23,7 @@
 #include "lidarena/study/process.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/run_external.hpp"
+#include "lidarena/study/score_run.hpp"
 #include "lidarena/study/scratch.hpp"
 #include "lidarena/study/stages.hpp"
 

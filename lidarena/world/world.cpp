@@ -113,6 +113,16 @@ bool World::visible(const Vector3d& a, const Vector3d& b) const {
 
 namespace {
 
+/// Whether the triangle's box lies farther from `point` than the squared distance, so that the
+/// triangle does, too. False also where rounding leaves it open.
+bool is_beyond(const Vector3d& point, const Vector3d& a, const Vector3d& b, const Vector3d& c,
+               double squared_distance) {
+  constexpr double kRounding = 1.0 + 1e-12;
+  const Vector3d low = a.cwiseMin(b).cwiseMin(c) - point;
+  const Vector3d high = point - a.cwiseMax(b).cwiseMax(c);
+  return low.cwiseMax(high).cwiseMax(0.0).squaredNorm() > kRounding * squared_distance;
+}
+
 /// Finds the nearest triangle by exact distances to the double-precision mesh.
 class Nearest : public TriangleVisitor {
  public:
@@ -126,6 +136,7 @@ class Nearest : public TriangleVisitor {
   double visit(std::uint32_t triangle) override {
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
+    if (is_beyond(point_, v[a], v[b], v[c], distance2_)) return distance_;
     const Vector3d candidate = closest_point_on_triangle(point_, v[a], v[b], v[c]);
     const double candidate2 = (candidate - point_).squaredNorm();
     const bool is_nearer =
@@ -157,6 +168,7 @@ class Within : public TriangleVisitor {
     if (found_.size() > limit_) return 0.0;  // the rest of the tree need not be searched
     const auto& [a, b, c] = mesh_.triangles[triangle];
     const auto& v = mesh_.vertices;
+    if (is_beyond(center_, v[a], v[b], v[c], radius_ * radius_)) return radius_;
     const Vector3d nearest = closest_point_on_triangle(center_, v[a], v[b], v[c]);
     const double distance = (nearest - center_).norm();
     if (distance <= radius_) found_.push_back({distance, triangle});

@@ -17,6 +17,9 @@ RunFiles small_run() {
   run.trajectory = Trajectory(
       {{Time{1690309709285305601}, Pose::Identity()}, {Time{1690309709385305601}, pose}});
   run.live = Trajectory({{Time{1690309709285305601}, pose}});
+  run.motion = Trajectory({{Time{1690309709285305601}, Pose::Identity()},
+                           {Time{1690309709335305601}, Pose::Identity()},
+                           {Time{1690309709385305601}, pose}});
   run.map.points = {{1, 2, 3}, {4, 5, 6}};
   run.reprojected.points = {{7, 8, 9}};
   run.reprojected.intensity = {0.5F};
@@ -41,6 +44,8 @@ TEST_F(Run, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.trajectory.poses()[1].world_from_body.matrix(),
             run.trajectory.poses()[1].world_from_body.matrix());
   EXPECT_EQ(back.live.size(), 1U);
+  ASSERT_EQ(back.motion.size(), 3U);
+  EXPECT_EQ(back.motion.poses()[1].stamp, run.motion.poses()[1].stamp);
   EXPECT_EQ(back.map.points, run.map.points);
   EXPECT_TRUE(back.map.intensity.empty());
   EXPECT_EQ(back.reprojected.points, run.reprojected.points);
@@ -58,6 +63,13 @@ TEST_F(Run, TrajectoriesNameTheirFramesAndInstant) {
   EXPECT_THAT(file_text(path() / "live.tum"), HasSubstr("at the stamped instant"));
   EXPECT_THAT(file_text(path() / "resources.csv"),
               testing::StartsWith("t_sensor_s,latency_s,rss_bytes"));
+}
+
+TEST_F(Run, AMotionOfAnEarlierRunDoesNotStay) {
+  RunFiles run = small_run();
+  run.motion = {};
+  write_run(path(), run);
+  EXPECT_TRUE(read_run(path()).motion.empty());
 }
 
 TEST_F(Run, ThatGaveNoPoseIsStillARun) {

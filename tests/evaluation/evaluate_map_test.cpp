@@ -50,11 +50,13 @@ struct Room {
   world::World world{meshes::box(kHalf)};
   Trajectory truth = flights::sample(flights::tour, 10ms, 20s);
   dataset::ScanTruth hits = hits_of_room(60000);
-  SeenSurface seen = [this] {
-    Truths truths;
-    truths.scans.push_back(hits);
-    return make_seen_surface({observe(truths, world, kTwoThreads), {}}, world, kTwoThreads);
-  }();
+  MapReference seen{
+      world, [this] {
+        Truths truths;
+        truths.scans.push_back(hits);
+        return make_seen_surface({observe(truths, world, kTwoThreads), {}}, world, kTwoThreads);
+      }()};
+  MapReference unseen{world};
 
   /// The hits, each `before` meters in front of the wall, in a frame that differs by `offset`.
   std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
@@ -69,8 +71,8 @@ struct Room {
 
 TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
   const Room room;
-  const Json m = to_json(
-      evaluate_map(room.map(0.03), room.truth, room.truth, room.world, kTwoThreads, &room.seen));
+  const Json m =
+      to_json(evaluate_map(room.map(0.03), room.truth, room.truth, room.seen, kTwoThreads));
   for (const char* gauge : {"first_pose", "se3", "robust"}) {
     const Json& g = m[gauge];
     EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << gauge;
@@ -106,8 +108,8 @@ TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
   const Room room;
   // the trajectory is correct, the map is 20 cm and 1 degree off
   const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));
-  const Json m =
-      to_json(evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.world, kTwoThreads));
+  const Json m = to_json(
+      evaluate_map(room.map(0.0, offset), room.truth, room.truth, room.unseen, kTwoThreads));
   EXPECT_GT(m["se3"]["distance"]["rmse_m"], 0.05);
   EXPECT_LT(m["robust"]["distance"]["rmse_m"], 0.001);
   EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);
@@ -120,8 +122,7 @@ TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
   for (const std::vector<Vector3f>& map :
        {std::vector<Vector3f>{}, std::vector<Vector3f>(5, Vector3f(nan, 0, 0))}) {
-    const Json m =
-        to_json(evaluate_map(map, room.truth, room.truth, room.world, kTwoThreads, &room.seen));
+    const Json m = to_json(evaluate_map(map, room.truth, room.truth, room.seen, kTwoThreads));
     EXPECT_EQ(m["se3"]["points"], 0);
     EXPECT_EQ(m["se3"]["invalid_points"], map.size());
     EXPECT_TRUE(m["se3"]["distance"].is_null());
@@ -135,10 +136,8 @@ TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {
 TEST(EvaluateMap, IsTheSameTextOnAnyNumberOfThreads) {
   const Room room;
   const std::vector<Vector3f> map = room.map(0.01, flights::level({0.1, 0, 0}));
-  const Json one =
-      to_json(evaluate_map(map, room.truth, room.truth, room.world, Parallel(1), &room.seen));
-  const Json four =
-      to_json(evaluate_map(map, room.truth, room.truth, room.world, Parallel(4), &room.seen));
+  const Json one = to_json(evaluate_map(map, room.truth, room.truth, room.seen, Parallel(1)));
+  const Json four = to_json(evaluate_map(map, room.truth, room.truth, room.seen, Parallel(4)));
   EXPECT_EQ(one.dump(), four.dump());
 }
 

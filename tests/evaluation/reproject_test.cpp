@@ -51,6 +51,29 @@ TEST(Reproject, EveryReturnLandsOnTheWallItCameFromThoughTheBodyTurnsWithinTheSc
   for (const Eigen::Vector3f& p : cloud.points) ASSERT_NEAR(p.x(), 7.0F, 1e-5F);
 }
 
+TEST(Reproject, TheMotionWithinScansIsUsedWithTheGapsOfTheTrajectory) {
+  const Trajectory fine = sample(tour, 5ms, 10s);
+  const Trajectory truth = sample(tour, 100ms, 10s);
+  dataset::RunFiles run;
+  run.trajectory = flights::with_gap(truth, 4s, 5s);
+  run.motion = flights::with_gap(fine, 4s, 5s);
+  for (int i = 0; i < 2; ++i) {
+    Events source = scans_of_a_wall(fine);
+    ReprojectionCounts counts;
+    const dataset::Cloud cloud =
+        reproject(source, "front", kBodyFromLidar, BodyMotion(run), 0.02, &counts);
+    EXPECT_EQ(counts.without_pose, 5000U - 1U) << "a second without poses, but for the one at 4 s";
+    double worst = 0.0;
+    for (const Eigen::Vector3f& p : cloud.points) worst = std::max(worst, std::abs(p.x() - 7.0));
+    if (i == 0) {
+      EXPECT_LT(worst, 1e-5);
+    } else {
+      EXPECT_GT(worst, 1e-4) << "interpolated over 100 ms";
+    }
+    run.motion = {};
+  }
+}
+
 TEST(Reproject, KeepsTheFirstReturnOfEachVoxelItself) {
   const Trajectory still = sample([](double) { return Pose::Identity(); }, 100ms, 1s);
   Events source;

@@ -26,7 +26,7 @@ VertexDistance distance_of(const std::vector<Vector3f>& map, const world::World&
   const MortonOrder order = morton_order(map, kTwoThreads);
   const std::vector<PointScore> scores =
       score_points(map, order, mesh_from_map, world, kTwoThreads);
-  return vertex_distance(map, order, scores, mesh_from_map, world, kTwoThreads, edge);
+  return SubdividedMesh(world, edge).distance_of(map, order, scores, mesh_from_map, kTwoThreads);
 }
 
 Vector3d random_point(SequentialRandom& random, double half) {
@@ -151,7 +151,8 @@ TEST(VertexDistance, IsRefusedBeforeAnythingGrowsWhereTheVerticesAreTooMany) {
   const MortonOrder order = morton_order(map, kTwoThreads);
   const auto with = [&](std::uint64_t most) {
     const auto scores = score_points(map, order, Pose::Identity(), small, kTwoThreads);
-    return vertex_distance(map, order, scores, Pose::Identity(), small, kTwoThreads, 0.05, most)
+    return SubdividedMesh(small, 0.05, most)
+        .distance_of(map, order, scores, Pose::Identity(), kTwoThreads)
         .refused.value_or("");
   };
   EXPECT_EQ(with(754), "");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/study.hpp"
-#include "lidarena/study/program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -25,7 +24,8 @@
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/process.hpp"
-#include "lidarena/study/run_algorithm.hpp"
+#include "lidarena/study/program.hpp"
+#include "lidarena/study/score_run.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -378,7 +378,7 @@ TEST(RunStudy, ADatasetIsSimulatedOnceForItsRunsAndTheResultsAreThoseOfSimulatin
   options.scratch_bytes = 0;
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "anew", options, log).failed, 0U);
   const auto kept = results_in(scratch.path() / "kept/runs");
-  EXPECT_EQ(kept.size(), 2U * 7U);
+  EXPECT_EQ(kept.size(), 2U * 8U);
   EXPECT_EQ(kept, results_in(scratch.path() / "anew/runs"));
   const auto dataset = scratch.path() / "kept/datasets/house-house-s1";
   EXPECT_FALSE(std::filesystem::exists(dataset / "data.mcap")) << "no run needs it any more";
@@ -434,24 +434,33 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   const TemporaryFolder scratch;
   LogSink log;
   // Three programs: one writes constant poses, one writes nothing, one fails.
-  const std::string still =
-      "sh -c 'for t in 0.0 0.1 0.2 0.3 0.4; do echo $t 0 0 0 0 0 0 1; done > \"$1\"/trajectory.tum'"
-      " sh {output}";
+  const auto poses_at = [](const std::string& stamps, const std::string& file) {
+    return "for t in " + stamps + "; do echo $t 0 0 0 0 0 0 1; done > \"$1\"/" + file + "; ";
+  };
+  const std::string poses = poses_at("0.0 0.1 0.2 0.3 0.4", "trajectory.tum");
+  const std::string still = "sh -c '" + poses + "' sh {output}";
+  const std::string fine =
+      "sh -c '" + poses + poses_at("0.00 0.05 0.10 0.40", "motion.tum") + "' sh {output}";
   StudySpec spec = tiny_spec();
   spec.external = {{.name = "still", .command = still},
+                   {.name = "fine", .command = fine},
                    {.name = "silent", .command = "true {input}"},
                    {.name = "broken", .command = "sh -c 'echo no such luck; exit 3'"}};
-  spec.algorithms = {"still", "silent", "broken"};
+  spec.algorithms = {"still", "fine", "silent", "broken"};
   StudyOptions two_jobs = with_program();
   two_jobs.jobs = 2;
   const StudyOutcome outcome = run_study(spec, configs(), scratch.path(), two_jobs, log);
-  EXPECT_EQ(outcome.runs, 3U);
+  EXPECT_EQ(outcome.runs, 4U);
   EXPECT_EQ(outcome.failed, 2U);
   const auto run = [&](const std::string& name) {
     return scratch.path() / "runs" / ("house-house-s1-livox_mid360-" + name + "-external");
   };
   const Json metrics = dataset::read_json(run("still") / "metrics.json");
   EXPECT_EQ(metrics.at("status"), "ok");
+  EXPECT_TRUE(metrics.at("/maps/interpolation_floor/rmse_m"_json_pointer).is_number());
+  const Json told = dataset::read_json(run("fine") / "metrics.json");
+  EXPECT_TRUE(told.at("/maps/interpolation_floor"_json_pointer).is_null());
+  EXPECT_EQ(dataset::read_run(run("fine")).motion.size(), 4U);
   EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "the recording must be deleted";
   const Json silent = dataset::read_json(run("silent") / "manifest.json");
   EXPECT_THAT(silent.at("failed").get<std::string>(), HasSubstr("left no trajectory.tum"));
@@ -459,7 +468,7 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
   EXPECT_EQ(dataset::read_bytes(run("broken") / "program.log"), "no such luck\n");
   const StudyOutcome again = run_study(spec, configs(), scratch.path(), with_program(), log);
-  EXPECT_EQ(again.reused, 1U) << "failed runs must be tried again";
+  EXPECT_EQ(again.reused, 2U) << "failed runs must be tried again";
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::uint64_t kSeed = 1;
 constexpr double kGridCell_m = 0.10;
+constexpr double kHitCell_m = 0.04;  // a sample within 2 cm is in few of them
 
 /// Triangle t has the samples [first[t], first[t + 1]): systematic sampling of the cumulative area.
 std::vector<std::size_t> first_samples(const world::TriangleMesh& mesh) {
@@ -47,7 +48,7 @@ SurfaceSamples seen_samples(const world::World& world, const ObservedSurface& se
                             const Parallel& parallel) {
   const world::TriangleMesh& mesh = world.mesh();
   const Vector3d center = center_of(world);
-  const PointGrid hits(seen.hits, SurfaceSamples::kSeen_m, SurfaceSamples::kSeen_m, parallel);
+  const PointGrid hits(seen.hits, kHitCell_m, SurfaceSamples::kSeen_m, parallel);
   const std::vector<std::size_t> first = first_samples(mesh);
   const CounterRandom random(kSeed, stream_of("seen_samples"));
   constexpr std::size_t kGrain = 64;  // triangles
@@ -63,7 +64,7 @@ SurfaceSamples seen_samples(const world::World& world, const ObservedSurface& se
             const double u = random.uniform(first[t] + k);
             const Vector3d sample = sample_of(mesh, t, k, count, u, shift);
             const Vector3f offset = (sample - center).cast<float>();
-            if (std::isfinite(hits.nearest(offset))) kept.push_back(offset);
+            if (hits.is_near(offset)) kept.push_back(offset);
           }
         }
         return kept;

@@ -13,13 +13,14 @@
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/mesh_gauge.hpp"
 #include "lidarena/evaluation/map/signed_distance.hpp"
-#include "lidarena/evaluation/map/vertex_distance.hpp"
 #include "lidarena/evaluation/map/voxel_error.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
 #include "lidarena/results/summary.hpp"
 
 namespace lidarena::evaluation {
 namespace {
+
+constexpr std::size_t kMaxPoints = 2'000'000;  // of a map that are scored
 
 /// No more than `max_points` points of the map: every k-th point.
 std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
@@ -36,8 +37,7 @@ std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
 /// numbers only show that it has failed, so fewer points are scored.
 std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& mesh_from_map,
                               const world::World& world, const Parallel& parallel) {
-  constexpr std::size_t kMaxPoints = 2'000'000, kMaxPointsOfFailed = 200'000,
-                        kPreviewPoints = 10'000;
+  constexpr std::size_t kMaxPointsOfFailed = 200'000, kPreviewPoints = 10'000;
   constexpr double kFailed_percent = 95.0;  // beyond 20 cm
   const MapError preview =
       map_error(sample_of(map, kPreviewPoints), mesh_from_map, world, parallel);
@@ -47,27 +47,27 @@ std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& 
 /// A map and what is computed once from it for all gauges.
 struct Subject {
   std::vector<Eigen::Vector3f> map;
-  const world::World& world;
+  const MapReference& reference;
   const Parallel& parallel;
-  const SeenSurface* seen;
   const IdentifiedMap* identified;
   MortonOrder order;
   std::optional<PointGrid> grid;  ///< if completeness is computed
 
-  Subject(std::span<const Eigen::Vector3f> points, std::size_t max_points, const world::World& mesh,
-          const Parallel& workers, const SeenSurface* surface, const IdentifiedMap* with_hits)
+  Subject(std::span<const Eigen::Vector3f> points, std::size_t max_points,
+          const MapReference& scored_against, const Parallel& workers,
+          const IdentifiedMap* with_hits)
       : map(sample_of(points, max_points)),
-        world(mesh),
+        reference(scored_against),
         parallel(workers),
-        seen(surface),
         identified(with_hits),
         order(morton_order(map, workers)) {
-    if (seen != nullptr) grid.emplace(completeness_grid(points, workers));
+    if (reference.seen) grid.emplace(completeness_grid(points, workers));
   }
 };
 
 std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map) {
-  return score_points(subject.map, subject.order, mesh_from_map, subject.world, subject.parallel);
+  return score_points(subject.map, subject.order, mesh_from_map, subject.reference.world,
+                      subject.parallel);
 }
 
 /// `scores`: those of the map moved by `mesh_from_map`.
@@ -77,14 +77,14 @@ results::MapInGauge measure(const Subject& subject, std::span<const PointScore> 
   static_cast<MapError&>(measured) = map_error(subject.order, scores, subject.map.size());
   measured.mesh_from_map = mesh_from_map;
   measured.per_voxel = voxel_error(subject.order, scores);
-  measured.ghosting = ghosting(scores, subject.world, subject.parallel);
+  measured.ghosting = ghosting(scores, subject.reference.world, subject.parallel);
   if (subject.identified != nullptr) {
     measured.identity = identity_error(*subject.identified, mesh_from_map);
   }
-  if (subject.seen == nullptr) return measured;
-  measured.signed_distance = signed_distance(scores, subject.seen->observed.free_side);
-  measured.completeness = completeness(subject.seen->samples, *subject.grid, scores, mesh_from_map,
-                                       subject.world, subject.parallel);
+  if (!subject.reference.seen) return measured;
+  measured.signed_distance = signed_distance(scores, subject.reference.seen->observed.free_side);
+  measured.completeness = completeness(subject.reference.seen->samples, *subject.grid, scores,
+                                       mesh_from_map, subject.reference.world, subject.parallel);
   return measured;
 }
 
@@ -98,7 +98,7 @@ results::MapInGauge refused(const std::string& reason) {
 results::MapInGauge measure_robust(const Subject& subject, const Pose& start,
                                    const Pose& first_pose) {
   const MeshAlignment alignment =
-      align_to_mesh(subject.map, start, subject.world, subject.parallel);
+      align_to_mesh(subject.map, start, subject.reference.world, subject.parallel);
   const Pose& moved = alignment.mesh_from_map;
   results::MapInGauge measured = alignment.determined()
                                      ? measure(subject, score(subject, moved), moved)
@@ -142,13 +142,13 @@ SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const P
 }
 
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                                 const Trajectory& truth, const world::World& world,
-                                 const Parallel& parallel, const SeenSurface* seen,
-                                 const IdentifiedMap* identified) {
+                                 const Trajectory& truth, const MapReference& reference,
+                                 const Parallel& parallel, const IdentifiedMap* identified) {
   const Alignment se3 = align(estimate, truth, Gauge::kSe3);
   const Alignment first_pose = align(estimate, truth, Gauge::kFirstPose);
-  const Subject subject(map, max_scored_points(map, se3.truth_from_estimate, world, parallel),
-                        world, parallel, seen, identified);
+  const std::size_t max_points =
+      max_scored_points(map, se3.truth_from_estimate, reference.world, parallel);
+  const Subject subject(map, max_points, reference, parallel, identified);
   results::MapMetrics metrics;
   if (first_pose.determined()) {
     const Pose& moved = first_pose.truth_from_estimate;
@@ -161,7 +161,7 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
     const std::vector<PointScore> scores = score(subject, moved);
     metrics.se3 = measure(subject, scores, moved);
     metrics.se3.point_vertex =
-        vertex_distance(subject.map, subject.order, scores, moved, world, parallel);
+        reference.subdivided.distance_of(subject.map, subject.order, scores, moved, parallel);
   } else {
     metrics.se3 = refused(se3.refusal);
   }
@@ -171,6 +171,15 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
           ? measure_robust(subject, start.truth_from_estimate, first_pose.truth_from_estimate)
           : refused("neither first_pose nor se3 gives a pose to start from");
   return metrics;
+}
+
+results::InterpolationFloor interpolation_floor(std::span<const Eigen::Vector3f> interpolated,
+                                                const world::World& world,
+                                                const Parallel& parallel) {
+  if (interpolated.empty()) return {};
+  const MapError error =
+      map_error(sample_of(interpolated, kMaxPoints), Pose::Identity(), world, parallel);
+  return {error.points, error.distance_m.rmse, error.outliers_percent};
 }
 
 std::vector<std::string> map_warnings(std::span<const Eigen::Vector3f> map,

@@ -2,20 +2,23 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/evaluation/map/completeness.hpp"
 #include "lidarena/evaluation/map/identity_error.hpp"
-#include "lidarena/results/map_metrics.hpp"
+#include "lidarena/evaluation/map/vertex_distance.hpp"
+#include "lidarena/results/run_metrics.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena::evaluation {
 
-/// The surface that the flight's rays hit; computed once for all maps of a run.
+/// The surface that the flight's rays hit.
 struct SeenSurface {
   ObservedSurface observed;
   SurfaceSamples samples;
@@ -25,19 +28,37 @@ struct SeenSurface {
 struct RayTruth {
   ObservedSurface observed;
   IdentifiedMap identified;
+  /// The re-projected map that interpolation between perfect estimates at the same instants gives;
+  /// empty if the run tells the motion within its scans. World frame, m.
+  std::vector<Eigen::Vector3f> interpolated = {};
 };
 SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const Parallel& parallel);
 
+/// What the maps of a run are scored against; computed once for all of them.
+struct MapReference {
+  const world::World& world;
+  SubdividedMesh subdivided;
+  std::optional<SeenSurface> seen;  ///< empty: signed distance and completeness are empty
+
+  explicit MapReference(const world::World& mesh, std::optional<SeenSurface> surface = {})
+      : world(mesh), subdivided(mesh), seen(std::move(surface)) {}
+};
+
 /// Scores one map (in the estimate's world frame) against the mesh in each gauge: "first_pose",
-/// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Without
-/// `seen` the signed distance and the completeness are empty. Maps of more than 2 million points
-/// (200,000 if more than 95 % of the points are beyond 20 cm) are evenly sampled to at most that
-/// number; completeness uses all points. `identified`, if given, is the same map with its true
-/// hits, for the identity error. A gauge that is not determined has a reason.
+/// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Maps of
+/// more than 2 million points (200,000 if more than 95 % of the points are beyond 20 cm) are evenly
+/// sampled to at most that number; completeness uses all points. `identified`, if given, is the
+/// same map with its true hits, for the identity error. A gauge that is not determined has a
+/// reason.
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
-                                 const Trajectory& truth, const world::World& world,
-                                 const Parallel& parallel, const SeenSurface* seen = nullptr,
+                                 const Trajectory& truth, const MapReference& reference,
+                                 const Parallel& parallel,
                                  const IdentifiedMap* identified = nullptr);
+
+/// Errors of `interpolated` (see RayTruth) where it lies; empty without points.
+results::InterpolationFloor interpolation_floor(std::span<const Eigen::Vector3f> interpolated,
+                                                const world::World& world,
+                                                const Parallel& parallel);
 
 /// Warnings about the inputs: a mesh or a map that seems to be in millimeters, coordinates too
 /// large for single precision, points that are not finite.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tsl/robin_map.h>
+#include <tsl/robin_set.h>
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -25,12 +26,28 @@ class PointGrid {
 
   /// Distance (m) to the nearest point within the reach, else infinity.
   float nearest(const Eigen::Vector3f& query) const;
+  /// Whether there is a point within the reach.
+  bool is_near(const Eigen::Vector3f& query) const;
 
  private:
-  float cell_, inverse_cell_, reach_;
-  std::vector<map::Voxel> steps_;  ///< offsets to all cubes within reach, nearest first
-  std::vector<Eigen::Vector3f> points_;
+  /// A cube near the one of the query.
+  struct Step {
+    map::Voxel offset;
+    /// No cube from this one on is nearer to the query (squared, m).
+    float min_squared_distance = 0.0F;
+  };
+
+  /// Squared distance to the nearest point at a squared distance below `best`, else `best`. Ends at
+  /// the first one below `enough`.
+  float search(const Eigen::Vector3f& query, float best, float enough) const;
+
+  float cell_, inverse_cell_, beyond_reach_;  ///< the last one squared
+  std::vector<Step> steps_;                   ///< to all cubes within reach, nearest first
+  Eigen::ArrayX3f points_;                    ///< by axis, so that distances are computed in blocks
   tsl::robin_map<map::VoxelKey, std::pair<std::uint32_t, std::uint32_t>, map::VoxelKeyHash> cells_;
+  /// Larger cubes that hold a point or neighbor one that does; in any other, nothing is in reach.
+  tsl::robin_set<map::VoxelKey, map::VoxelKeyHash> occupied_;
+  float inverse_coarse_;  ///< 1 / edge of the larger cubes, 1/m
 };
 
 }  // namespace lidarena::evaluation

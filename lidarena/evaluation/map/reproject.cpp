@@ -5,7 +5,6 @@
 #include <utility>
 #include <variant>
 
-#include "lidarena/evaluation/map/lidar_poses.hpp"
 #include "lidarena/map/point_map.hpp"
 
 namespace lidarena::evaluation {
@@ -16,10 +15,9 @@ const Eigen::Vector3f kNowhere = Eigen::Vector3f::Constant(NAN);  // rejected by
 }  // namespace
 
 dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
-                         const Pose& body_from_lidar, const Trajectory& estimate,
-                         double voxel_size_m, ReprojectionCounts* counts,
-                         std::vector<ReturnOrigin>* origins) {
-  LidarPoses poses(estimate, body_from_lidar);
+                         const Pose& body_from_lidar, const BodyMotion& motion, double voxel_size_m,
+                         ReprojectionCounts* counts, std::vector<ReturnOrigin>* origins) {
+  LidarPoses poses(motion, body_from_lidar);
   map::PointMap map(voxel_size_m);
   dataset::Cloud cloud;
   ReprojectionCounts seen;

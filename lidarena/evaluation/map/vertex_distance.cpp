@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "lidarena/evaluation/map/point_scores.hpp"
-#include "lidarena/map/kd_tree.hpp"
 
 namespace lidarena::evaluation {
 
@@ -77,24 +76,28 @@ std::vector<Vector3f> subdivided_vertices(const world::TriangleMesh& mesh, doubl
   return vertices;
 }
 
-VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder& order,
-                               std::span<const PointScore> scores, const Pose& mesh_from_map,
-                               const world::World& world, const Parallel& parallel, double edge,
-                               std::uint64_t max_vertices) {
-  VertexDistance result;
-  result.edge_m = edge;
-  result.vertices = count_subdivided(world.mesh(), edge);
-  if (result.vertices > max_vertices) {
-    result.refused = fmt::format(
-        "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the limit of {:g} "
-        "million",
-        100.0 * edge, 1e-6 * static_cast<double>(result.vertices),
-        1e-6 * static_cast<double>(max_vertices));
-    return result;
+SubdividedMesh::SubdividedMesh(const world::World& world, double edge, std::uint64_t max_vertices)
+    : origin_(center_of(world)) {
+  none_.edge_m = edge;
+  none_.vertices = count_subdivided(world.mesh(), edge);
+  if (none_.vertices <= max_vertices) {
+    tree_.build(subdivided_vertices(world.mesh(), edge, origin_));
+    return;
   }
-  const Vector3d origin = center_of(world);
-  map::KdTree tree;
-  tree.build(subdivided_vertices(world.mesh(), edge, origin));
+  none_.refused = fmt::format(
+      "the mesh subdivided to {:g} cm has {:.3g} million vertices, more than the limit of {:g} "
+      "million",
+      100.0 * edge, 1e-6 * static_cast<double>(none_.vertices),
+      1e-6 * static_cast<double>(max_vertices));
+}
+
+VertexDistance SubdividedMesh::distance_of(std::span<const Vector3f> map, const MortonOrder& order,
+                                           std::span<const PointScore> scores,
+                                           const Pose& mesh_from_map,
+                                           const Parallel& parallel) const {
+  VertexDistance result = none_;
+  if (result.refused) return result;
+  const double edge = result.edge_m;
   std::vector<double> distances(map.size(), std::numeric_limits<double>::quiet_NaN());
   constexpr std::size_t kGrain = 4096;
   parallel.for_each(order.entries.size(), kGrain, [&](std::size_t k) {
@@ -107,7 +110,7 @@ VertexDistance vertex_distance(std::span<const Vector3f> map, const MortonOrder&
     const Vector3d moved = mesh_from_map * map[index].cast<double>();
     const auto bound = static_cast<float>(to_surface + edge);  // a vertex lies within 0.58 edges
     map::Neighbor nearest;
-    tree.nearest((moved - origin).cast<float>(), std::span(&nearest, 1), bound);
+    tree_.nearest((moved - origin_).cast<float>(), std::span(&nearest, 1), bound);
     distances[index] = std::sqrt(double{nearest.squared_distance});
   });
   const MapError error = summarize_distances(distances);

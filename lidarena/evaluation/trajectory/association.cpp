@@ -63,6 +63,13 @@ std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory
   return pairs;
 }
 
+Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth) {
+  std::vector<StampedPose> poses;
+  for (const PosePair& pair : matched_poses(estimate, truth))
+    poses.push_back({pair.stamp, pair.truth});
+  return Trajectory(std::move(poses), "truth at the estimates");
+}
+
 Association associate(const Trajectory& estimate, const Trajectory& truth) {
   Association found;
   found.estimates = estimate.size();

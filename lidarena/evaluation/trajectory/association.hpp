@@ -45,4 +45,7 @@ struct PosePair {
 /// time span or in one of its gaps are left out.
 std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory& truth);
 
+/// The poses of a perfect estimate at the same instants: the truth at the matched poses.
+Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth);
+
 }  // namespace lidarena::evaluation
