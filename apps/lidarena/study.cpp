@@ -158,25 +158,20 @@ void print_outcome(const Common& common, const std::string& out,
   }
 }
 
-/// A study that was asked to end before its end. In a Slurm job, the rest follows when Slurm starts
-/// the job again; but not if this start has brought nothing, since the next one would not, either.
-int interrupted(const study::StudyOutcome& outcome, const StudyRequest& request) {
-  if (!outcome.has_advanced) {
-    fmt::print(
-        stderr,
-        "lidarena: study: was asked to end before it had finished a flight or a run; give it "
-        "more time (in a cluster: --time)\n");
-    return kWorkFailed;
-  }
-  if (request.worker && asked_to_stop() == study::Stop::kSoon && study::is_slurm_job())
-    study::requeue_this_job();
-  return kInterrupted;
+/// A study that was asked to end before its end. If it has finished nothing, another call with as
+/// little time would not, either.
+int interrupted(const study::StudyOutcome& outcome) {
+  if (outcome.has_advanced) return kInterrupted;
+  fmt::print(stderr,
+             "lidarena: study: was asked to end before it had finished a flight or a run; give it "
+             "more time (in a cluster: --time)\n");
+  return kWorkFailed;
 }
 
 /// Part of a study, without a report: a shard, or what a worker finds to do.
 int study_part(const Common& common, const StudyRequest& request,
                const study::StudyOutcome& outcome) {
-  if (outcome.is_interrupted) return interrupted(outcome, request);
+  if (outcome.is_interrupted) return interrupted(outcome);
   print_outcome(common, request.out, outcome);
   return request.worker || outcome.runs == outcome.cells ? kDone : kWorkFailed;
 }
@@ -207,7 +202,7 @@ int submit_study(const Common& common, const StudyRequest& request, const study:
 
 int whole_study(const Common& common, const StudyRequest& request,
                 const study::StudyOutcome& outcome, Console& console) {
-  if (outcome.is_interrupted) return interrupted(outcome, request);
+  if (outcome.is_interrupted) return interrupted(outcome);
   const std::string& out = request.out;
   const report::ReportFiles report =
       report::write_report({out}, out, Parallel(common.threads), console);
@@ -307,6 +302,10 @@ void add_shared_options(CLI::App& verb, StudyRequest& request) {
                   "runs that take less than 3/4 of it are finished")
       ->check(CLI::Range(10, 3600))
       ->capture_default_str();
+  verb.add_option(
+      "--command", request.cluster.command,
+      "With --slurm: how a node calls lidarena, e.g. \"apptainer exec FILE.sif lidarena\"; "
+      "default: this program at its path");
   verb.add_option("--sbatch", request.cluster.sbatch,
                   "With --slurm: one more option of sbatch, --sbatch=--account=NAME; repeatable")
       ->allow_extra_args(false);

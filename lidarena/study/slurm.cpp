@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdlib>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/part_file.hpp"
@@ -25,12 +24,20 @@ constexpr const char* kTasks = R"sh(#!/usr/bin/env bash
 {options}#SBATCH --requeue
 #SBATCH --signal=B:USR1@{warning}
 #SBATCH --output={logs}/task-%a.log --open-mode=append
-# Each task takes datasets of the study that nobody has, with their runs, until none is left. Soon
-# before the limit of time Slurm sends USR1: the worker ends what it does and is requeued.
+# Each task takes datasets of the study that nobody has, with their runs, until none is left.
 # Submitting this again does what is missing. See docs/cluster.md.
 echo "== task $SLURM_ARRAY_TASK_ID, job $SLURM_JOB_ID on $SLURMD_NODENAME, restart ${{SLURM_RESTART_COUNT:-0}}"
-exec {program} study --worker --out {study} --scratch "{scratch}" \
-  --threads "$SLURM_CPUS_PER_TASK" --grace {grace} --quiet{configs}
+{command} study --worker --out {study} --scratch "{scratch}" \
+  --threads "$SLURM_CPUS_PER_TASK" --grace {grace} --quiet{configs} &
+worker=$!
+warned=
+trap 'warned=1; kill -USR1 "$worker"' USR1  # soon out of time
+trap 'kill -TERM "$worker"' TERM
+# A signal ends wait (128 + its number), but not the worker.
+while wait "$worker"; code=$?; [ "$code" = 138 ] || [ "$code" = 143 ]; do :; done
+# 75: it has ended early, with work left
+if [ -n "$warned" ] && [ "$code" = 75 ]; then scontrol requeue "$SLURM_JOB_ID" && exit 0; fi
+exit "$code"
 )sh";
 
 constexpr const char* kReport = R"sh(#!/usr/bin/env bash
@@ -38,7 +45,7 @@ constexpr const char* kReport = R"sh(#!/usr/bin/env bash
 #SBATCH --nodes=1 --ntasks=1 --cpus-per-task={cpus}
 {options}#SBATCH --output={logs}/report.log --open-mode=append
 # Writes the report; exit code 1: runs of the study are missing, submit tasks.sh again.
-exec {program} report {study} --threads "$SLURM_CPUS_PER_TASK"
+exec {command} report {study} --threads "$SLURM_CPUS_PER_TASK"
 )sh";
 
 /// For a shell and for #SBATCH lines, which know no escapes.
@@ -64,19 +71,13 @@ fs::path write_script(const fs::path& file, const std::string& text) {
   return file;
 }
 
-/// Calls a program of Slurm; returns what it printed on any output.
-Answer call(const std::string& program, const std::vector<std::string>& arguments) {
+/// Calls sbatch; returns the number of the job.
+std::string submit_one(const std::vector<std::string>& arguments) {
   Command command;
-  command.arguments = {"/bin/sh", "-c", "exec " + program + " \"$@\" 2>&1", "sh"};
+  command.arguments = {"/bin/sh", "-c", "exec sbatch --parsable \"$@\" 2>&1", "sh"};
   command.arguments.insert(command.arguments.end(), arguments.begin(), arguments.end());
   Answer answer = answer_of(command);
   while (answer.text.ends_with('\n')) answer.text.pop_back();
-  return answer;
-}
-
-/// Calls sbatch; returns the number of the job.
-std::string submit_one(const std::vector<std::string>& arguments) {
-  const Answer answer = call("sbatch --parsable", arguments);
   if (answer.end.exit_code != 0) {
     throw InputError(
         "sbatch", answer.text.empty() ? "failed" : answer.text,
@@ -96,21 +97,23 @@ SlurmJobs write_slurm_jobs(const StudyPlan& plan, const fs::path& study, const f
   const std::string scratch =
       options.scratch.empty() ? "${SLURM_TMPDIR:-${TMPDIR:-/tmp}}" : options.scratch;
   const std::string lines = option_lines(options), logs = quoted((folder / "logs").string());
-  const std::string at = quoted(folder.string()), calls = quoted(fs::canonical(program).string());
+  const std::string at = quoted(folder.string()),
+                    command = options.command.empty() ? quoted(fs::canonical(program).string())
+                                                      : options.command;
   SlurmJobs jobs;
   jobs.tasks = write_script(
       folder / "tasks.sh",
       fmt::format(kTasks, arg("tasks", tasks), arg("cpus", options.cpus), arg("options", lines),
                   arg("warning", options.warning_s),
                   arg("grace", static_cast<int>(kGrace * options.warning_s)), arg("logs", logs),
-                  arg("study", at), arg("program", calls), arg("scratch", scratch),
+                  arg("study", at), arg("command", command), arg("scratch", scratch),
                   arg("configs", options.configs.empty()
                                      ? ""
                                      : " --configs " + quoted(fs::canonical(options.configs)))));
   jobs.report =
       write_script(folder / "report.sh",
                    fmt::format(kReport, arg("cpus", options.cpus), arg("options", lines),
-                               arg("logs", logs), arg("study", at), arg("program", calls)));
+                               arg("logs", logs), arg("study", at), arg("command", command)));
   return jobs;
 }
 
@@ -118,13 +121,6 @@ std::string submit(const SlurmJobs& jobs) {
   const std::string job = submit_one({jobs.tasks.string()});
   submit_one({"--dependency=afterany:" + job, jobs.report.string()});
   return job;
-}
-
-bool is_slurm_job() { return std::getenv("SLURM_JOB_ID") != nullptr; }
-
-void requeue_this_job() {
-  const Answer answer = call("scontrol requeue", {std::getenv("SLURM_JOB_ID")});
-  if (answer.end.exit_code != 0) throw Error("scontrol requeue: " + answer.text);
 }
 
 }  // namespace lidarena::study

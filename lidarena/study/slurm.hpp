@@ -17,7 +17,8 @@ struct SlurmOptions {
   int warning_s = 120;    ///< before the limit of time, when a task is told to end
   std::vector<std::string> sbatch;  ///< more options of sbatch, e.g. --account=NAME
   std::string configs;              ///< folder given with --configs; empty = the tasks search
-  std::string scratch;              ///< folder on the nodes; empty = $TMPDIR or /tmp there
+  std::string command;  ///< that calls lidarena on a node; empty = this program at its path
+  std::string scratch;  ///< folder on the nodes; empty = $TMPDIR or /tmp there
 };
 
 /// The two batch scripts of a planned study.
@@ -34,10 +35,5 @@ SlurmJobs write_slurm_jobs(const StudyPlan& plan, const std::filesystem::path& s
 /// Submits both; returns the number of the array job. Throws InputError if there is no sbatch or it
 /// refuses.
 std::string submit(const SlurmJobs& jobs);
-
-/// Whether this process belongs to a Slurm job.
-bool is_slurm_job();
-/// Asks Slurm to start this process's job again later; Slurm then ends this process. Throws Error.
-void requeue_this_job();
 
 }  // namespace lidarena::study
