@@ -27,7 +27,7 @@ int main(int argc, char** argv) {
   LogSink silent;
   const study::ConfigFolder configs = study::ConfigFolder::find(".");
   const study::StudyOutcome outcome = study::run_study(spec, configs, folder, {}, silent);
-  for (const study::PlannedRun& planned : study::plan(spec, configs)) {
+  for (const study::PlannedRun& planned : study::planned_cells(spec, configs)) {
     const auto metrics = results::read_metrics(folder / "runs" / planned.name);
     if (!metrics.live || !metrics.live->rpe) continue;
     std::printf("%-16s %.2f cm RPE over 1 s\n", planned.sensor.c_str(),

@@ -102,6 +102,7 @@ int parse_and_do(int argc, char** argv) {
   add_run(app, common, exit_code);
   add_evaluate(app, common, exit_code);
   add_study(app, common, exit_code);
+  add_status(app, common, exit_code);
   add_report(app, common, exit_code);
   add_convert(app, common, exit_code);
   add_view(app, common, exit_code);

@@ -115,7 +115,8 @@ std::string man_page(const CLI::App& app) {
   for (const CLI::App* verb : verbs_of(app)) text += man_verb(*verb);
   return text +
          ".SH EXIT STATUS\n0: done; 1: the work failed (a run diverged); 2: wrong usage or bad "
-         "input.\n.SH FILES\n.TP\n\\fIconfigs/\\fR\nNamed worlds, flights, sensors, odometry and "
+         "input; 75: a study was asked to end, another call goes on.\n.SH "
+         "FILES\n.TP\n\\fIconfigs/\\fR\nNamed worlds, flights, sensors, odometry and "
          "studies: the nearest such folder in the working folder or above it, else the installed "
          "one.\n";
 }

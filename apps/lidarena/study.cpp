@@ -3,13 +3,18 @@
 
 #include <fmt/format.h>
 
+#include <atomic>
+#include <csignal>
 #include <map>
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/dataset/text_file.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/report/report.hpp"
-#include "lidarena/study/scratch.hpp"
+#include "lidarena/study/plan.hpp"
+#include "lidarena/study/program.hpp"
+#include "lidarena/study/slurm.hpp"
 
 namespace lidarena {
 namespace {
@@ -25,8 +30,30 @@ struct StudyRequest {
   bool dry = false;
   int jobs = 1;
   std::string shard = "1/1";
+  bool worker = false;
+  std::string scratch;
   std::optional<double> scratch_gb;
+  double grace_s = 0.0;
+  bool slurm = false;
+  bool print = false;
+  study::SlurmOptions cluster;
 };
+
+/// The last signal that asks the study to end; handlers can only write to a global.
+std::atomic<int> stop_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+/// SIGUSR1 asks the study to end soon; Ctrl-C and SIGTERM at once.
+study::Stop asked_to_stop() {
+  const int signal = stop_signal;
+  if (signal == 0) return study::Stop::kNo;
+  return signal == SIGUSR1 ? study::Stop::kSoon : study::Stop::kNow;
+}
+
+void listen_to_signals() {
+  for (const int signal : {SIGUSR1, SIGTERM, SIGINT})
+    std::signal(signal, [](int received) { stop_signal = received; });
+}
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
 study::StudySpec spec_of_one_world(const StudyRequest& request) {
@@ -52,34 +79,31 @@ study::StudySpec spec_of_one_world(const StudyRequest& request) {
   return spec;
 }
 
-void print_plan(const study::StudySpec& spec, const std::vector<study::PlannedRun>& cells,
-                const study::ConfigFolder& configs) {
-  double seconds = 0.0;
-  double disk_mb = 0.0;
-  for (const study::PlannedRun& cell : cells) {
-    const study::CellEstimate one = study::estimate(cell, configs);
-    const double mb = one.record_mb + (spec.keep_maps ? one.maps_mb : 0.0);
-    fmt::print("{:70} {:>8} {:6.0f} MB\n", cell.name, clock_text(one.seconds), mb);
-    seconds += one.seconds;
-    disk_mb += mb;
+/// The runs of a shard, with estimated time and disk space; what is simulated once, and what anew
+/// for each run.
+void print_plan(const study::StudyPlan& plan, const study::Shard& shard,
+                const study::ConfigFolder& configs, std::uint64_t budget) {
+  double seconds = 0.0, disk_mb = 0.0;
+  std::size_t runs = 0;
+  std::string datasets;
+  for (const std::size_t i : units_of(plan, shard)) {
+    const study::PlanUnit& unit = plan.units[i];
+    for (const std::size_t cell : unit.cells) {
+      const study::CellEstimate one = study::estimate(plan.cells[cell], configs);
+      const double mb = one.record_mb + (plan.spec.keep_maps ? one.maps_mb : 0.0);
+      fmt::print("{:70} {:>8} {:6.0f} MB\n", plan.cells[cell].name, clock_text(one.seconds), mb);
+      seconds += one.seconds;
+      disk_mb += mb;
+      ++runs;
+    }
+    datasets += fmt::format(
+        "{:70} {:6.1f} GB for a while{}\n", unit.dataset,
+        1e-9 * static_cast<double>(unit.data_bytes),
+        unit.data_bytes <= budget ? "" : ": more than --scratch-gb, simulated anew for each run");
   }
   fmt::print("{}: {} runs, about {} and {:.1f} GB of disk space (on two cores, one job)\n",
-             spec.title, cells.size(), clock_text(seconds), 1e-3 * disk_mb);
-}
-
-/// What is simulated once, and what anew for each run.
-void print_scratch(const study::StudySpec& spec, const std::vector<study::PlannedRun>& cells,
-                   const study::ConfigFolder& configs, std::uint64_t budget) {
-  std::map<std::string, std::uint64_t> datasets;
-  for (const study::PlannedRun& cell : cells) {
-    if (!datasets.contains(cell.dataset))
-      datasets[cell.dataset] = study::data_bytes(spec, cell, configs);
-  }
-  for (const auto& [name, bytes] : datasets) {
-    fmt::print("{:70} {:6.1f} GB for a while{}\n", name, 1e-9 * static_cast<double>(bytes),
-               bytes <= budget ? "" : ": more than --scratch-gb, simulated anew for each run");
-  }
-  fmt::print("at most {:.1f} GB of data at a time (--scratch-gb)\n",
+             plan.spec.title, runs, clock_text(seconds), 1e-3 * disk_mb);
+  fmt::print("{}at most {:.1f} GB of data at a time (--scratch-gb)\n", datasets,
              1e-9 * static_cast<double>(budget));
 }
 
@@ -104,28 +128,82 @@ Json shortfall_json(const report::ReportFiles& report) {
   return list;
 }
 
-int study_verb(const Common& common, const StudyRequest& request) {
-  const study::ConfigFolder configs = common.config_folder();
-  const auto spec = request.name.empty()
-                        ? spec_of_one_world(request)
-                        : load_config<study::StudySpec>(configs.resolve("studies", request.name));
+study::StudyOptions options_of(const Common& common, const StudyRequest& request) {
   study::StudyOptions options;
   options.threads = common.threads;
   options.jobs = request.jobs;
   options.shard = study::parse_shard(request.shard);
   options.program = "/proc/self/exe";
+  options.scratch = request.scratch;
   if (request.scratch_gb)
     options.scratch_bytes = static_cast<std::uint64_t>(1e9 * *request.scratch_gb);
-  if (request.dry) {
-    const auto cells = study::cells_of_shard(study::plan(spec, configs), options.shard, configs);
-    print_plan(spec, cells, configs);
-    print_scratch(spec, cells, configs,
-                  options.scratch_bytes.value_or(study::default_scratch_bytes(request.out)));
-    return kDone;
+  options.stop = asked_to_stop;
+  options.grace_s = request.grace_s;
+  options.waits_for_others = !request.worker;
+  return options;
+}
+
+void print_outcome(const Common& common, const std::string& out,
+                   const study::StudyOutcome& outcome) {
+  if (common.json) {
+    print_json({{"study", out},
+                {"cells", outcome.cells},
+                {"runs", outcome.runs},
+                {"reused", outcome.reused},
+                {"failed", outcome.failed},
+                {"diverged", outcome.diverged}});
+  } else {
+    fmt::print("{} of {} runs have a result: {} not by this call, {} failed, {} diverged\n",
+               outcome.runs, outcome.cells, outcome.reused, outcome.failed, outcome.diverged);
   }
-  Console console(common.quiet);
+}
+
+/// A study that was asked to end before its end. If it has finished nothing, another call with as
+/// little time would not, either.
+int interrupted(const study::StudyOutcome& outcome) {
+  if (outcome.has_advanced) return kInterrupted;
+  fmt::print(stderr,
+             "lidarena: study: was asked to end before it had finished a flight or a run; give it "
+             "more time (in a cluster: --time)\n");
+  return kWorkFailed;
+}
+
+/// Part of a study, without a report: a shard, or what a worker finds to do.
+int study_part(const Common& common, const StudyRequest& request,
+               const study::StudyOutcome& outcome) {
+  if (outcome.is_interrupted) return interrupted(outcome);
+  print_outcome(common, request.out, outcome);
+  return request.worker || outcome.runs == outcome.cells ? kDone : kWorkFailed;
+}
+
+int submit_study(const Common& common, const StudyRequest& request, const study::StudyPlan& plan) {
+  study::SlurmOptions options = request.cluster;
+  options.configs = common.configs;
+  options.scratch = request.scratch;
+  const study::SlurmJobs jobs =
+      study::write_slurm_jobs(plan, request.out, study::find_program("/proc/self/exe"), options);
+  const std::string job = request.print ? std::string() : study::submit(jobs);
+  if (common.json) {
+    print_json({{"study", request.out},
+                {"job", job},
+                {"tasks", jobs.tasks.string()},
+                {"report", jobs.report.string()}});
+  } else if (request.print) {
+    fmt::print(
+        "{}{}submit them: job=$(sbatch --parsable {}) && sbatch --dependency=afterany:$job {}\n",
+        dataset::read_bytes(jobs.tasks), dataset::read_bytes(jobs.report), jobs.tasks.string(),
+        jobs.report.string());
+  } else {
+    fmt::print("submitted as job {}: {} runs of {} datasets\nlook: lidarena status {}\n", job,
+               plan.cells.size(), plan.units.size(), request.out);
+  }
+  return kDone;
+}
+
+int whole_study(const Common& common, const StudyRequest& request,
+                const study::StudyOutcome& outcome, Console& console) {
+  if (outcome.is_interrupted) return interrupted(outcome);
   const std::string& out = request.out;
-  const study::StudyOutcome outcome = study::run_study(spec, configs, out, options, console);
   const report::ReportFiles report =
       report::write_report({out}, out, Parallel(common.threads), console);
   if (common.json) {
@@ -142,6 +220,33 @@ int study_verb(const Common& common, const StudyRequest& request) {
                outcome.diverged, report.page.string());
   }
   return outcome.runs == outcome.cells && report.shortfalls.empty() ? kDone : kWorkFailed;
+}
+
+int study_verb(const Common& common, const StudyRequest& request) {
+  const study::ConfigFolder configs = common.config_folder();
+  const study::StudyOptions options = options_of(common, request);
+  Console console(common.quiet);
+  if (request.worker) {
+    listen_to_signals();
+    return study_part(common, request,
+                      study::work_on_study(request.out, configs, options, console));
+  }
+  const auto spec = request.name.empty()
+                        ? spec_of_one_world(request)
+                        : load_config<study::StudySpec>(configs.resolve("studies", request.name));
+  if (request.dry) {
+    const auto code = study::ProgramCode::ask(study::find_program(options.program));
+    print_plan(study::make_plan(spec, configs, code, options.shard.of), options.shard, configs,
+               options.scratch_bytes.value_or(study::default_scratch_bytes(request.out)));
+    return kDone;
+  }
+  if (request.slurm || request.print)
+    return submit_study(common, request, study::plan_study(spec, configs, request.out, options));
+  listen_to_signals();
+  const study::StudyOutcome outcome =
+      study::run_study(spec, configs, request.out, options, console);
+  return options.shard.of > 1 ? study_part(common, request, outcome)
+                              : whole_study(common, request, outcome, console);
 }
 
 struct ReportRequest {
@@ -165,7 +270,45 @@ int report_verb(const Common& common, const ReportRequest& request) {
     fmt::print("{}\n{}report: {}\n", report.text_table, shortfall_text(report),
                report.page.string());
   }
-  return kDone;
+  return report.missing == 0 ? kDone : kWorkFailed;
+}
+
+/// Options of a study that more than one machine works on.
+void add_shared_options(CLI::App& verb, StudyRequest& request) {
+  verb.add_option("--shard", request.shard, "K/N: run only the K-th of N parts of the study");
+  verb.add_flag("--worker", request.worker,
+                "Instead of a study: work on the one planned in --out, with any other workers, "
+                "until nothing is left that nobody has");
+  verb.add_option("--scratch", request.scratch,
+                  "Folder for flights and runs in progress, best on this machine's own disk; "
+                  "default: in --out");
+  verb.add_option("--grace", request.grace_s,
+                  "Seconds that runs in progress may still take after the signal USR1")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_flag("--slurm", request.slurm,
+                "Plan, write tasks.sh and report.sh into --out, and submit them to Slurm");
+  verb.add_flag("--print", request.print, "With --slurm: write and print, but do not submit");
+  verb.add_option("--partition", request.cluster.partition, "With --slurm: partition");
+  verb.add_option("--time", request.cluster.time, "With --slurm: limit of a task, as for sbatch");
+  verb.add_option("--cpus", request.cluster.cpus, "With --slurm: processor cores of a task")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  verb.add_option("--array-limit", request.cluster.array_limit,
+                  "With --slurm: tasks at the same time; no more than datasets are started")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  verb.add_option("--warning", request.cluster.warning_s,
+                  "With --slurm: seconds before the limit of time at which a task is told to end; "
+                  "runs that take less than 3/4 of it are finished")
+      ->check(CLI::Range(10, 3600))
+      ->capture_default_str();
+  verb.add_option(
+      "--command", request.cluster.command,
+      "With --slurm: how a node calls lidarena, e.g. \"apptainer exec FILE.sif lidarena\"; "
+      "default: this program at its path");
+  verb.add_option("--sbatch", request.cluster.sbatch,
+                  "With --slurm: one more option of sbatch, --sbatch=--account=NAME; repeatable")
+      ->allow_extra_args(false);
 }
 
 }  // namespace
@@ -195,7 +338,7 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
                    "Disk space for data of datasets in use, GB; those that need more are simulated "
                    "anew for each run. Default: half of the free space")
       ->check(CLI::NonNegativeNumber);
-  verb->add_option("--shard", request->shard, "K/N: run only the K-th of N parts of the study");
+  add_shared_options(*verb, *request);
   set_verb(
       *verb, common, [&common, request] { return study_verb(common, *request); }, exit_code);
 }

@@ -15,6 +15,7 @@ inline constexpr int kDone = 0;
 inline constexpr int kWorkFailed =
     1;                               ///< a run diverged, a study lacks cells, or an internal error
 inline constexpr int kBadInput = 2;  ///< wrong usage or bad input
+inline constexpr int kInterrupted = 75;  ///< `study`: asked to end; another call goes on
 
 /// Options that every verb takes.
 struct Common {
@@ -36,6 +37,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code);
 void add_run(CLI::App& app, Common& common, int& exit_code);
 void add_evaluate(CLI::App& app, Common& common, int& exit_code);
 void add_study(CLI::App& app, Common& common, int& exit_code);
+void add_status(CLI::App& app, Common& common, int& exit_code);
 void add_convert(CLI::App& app, Common& common, int& exit_code);
 void add_view(CLI::App& app, Common& common, int& exit_code);
 void add_schema(CLI::App& app, Common& common, int& exit_code);

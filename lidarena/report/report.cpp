@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/report/report.hpp"
 
+#include <algorithm>
+
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
@@ -68,6 +70,8 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   dataset::write_text_file(files.page, html_page(results, sections, pictures, data, parallel, log));
   files.shortfalls = results::shortfalls(results);
   files.text_table = results::results_text(results);
+  files.missing = static_cast<std::size_t>(
+      std::ranges::count(results.rows, "missing", &results::RunRecord::status));
   return files;
 }
 

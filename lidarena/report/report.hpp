@@ -16,10 +16,11 @@ struct ReportFiles {
   std::filesystem::path csv;                   ///< results.csv, one row per run
   std::vector<results::Judgement> shortfalls;  ///< expectations that fall short
   std::string text_table;                      ///< the main figures, for a terminal
+  std::size_t missing = 0;                     ///< planned runs without results
 };
 
 /// Writes the page and the tables to the folder `out`, from result files only. Each of `folders` is
-/// the folder of a study (study.json, runs/) or of a part of one, or one RUN folder; several become
+/// the folder of a study (plan.json, runs/) or of a part of one, or one RUN folder; several become
 /// one report. Pictures of runs without clouds are left out. Throws InputError if a folder holds no
 /// results.
 ReportFiles write_report(const std::vector<std::filesystem::path>& folders,

@@ -49,7 +49,7 @@ void read_dataset_manifest(RunRecord& row) {
 void read_row(RunRecord& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
     row.status = "missing";
-    row.reason = "the run has left no files";
+    row.reason = "the run has no results yet";
     return;
   }
   row.manifest = dataset::read_json(row.folder / "manifest.json");
@@ -131,10 +131,10 @@ double own_memory_mb(const dataset::ResourceRow& row) {
 
 StudyResults read_results(const fs::path& folder) {
   StudyResults results;
-  if (fs::exists(folder / "study.json")) {
-    const Json study = dataset::read_json(folder / "study.json");
+  if (fs::exists(folder / "plan.json")) {
+    const Json study = dataset::read_json(folder / "plan.json");
     results.title = study.at("spec").value("title", "Study");
-    const std::string place = (folder / "study.json").string();
+    const std::string place = (folder / "plan.json").string();
     value_from_json(study.at("spec").value("expect", Json::array()), results.expect, place);
     value_from_json(study.value("reference", Json::array()), results.reference, place);
     for (const Json& run : study.at("runs")) {
@@ -143,7 +143,7 @@ StudyResults read_results(const fs::path& folder) {
       row.folder = folder / "runs" / row.name;
       row.world = fs::path(run.at("world").get<std::string>()).stem().string();
       row.flight = fs::path(run.at("flight").get<std::string>()).stem().string();
-      row.sensor = run.at("sensor").get<std::string>();
+      row.sensor = fs::path(run.at("sensor").get<std::string>()).stem().string();
       row.algorithm = run.at("algorithm").get<std::string>();
       row.preset = run.at("preset").get<std::string>();
       row.seed = run.at("seed").get<std::uint64_t>();
@@ -178,8 +178,9 @@ StudyResults merged(std::vector<StudyResults> parts) {
       const auto [place, is_new] = places.emplace(row.name, all.rows.size());
       if (is_new) {
         all.rows.push_back(std::move(row));
-      } else if (!all.rows[place->second].metrics && row.metrics) {
-        all.rows[place->second] = std::move(row);
+      } else if (RunRecord& known = all.rows[place->second];
+                 (!known.metrics && row.metrics) || known.status == "missing") {
+        known = std::move(row);
       }
     }
   }

@@ -62,11 +62,11 @@ struct StudyResults {
 /// Map, scan buffer and backlog together, MB.
 double own_memory_mb(const dataset::ResourceRow& row);
 
-/// Reads a study's folder (study.json names the runs; a run without files becomes a row, too) or
+/// Reads a study's folder (plan.json names the runs; one without files becomes a row "missing") or
 /// one RUN folder. Throws InputError if it is neither.
 StudyResults read_results(const std::filesystem::path& folder);
 /// Merges the parts of one study, or several studies. Of runs with the same name, the first one
-/// that was scored is kept.
+/// that was scored is kept, else the first one that is not missing.
 StudyResults merged(std::vector<StudyResults> parts);
 
 /// One row per run, units in the column names, empty cells for figures that do not exist.

@@ -12,12 +12,14 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <fstream>
 #include <sstream>
 #include <thread>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/text_file.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -46,7 +48,7 @@ cpu_set_t set_of(const std::vector<int>& cores) {
 /// calls are allowed, since other threads may hold locks.
 struct Prepared {
   std::vector<char*> arguments;
-  int output = -1, log = -1, inherited_fd = -1;
+  int output = -1, log = -1;
   cpu_set_t cores{};
   bool all_cores = true;
   bool own_group = true;
@@ -61,7 +63,6 @@ struct Prepared {
   dup2(prepared.output, STDOUT_FILENO);
   dup2(prepared.log, STDERR_FILENO);
   close_range(3, ~0U, CLOSE_RANGE_CLOEXEC);
-  if (prepared.inherited_fd >= 0) fcntl(prepared.inherited_fd, F_SETFD, 0);
   execv(prepared.arguments.front(), prepared.arguments.data());
   _exit(127);
 }
@@ -73,7 +74,6 @@ pid_t start(const Command& command) {
   prepared.arguments.push_back(nullptr);
   prepared.output = open_output(command.output);
   prepared.log = open_output(command.log);
-  prepared.inherited_fd = command.inherited_fd;
   prepared.cores = set_of(command.cores);
   prepared.all_cores = command.cores.empty();
   prepared.own_group = command.own_group;
@@ -227,6 +227,19 @@ ProcessEnd Process::wait() {
     if (auto end = poll()) return *end;
     std::this_thread::sleep_for(kPollPeriod);
   }
+}
+
+Answer answer_of(Command command, const ProcessLimits& limits) {
+  std::string name = (fs::temp_directory_path() / "lidarena-answer-XXXXXX").string();
+  const int fd = mkstemp(name.data());
+  if (fd < 0) throw Error(name + ": cannot be created: " + std::strerror(errno));
+  close(fd);
+  command.output = name;
+  Answer answer;
+  answer.end = Process(command, limits).wait();
+  answer.text = dataset::read_bytes(name);
+  fs::remove(name);
+  return answer;
 }
 
 std::vector<int> usable_cores() {

@@ -15,7 +15,6 @@ struct Command {
   std::filesystem::path output;        ///< file that its standard output is added to; empty = none
   std::filesystem::path log;           ///< the same for its standard error
   std::vector<int> cores;              ///< processors that it may use; empty = all
-  int inherited_fd = -1;               ///< stays open in it, if not -1
   bool own_group = true;               ///< false: it belongs to the caller's process group
 };
 
@@ -66,6 +65,14 @@ class Process {
   Clock::time_point last_busy_ = begin_;
   Clock::time_point last_usage_check_ = begin_;
 };
+
+/// What a program wrote to standard output, and how it ended.
+struct Answer {
+  ProcessEnd end;
+  std::string text;
+};
+/// Runs a command to its end; its own `output` is not used.
+Answer answer_of(Command command, const ProcessLimits& limits = {});
 
 /// The processors that this process may use.
 std::vector<int> usable_cores();

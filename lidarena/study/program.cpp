@@ -5,7 +5,6 @@
 #include <sstream>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/text_file.hpp"
 #include "lidarena/study/process.hpp"
 
 namespace lidarena::study {
@@ -34,18 +33,19 @@ fs::path find_program(const fs::path& given) {
                    "give its path: StudyOptions::program");
 }
 
-ProgramCode::ProgramCode(const fs::path& program, const fs::path& answer) {
-  fs::remove(answer);
+ProgramCode ProgramCode::ask(const fs::path& program) {
   Command ask;
   ask.arguments = {program.string(), "--version", "--json"};
-  ask.output = answer;
-  const ProcessEnd end = Process(ask).wait();
-  if (end.exit_code < 0) throw Error(program.string() + " --version --json: " + end.reason);
-  if (end.exit_code == 0) code_ = Json::parse(dataset::read_bytes(answer), nullptr, false);
-  if (!code_.is_object() || !code_.contains("code")) {
+  const Answer answer = answer_of(ask);
+  if (answer.end.exit_code < 0) {
+    throw Error(program.string() + " --version --json: " + answer.end.reason);
+  }
+  Json code = answer.end.exit_code == 0 ? Json::parse(answer.text, nullptr, false) : Json();
+  if (!code.is_object() || !code.contains("code")) {
     throw InputError(program.string(), "does not answer to --version --json",
                      "give the program lidarena of this version");
   }
+  return ProgramCode(std::move(code));
 }
 
 Json ProgramCode::of(const std::string& part) const {

@@ -17,10 +17,13 @@ std::filesystem::path find_program(const std::filesystem::path& given);
 /// inputs alone.
 class ProgramCode {
  public:
-  /// Asks the program; its answer is left in the file `answer`. Throws InputError if it gives
-  /// none, Error if it was killed.
-  ProgramCode(const std::filesystem::path& program, const std::filesystem::path& answer);
+  /// As a plan holds it, see json().
+  explicit ProgramCode(Json code) : code_(std::move(code)) {}
+  /// Asks the program. Throws InputError if it gives no answer, Error if it
+  /// was killed.
+  static ProgramCode ask(const std::filesystem::path& program);
 
+  const Json& json() const { return code_; }
   /// Version and hash of "simulator" or "scorer".
   Json of(const std::string& part) const;
   /// Version and hash of an algorithm; for an external program, of what surrounds it.

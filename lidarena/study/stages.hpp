@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "lidarena/study/config_folder.hpp"
-#include "lidarena/study/program.hpp"
-#include "lidarena/study/study_spec.hpp"
+#include "lidarena/study/plan.hpp"
 
 namespace lidarena::study {
 
@@ -20,41 +19,49 @@ struct Step {
   std::function<std::vector<std::string>()> arguments;  ///< called once the steps before are done
 };
 
+enum class StageState { kMissing, kOk, kDiverged, kFailed };
+
+/// What a folder's request.json says.
+struct StageResult {
+  StageState state = StageState::kMissing;
+  double seconds = 0.0;  ///< that its steps took
+  int attempt = 0;       ///< of the plan, in which it failed
+};
+
 /// What is done in one folder of the study: a flight, or running and scoring a cell. The folder's
-/// request.json holds the keys of the steps that are done.
+/// request.json holds the keys of the steps that are done, and the result.
 struct Stage {
   std::string name;
   const PlannedRun* cell = nullptr;  ///< null for a flight
-  std::string dataset;
   std::filesystem::path folder;
   std::vector<Step> steps;
   double weight = 0.0;  ///< expected seconds
 
   /// Index of the first step that is not done; the number of steps if all are.
   std::size_t first_open_step() const;
-  bool is_complete() const { return first_open_step() == steps.size(); }
-  /// Records that the step is done.
-  void record(std::size_t step) const;
+  StageResult result() const;
+  /// Records that the step is done; after the last one, the result.
+  void record(std::size_t step, double seconds, bool diverged = false) const;
+  void record_failure(double seconds, int attempt) const;
 };
 
-/// The stages of a study in the folder `out`.
+/// The stages of a plan in the folder `root`, which is laid out as the study's own folder.
 class Stages {
  public:
-  Stages(const StudySpec& spec, const ConfigFolder& configs, std::filesystem::path out,
-         ProgramCode code)
-      : spec_(spec), configs_(configs), out_(std::move(out)), code_(std::move(code)) {}
+  /// `plan` must outlive this and the stages.
+  Stages(const StudyPlan& plan, std::filesystem::path root)
+      : plan_(plan), root_(std::move(root)), code_(plan.code) {}
 
-  Stage flight(const PlannedRun& cell) const;
-  /// `cell` must outlive the stage.
-  Stage run(const PlannedRun& cell) const;
+  Stage flight(const PlanUnit& unit, const ConfigFolder& configs) const;
+  /// `cell`: index in the plan.
+  Stage run(const PlanUnit& unit, std::size_t cell) const;
 
  private:
-  Json flight_key(const PlannedRun& cell) const;
-  Step run_step(const PlannedRun& cell, const std::filesystem::path& folder) const;
+  Step run_step(const PlanUnit& unit, const PlannedRun& cell,
+                const std::filesystem::path& folder) const;
 
-  const StudySpec& spec_;
-  const ConfigFolder& configs_;
-  std::filesystem::path out_;
+  const StudyPlan& plan_;
+  std::filesystem::path root_;
   ProgramCode code_;
 };
 

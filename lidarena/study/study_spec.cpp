@@ -139,7 +139,7 @@ std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
   return figures;
 }
 
-std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs) {
+std::vector<PlannedRun> planned_cells(const StudySpec& spec, const ConfigFolder& configs) {
   const auto need = [](bool there, const char* what) {
     if (!there) throw InputError("study", std::string("names no ") + what);
   };
@@ -210,22 +210,6 @@ std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
   for (const std::string& sensor : spec.sensors)
     bytes_per_second += kBytesOfHits + kBytesOfShot * shots_per_second(sensor, configs);
   return static_cast<std::uint64_t>(expected_seconds(cell, configs) * bytes_per_second);
-}
-
-std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,
-                                       const ConfigFolder& configs) {
-  std::vector<double> middles;  // of each cell, in seconds since the study's start
-  double end = 0.0;
-  for (const PlannedRun& cell : cells) {
-    const double seconds = estimate(cell, configs).seconds;
-    middles.push_back(end + 0.5 * seconds);
-    end += seconds;
-  }
-  std::vector<PlannedRun> part;
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (1 + static_cast<int>(middles[i] / end * shard.of) == shard.part) part.push_back(cells[i]);
-  }
-  return part;
 }
 
 }  // namespace lidarena::study

@@ -126,7 +126,7 @@ const ExternalProgram* find_external(const StudySpec& spec, const std::string& n
 
 /// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError if the
 /// study is incomplete or contradictory, or a name in it does not exist.
-std::vector<PlannedRun> plan(const StudySpec& spec, const ConfigFolder& configs);
+std::vector<PlannedRun> planned_cells(const StudySpec& spec, const ConfigFolder& configs);
 
 /// The published figures that a study names: a file, or a name in configs/studies. Columns world,
 /// sensor, algorithm, figure, value; empty names stand for all. None without a name. Throws
@@ -153,10 +153,5 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
 /// scoring needs, bytes.
 std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
                          const ConfigFolder& configs);
-
-/// The cells of a part: consecutive ones, so that few flights are simulated by two parts, and as
-/// many as take about an N-th of the expected time.
-std::vector<PlannedRun> cells_of_shard(const std::vector<PlannedRun>& cells, const Shard& shard,
-                                       const ConfigFolder& configs);
 
 }  // namespace lidarena::study

@@ -31,12 +31,15 @@ expect "lidarena convert --dialect dr" driver
 expect "lidarena run fast" fast_lio2
 expect "lidarena list wo" worlds
 expect "lidarena study qu" quick
+expect "lidarena study --sl" --slurm
+expect "lidarena sta" status
+expect "lidarena status --w" --watch
 
 if command -v man >/dev/null; then
   warnings=$(lidarena man | MANROFFSEQ= man --warnings=w -E UTF-8 -l - 2>&1 >/dev/null)
   [ -z "$warnings" ] || { echo "$warnings" >&2; exit 1; }
 fi
 page=$(lidarena man)
-for verb in simulate run evaluate study report view convert info list schema; do
+for verb in simulate run evaluate study status report view convert info list schema; do
   [[ $page == *".SS $verb"* ]] || { echo "the manual page does not contain $verb" >&2; exit 1; }
 done

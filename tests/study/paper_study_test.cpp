@@ -32,7 +32,7 @@ TEST(PaperStudy, HasTheFiguresOfThreeTablesAndTwelveFindings) {
   EXPECT_EQ(results.rows.size(), 20U);
   EXPECT_EQ(results.reference.size(), 3 * 20U + 4U);
   EXPECT_EQ(results.expect.size(), 12U);
-  EXPECT_FALSE(plan(paper(), configs()).empty());
+  EXPECT_FALSE(planned_cells(paper(), configs()).empty());
   const StudySpec full = load_config<StudySpec>(configs().resolve("studies", "paper_full"));
   EXPECT_EQ(full.expect.size(), 12U);
 }

@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
@@ -23,6 +24,7 @@
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
+#include "lidarena/study/plan.hpp"
 #include "lidarena/study/process.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/score_run.hpp"
@@ -187,7 +189,7 @@ StudySpec small_spec() {
 }
 
 TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
-  const std::vector<PlannedRun> cells = plan(small_spec(), configs());
+  const std::vector<PlannedRun> cells = planned_cells(small_spec(), configs());
   ASSERT_EQ(cells.size(), 8U);
   EXPECT_EQ(cells[0].name, "house-house-s1-livox_mid360-kiss_icp-indoor");
   EXPECT_EQ(cells[1].preset, "head");
@@ -204,7 +206,7 @@ TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
 TEST(Plan, EveryStudyShippedCanBePlanned) {
   for (const std::string& name : configs().names("studies")) {
     const auto spec = load_config<StudySpec>(configs().resolve("studies", name));
-    EXPECT_FALSE(plan(spec, configs()).empty()) << name;
+    EXPECT_FALSE(planned_cells(spec, configs()).empty()) << name;
   }
 }
 
@@ -213,7 +215,7 @@ TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
     StudySpec spec = small_spec();
     change(spec);
     try {
-      plan(spec, configs());
+      planned_cells(spec, configs());
     } catch (const InputError& e) {
       return std::string(e.what());
     }
@@ -242,36 +244,52 @@ TEST(Plan, ModesMakeDatasetsOfTheirOwnAndExternalProgramsAreCells) {
   spec.modes = {sensor::ScanMode::kRolling, sensor::ScanMode::kFrozen};
   spec.external = {{.name = "theirs", .command = "true"}};
   spec.algorithms = {"kiss_icp", "theirs"};
-  const std::vector<PlannedRun> cells = plan(spec, configs());
+  const std::vector<PlannedRun> cells = planned_cells(spec, configs());
   ASSERT_EQ(cells.size(), 4U);
   EXPECT_EQ(cells[0].dataset, "house-house-s1-rolling");
   EXPECT_EQ(cells[3].dataset, "house-house-s1-frozen");
   EXPECT_EQ(cells[3].name, "house-house-s1-frozen-livox_mid360-theirs-external");
 }
 
-TEST(Plan, ShardsShareTheCellsAmongThem) {
-  const std::vector<PlannedRun> cells = plan(small_spec(), configs());
-  double all = 0.0;
-  for (const PlannedRun& cell : cells) all += estimate(cell, configs()).seconds;
-  std::vector<std::string> names;
-  for (const char* shard : {"1/3", "2/3", "3/3"}) {
-    double seconds = 0.0;
-    for (const PlannedRun& cell : cells_of_shard(cells, parse_shard(shard), configs())) {
-      names.push_back(cell.name);
-      seconds += estimate(cell, configs()).seconds;
+TEST(Plan, EachUnitIsADatasetWithItsCellsAndShardsShareTheUnitsEvenly) {
+  StudySpec spec = small_spec();
+  spec.seeds = {1, 2, 3, 4, 5, 6, 7};
+  const StudyPlan plan =
+      make_plan(spec, configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)), 3);
+  ASSERT_EQ(plan.units.size(), 7U);
+  std::set<std::size_t> cells;
+  std::vector<double> seconds(3, 0.0);
+  for (const PlanUnit& unit : plan.units) {
+    for (const std::size_t cell : unit.cells) {
+      EXPECT_TRUE(cells.insert(cell).second);
+      EXPECT_EQ(plan.cells[cell].dataset, unit.dataset);
     }
-    EXPECT_NEAR(seconds, all / 3.0, estimate(cells[2], configs()).seconds)
-        << "shards may differ by one long cell";
+    seconds.at(static_cast<std::size_t>(unit.shard) - 1) += unit.seconds;
   }
-  ASSERT_EQ(names.size(), cells.size());
-  for (std::size_t i = 0; i < names.size(); ++i) EXPECT_EQ(names[i], cells[i].name);
+  EXPECT_EQ(cells.size(), plan.cells.size());
+  EXPECT_LE(std::ranges::max(seconds) - std::ranges::min(seconds), plan.units[0].seconds + 1e-9);
+  std::size_t units = 0;
+  for (const int part : {1, 2, 3}) units += units_of(plan, {part, 3}).size();
+  EXPECT_EQ(units, 7U);
   for (const char* wrong : {"", "1", "0/3", "4/3", "1/0", "-1/3", "1/3x", "a/b"}) {
     EXPECT_THROW(parse_shard(wrong), InputError) << wrong;
   }
 }
 
+TEST(Plan, TheLongestUnitsComeFirstAndAPlanIsReadAsItWasWritten) {
+  StudySpec spec = small_spec();
+  spec.scenes.push_back({"cave", "cave", 60.0});
+  const StudyPlan plan =
+      make_plan(spec, configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)));
+  EXPECT_EQ(plan.units[0].dataset, "cave-cave-s1");
+  EXPECT_TRUE(std::ranges::is_sorted(plan.units, std::ranges::greater{}, &PlanUnit::seconds));
+  const TemporaryFolder scratch;
+  write_plan(scratch.path(), plan);
+  EXPECT_EQ(to_json(read_plan(scratch.path())), to_json(plan));
+}
+
 TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
-  const std::vector<PlannedRun> cells = plan(small_spec(), configs());
+  const std::vector<PlannedRun> cells = planned_cells(small_spec(), configs());
   PlannedRun longer = cells[0];
   longer.seconds *= 2;
   const CellEstimate mid360 = estimate(cells[0], configs());
@@ -297,10 +315,10 @@ StudySpec tiny_spec() {
   return spec;
 }
 
-TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
+TEST(RunStudy, AnotherOneInTheSameFolderIsRefusedUntilTheFirstHasEnded) {
   const TemporaryFolder scratch;
   LogSink log;
-  // The other study keeps the folder locked while its external program sleeps.
+  // The other study holds its unit while its external program sleeps.
   StudySpec waiting = tiny_spec();
   const std::string started = (scratch.path() / "started").string();
   waiting.external = {
@@ -319,7 +337,7 @@ TEST(RunStudy, TwoAtATimeInOneFolderAreRefused) {
                InputError);
   kill(other, SIGKILL);
   waitpid(other, nullptr, 0);
-  // Its work ended with it, so the folder is not locked; the incomplete run is not reused.
+  // Its work ended with it; the incomplete run is not reused.
   const StudyOutcome outcome =
       run_study(tiny_spec(), configs(), scratch.path() / "study", with_program(), log);
   EXPECT_EQ(outcome.runs, 1U);
@@ -347,7 +365,7 @@ TEST(ProgramCode, OfAProgramThatWasKilledSaysSo) {
   std::ofstream(program) << "#!/bin/sh\nkill -9 $$\n";
   std::filesystem::permissions(program, std::filesystem::perms::owner_all);
   try {
-    ProgramCode(program, scratch.path() / "answer.json");
+    ProgramCode::ask(program);
     FAIL();
   } catch (const InputError& error) {
     FAIL() << "blames the program: " << error.what();
@@ -359,7 +377,7 @@ TEST(ProgramCode, OfAProgramThatWasKilledSaysSo) {
 /// All files below a folder that do not tell times, with their content.
 std::map<std::string, std::string> results_in(const std::filesystem::path& folder) {
   const std::set<std::string> timed{"resources.csv", "resources.json", "manifest.json",
-                                    "lidarena.log"};
+                                    "lidarena.log", "request.json"};
   std::map<std::string, std::string> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
     if (!entry.is_regular_file() || timed.contains(entry.path().filename())) continue;
@@ -378,7 +396,7 @@ TEST(RunStudy, ADatasetIsSimulatedOnceForItsRunsAndTheResultsAreThoseOfSimulatin
   options.scratch_bytes = 0;
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "anew", options, log).failed, 0U);
   const auto kept = results_in(scratch.path() / "kept/runs");
-  EXPECT_EQ(kept.size(), 2U * 8U);
+  EXPECT_EQ(kept.size(), 2U * 7U);
   EXPECT_EQ(kept, results_in(scratch.path() / "anew/runs"));
   const auto dataset = scratch.path() / "kept/datasets/house-house-s1";
   EXPECT_FALSE(std::filesystem::exists(dataset / "data.mcap")) << "no run needs it any more";

@@ -21,8 +21,8 @@ TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_THAT(help.out, AllOf(HasSubstr("lidarena simulate --world house"), HasSubstr("evaluate"),
                               HasSubstr("study")));
-  for (const char* verb :
-       {"list", "info", "simulate", "run", "evaluate", "study", "report", "convert", "view"}) {
+  for (const char* verb : {"list", "info", "simulate", "run", "evaluate", "study", "status",
+                           "report", "convert", "view"}) {
     const Outcome verb_help = call(std::string(verb) + " --help");
     EXPECT_EQ(verb_help.exit_code, 0) << verb;
     EXPECT_THAT(verb_help.out, HasSubstr("--json")) << verb;
@@ -254,6 +254,73 @@ TEST_F(Cli, AStudyIsResumedAndAFailedRunIsARow) {
   EXPECT_EQ(nlohmann::json::parse(second.out).at("reused"), 1);
   EXPECT_EQ(content(path("study_out") + "/results.csv"), csv)
       << "the reused run must not be measured again";
+}
+
+/// A study of two short flights, each with two algorithms; returns its name.
+std::string write_small_study(const TemporaryFolder& folder) {
+  folder.write("room.obj", room_obj());
+  folder.write("flight.yaml", kRoomFlight);
+  return folder
+      .write("study.yaml",
+             "title: Shared\nscenes: [{world: room.obj, flight: flight.yaml, seconds: 1}]\n"
+             "seeds: [1, 2]\nsensors: [livox_mid360]\nalgorithms: [kiss_icp, arena_lo]\n")
+      .string();
+}
+
+TEST_F(Cli, APlannedStudyIsDoneByWorkersAndItsStatusAndReportTellWhatIsMissing) {
+  const std::string study = write_small_study(folder_);
+  const Outcome printed =
+      call("study " + study + " --out plan --slurm --print --partition long --time 2:00:00");
+  ASSERT_EQ(printed.exit_code, 0) << printed.err;
+  EXPECT_THAT(printed.out, AllOf(HasSubstr("#SBATCH --array=1-2"), HasSubstr("--time=2:00:00"),
+                                 HasSubstr("--partition=long")));
+  const auto status = [&] { return nlohmann::json::parse(call("status --json plan").out); };
+  EXPECT_EQ(status().at("missing"), 4);
+  const Outcome report = call("report plan");
+  EXPECT_EQ(report.exit_code, 1) << "runs are missing";
+  EXPECT_THAT(report.out, HasSubstr("missing: the run has no results yet"));
+
+  const Outcome worker = call("study --worker --out plan --json --scratch scratch");
+  ASSERT_EQ(worker.exit_code, 0) << worker.err;
+  EXPECT_EQ(nlohmann::json::parse(worker.out).at("runs"), 4);
+  EXPECT_EQ(status().at("done"), 4);
+  EXPECT_EQ(status().at("missing"), 0);
+  EXPECT_THAT(call("status plan --watch").out, HasSubstr("4 runs, 100 %"));
+  EXPECT_EQ(call("report plan").exit_code, 0);
+}
+
+TEST_F(Cli, ShardsInFoldersOfTheirOwnMakeOneReport) {
+  const std::string study = write_small_study(folder_);
+  for (const std::string part : {"1", "2"}) {
+    const Outcome shard = call("study " + study + " --shard " + part + "/2 --out part" + part);
+    ASSERT_EQ(shard.exit_code, 0) << shard.err;
+    EXPECT_FALSE(fs::exists(path("part" + part) + "/report.html")) << "one report is of all parts";
+  }
+  EXPECT_EQ(call("report part1").exit_code, 1) << "the other part is missing";
+  EXPECT_EQ(call("report part1 part2 --out all").exit_code, 0);
+  EXPECT_THAT(refusal("study " + study + " --shard 1/3 --out part1"), HasSubstr("has 2 shards"));
+}
+
+TEST_F(Cli, WhatAClusterCannotDoIsSaid) {
+  const std::string study = write_small_study(folder_);
+  EXPECT_THAT(refusal("status ."), HasSubstr("holds no plan.json"));
+  EXPECT_THAT(refusal("study --worker --out nothing"), HasSubstr("holds no plan.json"));
+  // stands for Slurm's program, first one that refuses, then one that writes down its calls
+  const auto sbatch = [&](const std::string& script) {
+    fs::permissions(write("bin/sbatch", "#!/bin/sh\n" + script), fs::perms::owner_all);
+  };
+  const std::string path_before = std::getenv("PATH");
+  setenv("PATH", (path("bin") + ":" + path_before).c_str(), 1);
+  sbatch("echo 'sbatch: error: invalid partition' >&2; exit 1");
+  EXPECT_THAT(refusal("study " + study + " --out shared --slurm"), HasSubstr("invalid partition"));
+  sbatch("echo \"$@\" >> calls; echo '42;here'");
+  const Outcome submitted = call("study " + study + " --out shared --slurm --array-limit 1");
+  setenv("PATH", path_before.c_str(), 1);
+  EXPECT_EQ(submitted.exit_code, 0) << submitted.err;
+  EXPECT_THAT(submitted.out, HasSubstr("submitted as job 42: 4 runs of 2 datasets"));
+  EXPECT_THAT(content(path("calls")),
+              AllOf(HasSubstr("--parsable " + fs::canonical(path("shared")).string() + "/tasks.sh"),
+                    HasSubstr("--dependency=afterany:42 ")));
 }
 
 }  // namespace

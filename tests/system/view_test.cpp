@@ -181,7 +181,7 @@ void write_study(const fs::path& folder) {
         << "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes\n"
            "0.1,0.01,1,1,1000000,100,10\n1,0.01,1,1,2000000,100,10\n2,0.01,1,1,3000000,100,10\n";
   }
-  std::ofstream(folder / "study.json") << study;
+  std::ofstream(folder / "plan.json") << study;
 }
 
 TEST_F(ViewInBrowser, TheReportDrawsItsChartsAndItsFiles) {

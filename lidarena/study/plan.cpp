@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/plan.hpp"
+
+#include <algorithm>
+#include <map>
+#include <numeric>
+
+#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/md5.hpp"
+#include "lidarena/dataset/text_file.hpp"
+
+namespace lidarena::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPlan = "plan.json";
+
+/// Digests of files, each read once.
+class Digests {
+ public:
+  const std::string& of(const fs::path& file) {
+    std::string& digest = known_[file];
+    if (digest.empty()) digest = dataset::md5_of(dataset::read_bytes(file));
+    return digest;
+  }
+
+ private:
+  std::map<fs::path, std::string> known_;
+};
+
+Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFolder& configs,
+                   const ProgramCode& code, Digests& digests) {
+  Json sensors = Json::array();
+  for (const std::string& sensor : spec.sensors)
+    sensors.push_back(digests.of(configs.resolve("sensors", sensor)));
+  return {{"code", code.of("simulator")},
+          {"world", digests.of(configs.resolve("worlds", cell.world))},
+          {"flight", digests.of(configs.resolve("flights", cell.flight))},
+          {"sensors", sensors},
+          {"seed", cell.seed},
+          {"seconds", cell.seconds},
+          {"mode", value_to_json(cell.mode)}};
+}
+
+/// Makes the path of a file absolute; a name in `configs` stays a name.
+void make_absolute(std::string& name, const std::string& kind, const ConfigFolder& configs) {
+  if (configs.resolve(kind, name) == fs::path(name)) name = fs::absolute(name).string();
+}
+
+void make_paths_absolute(StudySpec& spec, const ConfigFolder& configs) {
+  for (StudyScene& scene : spec.scenes) {
+    make_absolute(scene.world, "worlds", configs);
+    make_absolute(scene.flight, "flights", configs);
+  }
+  for (std::string& sensor : spec.sensors) make_absolute(sensor, "sensors", configs);
+}
+
+/// Expected seconds of each cell; cells of the same flight and sensor take the same.
+std::vector<double> expected_seconds(const std::vector<PlannedRun>& cells,
+                                     const ConfigFolder& configs) {
+  std::map<std::tuple<std::string, double, std::string>, double> known;
+  std::vector<double> seconds;
+  for (const PlannedRun& cell : cells) {
+    const auto [place, is_new] = known.try_emplace({cell.flight, cell.seconds, cell.sensor}, 0.0);
+    if (is_new) place->second = estimate(cell, configs).seconds;
+    seconds.push_back(place->second);
+  }
+  return seconds;
+}
+
+/// The units of the plan's cells, longest first.
+std::vector<PlanUnit> units_of_cells(const StudyPlan& plan, const ConfigFolder& configs,
+                                     const ProgramCode& code) {
+  Digests digests;
+  std::map<std::pair<std::string, double>, std::uint64_t> data;  // by flight and its length
+  std::map<std::string, std::size_t> places;
+  std::vector<PlanUnit> units;
+  for (std::size_t i = 0; i < plan.cells.size(); ++i) {
+    const PlannedRun& cell = plan.cells[i];
+    const auto [place, is_new] = places.emplace(cell.dataset, units.size());
+    if (is_new) {
+      const auto [bytes, is_unknown] = data.try_emplace({cell.flight, cell.seconds}, 0U);
+      if (is_unknown) bytes->second = data_bytes(plan.spec, cell, configs);
+      units.push_back({.dataset = cell.dataset,
+                       .cells = {},
+                       .data_bytes = bytes->second,
+                       .flight = key_of_flight(plan.spec, cell, configs, code, digests)});
+    }
+    units[place->second].cells.push_back(i);
+    units[place->second].seconds += plan.seconds[i];
+  }
+  std::ranges::stable_sort(units, std::ranges::greater{}, &PlanUnit::seconds);
+  return units;
+}
+
+/// Gives each unit to the shard that has the least to do so far.
+void assign_shards(StudyPlan& plan) {
+  std::vector<double> seconds(static_cast<std::size_t>(plan.shards), 0.0);
+  for (PlanUnit& unit : plan.units) {
+    const auto least = std::ranges::min_element(seconds);
+    *least += unit.seconds;
+    unit.shard = 1 + static_cast<int>(least - seconds.begin());
+  }
+}
+
+}  // namespace
+
+StudyPlan make_plan(StudySpec spec, const ConfigFolder& configs, const ProgramCode& code,
+                    int shards) {
+  planned_cells(spec, configs);  // names every mistake in the user's own words
+  make_paths_absolute(spec, configs);
+  StudyPlan plan;
+  plan.cells = planned_cells(spec, configs);
+  plan.reference = load_reference(spec, configs);
+  plan.spec = std::move(spec);
+  plan.code = code.json();
+  plan.shards = shards;
+  plan.seconds = expected_seconds(plan.cells, configs);
+  plan.units = units_of_cells(plan, configs, code);
+  assign_shards(plan);
+  return plan;
+}
+
+Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const ConfigFolder& configs) {
+  Digests digests;
+  return key_of_flight(plan.spec, plan.cells[unit.cells.front()], configs, ProgramCode(plan.code),
+                       digests);
+}
+
+std::vector<std::size_t> units_of(const StudyPlan& plan, const Shard& shard) {
+  std::vector<std::size_t> all(plan.units.size());
+  std::iota(all.begin(), all.end(), 0U);
+  if (shard.of > 1)
+    std::erase_if(all, [&](std::size_t i) { return plan.units[i].shard != shard.part; });
+  return all;
+}
+
+StudyPlan read_plan(const fs::path& study) {
+  const fs::path file = study / kPlan;
+  if (!fs::exists(file)) {
+    throw InputError(study.string(), "is not the folder of a study: it holds no plan.json",
+                     "plan one: lidarena study STUDY --out " + study.string());
+  }
+  StudyPlan plan;
+  read_json(dataset::read_json(file), plan, file.string());
+  for (const PlanUnit& unit : plan.units) {
+    for (const std::size_t cell : unit.cells) {
+      if (cell >= plan.cells.size() || plan.seconds.size() != plan.cells.size())
+        throw InputError(file.string(), "is damaged", "plan the study again");
+    }
+  }
+  return plan;
+}
+
+void write_plan(const fs::path& study, const StudyPlan& plan) {
+  Json json = {{"kind", "study"}};
+  json.update(to_json(plan));
+  dataset::write_json(study / kPlan, json);
+}
+
+}  // namespace lidarena::study
