@@ -4,7 +4,10 @@
 type Child = Node | string;
 
 export function element<K extends keyof HTMLElementTagNameMap>(
-  tag: K, properties: Record<string, unknown> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+  tag: K,
+  properties: Record<string, unknown> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
     if (name in made) (made as unknown as Record<string, unknown>)[name] = value;
