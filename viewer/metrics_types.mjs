@@ -20,7 +20,9 @@ function fieldsOf(schema) {
   );
 }
 
-const all = JSON.parse(readFileSync(0, "utf8"));
+let input = "";
+for await (const part of process.stdin) input += part;
+const all = JSON.parse(input);
 const types = Object.entries(TYPES).map(([name, path]) => {
   const schema = path.reduce((outer, key) => object(object(outer).properties[key]), all);
   return `export interface ${name} {\n${fieldsOf(schema).join("")}}\n`;

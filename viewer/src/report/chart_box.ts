@@ -53,7 +53,7 @@ export class ChartBox {
     if (this.chart) return this.chart;
     this.chart = echarts.init(this.canvas, null, { renderer: "svg", width: this.figure.width, height: this.figure.height });
     this.chart.setOption(this.figure.option);
-    this.canvas.dataset.drawn = "1";
+    this.canvas.querySelector("svg")!.setAttribute("viewBox", `0 0 ${this.figure.width} ${this.figure.height}`); // paper is narrower
     this.onDraw(this.chart);
     return this.chart;
   }

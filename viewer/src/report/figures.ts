@@ -71,7 +71,7 @@ async function draw() {
   }
   const write = (picture: Picture) => writeFileSync(path.join(out, `${picture.id}.svg`), `${pictureSvg(picture, pngOf)}\n`);
   const scenes = scenesInPage();
-  for (const scene of scenes) (await placePictures(scene, 420)).forEach(write);
+  for (const scene of scenes) (await placePictures(scene, { width: 420 })).forEach(write);
   const drawn = new Set<string>(); // of several flights and seeds, the first
   for (const run of data.runs) {
     const scene = sceneOf(scenes, run);

@@ -68,6 +68,7 @@ class Report implements Page {
     });
     window.addEventListener("beforeprint", () => this.boxes.forEach((box) => box.draw()));
     marks.ready = "1";
+    marks.drawnMs = String(Math.round(performance.now()));
   }
 
   change = (some: Partial<Settings>) => {
@@ -190,7 +191,7 @@ class Report implements Page {
       const row = element("div", { className: "figures", id: `scene-of-${scene.world}` }, "…");
       this.scenesSection.append(element("h3", {}, scene.world), row);
       const draw = async () => {
-        const pictures = await placePictures(scene, 420);
+        const pictures = await placePictures(scene, { width: 388, maxHeight: 300 });
         row.replaceChildren(
           ...pictures.map((picture) => {
             const figure = element("figure", { id: picture.id });

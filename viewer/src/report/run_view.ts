@@ -122,6 +122,7 @@ export class RunView {
       panel.change({ color: panel.state.color });
       this.marks.view = run.name;
     } catch {
+      root.remove();
       const picture = await mapPicture(scene, run, { width: 560 }); // without WebGL
       this.stage.innerHTML = pictureSvg(picture);
       this.marks.picture = run.name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The points in the page: which runs have some, and pictures of them from above.
-import { cloudOf, pathOf, pointsOnMesh, type Points } from "../view/points";
+import { cloudOf, pathOf, pointsOnMesh } from "../view/points";
 import type { BlockSource, SceneHeader } from "../view/scene";
 import { boxOf, pngAddress, rasterOf, topViewSvg, type Box, type Raster, type TopView } from "../view/top_view";
 import { label, type Run } from "./data";
@@ -63,24 +63,25 @@ export async function commonBox(scene: WorldScene, pictures: Picture[]): Promise
 }
 
 /** The world with its flights, and what each sensor sees in one scan. */
-export async function placePictures(scene: WorldScene, width: number): Promise<Picture[]> {
+export async function placePictures(scene: WorldScene, look: Pick<TopView, "width" | "maxHeight">): Promise<Picture[]> {
   const { world, header, source } = scene;
   const pictures: Picture[] = [];
   const truth = header.paths.find((path) => path.role === "truth");
   if (header.meshes.length > 0) {
     const points = pointsOnMesh(header.meshes[0], await source(header.meshes[0].block), 150_000);
     const estimate = truth && (await pathOf(truth, source)).positions;
-    pictures.push({ id: `world-${world}`, view: { title: `${world}, with the flight path`, points, estimate, width } });
+    pictures.push({ id: `world-${world}`, view: { title: `${world}, with the flight path`, points, estimate, ...look } });
   }
-  const add = async (kind: string, title: string) => {
-    for (const cloud of header.clouds.filter(({ name }) => name.startsWith(`${kind} `))) {
-      const sensor = cloud.name.slice(kind.length + 1);
-      const points: Points = await cloudOf(cloud, source);
-      pictures.push({ id: `${kind}-${world}-${sensor}`, view: { title: `${sensor}: ${title}`, points, width } });
-    }
-  };
-  await add("scan", "one scan, de-skewed by the true motion");
-  await add("skewed", "the same scan without de-skewing");
+  const titles = { scan: "one scan, de-skewed", skewed: "the same, not de-skewed" };
+  for (const cloud of header.clouds) {
+    const [kind, sensor] = cloud.name.split(" ");
+    const title = sensor && titles[kind as keyof typeof titles];
+    if (!title) continue;
+    pictures.push({
+      id: `${kind}-${world}-${sensor}`,
+      view: { title: `${sensor}: ${title}`, points: await cloudOf(cloud, source), ...look },
+    });
+  }
   return pictures;
 }
 

@@ -8,7 +8,7 @@ const FULL_DISTANCE_M = 0.2;
 const PATH_COLOR = "#f97316";
 const MARGIN = 0.03; // share of the picture left empty on each side
 const IGNORED = 0.001; // share of the points outside the box at either end
-const PIXELS_PER_ROOT_OF_POINTS = 1.7; // more would leave gaps between the points of a wall
+const PIXELS_PER_ROOT_OF_POINTS = 1.3; // more would leave gaps between the points of a wall
 
 /** Seen from above: x0, y0 to x1, y1, m. */
 export type Box = [number, number, number, number];

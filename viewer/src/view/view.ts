@@ -56,6 +56,7 @@ export class View {
     readonly container: HTMLElement,
     readonly header: SceneHeader,
   ) {
+    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("this browser has no WebGL");
     this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
