@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A chart in the page: drawn when it comes into sight, saved as SVG, PNG and CSV.
-import { element } from "../view/elements";
+import { element, whenInSight } from "../view/elements";
 import { echarts } from "./charts";
 import type { Figure } from "./figures_of";
 import { saveButtons } from "./save";
@@ -25,9 +25,7 @@ export class ChartBox {
   readonly root: HTMLElement;
   chart: Chart | null = null;
   private canvas = element("div", { className: "chart" });
-  private watch = new IntersectionObserver((entries) => entries.some((entry) => entry.isIntersecting) && this.draw(), {
-    rootMargin: "600px",
-  });
+  private watch = whenInSight(this.canvas, () => this.draw());
 
   constructor(
     readonly figure: Figure,
@@ -45,7 +43,6 @@ export class ChartBox {
         () => rowsOf(figure),
       ),
     );
-    this.watch.observe(this.canvas);
   }
 
   draw(): Chart {

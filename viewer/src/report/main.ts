@@ -2,14 +2,14 @@
 // Script of the report's page: draws all of it from the data in the page.
 import "../view/view.css";
 import "./report.css";
-import { element } from "../view/elements";
+import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
 import { distinct, label, LATENCY, type ReportData, type Run } from "./data";
 import { figuresOf } from "./figures_of";
 import { answer, bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
 import { RunView } from "./run_view";
-import { saveButtons } from "./save";
+import { drawn } from "./save";
 import { pictureSvg, placePictures, type WorldScene } from "./scenes";
 import { choices, passes, readSettings, writeSettings, type Settings } from "./settings";
 import { number, tableElement, word, type ShownTable } from "./tables";
@@ -60,8 +60,8 @@ class Report implements Page {
   constructor() {
     document.body.prepend(this.head, this.main);
     followTheme(() => this.drawCharts());
-    this.show();
     this.showScenes();
+    this.show();
     window.addEventListener("hashchange", () => {
       this.settings = readSettings(location.hash, this.data);
       this.show();
@@ -83,6 +83,9 @@ class Report implements Page {
     if (changed.includes("filters")) {
       this.showOverview();
       this.drawCharts();
+      const worlds = distinct(this.runs, (run) => run.world);
+      for (const part of this.scenesSection.querySelectorAll<HTMLElement>("[data-world]"))
+        part.hidden = !worlds.includes(part.dataset.world!);
       this.lists.replaceChildren(...this.listsOfRuns());
     } else if (changed.includes("figure")) {
       document.getElementById("matrix")!.replaceWith(matrix(this));
@@ -184,33 +187,18 @@ class Report implements Page {
     marks.figures = String(figures.length);
   }
 
-  private async showScenes() {
+  private showScenes() {
     if (this.scenes.length === 0) return this.scenesSection.remove();
     this.scenesSection.append(element("h2", {}, "Scenes"), colorKey());
     for (const scene of this.scenes) {
-      const row = element("div", { className: "figures", id: `scene-of-${scene.world}` }, "…");
-      this.scenesSection.append(element("h3", {}, scene.world), row);
-      const draw = async () => {
+      const row = element("div", { className: "figures" }, "…");
+      const part = element("div", {}, element("h3", {}, scene.world), row);
+      part.dataset.world = scene.world;
+      this.scenesSection.append(part);
+      whenInSight(row, async () => {
         const pictures = await placePictures(scene, { width: 388, maxHeight: 300 });
-        row.replaceChildren(
-          ...pictures.map((picture) => {
-            const figure = element("figure", { id: picture.id });
-            const svg = pictureSvg(picture);
-            figure.innerHTML = svg;
-            figure.append(saveButtons(picture.id, () => svg));
-            return figure;
-          }),
-        );
-      };
-      const watch = new IntersectionObserver(
-        (entries) => {
-          if (!entries.some((entry) => entry.isIntersecting)) return;
-          watch.disconnect();
-          draw();
-        },
-        { rootMargin: "600px" },
-      );
-      watch.observe(row);
+        row.replaceChildren(...pictures.map((picture) => drawn(picture.id, pictureSvg(picture))));
+      });
     }
   }
 

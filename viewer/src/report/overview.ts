@@ -22,7 +22,7 @@ import {
   type Sensor,
   type Spread,
 } from "./data";
-import { saveButtons, saveCsv } from "./save";
+import { drawn, saveCsv } from "./save";
 import { commonBox, mapPicture, pictureSvg, sceneOf, type WorldScene } from "./scenes";
 import { sameCell, type Settings } from "./settings";
 
@@ -352,13 +352,7 @@ export async function bestAndWorst(page: Page): Promise<HTMLElement | null> {
       const title = `${["best", "worst"][i]}: ${run.sensor}, ${label(run)}: ${shown(map(run))} cm`;
       const svg = pictureSvg({ ...pictures[i], view: { ...pictures[i].view, title, box } });
       const open = button("", `open ${run.name}`, () => page.change({ run: run.name }));
-      open.innerHTML = svg;
-      return element(
-        "figure",
-        {},
-        open,
-        saveButtons(pictures[i].id, () => svg),
-      );
+      return drawn(pictures[i].id, svg, open);
     });
     return element(
       "div",

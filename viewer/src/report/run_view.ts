@@ -115,7 +115,8 @@ export class RunView {
     this.stage.replaceChildren(root);
     try {
       const view = new View(place, header);
-      const state = { ...initialState(header), split: other !== null };
+      const dark = matchMedia("(prefers-color-scheme: dark)").matches;
+      const state = { ...initialState(header), split: other !== null, dark };
       const panel = new Panel(view, root, state, { ofPage: false, onTime: (time) => this.markTime(time) });
       this.panel = panel;
       await view.load(scene.source, () => panel.showLayers());

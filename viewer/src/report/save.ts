@@ -44,3 +44,13 @@ export function saveButtons(id: string, svg: () => string, rows?: () => (string 
   if (rows) bar.append(button("CSV", `save the data of ${id}`, () => saveCsv(id, rows())));
   return bar;
 }
+
+/** A drawing with its buttons; `content` is shown in place of the drawing alone. */
+export function drawn(id: string, svg: string, content?: HTMLElement): HTMLElement {
+  const figure = document.createElement("figure");
+  figure.id = id;
+  if (content) figure.append(content);
+  (content ?? figure).innerHTML = svg;
+  figure.append(saveButtons(id, () => svg));
+  return figure;
+}

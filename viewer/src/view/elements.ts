@@ -67,3 +67,17 @@ export function slider(label: string, options: SliderOptions, onInput: (value: n
     },
   };
 }
+
+/** Calls `action` once, when the element is in sight or nearly so. */
+export function whenInSight(target: Element, action: () => void): IntersectionObserver {
+  const watch = new IntersectionObserver(
+    (entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      watch.disconnect();
+      action();
+    },
+    { rootMargin: "600px" },
+  );
+  watch.observe(target);
+  return watch;
+}

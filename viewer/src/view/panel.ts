@@ -100,7 +100,9 @@ export class Panel {
       );
     }
     children.push(section("Cut", ...this.cutSliders()), this.status);
-    return element("aside", { className: "panel" }, ...children);
+    return this.options.ofPage
+      ? element("aside", { className: "panel" }, ...children)
+      : element("details", { className: "panel" }, element("summary", {}, "Controls"), ...children);
   }
 
   private rangeFields(): HTMLElement {
