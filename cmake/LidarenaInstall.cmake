@@ -53,7 +53,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "The C++ library: headers, static libraries and the files of find_package(lidarena).")
 # dependencies of the exported targets; optional libraries that this build does not use are left out
 set(needed libeigen3-dev libtbb-dev libassimp-dev libyaml-cpp-dev nlohmann-json3-dev libfmt-dev
-           robin-map-dev libzstd-dev libdeflate-dev libpng-dev liblz4-dev liblzf-dev libmd-dev libceres-dev pkg-config)
+           robin-map-dev libzstd-dev libdeflate-dev liblz4-dev liblzf-dev libmd-dev libceres-dev pkg-config)
 if(LIDARENA_EMBREE_MAJOR)
   list(APPEND needed libembree-dev)
 endif()

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "apps/lidarena/cell_chart.hpp"
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/report/cell_chart.hpp"
 #include "lidarena/sensor/coverage.hpp"
 
 namespace lidarena {
@@ -54,8 +54,8 @@ std::vector<std::pair<double, double>> outline_of(const sensor::FieldOfView& fov
   return circle;
 }
 
-report::CellPanel panel_of(const sensor::Coverage& grid, double seconds, double share) {
-  report::CellPanel panel;
+CellPanel panel_of(const sensor::Coverage& grid, double seconds, double share) {
+  CellPanel panel;
   panel.title = fmt::format("{:g} s: {:.1f} % covered", seconds, 100.0 * share);
   for (int row = 0; row < grid.rows(); ++row) {
     for (int column = 0; column < grid.columns(); ++column) {
@@ -85,7 +85,7 @@ Json pattern_info(const sensor::SensorConfig& sensor, const std::filesystem::pat
   const sensor::FieldOfView view = margin_around(fov, cell_deg);
   sensor::Coverage inside(fov, cell_deg);
   sensor::Coverage drawn(view, cell_deg);
-  report::CellChart chart{
+  CellChart chart{
       .title = sensor.name,
       .caption = fmt::format("cells of {:g} deg with at least one shot; share of the field "
                              "of view's solid angle",
@@ -120,7 +120,7 @@ Json pattern_info(const sensor::SensorConfig& sensor, const std::filesystem::pat
   }
   if (!svg.empty()) {
     dataset::PartFile out(svg);
-    out.write(report::cell_chart_svg(chart));
+    out.write(cell_chart_svg(chart));
     out.commit();
     json["drawing"] = svg.string();
   }

@@ -10,7 +10,7 @@
 #include "apps/lidarena/view_server.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/report/scene_files.hpp"
-#include "lidarena/report/view_page.hpp"
+#include "lidarena/report/web_page.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
@@ -123,16 +123,15 @@ Json summary_of(const report::PackedScene& packed) {
 
 int view_verb(const Common& common, const ViewOptions& o) {
   Console console(common.quiet);
-  std::string picture;
-  const report::PackedScene packed = [&] {
+  const report::WebPage page = [&] {
     const Parallel parallel(common.threads);
     const report::Scene scene = load_scene(common, o, parallel, console);
-    picture = report::scene_picture(scene);
-    return report::pack(scene, parallel);
+    return report::WebPage{scene.title, "view", {}, {report::pack(scene, parallel)}};
   }();
+  const report::PackedScene& packed = page.scenes.front();
   Json summary{{"layers", summary_of(packed)}};
   if (!o.out.empty()) {
-    report::write_view_page(o.out, packed, picture);
+    report::write_page(o.out, page);
     summary["page"] = o.out;
     if (common.json) {
       print_json(summary);
@@ -141,18 +140,16 @@ int view_verb(const Common& common, const ViewOptions& o) {
     }
     return kDone;
   }
-  serve_view(
-      report::served_view_page(packed, picture), packed, o.port, [&](const std::string& address) {
-        summary["address"] = address;
-        if (common.json) {
-          print_json(summary);
-        } else {
-          fmt::print(
-              "{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",
-              address);
-        }
-        std::fflush(stdout);
-      });
+  serve_view(report::served_page(page), packed, o.port, [&](const std::string& address) {
+    summary["address"] = address;
+    if (common.json) {
+      print_json(summary);
+    } else {
+      fmt::print("{}\nopen this address in a browser on this machine; Ctrl-C stops the server\n",
+                 address);
+    }
+    std::fflush(stdout);
+  });
   return kDone;
 }
 

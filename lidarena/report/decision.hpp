@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/page.hpp"
 #include "lidarena/results/run_record.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::report {
 
@@ -14,11 +14,11 @@ namespace lidarena::report {
 struct Candidate {
   std::string sensor, algorithm, variant;
   std::size_t runs = 0, good_runs = 0;
-  double map_rmse_cm = 0.0;            ///< of all scored returns, placed along the estimated path
-  double outliers_percent = 0.0;       ///< of the same map
-  double drift_cm_per_m = 0.0;         ///< RPE over 1 m
-  std::optional<double> period_share;  ///< P95 of the processing time in scan periods, if measured
-  double memory_mb = 0.0;              ///< the algorithm's own memory
+  std::optional<double> map_rmse_cm;       ///< of all scored returns along the estimated path
+  std::optional<double> outliers_percent;  ///< of the same map
+  std::optional<double> drift_cm_per_m;    ///< RPE over 1 m
+  std::optional<double> period_share;      ///< P95 of the processing time in scan periods
+  std::optional<double> memory_mb;         ///< the algorithm's own memory
 
   bool keeps_tracking() const { return runs > 0 && good_runs == runs; }
   bool is_real_time() const { return period_share && *period_share < 1.0; }
@@ -30,7 +30,10 @@ struct Candidate {
 /// of simulators) are left out.
 std::vector<Candidate> candidates(const results::StudyResults& results, const std::string& world);
 
-/// "Which LiDAR, which SLAM": for each world a recommendation, with the figures behind it.
-ReportSection decision_section(const results::StudyResults& results);
+/// "usable", or what is against it.
+std::string verdict(const Candidate& candidate);
+
+/// The candidates of a world with their figures.
+results::Table decision_table(const results::StudyResults& results, const std::string& world);
 
 }  // namespace lidarena::report

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/report/table.hpp"
 #include "lidarena/results/run_record.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::report {
 
@@ -19,7 +19,10 @@ double increase(double a, double b);
 /// Drift, outliers and map error of the runs of one variant by sensor and algorithm, for each
 /// world; the growth of the drift between the worlds of a study of two; the sensors as simulated.
 /// Published figures of the study's `reference` stand beside.
-std::vector<ReportTable> figure_tables(const results::StudyResults& results,
-                                       const std::string& variant);
+std::vector<results::Table> figure_tables(const results::StudyResults& results,
+                                          const std::string& variant);
+
+/// If the study has several timing modes: drift, map RMSE and outliers with a column for each.
+std::vector<results::Table> timing_tables(const results::StudyResults& results);
 
 }  // namespace lidarena::report

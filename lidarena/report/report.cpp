@@ -3,42 +3,53 @@
 
 #include <algorithm>
 
-#include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/report/page.hpp"
-#include "lidarena/report/pictures.hpp"
+#include "lidarena/report/decision.hpp"
+#include "lidarena/report/figure_tables.hpp"
+#include "lidarena/report/page_scenes.hpp"
 #include "lidarena/report/report_data.hpp"
+#include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/svg_figures.hpp"
-#include "lidarena/report/table.hpp"
-#include "lidarena/report/web_bundle.hpp"
-#include "lidarena/results/run_record.hpp"
+#include "lidarena/report/web_page.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
 
-/// Writes every table as CSV, Markdown, LaTeX and JSON.
-void write_tables(const std::vector<ReportSection>& sections, const std::filesystem::path& folder) {
-  std::filesystem::create_directories(folder);
-  for (const ReportSection& section : sections) {
-    for (const ReportTable& table : section.tables) {
-      dataset::write_text_file(folder / (table.id + ".csv"), table_csv(table));
-      dataset::write_text_file(folder / (table.id + ".md"), table_markdown(table));
-      dataset::write_text_file(folder / (table.id + ".tex"), table_latex(table));
-      dataset::write_json(folder / (table.id + ".json"), table_json(table));
-    }
-  }
+/// Tables that compare cells.
+std::vector<results::Table> comparison_tables(const results::StudyResults& results) {
+  std::vector<results::Table> tables{winners_table(results)};
+  const auto add = [&](std::vector<results::Table> more) {
+    std::ranges::move(more, std::back_inserter(tables));
+  };
+  for (const std::string& world : results::StudyCells(results, "").worlds())
+    tables.push_back(decision_table(results, world));
+  for (const std::string& variant : results::variants_of(results))
+    add(figure_tables(results, variant));
+  add(timing_tables(results));
+  return tables;
 }
 
-/// Writes every picture from above as a file.
-void write_pictures(const std::vector<WorldPictures>& worlds, const std::filesystem::path& folder) {
+/// Lists of runs and of expectations, which the page makes from its data.
+std::vector<results::Table> lists(const results::StudyResults& results) {
+  std::vector<results::Table> tables{failures_table(results), commands_table(results)};
+  for (const std::string& world : results::StudyCells(results, "").worlds())
+    tables.push_back(runs_table(results, world));
+  if (results.expect.empty()) return tables;
+  for (const std::string& variant : results::variants_of(results))
+    tables.push_back(expectations_table(results, variant));
+  return tables;
+}
+
+/// Writes every table as CSV, Markdown, LaTeX and JSON.
+void write_tables(const std::vector<results::Table>& tables, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
-  for (const WorldPictures& world : worlds) {
-    for (const auto& pictures : {world.place, world.maps}) {
-      for (const Picture& picture : pictures) {
-        dataset::write_text_file(folder / (picture.id + ".svg"), picture.svg);
-      }
-    }
+  for (const results::Table& table : tables) {
+    dataset::write_text_file(folder / (table.id + ".csv"), table_csv(table));
+    dataset::write_text_file(folder / (table.id + ".md"), table_markdown(table));
+    dataset::write_text_file(folder / (table.id + ".tex"), table_latex(table));
+    dataset::write_json(folder / (table.id + ".json"), table_json(table));
   }
 }
 
@@ -50,24 +61,26 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   std::vector<results::StudyResults> parts;
   for (const std::filesystem::path& part : folders) parts.push_back(results::read_results(part));
   const results::StudyResults results = results::merged(std::move(parts));
-  log.info("drawing the report");
+  log.info("writing the report");
   std::filesystem::create_directories(folder);
   ReportFiles files;
-  files.page = folder / "report.html";
   files.csv = folder / "results.csv";
-  const std::vector<ReportSection> sections = report_sections(results);
-  const std::vector<WorldPictures> pictures = draw_pictures(results);
-  const Json data = report_data(results);
+  const std::vector<results::Table> tables = comparison_tables(results);
   dataset::write_text_file(files.csv, results::results_csv(results));
-  write_tables(sections, folder / "tables");
-  dataset::write_json(folder / "report.json", data);
-  if (!draw_svg_figures(folder / "report.json", folder / "figures")) {
-    log.info(web_bundle("figures.cjs").empty()
-                 ? "figures are left out: this build has no viewer"
-                 : "SVG files of the figures are left out: they need Node.js; the page has them");
+  write_tables(tables, folder / "tables");
+  write_tables(lists(results), folder / "tables");
+  WebPage page{results.title, "report", report_data(results, tables, folder), {}};
+  files.page = folder / "report.json";
+  dataset::write_json(files.page, page.data);
+  if (has_viewer()) {
+    files.page = folder / "report.html";
+    page.scenes = page_scenes(results, parallel, log);
+    write_page(files.page, page);
+    if (!draw_svg_figures(files.page, folder / "figures"))
+      log.info("SVG files of the figures are left out: they need Node.js; the page has them");
+  } else {
+    log.info("the page is left out: this build has no viewer");
   }
-  write_pictures(pictures, folder / "figures");
-  dataset::write_text_file(files.page, html_page(results, sections, pictures, data, parallel, log));
   files.shortfalls = results::shortfalls(results);
   files.text_table = results::results_text(results);
   files.missing = static_cast<std::size_t>(

@@ -3,104 +3,187 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
+
+#include "lidarena/report/decision.hpp"
+#include "lidarena/report/summary_tables.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
 
 namespace fs = std::filesystem;
+using results::RunRecord;
 
-constexpr std::size_t kCurveValues = 400;
+constexpr std::size_t kMaxRows = 400;  // of a curve
+constexpr std::size_t kMinRows = 20;   // fewer show nothing: curves are left out
+constexpr std::size_t kRowsOfAllCurves = 100'000;
+constexpr int kDigits = 6;  // more than a page shows
 
-/// Rounded to six digits, which is more than a chart shows; null if not finite.
+/// Null if not finite.
 Json rounded(double value) {
   if (!std::isfinite(value)) return nullptr;
-  if (value == 0.0) return 0;
-  const double scale = std::pow(10.0, 5.0 - std::floor(std::log10(std::abs(value))));
+  if (value == 0.0 || value == std::floor(value)) return value;
+  const double scale = std::pow(10.0, kDigits - 1.0 - std::floor(std::log10(std::abs(value))));
   return std::round(value * scale) / scale;
 }
-
 Json rounded(std::optional<double> value) { return value ? rounded(*value) : Json(nullptr); }
 
-Json map_json(const std::optional<results::MapFigures>& map) {
-  if (!map) return nullptr;
-  Json histogram = Json::array();
-  for (const double percent : map->histogram_percent) histogram.push_back(rounded(percent));
-  return {{"histogram_percent", histogram},
-          {"outliers_percent", rounded(map->outliers_percent)},
-          {"rmse_cm", rounded(map->rmse_cm)},
-          {"points", map->points}};
+/// The largest of each `stride` consecutive values.
+template <class T>
+Json thinned(const std::vector<T>& values, std::size_t stride) {
+  Json list = Json::array();
+  for (auto from = values.begin(); from != values.end();) {
+    const auto left = static_cast<std::size_t>(values.end() - from);
+    const auto to = from + static_cast<std::ptrdiff_t>(std::min(stride, left));
+    list.push_back(rounded(static_cast<double>(*std::max_element(from, to))));
+    from = to;
+  }
+  return list;
 }
 
-/// Calls `take` with every k-th of `count` indices, at most kCurveValues of them.
-template <class Take>
-void for_thinned(std::size_t count, const Take& take) {
-  const std::size_t stride = count / kCurveValues + 1;
-  for (std::size_t i = 0; i < count; i += stride) take(i);
-}
-
-Json error_curve(const std::optional<results::RunMetrics>& metrics) {
-  if (!metrics || !metrics->final || !metrics->final->errors_over_time) return nullptr;
-  const results::ErrorsOverTime& errors = metrics->final->errors_over_time->ate_se3;
-  if (errors.empty()) return nullptr;
-  Json curve{{"t_s", Json::array()}, {"cm", Json::array()}};
-  for_thinned(errors.t_s.size(), [&](std::size_t i) {
-    curve["t_s"].push_back(rounded(errors.t_s[i]));
-    curve["cm"].push_back(rounded(100.0 * errors.translation_m[i]));
+/// Columns over time with at most `rows` rows and the names of metrics.json.
+template <class Columns>
+Json curve(const Columns& columns, std::size_t rows) {
+  if (columns.t_s.empty() || rows < kMinRows) return nullptr;
+  const std::size_t stride = (columns.t_s.size() + rows - 1) / rows;
+  Json json;
+  Columns::visit(columns, [&](const auto& name, const auto& column, auto&&...) {
+    if constexpr (requires { column.begin(); }) {
+      json[name] = thinned(column, stride);
+    } else {
+      json[name] = column * stride;
+    }
   });
-  return curve;
+  return json;
 }
 
-Json memory_curve(const fs::path& folder) {
-  if (!fs::exists(folder / "resources.csv")) return nullptr;
-  const std::vector<dataset::ResourceRow> rows = dataset::read_resources(folder / "resources.csv");
-  if (rows.empty()) return nullptr;
-  Json curve{{"t_s", Json::array()},
-             {"map_mb", Json::array()},
-             {"scan_buffer_mb", Json::array()},
-             {"backlog_mb", Json::array()}};
-  for_thinned(rows.size(), [&](std::size_t i) {
-    const auto megabytes = [](std::uint64_t bytes) {
-      return rounded(static_cast<double>(bytes) * 1e-6);
-    };
-    curve["t_s"].push_back(rounded(rows[i].t_sensor_s));
-    curve["map_mb"].push_back(megabytes(rows[i].map_bytes));
-    curve["scan_buffer_mb"].push_back(megabytes(rows[i].scan_buffer_bytes));
-    curve["backlog_mb"].push_back(megabytes(rows[i].backlog_bytes));
-  });
-  return curve;
+Json histogram(const std::optional<results::MapMetrics>& map) {
+  const results::MapInGauge* scores = results::scores_of(map);
+  return scores == nullptr ? Json(nullptr) : to_json(scores->histogram);
 }
 
-Json run_json(const results::RunRecord& row) {
-  const Json cpu_share =
-      row.real_time_factor ? rounded(1.0 / *row.real_time_factor) : Json(nullptr);
-  return {{"name", row.name},
-          {"world", row.world},
-          {"flight", row.flight},
-          {"sensor", row.sensor},
-          {"algorithm", row.algorithm},
-          {"preset", results::variant_of(row)},
-          {"seed", row.seed},
-          {"status", row.status},
-          {"rpe_cm_per_m", rounded(row.rpe_cm_per_m)},
-          {"cpu_share", cpu_share},
-          {"memory_mb", rounded(row.own_memory_mb)},
-          {"map", map_json(row.own_map)},
-          {"all_returns", map_json(row.reprojected_map)},
-          {"error", error_curve(row.metrics)},
-          {"memory", memory_curve(row.folder)}};
+std::string dataset_of(const RunRecord& row) {
+  const std::string folder = row.manifest.is_object() ? row.manifest.value("dataset", "") : "";
+  return fs::path(folder).lexically_normal().filename().string();
+}
+
+Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
+  Json run{{"name", row.name},           {"folder", fs::relative(row.folder, out).generic_string()},
+           {"dataset", dataset_of(row)}, {"world", row.world},
+           {"flight", row.flight},       {"sensor", row.sensor},
+           {"algorithm", row.algorithm}, {"preset", results::variant_of(row)},
+           {"seed", row.seed},           {"status", row.status},
+           {"reason", row.reason},       {"command", command_of(row)},
+           {"statuses", nullptr},        {"coverage_percent", nullptr},
+           {"values", Json::array()}};
+  for (const results::Figure& figure : results::figures()) {
+    run["values"].push_back(rounded(results::value_of(row, figure)));
+  }
+  const Json::json_pointer statuses("/summary/statuses");
+  if (row.manifest.contains(statuses)) run["statuses"] = row.manifest.at(statuses);
+  if (!row.metrics) return run;
+  const results::RunMetrics& m = *row.metrics;
+  run["coverage_percent"] = rounded(results::coverage_of(m));
+  run["own_map"] = histogram(m.maps.own);
+  run["all_returns"] = histogram(m.maps.reprojected);
+  if (m.final && m.final->errors_over_time) {
+    run["error"] = curve(m.final->errors_over_time->ate_se3, rows);
+    run["drift"] = curve(m.final->errors_over_time->rpe_1m, rows);
+  }
+  run["resources"] = curve(m.resources.over_time, rows);
+  return run;
+}
+
+Json figures_json() {
+  Json list = Json::array();
+  for (const results::Figure& figure : results::figures()) {
+    list.push_back({{"key", figure.key},
+                    {"label", figure.label},
+                    {"unit", figure.unit},
+                    {"more_is_better", figure.better == results::Better::kMore}});
+  }
+  return list;
+}
+
+/// What the datasets say of each sensor: its geometry, and the facts of its data sheet.
+Json sensors_json(const results::StudyResults& results) {
+  Json list = Json::array();
+  for (const std::string& name : results::StudyCells(results, "").sensors()) {
+    Json sensor{{"name", name}, {"lidar", nullptr}, {"facts", nullptr}};
+    for (const RunRecord& row : results.rows) {
+      if (row.sensor != name || !row.lidar.is_object()) continue;
+      for (const char* key : {"rows", "columns", "rate_hz", "max_range_m"})
+        sensor["lidar"][key] = row.lidar.value(key, 0.0);
+      sensor["facts"] = facts_of(row);
+      break;
+    }
+    list.push_back(std::move(sensor));
+  }
+  return list;
+}
+
+Json expectations_json(const results::StudyResults& results) {
+  Json list = Json::array();
+  for (const std::string& variant : results::variants_of(results)) {
+    for (const results::Judgement& judged : results::judge(results, variant)) {
+      list.push_back({{"variant", variant},
+                      {"finding", judged.expectation.finding},
+                      {"rule", judged.expectation.rule},
+                      {"otherwise", judged.expectation.otherwise},
+                      {"holds", value_to_json(judged.holds)},
+                      {"evidence", judged.evidence}});
+    }
+  }
+  return list;
+}
+
+Json decision_json(const results::StudyResults& results) {
+  Json ranking = Json::array();
+  for (const std::string& world : results::StudyCells(results, "").worlds()) {
+    for (const Candidate& c : candidates(results, world)) {
+      ranking.push_back({{"world", world},
+                         {"sensor", c.sensor},
+                         {"algorithm", c.algorithm},
+                         {"preset", c.variant},
+                         {"usable", c.is_usable()},
+                         {"verdict", verdict(c)}});
+    }
+  }
+  return ranking;
+}
+
+/// The machines and versions of lidarena that the runs were made with.
+std::set<std::string> made_on(const results::StudyResults& results) {
+  std::set<std::string> machines;
+  for (const RunRecord& row : results.rows) {
+    if (!row.manifest.is_object() || !row.manifest.contains("made_on")) continue;
+    const Json& on = row.manifest.at("made_on");
+    machines.insert(fmt::format("{}, {} cores, {} GiB, lidarena {}", on.value("processor", ""),
+                                on.value("cores", 0), on.value("memory_gib", 0.0),
+                                on.value("lidarena", "")));
+  }
+  return machines;
 }
 
 }  // namespace
 
-Json report_data(const results::StudyResults& results) {
-  Json data{{"title", results.title}, {"worlds", Json::array()}, {"runs", Json::array()}};
-  for (const results::RunRecord& row : results.rows) {
-    if (std::find(data["worlds"].begin(), data["worlds"].end(), row.world) ==
-        data["worlds"].end()) {
-      data["worlds"].push_back(row.world);
-    }
-    data["runs"].push_back(run_json(row));
-  }
+Json report_data(const results::StudyResults& results, const std::vector<results::Table>& tables,
+                 const fs::path& out) {
+  Json data{{"title", results.title},
+            {"version", LIDARENA_VERSION},
+            {"made_on", made_on(results)},
+            {"figures", figures_json()},
+            {"sensors", sensors_json(results)},
+            {"decision", decision_json(results)},
+            {"expectations", expectations_json(results)},
+            {"reference", value_to_json(results.reference)},
+            {"tables", Json::array()},
+            {"runs", Json::array()}};
+  for (const results::Table& table : tables) data["tables"].push_back(results::table_json(table));
+  const std::size_t rows =
+      std::min(kMaxRows, kRowsOfAllCurves / std::max<std::size_t>(results.rows.size(), 1));
+  for (const RunRecord& row : results.rows) data["runs"].push_back(run_json(row, out, rows));
   return data;
 }
 

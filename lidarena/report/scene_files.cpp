@@ -27,7 +27,6 @@ constexpr double kMinOriginDistance_m =
 constexpr double kOriginStep_m = 100.0;     // the origin is rounded to multiples of this
 constexpr double kMaxMeshDistance_m = 2.0;  // maximum distance to the mesh that is measured
 constexpr double kMinEpochTime_s = 1e6;     // larger times are times since an epoch
-constexpr std::size_t kMaxPoses = 20'000;   // of a path; more would not be visible
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 
 bool is_empty(const Scene& scene) {
@@ -87,9 +86,9 @@ class Thinning {
   std::vector<double> draws_;
 };
 
-/// At most about kMaxPoses poses of a trajectory, including the first and the last.
-Trajectory thinned(const Trajectory& trajectory) {
-  const std::size_t stride = trajectory.size() / kMaxPoses + 1;
+/// At most about `max_poses` poses of a trajectory, including the first and the last.
+Trajectory thinned(const Trajectory& trajectory, std::size_t max_poses) {
+  const std::size_t stride = trajectory.size() / max_poses + 1;
   if (stride == 1) return trajectory;
   std::vector<StampedPose> poses;
   for (std::size_t i = 0; i + 1 < trajectory.size(); i += stride) {
@@ -99,11 +98,12 @@ Trajectory thinned(const Trajectory& trajectory) {
   return Trajectory(std::move(poses));
 }
 
-void add_path(Scene& scene, const std::string& name, PathRole role, const Trajectory& trajectory) {
+void add_path(Scene& scene, const std::string& name, PathRole role, const Trajectory& trajectory,
+              const SceneOptions& options) {
   if (trajectory.empty()) return;
   choose_origin(scene, trajectory.poses().front().world_from_body.translation());
   choose_time_origin(scene, trajectory.begin_time());
-  scene.paths.push_back({name, role, thinned(trajectory), {}});
+  scene.paths.push_back({name, role, thinned(trajectory, options.max_poses), {}});
 }
 
 bool has_mesh(const Scene& scene, const std::string& name) {
@@ -117,11 +117,12 @@ bool has_path(const Scene& scene, const std::string& name) {
 }
 
 /// Adds mesh and true path of a dataset, only once if several runs share it. Returns the truth.
-std::optional<Trajectory> add_truth(Scene& scene, const fs::path& dataset, LogSink& log) {
+std::optional<Trajectory> add_truth(Scene& scene, const fs::path& dataset,
+                                    const SceneOptions& options, LogSink& log) {
   const std::string name = dataset.lexically_normal().filename().string();
   const auto truth = dataset::load_truth(dataset);
   if (truth && !has_path(scene, "truth of " + name)) {
-    add_path(scene, "truth of " + name, PathRole::kTruth, *truth);
+    add_path(scene, "truth of " + name, PathRole::kTruth, *truth, options);
   }
   const auto mesh = dataset::find_world_mesh(dataset);
   if (mesh && !has_mesh(scene, "mesh of " + name)) {
@@ -241,12 +242,13 @@ void add_cloud_file(Scene& scene, const fs::path& file, const SceneOptions& opti
 }
 
 void add_path_file(Scene& scene, const fs::path& file) {
-  add_path(scene, file.filename().string(), PathRole::kEstimate, dataset::read_trajectory(file));
+  add_path(scene, file.filename().string(), PathRole::kEstimate, dataset::read_trajectory(file),
+           {});
 }
 
 void add_dataset(Scene& scene, dataset::Dataset dataset, const SceneOptions& options,
                  LogSink& log) {
-  const auto truth = add_truth(scene, dataset.path, log);
+  const auto truth = add_truth(scene, dataset.path, options, log);
   std::map<std::string, ScanCollector> collectors;
   Time longest_scan{0};
   while (const auto event = dataset.events->next()) {
@@ -275,7 +277,7 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
   }
   const Json manifest = dataset::read_json(manifest_file);
   const std::string label = run_label(folder, manifest);
-  const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), log);
+  const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), options, log);
   const auto gauge = fs::exists(folder / "metrics.json")
                          ? results::truth_from_estimate(results::read_metrics(folder))
                          : std::nullopt;
@@ -285,7 +287,7 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
   const Trajectory estimate =
       moved(dataset::read_tum(folder / "trajectory.tum", dataset::EmptyTrajectory::kAllowed),
             scene_from_map);
-  add_path(scene, label, PathRole::kEstimate, estimate);
+  add_path(scene, label, PathRole::kEstimate, estimate, options);
   if (truth && !estimate.empty()) {
     scene.paths.back().error_m = errors_against(scene.paths.back().trajectory, *truth);
   }

@@ -26,6 +26,7 @@ constexpr auto enum_names(MapChoice) {
 
 struct SceneOptions {
   std::size_t max_points = 5'000'000;  ///< per cloud; a larger one is thinned at random
+  std::size_t max_poses = 20'000;      ///< per path; more would not be visible
   MapChoice map = MapChoice::kReprojected;
 };
 

@@ -40,30 +40,4 @@ world::TriangleMesh simplified(const world::TriangleMesh& mesh, std::size_t max_
   return coarse;
 }
 
-std::vector<Eigen::Vector3f> points_on(const world::TriangleMesh& mesh, std::size_t count) {
-  // Within triangles by the sequence of M. Roberts (2018), "The unreasonable effectiveness of
-  // quasirandom sequences", folded into the triangle.
-  constexpr double kPlastic = 1.32471795724474602596;
-  const double step = mesh.area() / static_cast<double>(count);
-  std::vector<Eigen::Vector3f> points;
-  double area = 0.0, next = 0.5 * step;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    area += 0.5 * mesh.cross(t).norm();
-    const world::Triangle& corners = mesh.triangles[t];
-    const Eigen::Vector3d& a = mesh.vertices[corners[0]];
-    for (; next < area && points.size() < count; next += step) {
-      const auto k = static_cast<double>(points.size() + 1);
-      double u = std::fmod(k / kPlastic, 1.0), v = std::fmod(k / (kPlastic * kPlastic), 1.0);
-      if (u + v > 1.0) {
-        u = 1.0 - u;
-        v = 1.0 - v;
-      }
-      points.push_back(
-          (a + u * (mesh.vertices[corners[1]] - a) + v * (mesh.vertices[corners[2]] - a))
-              .cast<float>());
-    }
-  }
-  return points;
-}
-
 }  // namespace lidarena::report

@@ -10,7 +10,4 @@ namespace lidarena::report {
 /// approximations for rendering complex scenes", 1993). A mesh that is small enough is unchanged.
 world::TriangleMesh simplified(const world::TriangleMesh& mesh, std::size_t max_triangles);
 
-/// `count` points on the surface, evenly distributed by area; the same ones in each call.
-std::vector<Eigen::Vector3f> points_on(const world::TriangleMesh& mesh, std::size_t count);
-
 }  // namespace lidarena::report

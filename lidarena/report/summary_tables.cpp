@@ -3,15 +3,28 @@
 
 #include <fmt/format.h>
 
+#include <array>
+
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
 
+using results::number;
+using results::Table;
+using results::TableCell;
+using results::word;
+
+/// The columns of the table of all runs; the coverage follows the third.
+const std::array kShown{&results::kDrift,       &results::kDriftRotation,  &results::kAte,
+                        &results::kOwnMapRmse,  &results::kOwnMapOutliers, &results::kMapRmse,
+                        &results::kMapOutliers, &results::kRealTimeFactor, &results::kLatencyP95,
+                        &results::kOwnMemory};
+
 /// The smallest figure with its algorithm: "fast_lio2 (indoor): 0.84"; empty if there is none.
 std::string smallest_figure(const results::StudyResults& results, const std::string& world,
-                            const std::string& sensor, const results::RowFigure& of) {
+                            const std::string& sensor, const results::Figure& of) {
   std::optional<double> best;
   std::string text;
   for (const std::string& preset : results::variants_of(results)) {
@@ -21,15 +34,10 @@ std::string smallest_figure(const results::StudyResults& results, const std::str
       if (!value || (best && *best <= *value)) continue;
       best = value;
       const results::RunRecord& row = *cells.rows(world, sensor, algorithm).front();
-      text = fmt::format("{}: {}", results::label_of(row), figure(value).text);
+      text = fmt::format("{}: {}", results::label_of(row), number(value).text);
     }
   }
   return text;
-}
-
-std::optional<double> map_value(const std::optional<results::MapFigures>& map,
-                                double results::MapFigures::*member) {
-  return map ? std::optional((*map).*member) : std::nullopt;
 }
 
 /// `text` as an argument of a shell command, quoted if necessary.
@@ -55,25 +63,40 @@ std::string simulate_command(const results::RunRecord& row) {
 
 }  // namespace
 
-ReportTable winners_table(const results::StudyResults& results) {
-  ReportTable table{"winners",
-                    "Best algorithm for each world and sensor",
-                    "Medians over flights and seeds of the successful runs.",
-                    {"world, sensor", "lowest drift, cm per m", "fewest points beyond 20 cm, %"},
-                    {}};
+std::string command_of(const results::RunRecord& row) {
+  const std::string preset = row.preset.empty() ? "" : " --preset " + row.preset;
+  return fmt::format("{} && lidarena run {} data{} --sensor {} --out run && lidarena evaluate run",
+                     simulate_command(row), row.algorithm, preset, argument(row.sensor));
+}
+
+Json facts_of(const results::RunRecord& row) {
+  if (!row.simulation.is_object()) return nullptr;
+  for (const Json& made : row.simulation.value("sensors", Json::array())) {
+    if (made.value("name", "") == row.sensor) return made.value("facts", Json());
+  }
+  return nullptr;
+}
+
+Table winners_table(const results::StudyResults& results) {
+  Table table{"winners",
+              "Best algorithm for each world and sensor",
+              "Medians over flights and seeds of the successful runs.",
+              {"world, sensor", "lowest drift, cm per m", "fewest points beyond 20 cm, %"},
+              {}};
   const results::StudyCells all(results, "");
   for (const std::string& world : all.worlds()) {
     for (const std::string& sensor : all.sensors()) {
-      table.rows.push_back({word(world + ", " + sensor),
-                            word(smallest_figure(results, world, sensor, results::rpe_of)),
-                            word(smallest_figure(results, world, sensor, results::outliers_of))});
+      table.rows.push_back(
+          {word(world + ", " + sensor),
+           word(smallest_figure(results, world, sensor, results::kDrift)),
+           word(smallest_figure(results, world, sensor, results::kOwnMapOutliers))});
     }
   }
   return table;
 }
 
-ReportTable runs_table(const results::StudyResults& results, const std::string& world) {
-  ReportTable table{
+Table runs_table(const results::StudyResults& results, const std::string& world) {
+  Table table{
       "runs-" + world,
       "All runs, " + world,
       "RPE over 1 m. ATE after alignment by SE(3). Own map: as published by the algorithm; all "
@@ -87,23 +110,19 @@ ReportTable runs_table(const results::StudyResults& results, const std::string& 
     if (row.world != world) continue;
     std::vector<TableCell> cells{
         word(fmt::format("{}, {}, {}", row.sensor, results::label_of(row), row.seed))};
-    for (const auto& value :
-         {row.rpe_cm_per_m, row.rpe_deg_per_m, row.ate_cm, row.coverage_percent,
-          map_value(row.own_map, &results::MapFigures::rmse_cm),
-          map_value(row.own_map, &results::MapFigures::outliers_percent),
-          map_value(row.reprojected_map, &results::MapFigures::rmse_cm),
-          map_value(row.reprojected_map, &results::MapFigures::outliers_percent),
-          row.real_time_factor, row.latency_p95_ms, row.own_memory_mb}) {
-      cells.push_back(figure(value));
+    for (const results::Figure* figure : kShown) {
+      cells.push_back(number(results::value_of(row, *figure)));
     }
+    const auto coverage = row.metrics ? results::coverage_of(*row.metrics) : std::nullopt;
+    cells.insert(cells.begin() + 4, number(coverage));
     if (row.status != "ok") cells[1] = word(row.status + ": " + row.reason);
     table.rows.push_back(std::move(cells));
   }
   return table;
 }
 
-ReportTable failures_table(const results::StudyResults& results) {
-  ReportTable table{"failures", "Runs that did not succeed", "", {"run", "state", "reason"}, {}};
+Table failures_table(const results::StudyResults& results) {
+  Table table{"failures", "Runs that did not succeed", "", {"run", "state", "reason"}, {}};
   for (const results::RunRecord& row : results.rows) {
     if (row.status == "ok") continue;
     table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
@@ -111,8 +130,8 @@ ReportTable failures_table(const results::StudyResults& results) {
   return table;
 }
 
-ReportTable commands_table(const results::StudyResults& results) {
-  ReportTable table{
+Table commands_table(const results::StudyResults& results) {
+  Table table{
       "commands",
       "Commands that reproduce each run",
       "The noise depends on seed and sensor only, so the same seed gives the same measurements. "
@@ -120,22 +139,17 @@ ReportTable commands_table(const results::StudyResults& results) {
       {"run", "commands"},
       {}};
   for (const results::RunRecord& row : results.rows) {
-    const std::string preset = row.preset.empty() ? "" : " --preset " + row.preset;
-    table.rows.push_back(
-        {word(row.name),
-         word(fmt::format("{} && lidarena run {} data{} --sensor {} --out run && lidarena evaluate "
-                          "run",
-                          simulate_command(row), row.algorithm, preset, argument(row.sensor)))});
+    table.rows.push_back({word(row.name), word(command_of(row))});
   }
   return table;
 }
 
-ReportTable expectations_table(const results::StudyResults& results, const std::string& variant) {
-  ReportTable table{"expectations-" + variant,
-                    "What the study expects, " + variant,
-                    "An expectation holds if all of its checks hold.",
-                    {"expectation", "here", "check", "our figures"},
-                    {}};
+Table expectations_table(const results::StudyResults& results, const std::string& variant) {
+  Table table{"expectations-" + variant,
+              "What the study expects, " + variant,
+              "An expectation holds if all of its checks hold.",
+              {"expectation", "here", "check", "our figures"},
+              {}};
   for (const results::Judgement& judged : results::judge(results, variant)) {
     const results::Expectation& e = judged.expectation;
     std::string evidence = fmt::format("{}", fmt::join(judged.evidence, "; "));

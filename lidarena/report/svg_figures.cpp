@@ -15,10 +15,10 @@
 namespace lidarena::report {
 namespace {
 
-/// Calls `node SCRIPT DATA FOLDER` and discards its output; true if its exit code is 0.
-bool call_node(std::string script, std::string data, std::string folder) {
+/// Calls `node SCRIPT PAGE FOLDER` and discards its output; true if its exit code is 0.
+bool call_node(std::string script, std::string page, std::string folder) {
   std::string node = "node";
-  std::array<char*, 5> arguments{node.data(), script.data(), data.data(), folder.data(), nullptr};
+  std::array<char*, 5> arguments{node.data(), script.data(), page.data(), folder.data(), nullptr};
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
@@ -35,13 +35,11 @@ bool call_node(std::string script, std::string data, std::string folder) {
 
 }  // namespace
 
-bool draw_svg_figures(const std::filesystem::path& data, const std::filesystem::path& folder) {
-  const std::string_view bundled = web_bundle("figures.cjs");
-  if (bundled.empty()) return false;
+bool draw_svg_figures(const std::filesystem::path& page, const std::filesystem::path& folder) {
   std::filesystem::create_directories(folder);
   const std::filesystem::path script = folder / "figures.cjs";
-  dataset::write_text_file(script, bundled);
-  const bool drawn = call_node(script.string(), data.string(), folder.string());
+  dataset::write_text_file(script, web_bundle("figures.cjs"));
+  const bool drawn = call_node(script.string(), page.string(), folder.string());
   std::filesystem::remove(script);
   return drawn;
 }

@@ -88,8 +88,7 @@ class Judge {
   }
 
   std::optional<double> median(const Cell& cell, const Figure& figure) const {
-    return cells_.median(cell[0], cell[1], cell[2],
-                         [&](const RunRecord& run) { return value_of(run, figure); });
+    return cells_.median(cell[0], cell[1], cell[2], figure);
   }
 
   /// "cave, livox_mid360", without the kind `left_out`.

@@ -3,8 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "lidarena/base/config.hpp"
@@ -126,9 +128,20 @@ template <std::optional<KittiError> TrajectoryMetrics::*kitti>
 Reading kitti_of(const RunMetrics& m) {
   return m.final && (*m.final).*kitti ? translation(*((*m.final).*kitti)) : Reading{};
 }
-template <Map map, MapInGauge MapMetrics::*gauge, Reading (*read)(const MapInGauge&)>
+template <Map map, Reading (*read)(const MapInGauge&)>
 Reading map_of(const RunMetrics& m) {
-  return m.maps.*map ? read((*(m.maps.*map)).*gauge) : Reading{};
+  if (!(m.maps.*map)) return {};
+  const MapInGauge& se3 = (m.maps.*map)->se3;
+  const MapInGauge* scores = scores_of(m.maps.*map);
+  Reading reading = read(scores == nullptr ? se3 : *scores);
+  if (scores != nullptr && scores != &se3) {
+    reading.warning = "aligned by the first pose: " + se3.refused.value_or("");
+  }
+  return reading;
+}
+template <Map map, Reading (*read)(const MapInGauge&)>
+Reading robust_map_of(const RunMetrics& m) {
+  return m.maps.*map ? read((m.maps.*map)->robust) : Reading{};
 }
 template <double Summary::*statistic>
 Reading latency(const RunMetrics& m) {
@@ -156,8 +169,6 @@ constexpr Trajectory kFinal = &RunMetrics::final;
 constexpr Trajectory kLive = &RunMetrics::live;
 constexpr Map kOwn = &MapsOfRun::own;
 constexpr Map kReprojected = &MapsOfRun::reprojected;
-constexpr auto kSe3 = &MapMetrics::se3;
-constexpr auto kRobust = &MapMetrics::robust;
 constexpr auto kOfPath = Subject::kTrajectory;
 constexpr auto kOfLive = Subject::kLiveTrajectory;
 constexpr auto kOfMap = Subject::kMap;
@@ -201,40 +212,38 @@ constexpr std::array kFigures{
            rpe<kLive, kAtPoses, translation>},
     Figure{"live_ate_se3_translation", nullptr, 100, "cm", "ATE, SE(3) gauge, live", kOfLive,
            ate<kLive, &AteByGauge::se3, translation>},
-    Figure{"own_map_rmse", "own map cm", 100, "cm", "own map, RMSE", kOfMap,
-           map_of<kOwn, kSe3, rmse>, kMain},
+    Figure{"own_map_rmse", "own map cm", 100, "cm", "own map, RMSE", kOfMap, map_of<kOwn, rmse>,
+           kMain},
     Figure{"own_map_outliers", nullptr, 1, "%", "own map, beyond 20 cm", kOfMap,
-           map_of<kOwn, kSe3, outliers>},
+           map_of<kOwn, outliers>},
     Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust gauge", kOfMap,
-           map_of<kOwn, kRobust, rmse>},
+           robust_map_of<kOwn, rmse>},
     Figure{"own_map_completeness", nullptr, 1, "%", "own map, completeness at 5 cm", kOfMap,
-           map_of<kOwn, kSe3, completeness>, kNone, Better::kMore},
+           map_of<kOwn, completeness>, kNone, Better::kMore},
     Figure{"own_map_f_score", nullptr, 1, "%", "own map, F-score at 5 cm", kOfMap,
-           map_of<kOwn, kSe3, f_score>, kNone, Better::kMore},
+           map_of<kOwn, f_score>, kNone, Better::kMore},
     Figure{"own_map_double_walls", nullptr, 1, "%", "own map, double walls", kOfMap,
-           map_of<kOwn, kSe3, double_walls>},
+           map_of<kOwn, double_walls>},
     Figure{"reprojected_map_rmse", "map cm", 100, "cm", "reprojected map, RMSE", kOfMap,
-           map_of<kReprojected, kSe3, rmse>, kMain},
+           map_of<kReprojected, rmse>, kMain},
     Figure{"reprojected_map_rmse_inliers", nullptr, 100, "cm", "reprojected map, RMSE of inliers",
-           kOfMap, map_of<kReprojected, kSe3, rmse_inliers>},
+           kOfMap, map_of<kReprojected, rmse_inliers>},
     Figure{"reprojected_map_outliers", "outliers %", 1, "%", "reprojected map, beyond 20 cm",
-           kOfMap, map_of<kReprojected, kSe3, outliers>, kMain},
+           kOfMap, map_of<kReprojected, outliers>, kMain},
     Figure{"reprojected_map_rmse_robust", "robust cm", 100, "cm",
-           "reprojected map, RMSE, robust gauge", kOfMap, map_of<kReprojected, kRobust, rmse>,
+           "reprojected map, RMSE, robust gauge", kOfMap, robust_map_of<kReprojected, rmse>,
            kMapTable},
     Figure{"reprojected_map_rmse_vertices", "to vertices cm", 100, "cm",
-           "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, kSe3, vertices>,
-           kMapTable},
+           "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, vertices>, kMapTable},
     Figure{"reprojected_map_completeness", "complete %", 1, "%",
-           "reprojected map, completeness at 5 cm", kOfMap,
-           map_of<kReprojected, kSe3, completeness>, kMapTable, Better::kMore},
+           "reprojected map, completeness at 5 cm", kOfMap, map_of<kReprojected, completeness>,
+           kMapTable, Better::kMore},
     Figure{"reprojected_map_f_score", "F-score %", 1, "%", "reprojected map, F-score at 5 cm",
-           kOfMap, map_of<kReprojected, kSe3, f_score>, kMapTable, Better::kMore},
+           kOfMap, map_of<kReprojected, f_score>, kMapTable, Better::kMore},
     Figure{"reprojected_map_double_walls", "double walls %", 1, "%",
-           "reprojected map, double walls", kOfMap, map_of<kReprojected, kSe3, double_walls>,
-           kMapTable},
+           "reprojected map, double walls", kOfMap, map_of<kReprojected, double_walls>, kMapTable},
     Figure{"reprojected_map_identity", "identity cm", 100, "cm", "reprojected map, identity error",
-           kOfMap, map_of<kReprojected, kSe3, identity>, kMapTable},
+           kOfMap, map_of<kReprojected, identity>, kMapTable},
     Figure{"latency_median", nullptr, 1e3, "ms", "latency, median", kOfRun,
            latency<&Summary::median>},
     Figure{"latency_p95", "P95 ms", 1e3, "ms", "latency, P95", kOfRun, latency<&Summary::p95>,
@@ -252,6 +261,10 @@ constexpr std::array kFigures{
            peak<&ResourceMetrics::rss>},
 };
 
+consteval const Figure& known(std::string_view key) {
+  return *std::ranges::find_if(kFigures, [&](const Figure& figure) { return key == figure.key; });
+}
+
 std::optional<double> coverage_percent(const std::optional<TrajectoryMetrics>& trajectory) {
   if (!trajectory) return std::nullopt;
   return 100.0 * trajectory->association.coverage;
@@ -259,7 +272,25 @@ std::optional<double> coverage_percent(const std::optional<TrajectoryMetrics>& t
 
 }  // namespace
 
+const Figure& kDrift = known("rpe_1m_at_poses_translation");
+const Figure& kDriftRotation = known("rpe_1m_at_poses_rotation");
+const Figure& kAte = known("ate_se3_translation");
+const Figure& kOwnMapRmse = known("own_map_rmse");
+const Figure& kOwnMapOutliers = known("own_map_outliers");
+const Figure& kMapRmse = known("reprojected_map_rmse");
+const Figure& kMapOutliers = known("reprojected_map_outliers");
+const Figure& kLatencyP95 = known("latency_p95");
+const Figure& kRealTimeFactor = known("real_time_factor");
+const Figure& kOwnMemory = known("own_memory_peak");
+
 std::span<const Figure> figures() { return kFigures; }
+
+std::string column_of(const Figure& figure) {
+  std::string unit = figure.unit;
+  if (unit == "%") unit = "percent";
+  std::ranges::replace(unit, '/', '_');
+  return figure.key + (unit.empty() ? "" : "_" + unit);
+}
 
 const Figure& figure_of(const std::string& key, const std::string& place) {
   std::vector<std::string> keys;

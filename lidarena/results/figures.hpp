@@ -44,8 +44,15 @@ struct Figure {
   Better better = Better::kLess;
 };
 
+// Those that tables and reports name; drift is the RPE per meter from pose to pose, maps are scored
+// in the gauge of scores_of().
+extern const Figure &kDrift, &kDriftRotation, &kAte, &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
+    &kMapOutliers, &kLatencyP95, &kRealTimeFactor, &kOwnMemory;
+
 /// All of them, in the order in which they are shown.
 std::span<const Figure> figures();
+/// Name of a column of such values: the key with the unit.
+std::string column_of(const Figure& figure);
 /// The figure with this key. Throws InputError at `place`, with the nearest key, if there is none.
 const Figure& figure_of(const std::string& key, const std::string& place);
 

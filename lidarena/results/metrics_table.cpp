@@ -11,6 +11,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/results/figures.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
 namespace {
@@ -128,104 +129,31 @@ std::string title_of(const ScoredRun& run) {
   return run.algorithm.empty() ? run.name : run.name + " (" + run.algorithm + ")";
 }
 
-std::string cell_text(const Cell& value) { return value ? fmt::format("{:.3g}", *value) : "-"; }
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
-}
-
-/// Escapes what would end a cell in Markdown.
-std::string for_markdown(const std::string& text) {
-  std::string out;
-  for (const char c : text) out += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
-  return out;
-}
-
-std::string for_latex(const std::string& text) {
-  std::string out;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-      case '%':
-      case '$':
-      case '#':
-      case '_':
-      case '{':
-      case '}':
-        out += std::string("\\") + c;
-        break;
-      case '\\':
-        out += "\\textbackslash{}";
-        break;
-      case '~':
-        out += "\\textasciitilde{}";
-        break;
-      case '^':
-        out += "\\textasciicircum{}";
-        break;
-      default:
-        out += c;
-    }
-  }
-  return out;
-}
-
-std::string latex_row(std::span<const ScoredRun> runs, std::size_t i,
-                      const std::vector<const Figure*>& figures) {
-  const ScoredRun& run = runs[i];
-  std::string row = for_latex(title_of(run));
-  if (!run.metrics.is_ok()) {
-    return row + fmt::format(" & \\multicolumn{{{}}}{{l}}{{{}}} \\\\\n", figures.size() + 1,
-                             for_latex(run.metrics.status_and_reason()));
-  }
-  row += " & " + cell_text(coverage_of(run.metrics));
-  for (const Figure* figure : figures) {
-    const std::string text = cell_text(value_of(run.metrics, *figure));
-    const auto rank = rank_of(runs, i, *figure);
-    if (rank == 0U) {
-      row += " & \\textbf{" + text + "}";
-    } else if (rank == 1U) {
-      row += " & \\underline{" + text + "}";
-    } else {
-      row += " & " + (text == "-" ? "--" : text);
-    }
-  }
-  return row + " \\\\\n";
-}
-
-std::string markdown_table(std::span<const ScoredRun> runs,
-                           const std::vector<const Figure*>& figures) {
-  std::string text = "| run | coverage % |";
-  std::string rule = "| --- | ---: |";
-  for (const Figure* figure : figures) {
-    text += fmt::format(" {} |", figure->heading);
-    rule += " ---: |";
-  }
-  text += " status |\n" + rule + " --- |\n";
+/// The best value of each column bold, the second best underlined, where several runs have one.
+Table table_of(std::span<const ScoredRun> runs, const std::vector<const Figure*>& columns) {
+  Table table{"", "", "", {"run", "coverage %"}, {}};
+  for (const Figure* figure : columns) table.head.emplace_back(figure->heading);
+  table.head.emplace_back("status");
   for (std::size_t i = 0; i < runs.size(); ++i) {
-    text += fmt::format("| {} | {} |", for_markdown(title_of(runs[i])),
-                        cell_text(coverage_of(runs[i].metrics)));
-    for (const Figure* figure : figures) {
-      const std::string cell = cell_text(value_of(runs[i].metrics, *figure));
-      text += rank_of(runs, i, *figure) == 0U ? fmt::format(" **{}** |", cell)
-                                              : fmt::format(" {} |", cell);
+    const RunMetrics& metrics = runs[i].metrics;
+    std::vector<TableCell> row{word(title_of(runs[i])), number(coverage_of(metrics))};
+    for (const Figure* figure : columns) {
+      row.push_back(number(value_of(metrics, *figure)));
+      const auto rank = rank_of(runs, i, *figure);
+      row.back().bold = rank == 0U;
+      row.back().underlined = rank == 1U;
     }
-    text += fmt::format(" {} |\n", for_markdown(runs[i].metrics.status_and_reason()));
+    row.push_back(word(metrics.status_and_reason()));
+    table.rows.push_back(std::move(row));
   }
-  return text;
+  return table;
 }
 
-std::string latex_table(std::span<const ScoredRun> runs,
-                        const std::vector<const Figure*>& figures) {
-  std::string text = fmt::format("\\begin{{tabular}}{{l{}}}\n\\toprule\nrun & coverage \\%",
-                                 std::string(figures.size() + 1, 'r'));
-  for (const Figure* figure : figures) text += " & " + for_latex(figure->heading);
-  text += " \\\\\n\\midrule\n";
-  for (std::size_t i = 0; i < runs.size(); ++i) text += latex_row(runs, i, figures);
-  return text + "\\bottomrule\n\\end{tabular}\n";
+/// The main table and, if a run has further metrics of its re-projected map, a second one.
+std::string tables_text(std::span<const ScoredRun> runs, std::string (*write)(const Table&)) {
+  const std::string text = write(table_of(runs, table_figures(runs, FigureTable::kMain)));
+  const auto map_figures = table_figures(runs, FigureTable::kMap);
+  return map_figures.empty() ? text : text + "\n" + write(table_of(runs, map_figures));
 }
 
 }  // namespace
@@ -257,9 +185,10 @@ std::string metrics_csv(std::span<const ScoredRun> runs) {
       "run,algorithm,flight,seed,status,reason,coverage_percent,figure,definition,value,unit,used,"
       "total\n";
   for (const ScoredRun& run : runs) {
-    const std::string head = fmt::format(
-        "{},{},{},{},{},{}", quoted(run.name), quoted(run.algorithm), quoted(run.flight),
-        quoted(run.seed), run.metrics.status, quoted(run.metrics.reason));
+    const std::string head =
+        fmt::format("{},{},{},{},{},{}", csv_quoted(run.name), csv_quoted(run.algorithm),
+                    csv_quoted(run.flight), csv_quoted(run.seed), run.metrics.status,
+                    csv_quoted(run.metrics.reason));
     bool any = false;
     for (const Figure& figure : figures()) {
       const Reading reading = figure.read(run.metrics);
@@ -271,8 +200,8 @@ std::string metrics_csv(std::span<const ScoredRun> runs) {
       };
       csv += fmt::format("{},{},{},{},{:.9g},{},{},{}\n", head,
                          coverage ? fmt::format("{:.3f}", *coverage) : "", figure.key,
-                         quoted(reading.definition), *reading.value * figure.factor, figure.unit,
-                         count(reading.used), count(reading.total));
+                         csv_quoted(reading.definition), *reading.value * figure.factor,
+                         figure.unit, count(reading.used), count(reading.total));
     }
     if (!any) csv += head + ",,,,,,,\n";
   }
@@ -280,19 +209,11 @@ std::string metrics_csv(std::span<const ScoredRun> runs) {
 }
 
 std::string metrics_markdown(std::span<const ScoredRun> runs) {
-  std::string text = markdown_table(runs, table_figures(runs, FigureTable::kMain));
-  const auto map_figures = table_figures(runs, FigureTable::kMap);
-  if (map_figures.empty()) return text;
-  text += '\n';
-  return text += markdown_table(runs, map_figures);
+  return tables_text(runs, table_markdown);
 }
 
 std::string metrics_latex(std::span<const ScoredRun> runs) {
-  std::string text = latex_table(runs, table_figures(runs, FigureTable::kMain));
-  const auto map_figures = table_figures(runs, FigureTable::kMap);
-  if (map_figures.empty()) return text;
-  text += '\n';
-  return text += latex_table(runs, map_figures);
+  return tables_text(runs, table_latex);
 }
 
 }  // namespace lidarena::results

@@ -7,22 +7,13 @@
 #include <vector>
 
 #include "lidarena/base/config_json.hpp"
-#include "lidarena/dataset/run_files.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/figures.hpp"
 #include "lidarena/results/run_metrics.hpp"
 
 namespace lidarena::results {
 
-/// Figures of one map, in the gauge of scores_of().
-struct MapFigures {
-  std::size_t points = 0;
-  double rmse_cm = 0.0, rmse_inliers_cm = 0.0;
-  double outliers_percent = 0.0;
-  std::vector<double> histogram_percent;  ///< 1 cm bins, 0..20 cm
-};
-
-/// One run in the report. A figure that does not exist is empty, never zero.
+/// One run in the report.
 struct RunRecord {
   std::string name;  ///< name of the run's folder
   std::filesystem::path folder;
@@ -31,9 +22,6 @@ struct RunRecord {
   std::uint64_t seed = 0;
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;
-  std::optional<double> rpe_cm_per_m, rpe_deg_per_m, ate_cm, coverage_percent;
-  std::optional<MapFigures> own_map, reprojected_map;
-  std::optional<double> real_time_factor, latency_p95_ms, own_memory_mb, process_memory_mb;
   std::optional<RunMetrics> metrics;  ///< empty if the run was not scored
   Json manifest;                      ///< manifest.json, null if there is none
   Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
@@ -49,7 +37,7 @@ std::string label_of(const RunRecord& row);
 
 /// The figure of a scored run; empty if it has none.
 std::optional<double> value_of(const RunRecord& run, const Figure& figure);
-/// Sets the metrics with the status and the figures that follow from them.
+/// Sets the metrics and the status.
 void set_metrics(RunRecord& run, RunMetrics metrics);
 
 struct StudyResults {
@@ -59,9 +47,6 @@ struct StudyResults {
   std::vector<ReferenceFigure> reference;  ///< published figures, shown beside those of the runs
 };
 
-/// Map, scan buffer and backlog together, MB.
-double own_memory_mb(const dataset::ResourceRow& row);
-
 /// Reads a study's folder (plan.json names the runs; one without files becomes a row "missing") or
 /// one RUN folder. Throws InputError if it is neither.
 StudyResults read_results(const std::filesystem::path& folder);
@@ -69,7 +54,7 @@ StudyResults read_results(const std::filesystem::path& folder);
 /// that was scored is kept, else the first one that is not missing.
 StudyResults merged(std::vector<StudyResults> parts);
 
-/// One row per run, units in the column names, empty cells for figures that do not exist.
+/// One row per run with all figures (see column_of()); empty cells for figures that do not exist.
 std::string results_csv(const StudyResults& results);
 /// The main figures, aligned for a terminal.
 std::string results_text(const StudyResults& results);

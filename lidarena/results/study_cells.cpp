@@ -20,18 +20,6 @@ std::vector<std::string> distinct(const std::vector<const RunRecord*>& rows,
   return values;
 }
 
-}  // namespace
-
-std::optional<double> rpe_of(const RunRecord& row) { return row.rpe_cm_per_m; }
-std::optional<double> outliers_of(const RunRecord& row) {
-  return row.own_map ? std::optional(row.own_map->outliers_percent) : std::nullopt;
-}
-std::optional<double> map_rmse_of(const RunRecord& row) {
-  return row.own_map ? std::optional(row.own_map->rmse_cm) : std::nullopt;
-}
-
-namespace {
-
 /// Whether a row is compared within the variant. Methods without presets are compared with every
 /// preset of the others, within their mode.
 bool belongs_to(const RunRecord& row, const std::string& variant) {
@@ -75,6 +63,12 @@ std::optional<double> StudyCells::median(const std::string& world, const std::st
   std::sort(values.begin(), values.end());
   const std::size_t half = values.size() / 2;
   return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+}
+
+std::optional<double> StudyCells::median(const std::string& world, const std::string& sensor,
+                                         const std::string& algorithm, const Figure& figure) const {
+  return median(world, sensor, algorithm,
+                [&](const RunRecord& run) { return value_of(run, figure); });
 }
 
 std::string StudyCells::status_text(const std::string& world, const std::string& sensor,

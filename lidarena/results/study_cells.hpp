@@ -15,10 +15,6 @@ constexpr double kTrackingLostOutliers_percent = 50.0;
 
 using RowFigure = std::function<std::optional<double>(const RunRecord&)>;
 
-std::optional<double> rpe_of(const RunRecord& row);       ///< cm per m
-std::optional<double> outliers_of(const RunRecord& row);  ///< %, of the published map
-std::optional<double> map_rmse_of(const RunRecord& row);  ///< cm, of the published map
-
 /// The runs of a study by world, sensor and algorithm. Figures are medians over flights and seeds
 /// of the runs that have them; status_text() says how many do not.
 class StudyCells {
@@ -35,6 +31,8 @@ class StudyCells {
                                      const std::string& algorithm) const;
   std::optional<double> median(const std::string& world, const std::string& sensor,
                                const std::string& algorithm, const RowFigure& figure) const;
+  std::optional<double> median(const std::string& world, const std::string& sensor,
+                               const std::string& algorithm, const Figure& figure) const;
   /// How many runs of a cell did not succeed ("1 of 3 diverged"); empty if all did.
   std::string status_text(const std::string& world, const std::string& sensor,
                           const std::string& algorithm) const;

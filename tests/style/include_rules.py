@@ -34,7 +34,7 @@ HIDDEN = {
     "embree": {"world"}, "assimp/": {"world"}, "sdf/": {"world"}, "yaml-cpp": {"base"},
     "tbb/": {"base", "world"}, "zstd.h": {"dataset"}, "lz4": {"dataset"},
     "libdeflate.h": {"dataset"},
-    "lzf.h": {"dataset"}, "md5.h": {"dataset"}, "png.h": {"report"},
+    "lzf.h": {"dataset"}, "md5.h": {"dataset"},
     "ceres/": {"estimation"},
 }
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]')

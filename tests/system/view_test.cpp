@@ -8,7 +8,9 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -127,7 +129,7 @@ TEST_F(ViewInBrowser, PixelsHaveTheColorsOfTheirDistancesAndTheConsoleStaysSilen
   const Picture picture = screenshot("#view=top&size=6");
   EXPECT_THAT(page_errors(), ElementsAre());
   // Seen from above, the floor is centered, with x < 4 m on the left. Expected are the colors of
-  // distance_color() for 0 and for more than 20 cm.
+  // the color ramp for 0 and for more than 20 cm.
   EXPECT_THAT(picture.at(kWidth / 2 - 60, kHeight / 2), ElementsAre(0, 34, 78));
   EXPECT_THAT(picture.at(kWidth / 2 + 20, kHeight / 2), ElementsAre(214, 32, 39));
   EXPECT_THAT(picture.at(kWidth / 2, 3), ElementsAre(246, 247, 249)) << "background";
@@ -153,55 +155,222 @@ TEST_F(ViewInBrowser, WithoutWebGlThePictureInThePageStays) {
   EXPECT_THAT(dom, Not(HasSubstr("lidarena-view page live")));
 }
 
-/// Writes the result files of a study with two runs in one world, without maps and datasets.
+/// Writes the result files of a study: two sensors and two methods in one world, three seeds each;
+/// the last run has diverged. The first run has a map and a path, its dataset a truth.
 void write_study(const fs::path& folder) {
-  nlohmann::json study{{"kind", "study"}, {"spec", {{"title", "Two runs"}}}, {"runs", {}}};
-  for (const std::string algorithm : {"kiss_icp", "fast_lio2"}) {
-    study["runs"].push_back({{"name", algorithm},
-                             {"world", "cave"},
-                             {"flight", "cave"},
-                             {"sensor", "livox_mid360"},
-                             {"algorithm", algorithm},
-                             {"preset", "indoor"},
-                             {"seed", 1}});
-    const fs::path run = folder / "runs" / algorithm;
-    fs::create_directories(run);
-    std::ofstream(run / "manifest.json") << nlohmann::json{{"kind", "run"}};
-    const nlohmann::json curve{{"t_s", {0.0, 1.0, 2.0}}, {"translation_m", {0.0, 0.01, 0.02}}};
-    const nlohmann::json final{
-        {"rpe", {{"1m_at_poses", {{"translation", {{"count", 9}, {"rmse_m", 0.012}}}}}}},
-        {"errors_over_time", {{"ate_se3", curve}}}};
-    std::ofstream(run / "metrics.json")
-        << nlohmann::json{{"schema_version", 3}, {"status", "ok"}, {"final", final}};
-    std::ofstream(run / "resources.json") << nlohmann::json{{"scans", 3},
-                                                            {"real_time_factor", 2.0},
-                                                            {"latency", {{"count", 3}}},
-                                                            {"own", {{"peak_bytes", 3000110}}}};
-    std::ofstream(run / "resources.csv")
-        << "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes\n"
-           "0.1,0.01,1,1,1000000,100,10\n1,0.01,1,1,2000000,100,10\n2,0.01,1,1,3000000,100,10\n";
+  nlohmann::json study{{"kind", "study"}, {"spec", {{"title", "Twelve runs"}}}, {"runs", {}}};
+  int count = 0;
+  for (const std::string sensor : {"livox_mid360", "ouster_os0_128"}) {
+    for (const std::string algorithm : {"kiss_icp", "fast_lio2"}) {
+      for (int seed = 1; seed <= 3; ++seed, ++count) {
+        const std::string name = sensor + "-" + algorithm + "-" + std::to_string(seed);
+        study["runs"].push_back({{"name", name},
+                                 {"world", "cave"},
+                                 {"flight", "cave"},
+                                 {"sensor", sensor},
+                                 {"algorithm", algorithm},
+                                 {"preset", "indoor"},
+                                 {"seed", seed}});
+        const fs::path run = folder / "runs" / name;
+        fs::create_directories(run);
+        std::ofstream(run / "manifest.json")
+            << nlohmann::json{{"kind", "run"}, {"dataset", "../../datasets/flight"}};
+        std::vector<double> t, error;
+        for (int i = 0; i < 30; ++i) {
+          t.push_back(0.1 * i);
+          error.push_back(0.001 * i);
+        }
+        const nlohmann::json curve{{"t_s", t}, {"translation_m", error}, {"rotation_rad", error}};
+        const nlohmann::json rmse{{"count", 9}, {"rmse_m", 0.012 + 0.001234 * count}};
+        const nlohmann::json final{{"rpe", {{"1m_at_poses", {{"translation", rmse}}}}},
+                                   {"errors_over_time", {{"ate_se3", curve}}}};
+        std::ofstream(run / "metrics.json")
+            << nlohmann::json{{"schema_version", 3},
+                              {"status", count == 11 ? "diverged" : "ok"},
+                              {"reason", count == 11 ? "left the <world>" : ""},
+                              {"final", final}};
+        const nlohmann::json over_time{{"t_s", t},
+                                       {"latency_s", error},
+                                       {"map_bytes", t},
+                                       {"scan_buffer_bytes", t},
+                                       {"backlog_bytes", t}};
+        std::ofstream(run / "resources.json") << nlohmann::json{{"scans", 30},
+                                                                {"real_time_factor", 2.0},
+                                                                {"latency", {{"count", 30}}},
+                                                                {"own", {{"peak_bytes", 3000110}}},
+                                                                {"over_time", over_time}};
+      }
+    }
   }
   std::ofstream(folder / "plan.json") << study;
+  const fs::path run = folder / "runs" / "livox_mid360-kiss_icp-1";
+  fs::create_directories(folder / "datasets" / "flight");
+  std::ofstream(run / "scored.ply") << floor_ply();
+  for (const fs::path& file :
+       {run / "trajectory.tum", folder / "datasets" / "flight" / "truth.tum"}) {
+    std::ofstream(file) << "0 1 1 1 0 0 0 1\n1 2 1 1 0 0 0 1\n2 3 1 1 0 0 0 1\n";
+  }
 }
 
-TEST_F(ViewInBrowser, TheReportDrawsItsChartsAndItsFiles) {
-  write_study(path("study"));
-  const Outcome made = call("report study");
-  ASSERT_EQ(made.exit_code, 0) << made.err;
-  fs::rename(path("study") + "/report.html", path("page.html"));
-  const std::string dom = browse("--dump-dom", "");
-  EXPECT_THAT(page_errors(), ElementsAre());
-  // four figures: error over time, memory over time, error against computing time and memory
-  EXPECT_THAT(dom, AllOf(HasSubstr("data-ready=\"1\""), HasSubstr("data-figures=\"4\"")));
+class ReportInBrowser : public ViewInBrowser {
+ protected:
+  void SetUp() override {
+    ViewInBrowser::SetUp();
+    if (IsSkipped()) return;
+    write_study(path("study"));
+    const Outcome made = call("report study");
+    ASSERT_EQ(made.exit_code, 0) << made.err;
+    page_ = content(path("study") + "/report.html");
+  }
+  /// Opens the page at `state` and runs `script` one (virtual) second later; the value that this
+  /// returns, as JSON.
+  nlohmann::json evaluate(const std::string& script, const std::string& state = "",
+                          const std::string& gl = kSoftwareGl) {
+    write("page.html", page_ +
+                           "<script>setTimeout(() => { document.documentElement.dataset.test = "
+                           "encodeURIComponent(JSON.stringify((() => {" +
+                           script +
+                           "})())) }, 1000)"
+                           "</script>");
+    const std::string dom = browse("--dump-dom", state, gl);
+    if (gl == kSoftwareGl) EXPECT_THAT(page_errors(), ElementsAre());
+    const std::string mark = "data-test=\"";
+    const std::size_t begin = dom.find(mark);
+    if (begin == std::string::npos) return nullptr;
+    const std::size_t from = begin + mark.size();
+    return nlohmann::json::parse(decoded(dom.substr(from, dom.find('"', from) - from)));
+  }
+  static std::string decoded(const std::string& text) {
+    std::string out;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+      if (text[i] != '%') {
+        out += text[i];
+      } else {
+        out += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
+        i += 2;
+      }
+    }
+    return out;
+  }
+  /// The values of a column of results.csv by sensor and method, of the runs that went well.
+  std::map<std::string, std::vector<double>> column_of_csv(const std::string& name) const {
+    std::istringstream lines(content(path("study") + "/results.csv"));
+    std::map<std::string, std::vector<double>> values;
+    std::vector<std::string> head;
+    for (std::string line; std::getline(lines, line);) {
+      std::vector<std::string> cells;
+      std::istringstream in(line);
+      for (std::string cell; std::getline(in, cell, ',');) cells.push_back(cell);
+      if (head.empty()) {
+        head = cells;
+        continue;
+      }
+      const auto column = std::find(head.begin(), head.end(), name) - head.begin();
+      if (cells.at(8) != "ok") continue;
+      values[cells.at(3) + "|" + cells.at(4) + " (indoor)"].push_back(
+          std::stod(cells.at(static_cast<std::size_t>(column))));
+    }
+    return values;
+  }
+
+  std::string page_;
+};
+
+constexpr const char* kMatrix =
+    "return Object.fromEntries([...document.querySelectorAll('#matrix [data-cell]')].map(cell => "
+    "[cell.dataset.cell, [Number(cell.dataset.median), cell.textContent]]));";
+
+TEST_F(ReportInBrowser, TheFirstScreenHasTheMediansOfResultsCsvAndMarksWhatFailed) {
+  const auto expected = column_of_csv("rpe_1m_at_poses_translation_cm");
+  ASSERT_EQ(expected.size(), 4U);
+  const nlohmann::json cells = evaluate(kMatrix);
+  ASSERT_EQ(cells.size(), 4U) << cells;
+  for (auto [cell, values] : expected) {
+    std::sort(values.begin(), values.end());
+    const std::size_t half = values.size() / 2;
+    const double median =
+        values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
+    EXPECT_NEAR(cells.at(cell).at(0).get<double>(), median, 1e-5 * median) << cell;
+  }
+  const std::string failed = cells.at("ouster_os0_128|fast_lio2 (indoor)").at(1);
+  EXPECT_THAT(failed, AllOf(HasSubstr("2 of 3"), HasSubstr("1 diverged")));
+  const nlohmann::json memory = evaluate(kMatrix, "#figure=own_memory_peak");
+  EXPECT_EQ(memory.at("livox_mid360|kiss_icp (indoor)").at(0), 3.00011);
+}
+
+TEST_F(ReportInBrowser, ItDrawsItsChartsAndReachesForNoNetwork) {
+  const nlohmann::json seen = evaluate(
+      "document.querySelectorAll('#charts .chart').forEach(c => c.scrollIntoView());"
+      "return {figures: document.documentElement.dataset.figures, ready: "
+      "document.documentElement.dataset.ready, reached: performance.getEntriesByType('resource')"
+      ".map(e => e.name).filter(n => !n.startsWith('data:') && !n.startsWith('blob:')),"
+      "sections: [...document.querySelectorAll('main > section')].map(s => s.id)}");
+  EXPECT_EQ(seen.at("ready"), "1");
+  // error over time, memory over time, spread over seeds, error against computing time and memory
+  EXPECT_EQ(seen.at("figures"), "5");
+  EXPECT_EQ(seen.at("reached"), nlohmann::json::array());
+  EXPECT_EQ(seen.at("sections"),
+            nlohmann::json({"overview", "scenes", "charts", "runs", "tables", "again"}));
   for (const char* file :
        {"results.csv", "report.json", "tables/runs-cave.csv", "tables/runs-cave.md",
-        "tables/runs-cave.tex", "tables/runs-cave.json"}) {
+        "tables/runs-cave.tex", "tables/runs-cave.json", "tables/decision-cave.csv"}) {
     EXPECT_TRUE(fs::exists(path("study") + "/" + file)) << file;
   }
   if (std::system("command -v node >/dev/null") != 0) return;
-  for (const char* id : {"drift-cave", "memory-cave", "pareto-cpu", "pareto-memory"}) {
+  for (const char* id : {"drift-cave", "memory-cave", "spread-cave", "pareto-cpu", "pareto-memory",
+                         "map-cave-livox_mid360-kiss_icp-indoor"}) {
     EXPECT_THAT(content(path("study") + "/figures/" + id + ".svg"), HasSubstr("<svg")) << id;
   }
+}
+
+TEST_F(ReportInBrowser, FiltersStandInTheAddressAndApplyToTheMatrixAndTheRuns) {
+  const std::string rows =
+      "const rows = () => [...document.querySelectorAll('#table-runs tbody tr')].map(r => "
+      "r.cells[0].textContent); const cells = () => document.querySelectorAll('#matrix "
+      "[data-cell]').length;";
+  const nlohmann::json of_link =
+      evaluate(rows + "return [cells(), rows().length]", "#sensor=livox_mid360&seed=2");
+  EXPECT_EQ(of_link, nlohmann::json({2, 2}));
+  const nlohmann::json chosen =
+      evaluate(rows +
+               "const select = document.querySelector('select[name=method]'); select.value = "
+               "'kiss_icp'; select.onchange(); return [cells(), rows().length, location.hash]");
+  EXPECT_EQ(chosen, nlohmann::json({2, 6, "#method=kiss_icp"}));
+}
+
+TEST_F(ReportInBrowser, TablesSortByTheirFiguresInBothDirections) {
+  const nlohmann::json sorted = evaluate(
+      "const head = [...document.querySelectorAll('#table-runs thead button')].find(b => "
+      "b.textContent.startsWith('RPE per meter, pose to pose, cm')); const first = () => "
+      "document.querySelector('#table-runs tbody th').textContent; head.click(); const up = "
+      "first(); head.click(); return [up, first()];");
+  EXPECT_EQ(sorted, nlohmann::json({"livox_mid360-kiss_icp-1", "ouster_os0_128-fast_lio2-3"}));
+}
+
+TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
+  const std::string opened =
+      "document.querySelector('#matrix [data-cell=\"livox_mid360|kiss_icp (indoor)\"] "
+      "button').click();";
+  const nlohmann::json run =
+      evaluate(opened +
+               "return [location.hash, document.querySelectorAll('#run .chart').length, "
+               "document.querySelector('#run .command').textContent.includes('lidarena run "
+               "kiss_icp')]");
+  EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 0, true})) << "charts come later";
+  const nlohmann::json later = evaluate(
+      "return [document.documentElement.dataset.view, document.querySelectorAll('#run "
+      ".chart').length, document.querySelectorAll('#run canvas').length]",
+      "#run=livox_mid360-kiss_icp-1");
+  EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 3, 1}));
+  const nlohmann::json without_gl = evaluate(
+      "return [document.documentElement.dataset.picture, document.querySelectorAll('#run .map "
+      "svg image').length]",
+      "#run=livox_mid360-kiss_icp-1", "--disable-gpu --disable-3d-apis");
+  EXPECT_EQ(without_gl, nlohmann::json({"livox_mid360-kiss_icp-1", 1}));
+  const nlohmann::json without_points = evaluate(
+      "return document.querySelector('#run').textContent", "#run=ouster_os0_128-fast_lio2-3");
+  EXPECT_THAT(without_points.get<std::string>(),
+              AllOf(HasSubstr("diverged: left the <world>"), HasSubstr("no points of this run")));
 }
 
 /// Runs the program as a server in the background until the object is destroyed.

@@ -1,99 +1,315 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Script of the report page: draws the charts and the 3D views into their elements of the page and
-// marks the instant of a 3D view's time line in the charts.
+// Script of the report's page: draws all of it from the data in the page.
 import "../view/view.css";
 import "./report.css";
-import { Panel } from "../view/panel";
+import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
-import { initialState } from "../view/state";
-import { View } from "../view/view";
-import { echarts } from "./charts";
-import type { Figure, ReportData } from "./data";
+import { ChartBox } from "./chart_box";
+import { distinct, label, LATENCY, type ReportData, type Run } from "./data";
 import { figuresOf } from "./figures_of";
+import { answer, bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
+import { RunView } from "./run_view";
+import { drawn } from "./save";
+import { pictureSvg, placePictures, type WorldScene } from "./scenes";
+import { choices, passes, readSettings, writeSettings, type Settings } from "./settings";
+import { number, tableElement, word, type ShownTable } from "./tables";
+import { followTheme } from "./theme";
 
-const marks = document.documentElement.dataset;  // read by tests only
-type Chart = ReturnType<typeof echarts.init>;
-const overTime: { chart: Chart; figure: Figure; world: string }[] = [];
+const DEFINITIONS =
+  "Drift (RPE): the true path is cut into segments of 1 m that begin and end at estimated poses; in each, the estimated motion is compared with the true one; " +
+  "root mean square over all segments. ATE: distance between the two paths after aligning them. Map: point-to-mesh distance to the same mesh that was scanned, of " +
+  "the method's own map or of all returns, placed along the estimated path. All figures are those of the final trajectory; metrics.json in each run's folder also " +
+  "holds those of the live trajectory, of other segment lengths and alignments, and the id of each definition. A run that failed stays in the tables with its reason.";
 
-function jsonOf<T>(id: string): T | null {
-  const element = document.getElementById(id);
-  return element ? (JSON.parse(element.textContent!) as T) : null;
-}
+const marks = document.documentElement.dataset; // read by tests only
+const jsonOf = <T>(id: string) => JSON.parse(document.getElementById(id)!.textContent!) as T;
 
-function drawFigures(data: ReportData) {
-  let drawn = 0;
-  for (const figure of figuresOf(data)) {
-    const world = data.worlds.find((w) => figure.id.endsWith(`-${w}`) || figure.id.endsWith(`-${w}-all-returns`));
-    const home = document.getElementById(world ? `figures-${world}` : "figures");
-    if (!home) continue;
-    const place = document.createElement("figure");
-    const canvas = document.createElement("div");
-    const caption = document.createElement("figcaption");
-    caption.textContent = figure.caption;
-    place.id = figure.id;
-    place.append(canvas, caption);
-    home.append(place);
-    const chart = echarts.init(canvas, null, { renderer: "svg", width: figure.width, height: figure.height });
-    chart.setOption(figure.option);
-    if (figure.overTime && world) overTime.push({ chart, figure, world });
-    drawn += 1;
+function scenesInPage(): WorldScene[] {
+  const scenes: WorldScene[] = [];
+  for (let i = 0; document.getElementById(`scene-${i}`); ++i) {
+    const header = jsonOf<SceneHeader>(`scene-${i}`);
+    scenes.push({ world: header.title, header, source: blocksInPage(`block-${i}`, true) });
   }
-  marks.figures = String(drawn);
+  return scenes;
 }
 
-/** Draws a line at `time` in every chart over time of a world. */
-function markTime(world: string, time: number) {
-  for (const entry of overTime) {
-    if (entry.world !== world) continue;
-    const series = entry.figure.option.series as { xAxisIndex: number }[];
-    const seen = new Set<number>();
-    entry.chart.setOption({
-      series: series.map(({ xAxisIndex }) => {
-        if (seen.has(xAxisIndex)) return {};
-        seen.add(xAxisIndex);
-        return { markLine: { symbol: "none", silent: true, animation: false, label: { show: false },
-          lineStyle: { color: "#1c2430", type: "solid", width: 1 }, data: [{ xAxis: time }] } };
-      }),
+class Report implements Page {
+  data = jsonOf<ReportData>("data");
+  scenes = scenesInPage();
+  settings = readSettings(location.hash, this.data);
+  runs: Run[] = [];
+  private opened: RunView | null = null;
+  private boxes: ChartBox[] = [];
+  private head = element("header");
+  private overview = element("section", { id: "overview" });
+  private scenesSection = element("section", { id: "scenes" });
+  private charts = element("section", { id: "charts" });
+  private lists = element("section", { id: "runs" });
+  private main = element(
+    "main",
+    {},
+    this.overview,
+    this.scenesSection,
+    this.charts,
+    this.expectations(),
+    this.lists,
+    this.tables(),
+    this.again(),
+  );
+
+  constructor() {
+    document.body.prepend(this.head, this.main);
+    followTheme(() => this.drawCharts());
+    this.showScenes();
+    this.show();
+    window.addEventListener("hashchange", () => {
+      this.settings = readSettings(location.hash, this.data);
+      this.show();
+    });
+    window.addEventListener("beforeprint", () => this.boxes.forEach((box) => box.draw()));
+    marks.ready = "1";
+    marks.drawnMs = String(Math.round(performance.now()));
+  }
+
+  change = (some: Partial<Settings>) => {
+    this.settings = { ...this.settings, ...some };
+    history.replaceState(null, "", `#${writeSettings(this.settings)}`);
+    this.show(Object.keys(some));
+  };
+
+  /** Draws what depends on the settings, or only on those called `changed`. */
+  private show(changed = ["filters", "figure", "run"]) {
+    this.runs = this.data.runs.filter((run) => passes(run, this.settings));
+    if (changed.includes("filters")) {
+      this.showOverview();
+      this.drawCharts();
+      const worlds = distinct(this.runs, (run) => run.world);
+      for (const part of this.scenesSection.querySelectorAll<HTMLElement>("[data-world]"))
+        part.hidden = !worlds.includes(part.dataset.world!);
+      this.lists.replaceChildren(...this.listsOfRuns());
+    } else if (changed.includes("figure")) {
+      document.getElementById("matrix")!.replaceWith(matrix(this));
+    }
+    if (changed.includes("run")) this.showRun();
+  }
+
+  private showOverview() {
+    this.head.replaceChildren(
+      element("h1", {}, this.data.title),
+      element("p", { className: "compared" }, compared(this)),
+      this.filters(),
+      this.navigation(),
+    );
+    const seen = element("div", { className: "seen" });
+    this.overview.replaceChildren(answer(this), seen, matrix(this));
+    bestAndWorst(this).then((picture) => {
+      if (picture) seen.replaceWith(picture);
+      else seen.remove();
+      marks.seen = picture ? "1" : "0";
     });
   }
-}
 
-/** Adds a button that starts the 3D view of a world: starting all views at once would be slow. */
-function prepareView(world: string) {
-  const root = document.getElementById(`view-${world}`);
-  const header = jsonOf<SceneHeader>(`scene-${world}`);
-  if (!root || !header) return;
-  const start = document.createElement("button");
-  start.type = "button";
-  start.className = "start";
-  start.textContent = "Show the interactive 3D view instead of this picture";
-  start.onclick = () => {
-    start.remove();
-    try {
-      showView(world, root, header);
-    } catch (error) {
-      root.classList.remove("open", "live");  // shows the pictures again
-      root.querySelector(".message")!.textContent = `The interactive view could not start: ${error}`;
+  private filters(): HTMLElement {
+    const bar = element("form", { className: "filters" });
+    for (const [name, values] of choices(this.data)) {
+      const chosen = this.settings.filters[name];
+      const select = element(
+        "select",
+        { name },
+        element("option", { value: "" }, "all"),
+        ...values.map((value) => element("option", { value, selected: value === chosen }, value)),
+      );
+      select.onchange = () => {
+        const filters = { ...this.settings.filters, [name]: select.value || undefined };
+        if (!select.value) delete filters[name];
+        this.change({ filters });
+        document.querySelector<HTMLElement>(`select[name=${name}]`)?.focus();
+      };
+      bar.append(element("label", {}, name, select));
     }
-  };
-  root.before(start);
-  if (location.hash === `#view-${world}`) start.click();
+    return bar;
+  }
+
+  private navigation(): HTMLElement {
+    const sections = [...this.main.querySelectorAll<HTMLElement>(":scope > section[id]")].filter(
+      ({ id }) => id !== "run" && id !== "overview",
+    );
+    const names: Record<string, string> = {
+      scenes: "Scenes",
+      charts: "Charts",
+      expectations: "Expectations",
+      runs: "Runs",
+      tables: "Tables",
+      again: "Make it again",
+    };
+    return element(
+      "nav",
+      {},
+      ...sections.map(({ id }) => {
+        const link = element("a", { href: `#${id}` }, names[id]);
+        link.onclick = (event) => {
+          // the address keeps the settings
+          event.preventDefault();
+          document.getElementById(id)!.scrollIntoView();
+        };
+        return link;
+      }),
+    );
+  }
+
+  private showRun() {
+    this.opened?.dispose();
+    this.opened?.root.remove();
+    this.opened = null;
+    const run = this.data.runs.find(({ name }) => name === this.settings.run);
+    if (!run) return;
+    this.opened = new RunView(this, run);
+    this.overview.after(this.opened.root);
+    this.opened.root.focus({ preventScroll: true });
+    this.opened.root.scrollIntoView();
+    marks.run = run.name;
+  }
+
+  private drawCharts() {
+    for (const box of this.boxes) box.dispose();
+    const figures = figuresOf(this.data, this.runs);
+    this.boxes = figures.map((figure) => new ChartBox(figure));
+    const worlds = [...distinct(this.runs, (run) => run.world), ""];
+    const groups = worlds.map((world) =>
+      element(
+        "div",
+        {},
+        element("h3", {}, world || "Error against cost"),
+        element("div", { className: "figures" }, ...this.boxes.filter((box) => box.figure.world === world).map((box) => box.root)),
+      ),
+    );
+    this.charts.replaceChildren(element("h2", {}, "Charts"), ...groups);
+    marks.figures = String(figures.length);
+  }
+
+  private showScenes() {
+    if (this.scenes.length === 0) return this.scenesSection.remove();
+    this.scenesSection.append(element("h2", {}, "Scenes"), colorKey());
+    for (const scene of this.scenes) {
+      const row = element("div", { className: "figures" }, "…");
+      const part = element("div", {}, element("h3", {}, scene.world), row);
+      part.dataset.world = scene.world;
+      this.scenesSection.append(part);
+      whenInSight(row, async () => {
+        const pictures = await placePictures(scene, { width: 388, maxHeight: 300 });
+        row.replaceChildren(...pictures.map((picture) => drawn(picture.id, pictureSvg(picture))));
+      });
+    }
+  }
+
+  private expectations(): HTMLElement | string {
+    const { expectations } = this.data;
+    if (expectations.length === 0) return "";
+    const verdict = (holds: boolean | null, known: boolean) =>
+      holds === null ? (known ? "cannot be judged" : "not measured") : holds ? "✓ holds" : "✕ falls short";
+    const rows = expectations.map((e) => [
+      word(e.finding),
+      word(verdict(e.holds, e.evidence.length > 0)),
+      word(e.variant),
+      word(e.rule),
+      word(e.evidence.join("; ") + (e.holds === false && e.otherwise ? `. Possible reason: ${e.otherwise}` : "")),
+    ]);
+    const holds = (value: boolean) => expectations.filter((e) => e.holds === value).length;
+    return element(
+      "section",
+      { id: "expectations" },
+      element("h2", {}, "What the study expects"),
+      tableElement({
+        id: "expectations",
+        title: `${holds(true)} hold, ${holds(false)} fall short`,
+        note: "An expectation holds if all of its checks hold.",
+        head: ["expectation", "here", "preset", "check", "our figures"],
+        rows,
+      }),
+    );
+  }
+
+  private listsOfRuns(): (HTMLElement | string)[] {
+    const open = (run: Run) => ({ ...word(run.name), open: () => this.change({ run: run.name }) });
+    const columns = this.data.figures
+      .map((figure, i) => ({ ...figure, i }))
+      .filter(({ i }) => this.runs.some((run) => run.values[i] !== null));
+    const main = columns.filter(
+      ({ key }) =>
+        /^(rpe_1m_at|ate_se3_translation|own_map_(rmse|outliers)$|reprojected_map_(rmse|outliers)$|real|own_memory_peak)/.test(key) ||
+        key === LATENCY,
+    );
+    const bad = this.runs.filter((run) => run.status !== "ok");
+    const failed: ShownTable = {
+      id: "failures",
+      title: "Runs that did not succeed",
+      note: "",
+      head: ["run", "state", "reason"],
+      rows: bad.map((run) => [open(run), word(run.status), word(run.reason)]),
+    };
+    const all: ShownTable = {
+      id: "runs",
+      title: "All runs",
+      note: "A click on a name opens the run, a click on a head sorts. CSV files hold unrounded figures.",
+      head: [
+        "run",
+        "world",
+        "flight",
+        "sensor",
+        "method",
+        "seed",
+        "status",
+        "coverage, %",
+        ...main.map(({ label: text, unit }) => `${text}, ${unit}`),
+      ],
+      rows: this.runs.map((run) => [
+        open(run),
+        word(run.world),
+        word(run.flight),
+        word(run.sensor),
+        word(label(run)),
+        number(run.seed),
+        word(run.status),
+        number(run.coverage_percent),
+        ...main.map(({ i }) => number(run.values[i])),
+      ]),
+    };
+    return [element("h2", {}, "Runs"), bad.length > 0 ? tableElement(failed) : "", tableElement(all)];
+  }
+
+  private tables(): HTMLElement {
+    return element(
+      "section",
+      { id: "tables" },
+      element("h2", {}, "Tables of the whole study"),
+      element("p", { className: "note" }, "The same as in the folder tables/, where each is CSV, Markdown, LaTeX and JSON."),
+      element("div", { className: "tables" }, ...this.data.tables.map((table) => tableElement(table))),
+    );
+  }
+
+  private again(): HTMLElement {
+    const { data } = this;
+    const commands = {
+      id: "commands",
+      title: "Commands that make each run again",
+      head: ["run", "commands"],
+      note: "The noise depends on seed and sensor only, so the same seed gives the same measurements. All sensors of a study are simulated on the same flight.",
+      rows: data.runs.map((run) => [word(run.name), word(run.command)]),
+    };
+    return element(
+      "section",
+      { id: "again" },
+      element("h2", {}, "How to make it again"),
+      element("p", {}, DEFINITIONS),
+      tableElement(commands),
+      element(
+        "p",
+        { className: "note" },
+        data.made_on.length > 0 ? `Runs made on: ${data.made_on.join("; ")}. ` : "",
+        `This page was made by lidarena ${data.version} from the result files only.`,
+      ),
+    );
+  }
 }
 
-function showView(world: string, root: HTMLElement, header: SceneHeader) {
-  root.classList.add("open", "live");  // first, because the view reads the size of its element
-  const view = new View(root.querySelector<HTMLElement>(".stage")!, header);
-  const state = { ...initialState(header), split: header.clouds.length > 1 };
-  const panel = new Panel(view, root, state, { inAddress: false, onTime: (time) => markTime(world, time) });
-  view.load(blocksInPage(`block-${world}`), () => panel.showLayers()).then(() => {
-    panel.change({ color: panel.state.color });
-    marks.view = world;
-  });
-}
-
-const data = jsonOf<ReportData>("data");
-if (data) {
-  drawFigures(data);
-  for (const world of data.worlds) prepareView(world);
-  marks.ready = "1";
-}
+new Report();

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // A cloud on the GPU: one buffer per chunk and column, reallocated when the loaded points double.
 import * as THREE from "three";
-import type { ChunkHeader, CloudHeader, FieldHeader } from "./scene";
+import { sharePoints, type ChunkHeader, type CloudHeader, type FieldHeader } from "./scene";
 import { pointMaterial, type PointStyle } from "./point_material";
 
 interface Column {
   name: string;
   width: number;
-  values: Uint16Array;  // of the whole chunk; zero where not loaded yet
+  values: Uint16Array; // of the whole chunk; zero where not loaded yet
 }
 
 interface Chunk {
@@ -15,12 +15,7 @@ interface Chunk {
   columns: Column[];
   points: THREE.Points;
   box: THREE.Box3;
-  loaded: number;  // points on the GPU
-}
-
-/** Number of points of a chunk of `count` that are in the blocks before block `part` of `parts`. */
-export function sharePoints(count: number, part: number, parts: number): number {
-  return Math.floor((count * part) / parts);
+  loaded: number; // points on the GPU
 }
 
 export interface PickedPoint {
@@ -36,7 +31,10 @@ export class Cloud {
   private material: THREE.ShaderMaterial;
   private partsLoaded = 0;
 
-  constructor(readonly header: CloudHeader, style: PointStyle) {
+  constructor(
+    readonly header: CloudHeader,
+    style: PointStyle,
+  ) {
     this.material = pointMaterial(header.fields, style);
     for (const chunk of header.chunks) this.addChunk(chunk);
   }
@@ -54,7 +52,7 @@ export class Cloud {
     const columns = [column("position", 3), ...this.header.fields.map((field) => column(`a_${field.name}`, 1))];
     const points = new THREE.Points(new THREE.BufferGeometry(), this.material);
     points.visible = false;
-    points.frustumCulled = false;  // plan() culls and also distributes the budget of points
+    points.frustumCulled = false; // plan() culls and also distributes the budget of points
     points.position.set(...header.min);
     points.scale.set(...(header.size.map((s) => Math.max(s, 1e-6)) as [number, number, number]));
     points.updateMatrixWorld();
@@ -140,8 +138,15 @@ export class Cloud {
    * Of the drawn and accepted points within `radius` pixels of (x, y), the one closest to the
    * camera.
    */
-  pick(toClip: THREE.Matrix4, width: number, height: number, x: number, y: number, radius: number,
-       accepts: (picked: PickedPoint) => boolean): PickedPoint | null {
+  pick(
+    toClip: THREE.Matrix4,
+    width: number,
+    height: number,
+    x: number,
+    y: number,
+    radius: number,
+    accepts: (picked: PickedPoint) => boolean,
+  ): PickedPoint | null {
     let best: PickedPoint | null = null;
     let bestDepth = Infinity;
     const clip = new THREE.Vector4();

@@ -4,15 +4,21 @@
 
 export type Rgb = [number, number, number];
 
-/**
- * Dark blue to yellow, the same as distance_color() in lidarena/report/image.cpp; red beyond the
- * end.
- */
+/** Dark blue to yellow; red beyond the end. */
 const DISTANCE_RAMP: Rgb[] = [
-  [0, 34, 78], [55, 83, 130], [110, 125, 125], [180, 165, 90], [254, 226, 52],
+  [0, 34, 78],
+  [55, 83, 130],
+  [110, 125, 125],
+  [180, 165, 90],
+  [254, 226, 52],
 ];
 const VALUE_RAMP: Rgb[] = [
-  [62, 20, 92], [62, 72, 140], [42, 118, 142], [48, 163, 120], [140, 200, 70], [238, 226, 60],
+  [62, 20, 92],
+  [62, 72, 140],
+  [42, 118, 142],
+  [48, 163, 120],
+  [140, 200, 70],
+  [238, 226, 60],
 ];
 export const OUTLIER: Rgb = [214, 32, 39];
 export const TRUTH = "#4b5563";
@@ -20,8 +26,18 @@ export const TRUTH = "#4b5563";
  * One color per run, the same in every chart and view; distinguishable with color blindness, too.
  */
 export const RUN_COLORS = [
-  "#2b6cb0", "#c2410c", "#4d7c0f", "#7c3aed", "#0f766e", "#be185d", "#a16207", "#334155",
-  "#0891b2", "#f59e0b", "#65a30d", "#94a3b8",
+  "#2b6cb0",
+  "#c2410c",
+  "#4d7c0f",
+  "#7c3aed",
+  "#0f766e",
+  "#be185d",
+  "#a16207",
+  "#334155",
+  "#0891b2",
+  "#f59e0b",
+  "#65a30d",
+  "#94a3b8",
 ];
 
 export function rampOf(name: string): Rgb[] {

@@ -4,7 +4,10 @@
 type Child = Node | string;
 
 export function element<K extends keyof HTMLElementTagNameMap>(
-  tag: K, properties: Record<string, unknown> = {}, ...children: Child[]): HTMLElementTagNameMap[K] {
+  tag: K,
+  properties: Record<string, unknown> = {},
+  ...children: Child[]
+): HTMLElementTagNameMap[K] {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(properties)) {
     if (name in made) (made as unknown as Record<string, unknown>)[name] = value;
@@ -63,4 +66,18 @@ export function slider(label: string, options: SliderOptions, onInput: (value: n
       output.textContent = shown(next);
     },
   };
+}
+
+/** Calls `action` once, when the element is in sight or nearly so. */
+export function whenInSight(target: Element, action: () => void): IntersectionObserver {
+  const watch = new IntersectionObserver(
+    (entries) => {
+      if (!entries.some((entry) => entry.isIntersecting)) return;
+      watch.disconnect();
+      action();
+    },
+    { rootMargin: "600px" },
+  );
+  watch.observe(target);
+  return watch;
 }

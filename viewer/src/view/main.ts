@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Script of the page of `lidarena view`: reads the scene from the page and shows it.
 import "./view.css";
+import { element } from "./elements";
 import { Panel } from "./panel";
+import { scenePicture } from "./picture";
 import { blocksFromServer, blocksInPage, type SceneHeader } from "./scene";
 import { initialState, readHash } from "./state";
 import { View } from "./view";
 
-const root = document.getElementById("view")!;
-const marks = document.documentElement.dataset;  // read by tests only
+const header = JSON.parse(document.getElementById("scene-0")!.textContent!) as SceneHeader;
+const stage = element("div", { className: "stage" });
+const progress = element("div", { className: "progress" });
+const root = element("div", { id: "view", className: `lidarena-view page${header.time ? " timed" : ""}` }, stage, progress);
+document.body.prepend(root);
+const marks = document.documentElement.dataset; // read by tests only
+const source = () => (document.documentElement.dataset.blocks === "server" ? blocksFromServer() : blocksInPage("block-0"));
 
 function start() {
-  const header = JSON.parse(document.getElementById("scene")!.textContent!) as SceneHeader;
-  const stage = root.querySelector<HTMLElement>(".stage")!;
   const view = new View(stage, header);
-  const panel = new Panel(view, root, readHash(initialState(header), location.hash), { inAddress: true });
+  const panel = new Panel(view, root, readHash(initialState(header), location.hash), { ofPage: true });
   root.classList.add("live");
   Object.assign(window, { lidarena: { view, panel } });
-  const progress = root.querySelector<HTMLElement>(".progress")!;
-  const source = document.documentElement.dataset.blocks === "server" ? blocksFromServer() : blocksInPage("block");
   const drawnMs = () => {
     view.finish();
     return String(Math.round(performance.now()));
@@ -28,26 +31,37 @@ function start() {
     if (view.drawn > 0 || view.clouds.length === 0) marks.firstPictureMs ??= drawnMs();
     marks.drawn = String(view.drawn);
   };
-  view.load(source, (share) => {
-    progress.style.width = `${100 * share}%`;
-    panel.showLayers();
-  }).then(() => {
-    progress.hidden = true;
-    panel.change({ color: panel.state.color });  // also for tracks that were loaded later
-    view.render();
-    view.onFrame();
-    marks.loadedMs = drawnMs();
-    marks.ready = "1";
-  }).catch(showError);
+  view
+    .load(source(), (share) => {
+      progress.style.width = `${100 * share}%`;
+      panel.showLayers();
+    })
+    .then(() => {
+      progress.hidden = true;
+      panel.change({ color: panel.state.color }); // also for tracks that were loaded later
+      view.render();
+      view.onFrame();
+      marks.loadedMs = drawnMs();
+      marks.ready = "1";
+    })
+    .catch(showError);
 }
 
-function showError(error: unknown) {
-  root.querySelector(".message")!.textContent = `The interactive view could not start: ${error instanceof Error ? error.message : error}`;
+async function showError(error: unknown) {
+  const fallback = element(
+    "div",
+    { className: "fallback" },
+    element("h1", {}, header.title),
+    element("p", { className: "message" }, `The interactive view could not start: ${error instanceof Error ? error.message : error}`),
+  );
+  root.append(fallback);
+  root.classList.remove("live");
+  fallback.insertAdjacentHTML("beforeend", await scenePicture(header, source()));
   marks.failed = "1";
 }
 
 try {
   start();
 } catch (error) {
-  showError(error);  // without WebGL the picture in the page remains visible
+  showError(error); // without WebGL the picture from above is shown
 }

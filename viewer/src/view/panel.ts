@@ -10,14 +10,18 @@ import { SURFACE_LOOKS } from "./surface";
 import type { Standpoint, View } from "./view";
 
 const COLOR_LABEL: Record<ColorBy, string> = {
-  distance: "distance to the mesh, m", intensity: "intensity", time: "time, s", height: "height, m", solid: "",
+  distance: "distance to the mesh, m",
+  intensity: "intensity",
+  time: "time, s",
+  height: "height, m",
+  solid: "",
 };
 const FRAMES_PER_SECOND = 20;
 const CLICK_TOLERANCE_PX = 4;
 
 export interface PanelOptions {
-  /** Keep the settings in the address after "#". */
-  inAddress: boolean;
+  /** The view fills the page: settings are kept in the address after "#", keys act wherever the focus is. */
+  ofPage: boolean;
   /** Called when the time line moves. */
   onTime?: (time: number) => void;
 }
@@ -32,43 +36,73 @@ export class Panel {
   private playing = false;
   private initial: State;
 
-  constructor(readonly view: View, readonly root: HTMLElement, public state: State, private options: PanelOptions) {
+  constructor(
+    readonly view: View,
+    readonly root: HTMLElement,
+    public state: State,
+    private options: PanelOptions,
+  ) {
     this.initial = { ...state };
     root.append(this.labels, this.key, this.readout);
     root.append(this.controls());
     if (view.header.time) root.append(this.timeBar(...view.header.time));
     this.applyAll();
     this.listenForPicks();
-    window.addEventListener("keydown", (event) => this.onKey(event));
+    (options.ofPage ? window : root).addEventListener("keydown", (event) => this.onKey(event as KeyboardEvent));
     view.onFrame = () => this.showStatus();
   }
 
   private controls(): HTMLElement {
     const { view, state } = this;
-    const standpoints: [Standpoint, string][] = [["oblique", "3D"], ["top", "Top"], ["side", "Side"], ["front", "Front"]];
+    const standpoints: [Standpoint, string][] = [
+      ["oblique", "3D"],
+      ["top", "Top"],
+      ["side", "Side"],
+      ["front", "Front"],
+    ];
     const children: HTMLElement[] = [
-      element("div", { className: "buttons" }, ...standpoints.map(([name, label]) =>
-        button(label, `look from this direction (${name})`, () => this.change({ view: name })))),
-      element("div", { className: "buttons" },
+      element(
+        "div",
+        { className: "buttons" },
+        ...standpoints.map(([name, label]) => button(label, `look from this direction (${name})`, () => this.change({ view: name }))),
+      ),
+      element(
+        "div",
+        { className: "buttons" },
         button("Side by side", "two pictures with the same camera", () => this.change({ split: !this.state.split })),
         button("Dark", "dark or light background", () => this.change({ dark: !this.state.dark })),
-        button("PNG", "save this picture", () => this.savePicture())),
+        button("PNG", "save this picture", () => this.savePicture()),
+      ),
       section("Shown", this.layerList),
-      section("Color", choice("by", colorsOf(view.header), state.color, (color) => this.change({ color, range: null })), this.rangeFields()),
+      section(
+        "Color",
+        choice("by", colorsOf(view.header), state.color, (color) => this.change({ color, range: null })),
+        this.rangeFields(),
+      ),
     ];
-    const points = section("Points",
+    const points = section(
+      "Points",
       slider("size", { min: 1, max: 8, step: 0.5, value: state.size, shown: (v) => `${v} px` }, (size) => this.change({ size })).element,
-      slider("at most", { min: 4, max: 7.5, step: 0.1, value: Math.log10(view.budget), shown: (v) => shortCount(10 ** v) },
-        (v) => this.change({ budget: Math.round(10 ** v) })).element);
+      slider("at most", { min: 4, max: 7.5, step: 0.1, value: Math.log10(view.budget), shown: (v) => shortCount(10 ** v) }, (v) =>
+        this.change({ budget: Math.round(10 ** v) }),
+      ).element,
+    );
     if (hasField(view.header, "distance")) {
       points.append(checkbox(`only beyond ${view.header.outlier_m * 100} cm`, state.outliers, (outliers) => this.change({ outliers })));
     }
     if (view.header.clouds.length > 0) children.push(points);
     if (view.header.meshes.length > 0) {
-      children.push(section("Mesh", choice("look", SURFACE_LOOKS, state.surface, (surface) => this.change({ surface }))));
+      children.push(
+        section(
+          "Mesh",
+          choice("look", SURFACE_LOOKS, state.surface, (surface) => this.change({ surface })),
+        ),
+      );
     }
     children.push(section("Cut", ...this.cutSliders()), this.status);
-    return element("aside", { className: "panel" }, ...children);
+    return this.options.ofPage
+      ? element("aside", { className: "panel" }, ...children)
+      : element("details", { className: "panel" }, element("summary", {}, "Controls"), ...children);
   }
 
   private rangeFields(): HTMLElement {
@@ -89,22 +123,25 @@ export class Panel {
     const [low, high] = this.view.header.bounds;
     const inside = (v: number, a: number) => Math.min(Math.max(v, low[a]), high[a]);
     const cut = (this.state.cut ?? [low, high]).map((corner) => corner.map(inside)) as [Vec3, Vec3];
-    return ["x", "y", "z"].flatMap((axis, a) => [0, 1].map((end) => {
-      const shown = (v: number) => `${v.toFixed(1)} m`;
-      const step = Math.max((high[a] - low[a]) / 200, 1e-3);
-      return slider(`${axis} ${end ? "to" : "from"}`, { min: low[a], max: high[a], step, value: cut[end][a], shown }, (value) => {
-        cut[end][a] = value;
-        this.change({ cut: withoutBoundLimits(cut, low, high) });
-      }).element;
-    }));
+    return ["x", "y", "z"].flatMap((axis, a) =>
+      [0, 1].map((end) => {
+        const shown = (v: number) => `${v.toFixed(1)} m`;
+        const step = Math.max((high[a] - low[a]) / 200, 1e-3);
+        return slider(`${axis} ${end ? "to" : "from"}`, { min: low[a], max: high[a], step, value: cut[end][a], shown }, (value) => {
+          cut[end][a] = value;
+          this.change({ cut: withoutBoundLimits(cut, low, high) });
+        }).element;
+      }),
+    );
   }
 
   private timeBar(from: number, to: number): HTMLElement {
     const play = button("▶", "play (space)", () => this.play(!this.playing));
     play.className = "play";
     const shown = (v: number) => `${v.toFixed(1)} s`;
-    this.timeSlider = slider("time", { min: from, max: to, step: (to - from) / 2000, value: to, shown },
-      (t) => this.change({ t: t >= to ? null : t }));
+    this.timeSlider = slider("time", { min: from, max: to, step: (to - from) / 2000, value: to, shown }, (t) =>
+      this.change({ t: t >= to ? null : t }),
+    );
     const windows = ["all", "10 s", "3 s", "1 s", "0.1 s"] as const;
     const window = choice("last", windows, "all", (w) => this.change({ window: w === "all" ? null : parseFloat(w) }));
     return element("div", { className: "timebar" }, play, this.timeSlider.element, window);
@@ -114,7 +151,7 @@ export class Panel {
   change(some: Partial<State>) {
     this.state = { ...this.state, ...some };
     this.apply(some);
-    if (this.options.inAddress) history.replaceState(null, "", `#${writeHash(this.state, this.initial)}`);
+    if (this.options.ofPage) history.replaceState(null, "", `#${writeHash(this.state, this.initial)}`);
   }
 
   private applyAll() {
@@ -130,7 +167,13 @@ export class Panel {
     if ("size" in some) view.style.uPixels.value = state.size * view.renderer.getPixelRatio();
     if (state.budget !== null) view.budget = state.budget;
     if ("surface" in some) view.setSurfaceLook(state.surface);
-    if ("cut" in some) view.setCut(...(state.cut ?? [[-1e9, -1e9, -1e9], [1e9, 1e9, 1e9]]));
+    if ("cut" in some)
+      view.setCut(
+        ...(state.cut ?? [
+          [-1e9, -1e9, -1e9],
+          [1e9, 1e9, 1e9],
+        ]),
+      );
     if ("t" in some || "window" in some) this.applyTime();
     if ("dark" in some) {
       this.root.classList.toggle("dark", state.dark);
@@ -170,24 +213,32 @@ export class Panel {
   /** Updates the list of layers, with a checkbox for each side. */
   showLayers() {
     const sides = this.state.split ? 2 : 1;
-    this.layerList.replaceChildren(...this.view.layers.map((layer) => {
-      const ticks = Array.from({ length: sides }, (_, side) => {
-        const input = element("input", { type: "checkbox", checked: layer.shown[side], title: sides === 1 ? "show" : side ? "right" : "left" });
-        input.onchange = () => {
-          layer.shown[side] = input.checked;
-          this.showLayers();
-          this.view.invalidate();
-        };
-        return input;
-      });
-      const mark = element("span", { className: `mark ${layer.kind}` });
-      mark.style.background = layer.kind === "cloud" ? "none" : layer.color;
-      return element("div", { className: "layer" }, ...ticks, mark, element("span", { title: layer.name }, layer.name));
-    }));
-    this.labels.replaceChildren(...Array.from({ length: sides }, (_, side) => {
-      const names = this.view.layers.filter((l) => l.kind === "cloud" && l.shown[side]).map((l) => l.name);
-      return element("span", {}, names.join(" + "));
-    }));
+    this.layerList.replaceChildren(
+      ...this.view.layers.map((layer) => {
+        const ticks = Array.from({ length: sides }, (_, side) => {
+          const input = element("input", {
+            type: "checkbox",
+            checked: layer.shown[side],
+            title: sides === 1 ? "show" : side ? "right" : "left",
+          });
+          input.onchange = () => {
+            layer.shown[side] = input.checked;
+            this.showLayers();
+            this.view.invalidate();
+          };
+          return input;
+        });
+        const mark = element("span", { className: `mark ${layer.kind}` });
+        mark.style.background = layer.kind === "cloud" ? "none" : layer.color;
+        return element("div", { className: "layer" }, ...ticks, mark, element("span", { title: layer.name }, layer.name));
+      }),
+    );
+    this.labels.replaceChildren(
+      ...Array.from({ length: sides }, (_, side) => {
+        const names = this.view.layers.filter((l) => l.kind === "cloud" && l.shown[side]).map((l) => l.name);
+        return element("span", {}, names.join(" + "));
+      }),
+    );
   }
 
   private showKey() {
@@ -207,8 +258,10 @@ export class Panel {
     const { view } = this;
     const loaded = view.clouds.reduce((sum, cloud) => sum + cloud.loaded, 0);
     const all = view.header.clouds.reduce((sum, cloud) => sum + cloud.points, 0);
-    this.status.textContent = `${shortCount(view.drawn)} of ${shortCount(loaded)} points drawn` +
-      (loaded < all ? `, ${shortCount(all)} in total` : "") + ` (${view.header.frame})`;
+    this.status.textContent =
+      `${shortCount(view.drawn)} of ${shortCount(loaded)} points drawn` +
+      (loaded < all ? `, ${shortCount(all)} in total` : "") +
+      ` (${view.header.frame})`;
   }
 
   private listenForPicks() {
@@ -227,10 +280,12 @@ export class Panel {
     this.readout.hidden = !picked;
     if (!picked) return;
     const place = picked.position.toArray().map((v, i) => (v + this.view.header.origin[i]).toFixed(3));
-    const values = picked.values.map(({ field, value }) =>
-      `${field.name}: ${value === null ? "none" : `${Number(value.toPrecision(4))} ${field.unit}`}`);
-    this.readout.replaceChildren(...[picked.cloud.header.name, `x, y, z: ${place.join(", ")} m`, ...values]
-      .map((line) => element("div", {}, line)));
+    const values = picked.values.map(
+      ({ field, value }) => `${field.name}: ${value === null ? "none" : `${Number(value.toPrecision(4))} ${field.unit}`}`,
+    );
+    this.readout.replaceChildren(
+      ...[picked.cloud.header.name, `x, y, z: ${place.join(", ")} m`, ...values].map((line) => element("div", {}, line)),
+    );
   }
 
   private onKey(event: KeyboardEvent) {
@@ -268,7 +323,11 @@ export class Panel {
     }
     pen.fillStyle = this.state.dark ? "#e5e7eb" : "#1c2430";
     pen.font = `${12 * scale}px sans-serif`;
-    pen.fillText(`${COLOR_LABEL[this.view.colorBy]}: ${this.view.range.map((v) => Number(v.toPrecision(4))).join(" ... ")}`, x, y - 6 * scale);
+    pen.fillText(
+      `${COLOR_LABEL[this.view.colorBy]}: ${this.view.range.map((v) => Number(v.toPrecision(4))).join(" ... ")}`,
+      x,
+      y - 6 * scale,
+    );
   }
 }
 

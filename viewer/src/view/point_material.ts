@@ -6,10 +6,10 @@ import type { FieldHeader } from "./scene";
 
 /** Uniforms shared by all clouds; a change takes effect in the next frame. */
 export interface PointStyle {
-  uColorBy: { value: number };  // index into COLOR_BY
+  uColorBy: { value: number }; // index into COLOR_BY
   uRange: { value: THREE.Vector2 };
   uRamp: { value: THREE.DataTexture };
-  uTime: { value: THREE.Vector2 };  // interval shown: from, to; s
+  uTime: { value: THREE.Vector2 }; // interval shown: from, to; s
   uCutMin: { value: THREE.Vector3 };
   uCutMax: { value: THREE.Vector3 };
   uOutliersOnly: { value: number };

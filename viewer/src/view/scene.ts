@@ -58,12 +58,17 @@ export interface SceneHeader {
   bounds: [Vec3, Vec3];
   time: [number, number] | null;
   time_origin_s: number;
-  window_s: number | null;  // duration shown initially, from the beginning; null: all
+  window_s: number | null; // duration shown initially, from the beginning; null: all
   outlier_m: number;
   clouds: CloudHeader[];
   meshes: MeshHeader[];
   paths: PathHeader[];
   block_bytes: number[];
+}
+
+/** Number of points of a chunk of `count` that are in the blocks before block `part` of `parts`. */
+export function sharePoints(count: number, part: number, parts: number): number {
+  return Math.floor((count * part) / parts);
 }
 
 /** Loads the bytes of a block. */
@@ -77,10 +82,10 @@ export function decodeBase64(text: string): ArrayBuffer {
 }
 
 /**
- * Reads blocks from inert elements of the page with the ids PREFIX-N. Waits for those that the
- * browser has not parsed yet; empties an element after decoding to free the memory of its text.
+ * Reads blocks from inert elements of the page with the ids PREFIX-N. Waits for those that the browser has not parsed yet;
+ * unless they are to be read again, empties an element after decoding to free the memory of its text.
  */
-export function blocksInPage(prefix: string): BlockSource {
+export function blocksInPage(prefix: string, again = false): BlockSource {
   return async (index) => {
     const id = `${prefix}-${index}`;
     let element = document.getElementById(id);
@@ -90,7 +95,7 @@ export function blocksInPage(prefix: string): BlockSource {
       element = document.getElementById(id);
     }
     const bytes = decodeBase64(element!.textContent ?? "");
-    element!.textContent = "";
+    if (!again) element!.textContent = "";
     return bytes;
   };
 }

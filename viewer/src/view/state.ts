@@ -7,15 +7,15 @@ import type { Standpoint } from "./view";
 
 export interface State {
   color: ColorBy;
-  range: [number, number] | null;  // null: the default range of the color
+  range: [number, number] | null; // null: the default range of the color
   outliers: boolean;
   surface: SurfaceLook;
   split: boolean;
   view: Standpoint;
-  size: number;  // of points, px
-  budget: number | null;  // points drawn at most; null: the View's default
-  t: number | null;  // null: the end
-  window: number | null;  // s before t that are shown; null: all
+  size: number; // of points, px
+  budget: number | null; // points drawn at most; null: the View's default
+  t: number | null; // null: the end
+  window: number | null; // s before t that are shown; null: all
   cut: [Vec3, Vec3] | null;
   dark: boolean;
 }
@@ -44,8 +44,18 @@ export function usualRange(header: SceneHeader, by: ColorBy): [number, number] {
 export function initialState(header: SceneHeader): State {
   const t = header.window_s !== null && header.time ? header.time[0] + header.window_s : null;
   return {
-    color: colorsOf(header)[0], range: null, outliers: false, surface: "see-through", split: false,
-    view: "oblique", size: 2, budget: null, t, window: header.window_s, cut: null, dark: false,
+    color: colorsOf(header)[0],
+    range: null,
+    outliers: false,
+    surface: "see-through",
+    split: false,
+    view: "oblique",
+    size: 2,
+    budget: null,
+    t,
+    window: header.window_s,
+    cut: null,
+    dark: false,
   };
 }
 

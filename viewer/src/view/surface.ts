@@ -10,15 +10,24 @@ export class Surface {
   readonly object: THREE.Mesh;
   private material: THREE.MeshLambertMaterial;
 
-  constructor(readonly header: MeshHeader, bytes: ArrayBuffer, planes: THREE.Plane[]) {
+  constructor(
+    readonly header: MeshHeader,
+    bytes: ArrayBuffer,
+    planes: THREE.Plane[],
+  ) {
     const geometry = new THREE.BufferGeometry();
     const vertices = new Float32Array(bytes, 0, 3 * header.vertices);
     const triangles = new Uint32Array(bytes, 12 * header.vertices, 3 * header.triangles);
     geometry.setAttribute("position", new THREE.BufferAttribute(vertices, 3));
     geometry.setIndex(new THREE.BufferAttribute(triangles, 1));
     this.material = new THREE.MeshLambertMaterial({
-      color: "#9aa7b5", flatShading: true, side: THREE.DoubleSide, clippingPlanes: planes,
-      polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1,
+      color: "#9aa7b5",
+      flatShading: true,
+      side: THREE.DoubleSide,
+      clippingPlanes: planes,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
     });
     this.object = new THREE.Mesh(geometry, this.material);
   }

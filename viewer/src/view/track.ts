@@ -17,8 +17,13 @@ export class Track {
   readonly errors: Float32Array | null;
   private readonly color: string;
 
-  constructor(readonly header: PathHeader, bytes: ArrayBuffer, color: string, markerLength: number,
-              planes: THREE.Plane[]) {
+  constructor(
+    readonly header: PathHeader,
+    bytes: ArrayBuffer,
+    color: string,
+    markerLength: number,
+    planes: THREE.Plane[],
+  ) {
     this.color = color;
     const n = header.poses;
     const column = (begin: number, width: number) => new Float32Array(bytes, 4 * n * begin, n * width);
@@ -31,7 +36,7 @@ export class Track {
     this.material = new THREE.LineBasicMaterial({ color, clippingPlanes: planes, depthTest: false, transparent: true });
     this.line = new THREE.Line(geometry, this.material);
     this.line.frustumCulled = false;
-    this.line.renderOrder = 5;  // drawn over everything, because a map would hide a path inside it
+    this.line.renderOrder = 5; // drawn over everything, because a map would hide a path inside it
     this.object.add(this.line, this.marker);
     AXIS_COLORS.forEach((axisColor, axis) => this.marker.add(axisLine(axis, markerLength, axisColor)));
   }

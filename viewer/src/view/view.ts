@@ -9,8 +9,8 @@ import type { BlockSource, SceneHeader, Vec3 } from "./scene";
 import { Surface, type SurfaceLook } from "./surface";
 import { Track } from "./track";
 
-const REST_MS_BEFORE_FULL_DRAW = 250;         // all points are drawn this long after the last camera motion
-const TARGET_FRAME_MS = 60;     // target duration of a frame during camera motion
+const REST_MS_BEFORE_FULL_DRAW = 250; // all points are drawn this long after the last camera motion
+const TARGET_FRAME_MS = 60; // target duration of a frame during camera motion
 const SOFTWARE_BUDGET = 1_000_000;
 const DEFAULT_BUDGET = 4_000_000;
 const PICK_RADIUS_PX = 8;
@@ -20,7 +20,7 @@ export interface Layer {
   name: string;
   kind: "cloud" | "path" | "mesh";
   color: string;
-  shown: [boolean, boolean];  // left (or alone), right
+  shown: [boolean, boolean]; // left (or alone), right
   object: THREE.Object3D;
 }
 
@@ -52,7 +52,11 @@ export class View {
   private queued = false;
   private time: [number, number] = [-Infinity, Infinity];
 
-  constructor(readonly container: HTMLElement, readonly header: SceneHeader) {
+  constructor(
+    readonly container: HTMLElement,
+    readonly header: SceneHeader,
+  ) {
+    if (!document.createElement("canvas").getContext("webgl2")) throw new Error("this browser has no WebGL");
     this.renderer = new THREE.WebGLRenderer({ antialias: true, powerPreference: "high-performance" });
     this.renderer.localClippingEnabled = true;
     this.renderer.setPixelRatio(Math.min(window.devicePixelRatio, 2));
@@ -61,8 +65,7 @@ export class View {
     this.budget = this.isSoftware() ? SOFTWARE_BUDGET : DEFAULT_BUDGET;
     this.movingBudget = this.budget / 4;
     this.style = makeStyle(header.outlier_m);
-    this.planes = [0, 1, 2].flatMap((axis) => [1, -1].map((sign) =>
-      new THREE.Plane(new THREE.Vector3().setComponent(axis, sign), 1e9)));
+    this.planes = [0, 1, 2].flatMap((axis) => [1, -1].map((sign) => new THREE.Plane(new THREE.Vector3().setComponent(axis, sign), 1e9)));
     this.addLights();
     this.setBackground("#f6f7f9");
 
@@ -70,10 +73,19 @@ export class View {
     this.controls = new OrbitControls(this.camera, this.renderer.domElement);
     this.controls.zoomToCursor = true;
     this.controls.addEventListener("change", () => this.moved());
-    this.controls.addEventListener("start", () => { this.stood = null; });
+    this.controls.addEventListener("start", () => {
+      this.stood = null;
+    });
     this.standAt("oblique");
     new ResizeObserver(() => this.resize()).observe(container);
     this.resize();
+  }
+
+  /** Frees the GPU; the view cannot be used afterwards. */
+  dispose() {
+    this.queued = true; // draws no further frame
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   private isSoftware(): boolean {

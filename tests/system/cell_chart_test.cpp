@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/report/cell_chart.hpp"
+#include "apps/lidarena/cell_chart.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace lidarena::report {
+namespace lidarena {
 namespace {
 
 using ::testing::HasSubstr;
@@ -47,4 +47,4 @@ TEST(CellChart, IsASelfContainedDocumentWithTitlesAxesAndTheOutline) {
 }
 
 }  // namespace
-}  // namespace lidarena::report
+}  // namespace lidarena

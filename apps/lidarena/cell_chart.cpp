@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/report/cell_chart.hpp"
+#include "apps/lidarena/cell_chart.hpp"
 
 #include <fmt/format.h>
 
-#include "lidarena/report/svg.hpp"
+#include <cmath>
 
-namespace lidarena::report {
+#include "lidarena/report/web_page.hpp"
+
+namespace lidarena {
 namespace {
 
 constexpr double kLeft = 46.0;  // px, space for the tick labels
@@ -13,6 +15,24 @@ constexpr double kTop = 44.0;
 constexpr double kTitleHeight = 20.0;
 constexpr double kAxisHeight = 44.0;
 constexpr double kStackedAspectRatio = 2.0;  // width / height above which panels are stacked
+
+using report::escaped;
+
+/// "Nice" tick positions (1, 2, 5 times a power of ten) that cover [low, high] in about `count`
+/// steps.
+std::vector<double> nice_ticks(double low, double high, int count) {
+  const double raw = (high - low) / count;
+  const double magnitude = std::pow(10.0, std::floor(std::log10(raw)));
+  const double ratio = raw / magnitude;
+  const double step = magnitude * (ratio < 1.5 ? 1 : ratio < 3.5 ? 2 : ratio < 7.5 ? 5 : 10);
+  std::vector<double> ticks;
+  // computed from whole steps, so that rounding errors do not add up
+  for (auto i = static_cast<long>(std::ceil(low / step - 1e-9));; ++i) {
+    const double tick = static_cast<double>(i) * step;
+    if (tick > high + 1e-9 * step) return ticks;
+    ticks.push_back(tick);
+  }
+}
 
 /// Positions and sizes, px.
 struct Layout {
@@ -129,4 +149,4 @@ std::string cell_chart_svg(const CellChart& chart) {
   return svg + "</svg>\n";
 }
 
-}  // namespace lidarena::report
+}  // namespace lidarena

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace lidarena::report {
+namespace lidarena {
 
 /// A grid of square cells over directions; lit cells (those that a shot has hit) are filled.
 struct CellPanel {
@@ -30,4 +30,4 @@ struct CellChart {
 /// A self-contained SVG document.
 std::string cell_chart_svg(const CellChart& chart);
 
-}  // namespace lidarena::report
+}  // namespace lidarena

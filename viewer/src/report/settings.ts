@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What the reader has chosen, kept in the address after "#", so that a view can be sent.
+import { distinct, DRIFT, label, type ReportData, type Run } from "./data";
+
+/** The filters: their labels and the value of a run. */
+export const FILTERS = {
+  world: (run: Run) => run.world,
+  flight: (run: Run) => run.flight,
+  sensor: (run: Run) => run.sensor,
+  method: (run: Run) => run.algorithm,
+  preset: (run: Run) => run.preset || "none",
+  seed: (run: Run) => String(run.seed),
+};
+export type FilterName = keyof typeof FILTERS;
+const NAMES = Object.keys(FILTERS) as FilterName[];
+
+export interface Settings {
+  filters: Partial<Record<FilterName, string>>; // a name that is missing: all
+  figure: string; // key, of the matrix
+  run: string; // name of the opened run, or ""
+}
+
+export function readSettings(hash: string, data: ReportData): Settings {
+  const given = new URLSearchParams(hash.replace(/^#/, ""));
+  const filters: Settings["filters"] = {};
+  for (const name of NAMES) {
+    const value = given.get(name);
+    if (value !== null && data.runs.some((run) => FILTERS[name](run) === value)) filters[name] = value;
+  }
+  const figure = data.figures.find(({ key }) => key === given.get("figure"))?.key ?? DRIFT;
+  return { filters, figure, run: data.runs.find((run) => run.name === given.get("run"))?.name ?? "" };
+}
+
+export function writeSettings({ filters, figure, run }: Settings): string {
+  const out = new URLSearchParams(filters as Record<string, string>);
+  if (figure !== DRIFT) out.set("figure", figure);
+  if (run) out.set("run", run);
+  return out.toString();
+}
+
+export function passes(run: Run, { filters }: Settings): boolean {
+  return NAMES.every((name) => filters[name] === undefined || FILTERS[name](run) === filters[name]);
+}
+
+/** The filters that can tell runs apart, with their values. */
+export function choices(data: ReportData): [FilterName, string[]][] {
+  const all = NAMES.map((name) => [name, distinct(data.runs, FILTERS[name])] as [FilterName, string[]]);
+  return all.filter(([, values]) => values.length > 1);
+}
+
+/** The runs of the same sensor and method, with the same settings otherwise. */
+export function sameCell(runs: Run[], run: { sensor: string; algorithm: string; preset: string }): Run[] {
+  return runs.filter((other) => other.sensor === run.sensor && label(other) === label(run));
+}
