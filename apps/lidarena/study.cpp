@@ -233,7 +233,7 @@ int study_verb(const Common& common, const StudyRequest& request) {
   }
   const auto spec = request.name.empty()
                         ? spec_of_one_world(request)
-                        : load_config<study::StudySpec>(configs.resolve("studies", request.name));
+                        : study::load_study(configs.resolve("studies", request.name));
   if (request.dry) {
     const auto code = study::ProgramCode::ask(study::find_program(options.program));
     print_plan(study::make_plan(spec, configs, code, options.shard.of), options.shard, configs,

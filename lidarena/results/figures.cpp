@@ -143,6 +143,11 @@ template <Map map, Reading (*read)(const MapInGauge&)>
 Reading robust_map_of(const RunMetrics& m) {
   return m.maps.*map ? read((m.maps.*map)->robust) : Reading{};
 }
+template <std::optional<double> InterpolationFloor::*value>
+Reading floor_of_map(const RunMetrics& m) {
+  const InterpolationFloor& floor = m.maps.interpolation_floor;
+  return {floor.*value, "", "", "", {}, {}, count_of(floor.points, "points")};
+}
 template <double Summary::*statistic>
 Reading latency(const RunMetrics& m) {
   return {known(m.resources.latency, statistic), "", "", "", {}, {}, ""};
@@ -244,6 +249,12 @@ constexpr std::array kFigures{
            "reprojected map, double walls", kOfMap, map_of<kReprojected, double_walls>, kMapTable},
     Figure{"reprojected_map_identity", "identity cm", 100, "cm", "reprojected map, identity error",
            kOfMap, map_of<kReprojected, identity>, kMapTable},
+    Figure{"interpolation_floor_rmse", "floor cm", 100, "cm",
+           "reprojected map, interpolation (floor)", kOfMap,
+           floor_of_map<&InterpolationFloor::rmse_m>, kMapTable},
+    Figure{"interpolation_floor_outliers", "floor outliers %", 1, "%",
+           "reprojected map, beyond 20 cm (floor)", kOfMap,
+           floor_of_map<&InterpolationFloor::outliers_percent>, kMapTable},
     Figure{"latency_median", nullptr, 1e3, "ms", "latency, median", kOfRun,
            latency<&Summary::median>},
     Figure{"latency_p95", "P95 ms", 1e3, "ms", "latency, P95", kOfRun, latency<&Summary::p95>,

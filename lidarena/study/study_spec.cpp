@@ -118,6 +118,18 @@ const ExternalProgram* find_external(const StudySpec& spec, const std::string& n
   return found == spec.external.end() ? nullptr : &*found;
 }
 
+StudySpec load_study(const fs::path& file) {
+  const auto own = load_config<StudySpec>(file);
+  if (own.base.empty()) return own;
+  const fs::path base = file.parent_path() / own.base;
+  auto spec = load_config<StudySpec>(base);
+  if (!spec.base.empty())
+    throw InputError(base.string(), "is the base of a study and has a base itself",
+                     "name " + spec.base + " in " + file.string());
+  read_config(ConfigNode::load(file), spec);
+  return spec;
+}
+
 std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
                                                      const ConfigFolder& configs) {
   if (spec.reference.empty()) return {};

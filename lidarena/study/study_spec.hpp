@@ -69,6 +69,7 @@ struct RunLimits {
 
 /// A matrix of scenes, timing modes, sensors, algorithms and seeds.
 struct StudySpec {
+  std::string base;  ///< file of a study beside this one whose values hold where this has none
   std::string title = "Study";
   std::vector<StudyScene> scenes;
   std::vector<std::string> sensors;
@@ -83,6 +84,8 @@ struct StudySpec {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
+    v("base", self.base, "",
+      "a study's file beside this one, whose values hold where this has none");
     v("title", self.title, "", "heading of the report");
     v("scenes", self.scenes, "", "worlds and the flights through them");
     v("sensors", self.sensors, "", "names in configs/sensors, or files");
@@ -123,6 +126,10 @@ struct PlannedRun {
 
 /// The external program of this name, or null.
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name);
+
+/// Reads a study's file, over the values of its base if it names one. Throws InputError also if the
+/// base has a base.
+StudySpec load_study(const std::filesystem::path& file);
 
 /// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError if the
 /// study is incomplete or contradictory, or a name in it does not exist.

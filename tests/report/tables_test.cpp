@@ -31,7 +31,7 @@ results::RunRecord row(const std::string& world, const std::string& sensor,
 /// The paper's own figures, as if they were our runs.
 results::StudyResults results_of_the_paper() {
   const study::ConfigFolder configs(std::string(LIDARENA_SOURCE_DIR) + "/configs");
-  const auto spec = load_config<study::StudySpec>(configs.resolve("studies", "paper"));
+  const auto spec = study::load_study(configs.resolve("studies", "paper"));
   results::StudyResults results =
       results::made_up::runs_of_reference(study::load_reference(spec, configs));
   results.expect = spec.expect;

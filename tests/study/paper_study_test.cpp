@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 ConfigFolder configs() { return ConfigFolder(std::string(LIDARENA_SOURCE_DIR) + "/configs"); }
 
-StudySpec paper() { return load_config<StudySpec>(configs().resolve("studies", "paper")); }
+StudySpec paper() { return load_study(configs().resolve("studies", "paper")); }
 
 /// The paper's own figures as if they were our runs.
 results::StudyResults published() {
@@ -33,8 +33,9 @@ TEST(PaperStudy, HasTheFiguresOfThreeTablesAndTwelveFindings) {
   EXPECT_EQ(results.reference.size(), 3 * 20U + 4U);
   EXPECT_EQ(results.expect.size(), 12U);
   EXPECT_FALSE(planned_cells(paper(), configs()).empty());
-  const StudySpec full = load_config<StudySpec>(configs().resolve("studies", "paper_full"));
-  EXPECT_EQ(full.expect.size(), 12U);
+  const StudySpec full = load_study(configs().resolve("studies", "paper_full"));
+  EXPECT_EQ(full.expect.size(), 12U) << "those of its base";
+  EXPECT_EQ(full.scenes.size(), 5U) << "its own alone";
 }
 
 TEST(PaperStudy, AllThatFiguresCanJudgeHoldsOnThePapersOwn) {

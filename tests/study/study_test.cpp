@@ -205,7 +205,7 @@ TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
 
 TEST(Plan, EveryStudyShippedCanBePlanned) {
   for (const std::string& name : configs().names("studies")) {
-    const auto spec = load_config<StudySpec>(configs().resolve("studies", name));
+    const auto spec = load_study(configs().resolve("studies", name));
     EXPECT_FALSE(planned_cells(spec, configs()).empty()) << name;
   }
 }
@@ -235,6 +235,23 @@ TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
               HasSubstr("which is a built-in algorithm"));
   EXPECT_THAT(error([](StudySpec& s) { s.external.emplace_back().name = "theirs"; }),
               HasSubstr("without a name or a command"));
+}
+
+TEST(LoadStudy, TakesTheValuesOfItsBaseWhereItHasNone) {
+  const TemporaryFolder folder;
+  const auto write = [&](const char* name, const char* text) {
+    std::ofstream(folder.path() / name) << text;
+    return folder.path() / name;
+  };
+  write("base.yaml", "title: Base\nsensors: [a, b]\nseeds: [1, 2]\nlimits: {minutes: 7}\n");
+  const auto file = write("own.yaml", "base: base.yaml\ntitle: Own\nseeds: [5]\n");
+  const StudySpec spec = load_study(file);
+  EXPECT_EQ(spec.title, "Own");
+  EXPECT_EQ(spec.sensors, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(spec.seeds, std::vector<std::uint64_t>{5});
+  EXPECT_EQ(spec.limits.minutes, 7.0);
+  EXPECT_THROW(load_study(write("third.yaml", "base: own.yaml\n")), InputError);
+  EXPECT_THROW(load_study(write("none.yaml", "base: missing.yaml\n")), InputError);
 }
 
 TEST(Plan, ModesMakeDatasetsOfTheirOwnAndExternalProgramsAreCells) {

@@ -24,7 +24,8 @@ constexpr double kTracked = 0.1;  // m; the map's voxels have 0.2 m, lost tracki
 
 Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
-  ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(), Parallel(1));
+  ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(),
+                    Parallel(1));
   return synthetic::play(events, odometry);
 }
 

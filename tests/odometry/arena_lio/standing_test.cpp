@@ -15,7 +15,8 @@ using synthetic::Recording;
 
 Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
-  ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(), Parallel(1));
+  ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(),
+                    Parallel(1));
   return synthetic::play(events, odometry);
 }
 
