@@ -182,7 +182,7 @@ def efficiency(studies):
     """How much of the time of one and of two nodes is work: runs that mostly sleep do not compete for cores."""
     for nodes in (1, 2):
         name = f"nodes{nodes}"
-        job = studies.submit(name, tasks=nodes, slow=20)
+        job = studies.submit(name, tasks=nodes, slow=15)
         studies.wait_for_end(job, seconds=500)
         tasks = studies.tasks(job)[0]
         begin, end = (datetime.datetime.fromisoformat(choose(task[key] for task in tasks))
