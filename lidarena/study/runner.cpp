@@ -11,13 +11,12 @@
 #include <thread>
 
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/study/claim.hpp"
 #include "lidarena/study/process.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/run_external.hpp"
 #include "lidarena/study/score_run.hpp"
 #include "lidarena/study/stages.hpp"
-#include "lidarena/study/workplace.hpp"
+#include "lidarena/study/unit_queue.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -27,30 +26,12 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLog = "lidarena.log";  ///< in the folder of each stage
 constexpr auto kPollPeriod = std::chrono::milliseconds(20);
-constexpr auto kScanPeriod = std::chrono::seconds(1);  ///< between looks at the claims of others
-/// A claim untouched for this long may be that of a dead process: worth waiting for.
-constexpr double kSuspiciousSilence_s = 15.0;
 constexpr int kWorkFailed =
     1;  ///< exit code of a program whose results may be written, e.g. diverged
 
 double seconds_since(Clock::time_point begin) {
   return std::chrono::duration<double>(Clock::now() - begin).count();
 }
-
-/// A claimed unit.
-struct OpenUnit {
-  OpenUnit(const PlanUnit& planned, const StudyPlan& plan, const fs::path& study,
-           const fs::path& scratch, const std::string& token)
-      : unit(planned), place(study, scratch, token), stages(plan, place.root()) {}
-
-  const PlanUnit& unit;
-  Workplace place;
-  Stages stages;
-  std::deque<Stage> waiting;  ///< cells to run or to score
-  bool keeps_data = true;     ///< false: its dataset is simulated anew for each run
-  bool is_flying = false, has_flown = false;
-  int running = 0;
-};
 
 /// One of the jobs that run at the same time.
 struct Slot {
@@ -63,11 +44,10 @@ struct Slot {
   std::unique_ptr<Process> process;
 };
 
-/// Processor cores for one job of several; none for all, if this process shares the machine with
-/// others or has only one job.
+/// Processor cores for one job of several, or none for all.
 std::vector<int> cores_of_job(int job, int jobs, int threads) {
+  if (jobs == 1) return {};
   const std::vector<int> usable = usable_cores();
-  if (jobs == 1 || static_cast<int>(usable.size()) > jobs * threads) return {};
   std::vector<int> cores;
   for (int i = 0; i < threads; ++i)
     cores.push_back(usable[static_cast<std::size_t>(job * threads + i) % usable.size()]);
@@ -80,24 +60,20 @@ class Runner {
          const StudyOptions& options, LogSink& log)
       : plan_(plan),
         configs_(configs),
-        study_(study),
         options_(options),
         log_(log),
-        claims_(study / "claims", options.scratch.string()),
+        queue_(plan, configs, study, options, log),
         published_(plan, study) {
     const int jobs = std::max(1, options.jobs);
-    const int all = options.threads > 0 ? options.threads : static_cast<int>(usable_cores().size());
+    const int cores = static_cast<int>(usable_cores().size());
+    const int all = options.threads > 0 ? options.threads : cores;
+    const bool owns_cores = all >= cores;  // else others may use the same ones
     slots_.resize(static_cast<std::size_t>(jobs));
     for (int job = 0; job < jobs; ++job) {
       Slot& slot = slots_[static_cast<std::size_t>(job)];
       slot.threads = std::max(1, all / jobs);
-      slot.command.cores = cores_of_job(job, jobs, slot.threads);
+      if (owns_cores) slot.command.cores = cores_of_job(job, jobs, slot.threads);
     }
-    for (const std::size_t i : units_of(plan, options.shard)) {
-      todo_.push_back(&plan.units[i]);
-      weight_of_all_ += plan.units[i].seconds;
-    }
-    weight_left_ = weight_of_all_;
   }
 
   WorkDone run() {
@@ -108,11 +84,11 @@ class Runner {
         if (!slot.process && stop == Stop::kNo) start_next(slot);
         if (slot.process) poll(slot);
       }
-      log_.progress("study", weight_of_all_ - weight_left_, weight_of_all_);
-      if (!is_busy() && (stop != Stop::kNo || is_finished())) break;
+      log_.progress("study", queue_.seconds_done(), queue_.seconds_of_all());
+      if (!is_busy() && (stop != Stop::kNo || queue_.is_finished())) break;
       std::this_thread::sleep_for(kPollPeriod);
     }
-    done_.is_interrupted = !open_.empty() || !todo_.empty();
+    done_.is_interrupted = queue_.has_work();
     if (!done_.is_interrupted) log_.progress("study", 1.0, 1.0);
     return done_;
   }
@@ -132,38 +108,18 @@ class Runner {
   WorkDone interrupt() {
     for (Slot& slot : slots_) slot.process.reset();
     slots_.clear();
-    open_.clear();
+    queue_.give_up();
     done_.is_interrupted = true;
     return done_;
-  }
-
-  /// Whether this worker may leave: nothing is left, or others are at work on all of it. A worker
-  /// for the whole study waits for them, any other only while one of them may be dead.
-  bool is_finished() {
-    if (!open_.empty()) return false;
-    if (todo_.empty()) return true;
-    if (!std::exchange(has_scanned_, false)) return false;
-    if (options_.waits_for_others) return tell_waiting(), false;
-    const bool leaves = std::ranges::none_of(todo_, [&](const PlanUnit* unit) {
-      const std::optional<ClaimSeen> claim = claims_.look(unit->dataset);
-      return !claim || claim->silent_s > kSuspiciousSilence_s;
-    });
-    if (leaves) todo_.clear();
-    return leaves;
-  }
-
-  void tell_waiting() {
-    if (std::exchange(has_told_waiting_, true)) return;
-    log_.info(fmt::format("waiting for other processes that work on {} datasets", todo_.size()));
   }
 
   /// Starts the first stage that may start, of a unit that is open or of another one.
   void start_next(Slot& slot) {
     do {
-      for (const auto& unit : open_) {
+      for (const auto& unit : queue_.open()) {
         if (start_stage_of(slot, unit)) return;
       }
-    } while (open_next_unit());
+    } while (queue_.open_next());
   }
 
   bool start_stage_of(Slot& slot, const std::shared_ptr<OpenUnit>& unit) {
@@ -203,87 +159,6 @@ class Runner {
     slot.unit->place.tell(slot.stage.name);
   }
 
-  /// Cells of a unit that have no state yet, of those that the study's folder holds.
-  std::vector<std::size_t> open_cells(const PlanUnit& unit) const {
-    std::vector<std::size_t> open;
-    for (const std::size_t cell : unit.cells) {
-      const StageResult result = published_.run(unit, cell).result();
-      const bool has_state = result.state == StageState::kFailed
-                                 ? result.attempt == plan_.attempt
-                                 : result.state != StageState::kMissing;
-      if (!has_state) open.push_back(cell);
-    }
-    return open;
-  }
-
-  /// Claims the first unit with work that nobody has; false if there is none, or no room for it.
-  bool open_next_unit() {
-    if (next_scan_ > Clock::now()) return false;
-    for (auto next = todo_.begin(); next != todo_.end();) {
-      const PlanUnit& unit = **next;
-      if (open_cells(unit).empty()) {
-        count_out(unit.seconds);
-        next = todo_.erase(next);
-        continue;
-      }
-      const bool has_room = has_room_for(unit);
-      if (!has_room && !open_.empty()) break;
-      const std::optional<Claims::Taken> taken = claims_.take(unit.dataset);
-      if (taken) {
-        next = todo_.erase(next);
-        open(unit, *taken, has_room);
-        return true;
-      }
-      ++next;
-    }
-    next_scan_ = Clock::now() + kScanPeriod;
-    has_scanned_ = true;
-    return false;
-  }
-
-  void count_out(double seconds) {
-    weight_of_all_ -= seconds;  // the time of what others did says nothing about this worker
-    weight_left_ -= seconds;
-  }
-
-  void open(const PlanUnit& unit, const Claims::Taken& taken, bool has_room) {
-    if (const auto& dead = taken.taken_from) {
-      log_.info(fmt::format("{} is taken over from process {} on {}, which has ended", unit.dataset,
-                            dead->process, dead->host));
-      clear_workplace(study_, dead->scratch, dead->token);
-    }
-    if (flight_key(plan_, unit, configs_) != unit.flight) {
-      claims_.release(unit.dataset);
-      throw InputError(configs_.root().string(),
-                       "differs, here, from the files with which " + unit.dataset + " was planned",
-                       "plan the study again, or install the same files on all machines");
-    }
-    open_.push_back(std::make_shared<OpenUnit>(unit, plan_, study_, options_.scratch, taken.token));
-    OpenUnit& opened = *open_.back();
-    opened.keeps_data = has_room;
-    for (const std::size_t cell : open_cells(unit)) {
-      opened.waiting.push_back(opened.stages.run(unit, cell));
-      if (published_.run(unit, cell).first_open_step() > 0)
-        opened.place.fetch_run(plan_.cells[cell].name);
-      count_out(-plan_.seconds[cell]);
-    }
-    count_out(unit.seconds);
-    if (opened.waiting.empty()) close_finished();  // its last owner had just finished
-  }
-
-  /// Whether the measurements of one more dataset fit on the disk.
-  bool has_room_for(const PlanUnit& unit) const {
-    std::uint64_t held = 0, coming = 0;
-    for (const auto& other : open_) {
-      const std::uint64_t bytes = other->place.data_bytes(other->unit.dataset);
-      if (other->keeps_data && bytes == 0) coming += other->unit.data_bytes;
-      held += bytes;
-    }
-    if (options_.scratch_bytes) return held + coming + unit.data_bytes <= *options_.scratch_bytes;
-    const fs::path& disk = options_.scratch.empty() ? study_ : options_.scratch;
-    return coming + unit.data_bytes <= default_scratch_bytes(disk);
-  }
-
   void poll(Slot& slot) {
     const auto end = slot.process->poll();
     if (!end) return;
@@ -299,7 +174,7 @@ class Runner {
     pass_on_warnings(slot.stage);
     const std::shared_ptr<OpenUnit> unit = std::move(slot.unit);
     --unit->running;
-    if (!claims_.holds(unit->unit.dataset)) {
+    if (!queue_.holds(*unit)) {
       log_.warn(unit->unit.dataset +
                 " is worked on by another process, which took this one for dead");
       unit->waiting.clear();
@@ -307,7 +182,7 @@ class Runner {
     } else {
       finish(*unit, slot, done ? std::string() : end->reason);
     }
-    close_finished();
+    queue_.close_finished();
   }
 
   void finish(OpenUnit& unit, const Slot& slot, const std::string& reason) {
@@ -320,17 +195,6 @@ class Runner {
                       "mended",
                       error.path1().string(), slot.stage.name, error.code().message()));
     }
-  }
-
-  void close_finished() {
-    std::erase_if(open_, [&](std::shared_ptr<OpenUnit>& unit) {
-      if (!unit->waiting.empty() || unit->running > 0) return false;
-      const std::string dataset = unit->unit.dataset;
-      unit.reset();
-      claims_.release(dataset);
-      next_scan_ = Clock::now();
-      return true;
-    });
   }
 
   /// Throws if a stage failed because the disk is full: its cells have no result then.
@@ -402,15 +266,15 @@ class Runner {
   }
 
   void count_run(const Stage& stage) {
-    weight_left_ -= stage.weight;
+    queue_.count_done(stage.weight);
     ++done_.runs;
   }
 
   void log_time_left() {
-    const double done = weight_of_all_ - weight_left_;
-    if (done <= 0.0 || weight_left_ < 0.5) return;
+    const double done = queue_.seconds_done(), left = queue_.seconds_of_all() - done;
+    if (done <= 0.0 || left < 0.5) return;
     log_.info(fmt::format("{} runs done, about {:.0f} min left", done_.runs,
-                          std::ceil(seconds_since(begin_) * weight_left_ / done / 60.0)));
+                          std::ceil(seconds_since(begin_) * left / done / 60.0)));
   }
 
   /// Passes on the warnings of the stage's programs.
@@ -424,20 +288,13 @@ class Runner {
 
   const StudyPlan& plan_;
   const ConfigFolder& configs_;
-  const fs::path study_;
   const StudyOptions& options_;
   LogSink& log_;
-  Claims claims_;     // outlives the units, whose folders are deleted before their claims
-  Stages published_;  // in the study's folder
-  std::vector<std::shared_ptr<OpenUnit>> open_;
+  UnitQueue queue_;
+  Stages published_;         // in the study's folder
   std::vector<Slot> slots_;  // end before the folders that they work in
-  std::deque<const PlanUnit*> todo_;
-  Clock::time_point next_scan_ = Clock::now();
-  bool has_scanned_ = false;  ///< since it was last asked whether the worker is finished
-  double weight_of_all_ = 0.0, weight_left_ = 0.0;
   Clock::time_point begin_ = Clock::now();
   std::optional<Clock::time_point> stop_seen_;
-  bool has_told_waiting_ = false;
   WorkDone done_;
 };
 

@@ -123,7 +123,11 @@ std::uint64_t Workplace::data_bytes(const std::string& dataset) const {
 }
 
 void Workplace::tell(const std::string& what) const {
-  dataset::write_text_file(staging_ / kTold, what);
+  try {
+    dataset::write_text_file(staging_ / kTold, what);
+  } catch (const Error&) {
+    // It is for people to look at; a worker that has lost its claim learns that elsewhere.
+  }
 }
 
 std::string told_by(const fs::path& study, const std::string& token) {

@@ -31,7 +31,7 @@ class Workplace {
   void drop_data(const std::string& dataset) const;
   /// Size of the measurements on disk.
   std::uint64_t data_bytes(const std::string& dataset) const;
-  /// Tells the status of the study what is going on.
+  /// Tells the status of the study what is going on, if it can be written.
   void tell(const std::string& what) const;
 
  private:
