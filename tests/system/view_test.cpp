@@ -233,7 +233,9 @@ class ReportInBrowser : public ViewInBrowser {
                            "})())) }, 1000)"
                            "</script>");
     const std::string dom = browse("--dump-dom", state, gl);
-    if (gl == kSoftwareGl) EXPECT_THAT(page_errors(), ElementsAre());
+    if (gl == kSoftwareGl) {
+      EXPECT_THAT(page_errors(), ElementsAre());
+    }
     const std::string mark = "data-test=\"";
     const std::size_t begin = dom.find(mark);
     if (begin == std::string::npos) return nullptr;
