@@ -78,6 +78,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
     if (!draw_svg_figures(files.page, folder / "figures"))
       log.info("SVG files of the figures are left out: they need Node.js; the page has them");
   } else {
+    std::filesystem::remove(folder / "report.html");  // of former results
     log.info("the page is left out: this build has no viewer");
   }
   files.shortfalls = results::shortfalls(results);
