@@ -17,7 +17,7 @@
 namespace lidarena::report {
 namespace {
 
-/// Tables that compare cells.
+/// Expectations as judged, and tables that compare cells.
 std::vector<results::Table> comparison_tables(const results::StudyResults& results) {
   std::vector<results::Table> tables{winners_table(results)};
   const auto add = [&](std::vector<results::Table> more) {
@@ -25,20 +25,19 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
   };
   for (const std::string& world : results::StudyCells(results, "").worlds())
     tables.push_back(decision_table(results, world));
-  for (const std::string& variant : results::variants_of(results))
+  for (const std::string& variant : results::variants_of(results)) {
+    if (!results.expect.empty()) tables.push_back(expectations_table(results, variant));
     add(figure_tables(results, variant));
+  }
   add(timing_tables(results));
   return tables;
 }
 
-/// Lists of runs and of expectations, which the page makes from its data.
+/// Lists of runs, which the page makes from its data.
 std::vector<results::Table> lists(const results::StudyResults& results) {
   std::vector<results::Table> tables{failures_table(results), commands_table(results)};
   for (const std::string& world : results::StudyCells(results, "").worlds())
     tables.push_back(runs_table(results, world));
-  if (results.expect.empty()) return tables;
-  for (const std::string& variant : results::variants_of(results))
-    tables.push_back(expectations_table(results, variant));
   return tables;
 }
 
@@ -79,6 +78,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
     if (!draw_svg_figures(files.page, folder / "figures"))
       log.info("SVG files of the figures are left out: they need Node.js; the page has them");
   } else {
+    std::filesystem::remove(folder / "report.html");  // of former results
     log.info("the page is left out: this build has no viewer");
   }
   files.shortfalls = results::shortfalls(results);

@@ -123,21 +123,6 @@ Json sensors_json(const results::StudyResults& results) {
   return list;
 }
 
-Json expectations_json(const results::StudyResults& results) {
-  Json list = Json::array();
-  for (const std::string& variant : results::variants_of(results)) {
-    for (const results::Judgement& judged : results::judge(results, variant)) {
-      list.push_back({{"variant", variant},
-                      {"finding", judged.expectation.finding},
-                      {"rule", judged.expectation.rule},
-                      {"otherwise", judged.expectation.otherwise},
-                      {"holds", value_to_json(judged.holds)},
-                      {"evidence", judged.evidence}});
-    }
-  }
-  return list;
-}
-
 Json decision_json(const results::StudyResults& results) {
   Json ranking = Json::array();
   for (const std::string& world : results::StudyCells(results, "").worlds()) {
@@ -176,7 +161,6 @@ Json report_data(const results::StudyResults& results, const std::vector<results
             {"figures", figures_json()},
             {"sensors", sensors_json(results)},
             {"decision", decision_json(results)},
-            {"expectations", expectations_json(results)},
             {"reference", value_to_json(results.reference)},
             {"tables", Json::array()},
             {"runs", Json::array()}};

@@ -147,7 +147,7 @@ Table commands_table(const results::StudyResults& results) {
 Table expectations_table(const results::StudyResults& results, const std::string& variant) {
   Table table{"expectations-" + variant,
               "What the study expects, " + variant,
-              "An expectation holds if all of its checks hold.",
+              "An expectation holds if all of its checks hold; bold: what falls short.",
               {"expectation", "here", "check", "our figures"},
               {}};
   for (const results::Judgement& judged : results::judge(results, variant)) {
@@ -159,6 +159,7 @@ Table expectations_table(const results::StudyResults& results, const std::string
     if (judged.holds == false && !e.otherwise.empty())
       evidence += ". Possible reason: " + e.otherwise;
     table.rows.push_back({word(e.finding), word(verdict), word(e.rule), word(evidence)});
+    table.rows.back()[1].bold = judged.holds == false;
   }
   return table;
 }

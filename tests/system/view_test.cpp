@@ -226,14 +226,14 @@ class ReportInBrowser : public ViewInBrowser {
   /// returns, as JSON.
   nlohmann::json evaluate(const std::string& script, const std::string& state = "",
                           const std::string& gl = kSoftwareGl) {
-    write("page.html", page_ +
-                           "<script>setTimeout(() => { document.documentElement.dataset.test = "
-                           "encodeURIComponent(JSON.stringify((() => {" +
-                           script +
-                           "})())) }, 1000)"
-                           "</script>");
+    write("page.html",
+          page_ + "<script>setTimeout(async () => { const value = await (async () => {" + script +
+              "})(); document.documentElement.dataset.test = "
+              "encodeURIComponent(JSON.stringify(value)) }, 1000)</script>");
     const std::string dom = browse("--dump-dom", state, gl);
-    if (gl == kSoftwareGl) EXPECT_THAT(page_errors(), ElementsAre());
+    if (gl == kSoftwareGl) {
+      EXPECT_THAT(page_errors(), ElementsAre());
+    }
     const std::string mark = "data-test=\"";
     const std::size_t begin = dom.find(mark);
     if (begin == std::string::npos) return nullptr;
@@ -371,6 +371,17 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
       "return document.querySelector('#run').textContent", "#run=ouster_os0_128-fast_lio2-3");
   EXPECT_THAT(without_points.get<std::string>(),
               AllOf(HasSubstr("diverged: left the <world>"), HasSubstr("no points of this run")));
+}
+
+TEST_F(ReportInBrowser, TheTimeLineOfTheMapMovesAMarkThroughTheCharts) {
+  const nlohmann::json marks = evaluate(
+      "const marks = () => [...document.querySelectorAll('#run .charts svg path')].filter(p => "
+      "p.getAttribute('stroke') === '#f97316').length; document.querySelectorAll('#run .chart')"
+      ".forEach(c => c.scrollIntoView()); const rest = () => new Promise(done => setTimeout(done, "
+      "500)); await rest(); const time = document.querySelector('#run .timebar input'); "
+      "time.value = 1; time.oninput(); await rest(); return [time.value, marks()];",
+      "#run=livox_mid360-kiss_icp-1");
+  EXPECT_EQ(marks, nlohmann::json({"1", 3}));
 }
 
 /// Runs the program as a server in the background until the object is destroyed.

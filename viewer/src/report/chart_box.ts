@@ -2,7 +2,7 @@
 // A chart in the page: drawn when it comes into sight, saved as SVG, PNG and CSV.
 import { element, whenInSight } from "../view/elements";
 import { echarts } from "./charts";
-import type { Figure } from "./figures_of";
+import type { Figure } from "./figure_parts";
 import { saveButtons } from "./save";
 
 export type Chart = ReturnType<typeof echarts.init>;
@@ -32,11 +32,13 @@ export class ChartBox {
     private onDraw: (chart: Chart) => void = () => undefined,
   ) {
     this.canvas.style.cssText = `width:${figure.width}px;height:${figure.height}px`;
+    const caption = element("figcaption", {}, figure.caption);
+    caption.style.maxWidth = `${figure.width}px`;
     this.root = element(
       "figure",
       { id: figure.id },
       element("div", { className: "scroll", tabIndex: 0 }, this.canvas),
-      element("figcaption", {}, figure.caption),
+      caption,
       saveButtons(
         figure.id,
         () => this.svg(),

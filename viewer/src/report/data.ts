@@ -48,15 +48,6 @@ export interface Candidate {
   verdict: string;
 }
 
-export interface Expectation {
-  variant: string;
-  finding: string;
-  rule: string;
-  otherwise: string;
-  holds: boolean | null;
-  evidence: string[];
-}
-
 export interface Cell {
   text: string;
   value?: number;
@@ -80,7 +71,6 @@ export interface ReportData {
   figures: FigureInfo[];
   sensors: Sensor[];
   decision: Candidate[];
-  expectations: Expectation[];
   reference: { world: string; sensor: string; algorithm: string; figure: string; value: number }[];
   tables: Table[];
   runs: Run[];

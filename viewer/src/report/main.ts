@@ -5,7 +5,7 @@ import "./report.css";
 import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
-import { distinct, label, LATENCY, type ReportData, type Run } from "./data";
+import { distinct, label, LATENCY, type ReportData, type Run, type Table } from "./data";
 import { figuresOf } from "./figures_of";
 import { answer, bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
 import { RunView } from "./run_view";
@@ -32,6 +32,8 @@ function scenesInPage(): WorldScene[] {
   }
   return scenes;
 }
+
+const isOfExpectations = (table: Table) => table.id.startsWith("expectations-");
 
 class Report implements Page {
   data = jsonOf<ReportData>("data");
@@ -203,30 +205,15 @@ class Report implements Page {
   }
 
   private expectations(): HTMLElement | string {
-    const { expectations } = this.data;
-    if (expectations.length === 0) return "";
-    const verdict = (holds: boolean | null, known: boolean) =>
-      holds === null ? (known ? "cannot be judged" : "not measured") : holds ? "✓ holds" : "✕ falls short";
-    const rows = expectations.map((e) => [
-      word(e.finding),
-      word(verdict(e.holds, e.evidence.length > 0)),
-      word(e.variant),
-      word(e.rule),
-      word(e.evidence.join("; ") + (e.holds === false && e.otherwise ? `. Possible reason: ${e.otherwise}` : "")),
-    ]);
-    const holds = (value: boolean) => expectations.filter((e) => e.holds === value).length;
-    return element(
-      "section",
-      { id: "expectations" },
-      element("h2", {}, "What the study expects"),
-      tableElement({
-        id: "expectations",
-        title: `${holds(true)} hold, ${holds(false)} fall short`,
-        note: "An expectation holds if all of its checks hold.",
-        head: ["expectation", "here", "preset", "check", "our figures"],
-        rows,
-      }),
-    );
+    const tables = this.data.tables.filter(isOfExpectations);
+    return tables.length === 0
+      ? ""
+      : element(
+          "section",
+          { id: "expectations" },
+          element("h2", {}, "What the study expects"),
+          ...tables.map((table) => tableElement(table)),
+        );
   }
 
   private listsOfRuns(): (HTMLElement | string)[] {
@@ -283,7 +270,11 @@ class Report implements Page {
       { id: "tables" },
       element("h2", {}, "Tables of the whole study"),
       element("p", { className: "note" }, "The same as in the folder tables/, where each is CSV, Markdown, LaTeX and JSON."),
-      element("div", { className: "tables" }, ...this.data.tables.map((table) => tableElement(table))),
+      element(
+        "div",
+        { className: "tables" },
+        ...this.data.tables.filter((table) => !isOfExpectations(table)).map((table) => tableElement(table)),
+      ),
     );
   }
 

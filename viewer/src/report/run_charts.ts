@@ -2,8 +2,8 @@
 // The charts of one run over time: errors, processing time, memory. They have one time axis.
 import type { Path } from "../view/points";
 import type { Run, Sensor } from "./data";
-import { base, MEMORY_PARTS, MIN_ERROR_CM, onLogScale, valueAxis, type Figure } from "./figures_of";
-import { theme } from "./theme";
+import { base, legendOf, line, timeAxis, valueAxis, type Figure } from "./figure_parts";
+import { centimeters, memoryLines, MIN_ERROR_CM } from "./figures_of";
 
 const FAST_TURN_RAD_S = 1.0;
 const WIDTH = 560;
@@ -23,14 +23,12 @@ export function fastTurns({ t_s, quaternions }: Path): [number, number][] {
   return spans;
 }
 
-function overTime(
-  id: string,
-  title: string,
-  caption: string,
-  yAxis: Record<string, unknown>,
-  series: Record<string, unknown>[],
-  end: number,
-): Figure {
+function overTime(id: string, title: string, caption: string, yAxis: object, series: { name: string }[], end: number): Figure {
+  const valueFormatter = (v: number) => (typeof v === "number" ? String(Number(v.toPrecision(3))) : "–");
+  const legend = legendOf(
+    series.map(({ name }) => name),
+    { top: 4, left: "auto", right: 8 },
+  );
   return {
     id,
     title,
@@ -40,41 +38,20 @@ function overTime(
     height: 200,
     option: {
       ...base(title),
-      tooltip: {
-        trigger: "axis",
-        confine: true,
-        valueFormatter: (v: number) => (typeof v === "number" ? String(Number(v.toPrecision(3))) : "–"),
-      },
-      legend: {
-        top: 4,
-        right: 8,
-        textStyle: { fontSize: 11, color: theme.ink },
-        data: series.map(({ name }) => name).filter((name) => name),
-      },
+      tooltip: { trigger: "axis", confine: true, valueFormatter },
+      legend,
       grid: { left: 56, right: 16, top: 34, bottom: 36 },
-      xAxis: valueAxis(0, "s", { nameGap: 20, min: 0, max: end, splitLine: { show: false } }),
+      xAxis: timeAxis(0, { min: 0, max: end }),
       yAxis,
       series,
     },
   };
 }
 
-const line = (name: string, color: string, data: unknown[], more = {}) => ({
-  type: "line",
-  name,
-  color,
-  symbol: "none",
-  lineStyle: { width: 1.4 },
-  data,
-  ...more,
-});
-
 export function runCharts(run: Run, sensor: Sensor | undefined, turns: [number, number][]): Figure[] {
   const { error, drift, resources } = run;
   const end = Math.ceil(Math.max(error?.t_s[error.t_s.length - 1] ?? 0, resources?.t_s[resources.t_s.length - 1] ?? 0));
   const figures: Figure[] = [];
-  const centimeters = (curve: { t_s: number[]; translation_m: number[] }) =>
-    curve.t_s.map((t, i) => [t, onLogScale(100 * curve.translation_m[i])]);
   const shade = {
     markArea: {
       silent: true,
@@ -130,14 +107,7 @@ export function runCharts(run: Run, sensor: Sensor | undefined, turns: [number, 
       "Own memory",
       "Map, scan buffer and backlog as the method counts them.",
       valueAxis(0, "MB", { nameGap: 36 }),
-      MEMORY_PARTS.map(([key, name, color]) =>
-        line(
-          name,
-          color,
-          resources.t_s.map((t, i) => [t, 1e-6 * resources[key][i]]),
-          { stack: "memory", areaStyle: { color, opacity: 0.5 } },
-        ),
-      ),
+      memoryLines(run, { stack: "memory" }),
       end,
     ),
   );

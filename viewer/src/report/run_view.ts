@@ -6,7 +6,7 @@ import { pathOf } from "../view/points";
 import { initialState } from "../view/state";
 import { View } from "../view/view";
 import { ChartBox, type Chart } from "./chart_box";
-import { label, shown, type Run } from "./data";
+import { DRIFT, figureOf, label, LATENCY, MAP_RMSE, MEMORY, OUTLIERS, shown, type Run } from "./data";
 import type { Page } from "./overview";
 import { fastTurns, runCharts } from "./run_charts";
 import { headerOfRuns, mapPicture, pictureSvg, sceneOf } from "./scenes";
@@ -23,6 +23,8 @@ const FILES = [
   "reprojected.ply",
   "resources.csv",
 ];
+
+const MAIN_FIGURES = [DRIFT, MAP_RMSE, OUTLIERS, LATENCY, MEMORY];
 
 export class RunView {
   readonly root = element("section", { id: "run", className: "run", tabIndex: -1 });
@@ -77,7 +79,13 @@ export class RunView {
           : "",
         run.coverage_percent === null ? "" : `; the estimate covers ${shown(run.coverage_percent)} % of the flight`,
       ),
+      element("p", { className: "figures-of-run" }, this.mainFigures()),
     );
+  }
+
+  private mainFigures(): string {
+    const known = MAIN_FIGURES.map((key) => figureOf(this.page.data, key)).filter(({ of }) => of(this.run) !== null);
+    return known.map(({ info, of }) => `${info.label} ${shown(of(this.run))} ${info.unit}`).join("; ");
   }
 
   /** Chooses a second run to be shown beside this one. */

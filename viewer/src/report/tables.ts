@@ -49,7 +49,8 @@ export function tableElement(table: ShownTable): HTMLElement {
     more.textContent = `Show all ${rows.length} rows`;
   };
   const heads = table.head.map((text, column) => {
-    const head = element("th", { scope: "col" });
+    const isText = column === 0 || table.rows.every((row) => row[column]?.value === undefined);
+    const head = element("th", { scope: "col", className: isText ? "text" : "" });
     head.append(button(text, `sort by ${text}`, () => sortBy(column)));
     return head;
   });

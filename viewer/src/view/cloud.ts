@@ -43,10 +43,6 @@ export class Cloud {
     return this.chunks.reduce((sum, chunk) => sum + chunk.loaded, 0);
   }
 
-  field(name: string): FieldHeader | undefined {
-    return this.header.fields.find((field) => field.name === name);
-  }
-
   private addChunk(header: ChunkHeader) {
     const column = (name: string, width: number): Column => ({ name, width, values: new Uint16Array(header.count * width) });
     const columns = [column("position", 3), ...this.header.fields.map((field) => column(`a_${field.name}`, 1))];

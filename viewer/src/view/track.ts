@@ -69,12 +69,6 @@ export class Track {
     this.material.color.set(byError ? "#ffffff" : this.color);
     this.material.needsUpdate = true;
   }
-
-  /** Error at an instant, m; null before the path begins or if the truth is not known. */
-  errorAt(time: number): number | null {
-    const i = upperBound(this.times, time) - 1;
-    return this.errors && i >= 0 ? this.errors[i] : null;
-  }
 }
 
 function axisLine(axis: number, length: number, color: string): THREE.Line {
@@ -84,7 +78,7 @@ function axisLine(axis: number, length: number, color: string): THREE.Line {
 }
 
 /** Index of the first value above `x` in an ascending list. */
-export function upperBound(values: Float32Array, x: number): number {
+function upperBound(values: Float32Array, x: number): number {
   let low = 0;
   let high = values.length;
   while (low < high) {
