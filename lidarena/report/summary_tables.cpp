@@ -5,6 +5,7 @@
 
 #include <array>
 
+#include "lidarena/base/shell_word.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/study_cells.hpp"
 
@@ -40,23 +41,18 @@ std::string smallest_figure(const results::StudyResults& results, const std::str
   return text;
 }
 
-/// `text` as an argument of a shell command, quoted if necessary.
-std::string argument(const std::string& text) {
-  return text.find_first_of(" '\"$&;()") == std::string::npos ? text : "'" + text + "'";
-}
-
 std::string simulate_command(const results::RunRecord& row) {
   const Json& made = row.simulation;
   if (!made.is_object()) return "(the dataset was not simulated by lidarena)";
   std::string command =
-      fmt::format("lidarena simulate --world {} --flight {}", argument(row.world),
-                  argument(row.flight.empty() ? made.value("flight_source", "") : row.flight));
+      fmt::format("lidarena simulate --world {} --flight {}", shell_word(row.world),
+                  shell_word(row.flight.empty() ? made.value("flight_source", "") : row.flight));
   for (const Json& sensor : made.value("sensors", Json::array())) {
-    command += " --sensor " + argument(sensor.value("name", ""));
+    command += " --sensor " + shell_word(sensor.value("name", ""));
   }
   if (made.contains("seed")) command += fmt::format(" --seed {}", made.at("seed").dump());
   if (made.contains("seconds")) command += fmt::format(" --seconds {}", made.at("seconds").dump());
-  if (!row.mode.empty()) command += " --mode " + row.mode;
+  if (!row.mode.empty()) command += " --mode " + shell_word(row.mode);
   if (!made.value("noise", true)) command += " --noise off";
   return command + " --no-data --out data";
 }
@@ -64,9 +60,10 @@ std::string simulate_command(const results::RunRecord& row) {
 }  // namespace
 
 std::string command_of(const results::RunRecord& row) {
-  const std::string preset = row.preset.empty() ? "" : " --preset " + row.preset;
+  const std::string preset = row.preset.empty() ? "" : " --preset " + shell_word(row.preset);
   return fmt::format("{} && lidarena run {} data{} --sensor {} --out run && lidarena evaluate run",
-                     simulate_command(row), row.algorithm, preset, argument(row.sensor));
+                     simulate_command(row), shell_word(row.algorithm), preset,
+                     shell_word(row.sensor));
 }
 
 Json facts_of(const results::RunRecord& row) {

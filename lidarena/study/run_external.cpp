@@ -5,6 +5,7 @@
 
 #include <chrono>
 
+#include "lidarena/base/shell_word.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/study/process.hpp"
@@ -56,13 +57,6 @@ Recording record(const ExternalProgram& program, const RunRequest& request, cons
   return recording;
 }
 
-/// `word` quoted for a shell.
-std::string quoted(const std::string& word) {
-  std::string text = "'";
-  for (const char c : word) text += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return text + "'";
-}
-
 std::string substitute(std::string command, const std::string& key, const std::string& value) {
   for (std::size_t at = command.find(key); at != std::string::npos;
        at = command.find(key, at + value.size())) {
@@ -74,7 +68,7 @@ std::string substitute(std::string command, const std::string& key, const std::s
 /// Runs the command line until it ends; its output goes to `log`.
 ProcessEnd run_command(const std::string& name, const std::string& command, const fs::path& log) {
   Command shell;
-  shell.arguments = {"/bin/sh", "-c", "exec " + command};
+  shell.arguments = {"/bin/sh", "-c", command};
   shell.output = shell.log = log;
   shell.own_group = false;
   fs::remove(log);
@@ -121,9 +115,9 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   log.info("recording for " + program.name);
   const Recording recording = record(program, request, input, parallel);
   std::string command = program.command;
-  command = substitute(command, "{input}", quoted(fs::absolute(recording.path).string()));
-  command = substitute(command, "{output}", quoted(fs::absolute(output).string()));
-  command = substitute(command, "{sensor}", quoted(recording.rig.lidars[0].id));
+  command = substitute(command, "{input}", shell_word(fs::absolute(recording.path).string()));
+  command = substitute(command, "{output}", shell_word(fs::absolute(output).string()));
+  command = substitute(command, "{sensor}", shell_word(recording.rig.lidars[0].id));
   command = substitute(command, "{threads}", std::to_string(parallel.threads()));
   log.info("running " + program.name);
   const auto begin = std::chrono::steady_clock::now();

@@ -470,12 +470,10 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   LogSink log;
   // Three programs: one writes constant poses, one writes nothing, one fails.
   const auto poses_at = [](const std::string& stamps, const std::string& file) {
-    return "for t in " + stamps + "; do echo $t 0 0 0 0 0 0 1; done > \"$1\"/" + file + "; ";
+    return " && for t in " + stamps + "; do echo $t 0 0 0 0 0 0 1; done > " + file;
   };
-  const std::string poses = poses_at("0.0 0.1 0.2 0.3 0.4", "trajectory.tum");
-  const std::string still = "sh -c '" + poses + "' sh {output}";
-  const std::string fine =
-      "sh -c '" + poses + poses_at("0.00 0.05 0.10 0.40", "motion.tum") + "' sh {output}";
+  const std::string still = "cd {output}" + poses_at("0.0 0.1 0.2 0.3 0.4", "trajectory.tum");
+  const std::string fine = still + poses_at("0.00 0.05 0.10 0.40", "motion.tum");
   StudySpec spec = tiny_spec();
   spec.external = {{.name = "still", .command = still},
                    {.name = "fine", .command = fine},
