@@ -95,6 +95,21 @@ export function label(run: { algorithm: string; preset: string }): string {
   return run.preset ? `${run.algorithm} (${run.preset})` : run.algorithm;
 }
 
+/** Names a cell: a sensor with a method. */
+export function cellOf(run: { sensor: string; algorithm: string; preset: string }): string {
+  return `${run.sensor}|${label(run)}`;
+}
+
+export function grouped<T>(items: T[], key: (item: T) => string): Map<string, T[]> {
+  const groups = new Map<string, T[]>();
+  for (const item of items) {
+    const group = groups.get(key(item));
+    if (group) group.push(item);
+    else groups.set(key(item), [item]);
+  }
+  return groups;
+}
+
 /** The distinct values of `key`, in the order of their first occurrence. */
 export function distinct<T, U>(items: T[], key: (item: T) => U): U[] {
   return [...new Set(items.map(key))];

@@ -5,7 +5,7 @@ import "./report.css";
 import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
-import { distinct, label, LATENCY, type ReportData, type Run, type Table } from "./data";
+import { cellOf, distinct, label, LATENCY, type ReportData, type Run, type Table } from "./data";
 import { figuresOf } from "./figures_of";
 import { answer, bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
 import { RunView } from "./run_view";
@@ -160,16 +160,19 @@ class Report implements Page {
   }
 
   private showRun() {
+    const closed = this.opened?.run;
     this.opened?.dispose();
     this.opened?.root.remove();
     this.opened = null;
     const run = this.data.runs.find(({ name }) => name === this.settings.run);
-    if (!run) return;
+    if (!run) {
+      if (closed) document.querySelector<HTMLElement>(`[data-cell="${cellOf(closed)}"] button`)?.focus();
+      return;
+    }
     this.opened = new RunView(this, run);
     this.overview.after(this.opened.root);
     this.opened.root.focus({ preventScroll: true });
     this.opened.root.scrollIntoView();
-    marks.run = run.name;
   }
 
   private drawCharts() {

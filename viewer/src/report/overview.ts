@@ -3,10 +3,12 @@
 // combinations, and the same place as the best and the worst of them map it.
 import { button, element } from "../view/elements";
 import {
+  cellOf,
   count,
   distinct,
   DRIFT,
   figureOf,
+  grouped,
   label,
   LATENCY,
   MAP_RMSE,
@@ -24,7 +26,7 @@ import {
 } from "./data";
 import { drawn, saveCsv } from "./save";
 import { commonBox, mapPicture, pictureSvg, sceneOf, type WorldScene } from "./scenes";
-import { sameCell, type Settings } from "./settings";
+import type { Settings } from "./settings";
 
 const SWITCH: [string, string][] = [
   [DRIFT, "drift"],
@@ -82,10 +84,13 @@ class Answer {
   ) {
     const { data, runs } = page;
     const map = figureOf(data, MAP_RMSE).of;
-    const here = runs.filter((run) => run.world === world);
+    const cells = grouped(
+      runs.filter((run) => run.world === world),
+      cellOf,
+    );
     this.tried = data.decision
       .filter((candidate) => candidate.world === world)
-      .map((candidate) => ({ candidate, runs: sameCell(here, candidate) }))
+      .map((candidate) => ({ candidate, runs: cells.get(cellOf(candidate)) ?? [] }))
       .filter((tried) => tried.runs.length > 0)
       .map((tried) => ({ ...tried, map: spreadOf(tried.runs, map) }));
   }
@@ -169,7 +174,7 @@ class Answer {
 
 export function answer(page: Page): HTMLElement {
   const worlds = distinct(page.runs, (run) => run.world);
-  const single = page.runs.every((run) => sameCell(page.runs, run).filter((other) => other.world === run.world).length === 1);
+  const single = distinct(page.runs, (run) => `${run.world}|${cellOf(run)}`).length === page.runs.length;
   return element(
     "div",
     { className: "answer" },
@@ -223,9 +228,10 @@ export function matrix(page: Page): HTMLElement {
   const worlds = distinct(runs, (run) => run.world);
   const sensors = distinct(runs, (run) => run.sensor);
   const methods = distinct(runs, label);
+  const byCell = grouped(runs, cellOf);
   const cells = sensors.map((sensor) =>
     methods.map((method) => {
-      const inCell = runs.filter((run) => run.sensor === sensor && label(run) === method);
+      const inCell = byCell.get(`${sensor}|${method}`) ?? [];
       return { inCell, spread: spreadOf(inCell, of) };
     }),
   );
@@ -265,7 +271,7 @@ export function matrix(page: Page): HTMLElement {
       cell.dataset.median = String(spread.median);
       cell.style.backgroundColor = heat(spread.median, values, info);
     }
-    cell.dataset.cell = `${inCell[0].sensor}|${label(inCell[0])}`;
+    cell.dataset.cell = cellOf(inCell[0]);
     return cell;
   };
   const table = element(

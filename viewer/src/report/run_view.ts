@@ -6,11 +6,10 @@ import { pathOf } from "../view/points";
 import { initialState } from "../view/state";
 import { View } from "../view/view";
 import { ChartBox, type Chart } from "./chart_box";
-import { DRIFT, figureOf, label, LATENCY, MAP_RMSE, MEMORY, OUTLIERS, shown, type Run } from "./data";
+import { cellOf, DRIFT, figureOf, label, LATENCY, MAP_RMSE, MEMORY, OUTLIERS, shown, type Run } from "./data";
 import type { Page } from "./overview";
 import { fastTurns, runCharts } from "./run_charts";
 import { headerOfRuns, mapPicture, pictureSvg, sceneOf } from "./scenes";
-import { sameCell } from "./settings";
 import { number, tableElement, word } from "./tables";
 
 const FILES = [
@@ -36,7 +35,7 @@ export class RunView {
 
   constructor(
     private page: Page,
-    private run: Run,
+    readonly run: Run,
   ) {
     this.root.append(this.head(), element("div", { className: "columns" }, this.stage, this.charts), this.about());
     this.show(null).catch((error) => this.stage.append(`The map could not be shown: ${error}`));
@@ -49,7 +48,7 @@ export class RunView {
 
   private head(): HTMLElement {
     const { run, page } = this;
-    const others = sameCell(page.data.runs, run);
+    const others = page.data.runs.filter((other) => cellOf(other) === cellOf(run));
     const choose = element(
       "select",
       { title: "another run of this sensor and method" },

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What the reader has chosen, kept in the address after "#", so that a view can be sent.
-import { distinct, DRIFT, label, type ReportData, type Run } from "./data";
+import { distinct, DRIFT, type ReportData, type Run } from "./data";
 
 /** The filters: their labels and the value of a run. */
 export const FILTERS = {
@@ -46,9 +46,4 @@ export function passes(run: Run, { filters }: Settings): boolean {
 export function choices(data: ReportData): [FilterName, string[]][] {
   const all = NAMES.map((name) => [name, distinct(data.runs, FILTERS[name])] as [FilterName, string[]]);
   return all.filter(([, values]) => values.length > 1);
-}
-
-/** The runs of the same sensor and method, with the same settings otherwise. */
-export function sameCell(runs: Run[], run: { sensor: string; algorithm: string; preset: string }): Run[] {
-  return runs.filter((other) => other.sensor === run.sensor && label(other) === label(run));
 }
