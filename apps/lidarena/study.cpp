@@ -9,9 +9,11 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/report/report.hpp"
+#include "lidarena/results/version_comparison.hpp"
 #include "lidarena/study/plan.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/slurm.hpp"
@@ -250,27 +252,58 @@ int study_verb(const Common& common, const StudyRequest& request) {
 }
 
 struct ReportRequest {
-  std::vector<std::filesystem::path> folders;
+  std::vector<std::filesystem::path> folders, against;
+  std::vector<std::string> fail_on;
   std::string out;
 };
+
+results::StudyResults read_all(const std::vector<std::filesystem::path>& folders) {
+  std::vector<results::StudyResults> parts;
+  for (const std::filesystem::path& folder : folders)
+    parts.push_back(results::read_results(folder));
+  return results::merged(std::move(parts));
+}
+
+/// Compares with an earlier study; returns the limits that were exceeded.
+std::vector<std::string> compare(const ReportRequest& request, const std::filesystem::path& out,
+                                 bool as_json, Json& json) {
+  std::vector<results::ChangeLimit> limits;
+  for (const std::string& text : request.fail_on) limits.push_back(results::parse_limit(text));
+  const results::VersionComparison comparison =
+      results::compare_versions(read_all(request.against), read_all(request.folders));
+  const results::Table table = results::table_of(comparison);
+  dataset::write_text_file(out / "comparison.csv", results::table_csv(table));
+  dataset::write_text_file(out / "comparison.md", results::table_markdown(table));
+  std::vector<std::string> beyond = results::exceeded(comparison, limits);
+  json["comparison"] = results::to_json(comparison);
+  json["exceeded"] = beyond;
+  if (!as_json) {
+    fmt::print("\n{}", results::comparison_text(comparison));
+    for (const std::string& line : beyond) fmt::print("beyond the limit {}\n", line);
+  }
+  return beyond;
+}
 
 int report_verb(const Common& common, const ReportRequest& request) {
   if (request.out.empty() && request.folders.size() > 1) {
     throw InputError("report", "the report of several folders needs an output folder",
                      "give --out DIR");
   }
+  if (request.against.empty() && !request.fail_on.empty())
+    throw InputError("--fail-on", "needs an earlier study", "give --against OLD");
   Console console(common.quiet);
   const std::filesystem::path out =
       request.out.empty() ? request.folders.front() : std::filesystem::path(request.out);
   const report::ReportFiles report =
       report::write_report(request.folders, out, Parallel(common.threads), console);
-  if (common.json) {
-    print_json({{"report", report.page.string()}, {"shortfalls", shortfall_json(report)}});
-  } else {
+  Json json{{"report", report.page.string()}, {"shortfalls", shortfall_json(report)}};
+  if (!common.json) {
     fmt::print("{}\n{}report: {}\n", report.text_table, shortfall_text(report),
                report.page.string());
   }
-  return report.missing == 0 ? kDone : kWorkFailed;
+  const bool within = request.against.empty() || compare(request, out, common.json, json).empty();
+  if (common.json) print_json(json);
+  return report.missing == 0 && within ? kDone : kWorkFailed;
 }
 
 /// Options of a study that more than one machine works on.
@@ -351,6 +384,13 @@ void add_report(CLI::App& app, Common& common, int& exit_code) {
                    "Study folder or RUN folder; several, as from --shard, become one report")
       ->required();
   verb->add_option("--out", request->out, "Folder of the report; default: the only folder given");
+  verb->add_option("--against", request->against,
+                   "Earlier study, or its parts: compare the same runs of both, figure by figure");
+  verb->add_option("--fail-on", request->fail_on,
+                   "With --against: FIGURE=LIMIT,... as drift=5%,lost=0 (drift, map, outliers, "
+                   "latency, memory, lost); exit code 1 where a median grew by more")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   set_verb(
       *verb, common, [&common, request] { return report_verb(common, *request); }, exit_code);
 }

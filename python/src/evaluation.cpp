@@ -4,6 +4,7 @@
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/study/config_folder.hpp"
+#include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/score_run.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/simulated_world.hpp"
