@@ -98,7 +98,7 @@ class Studies:
     def check_whole(self, name, job):
         tasks, report = self.tasks(job)
         logs = "\n".join(log.read_text() for log in sorted((self.here / name / "logs").iterdir()))
-        assert report["ExitCode"] == "0:0", logs
+        assert report["ExitCode"] == "0:0", f"{logs}\n{tasks}"
         assert {task["JobState"] for task in tasks} == {"COMPLETED"}, logs
         status = self.status(name)
         assert (status["done"], status["failed"], status["missing"], status["workers"]) == (CELLS, 0, 0, []), status
