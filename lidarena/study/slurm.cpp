@@ -31,12 +31,13 @@ echo "== task $SLURM_ARRAY_TASK_ID, job $SLURM_JOB_ID on $SLURMD_NODENAME, resta
   --threads "$SLURM_CPUS_PER_TASK" --grace {grace} --quiet{configs} &
 worker=$!
 warned=
-trap 'warned=1; kill -USR1 "$worker"' USR1  # soon out of time
-trap 'kill -TERM "$worker"' TERM
+trap 'warned=1; kill -USR1 "$worker" 2>/dev/null' USR1  # soon out of time
+trap 'kill -TERM "$worker" 2>/dev/null' TERM
 # A signal ends wait (128 + its number), but not the worker.
 while wait "$worker"; code=$?; [ "$code" = 138 ] || [ "$code" = 143 ]; do :; done
-# 75: it has ended early, with work left
-if [ -n "$warned" ] && [ "$code" = 75 ]; then scontrol requeue "$SLURM_JOB_ID" && exit 0; fi
+# 75: it has ended early, with work left. Slurm ends a requeued script; one that ends by itself
+# meanwhile may count as completed.
+if [ -n "$warned" ] && [ "$code" = 75 ]; then scontrol requeue "$SLURM_JOB_ID" && sleep 60; fi
 exit "$code"
 )sh";
 

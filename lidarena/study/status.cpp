@@ -52,6 +52,19 @@ struct Work {
   double took = 0.0;  ///< measured, of the same
 };
 
+/// Counts a cell that has a state.
+void count_result(const Stage& stage, const StageResult& result, StudyStatus& status, Work& work) {
+  work.done += stage.weight;
+  work.took += result.seconds;
+  if (result.state == StageState::kFailed) {
+    ++status.failed;
+    status.failures.push_back(failure_of(stage));
+  } else {
+    ++status.done;
+    status.diverged += result.state == StageState::kDiverged ? 1 : 0;
+  }
+}
+
 }  // namespace
 
 StudyStatus read_status(const fs::path& study) {
@@ -62,8 +75,6 @@ StudyStatus read_status(const fs::path& study) {
   status.workers = workers_of(study);
   std::map<std::string, std::size_t> workers;  // alive, by unit
   for (const Worker& worker : status.workers) workers[worker.dataset] += worker.dead ? 0 : 1;
-  const auto alive = static_cast<double>(
-      std::ranges::count_if(status.workers, [](const Worker& worker) { return !worker.dead; }));
   Work work;
   for (const PlanUnit& unit : plan.units) {
     for (const std::size_t cell : unit.cells) {
@@ -73,21 +84,14 @@ StudyStatus read_status(const fs::path& study) {
       if (result.state == StageState::kMissing) {
         ++(workers[unit.dataset] > 0 ? status.running : status.missing);
         work.left += stage.weight;
-        continue;
-      }
-      work.done += stage.weight;
-      work.took += result.seconds;
-      if (result.state == StageState::kFailed) {
-        status.failures.push_back(failure_of(stage));
       } else {
-        ++status.done;
-        status.diverged += result.state == StageState::kDiverged ? 1 : 0;
+        count_result(stage, result, status, work);
       }
     }
   }
-  status.failed = status.failures.size();
-  if (work.done > 0.0 && alive > 0.0)
-    status.seconds_left = work.left * work.took / work.done / alive;
+  const auto alive = std::ranges::count(status.workers, false, &Worker::dead);
+  if (work.done > 0.0 && alive > 0)
+    status.seconds_left = work.left * work.took / work.done / static_cast<double>(alive);
   return status;
 }
 

@@ -63,10 +63,10 @@ class Studies:
         assert done.returncode == code, f"{' '.join(command)}: {done.returncode}\n{done.stderr}"
         return json.loads(done.stdout)
 
-    def submit(self, name, *options, slow=0, tasks=2):
+    def submit(self, name, *options, slow=0, tasks=2, cpus=1):
         os.environ["SLOW"] = str(slow)
         return self.call("study", self.here / "study.yaml", "--out", self.here / name, "--slurm", "--partition", "main",
-                         "--array-limit", tasks, *options)["job"]
+                         "--array-limit", tasks, "--cpus", cpus, *options)["job"]
 
     def status(self, name):
         return self.call("status", self.here / name)
@@ -98,7 +98,7 @@ class Studies:
     def check_whole(self, name, job):
         tasks, report = self.tasks(job)
         logs = "\n".join(log.read_text() for log in sorted((self.here / name / "logs").iterdir()))
-        assert report["ExitCode"] == "0:0", logs
+        assert report["ExitCode"] == "0:0", f"{logs}\n{tasks}"
         assert {task["JobState"] for task in tasks} == {"COMPLETED"}, logs
         status = self.status(name)
         assert (status["done"], status["failed"], status["missing"], status["workers"]) == (CELLS, 0, 0, []), status
@@ -118,7 +118,7 @@ def study_of_twelve_cells(studies):
 
 
 def node_lost_in_the_middle(studies):
-    job = studies.submit("lost", "--cpus", 1, slow=2)
+    job = studies.submit("lost", slow=2, cpus=2)
     studies.wait_until("lost", lambda status: status["done"] >= 2 and len(status["workers"]) == 2, "two workers")
     assert studies.cluster.lose_node("n2") > 2, "no process of a task was on the node"
     before = studies.status("lost")
@@ -142,8 +142,9 @@ def task_requeued(studies):
 
 
 def submit_walltime(studies):
-    """One task that needs more than its minute: it is told 40 s before, ends its cell, and is requeued."""
-    return studies.submit("walltime", "--time", 1, "--warning", 40, "--cpus", 1, "--sbatch=--nodelist=n1", slow=8, tasks=1)
+    """One task, on one core of n1, that needs more than its minute: it is told 40 s before, ends its cell, and is
+    requeued."""
+    return studies.submit("walltime", "--time", 1, "--warning", 40, "--sbatch=--nodelist=n1", slow=8, tasks=1)
 
 
 def check_walltime(studies, job):
@@ -209,14 +210,14 @@ def main():
             told("the local run")
             if sys.argv[3:] == ["efficiency"]:
                 return efficiency(studies)
+            walltime = submit_walltime(studies)  # mostly waits, beside the others
             for test in (study_of_twelve_cells, task_requeued, full_disk):
                 test(studies)
                 told(test.__name__.replace("_", " "))
-            job = submit_walltime(studies)  # mostly waits, on one core
+            check_walltime(studies, walltime)
+            told("walltime")
             node_lost_in_the_middle(studies)
             told("node lost in the middle")
-            check_walltime(studies, job)
-            told("walltime")
 
 
 if __name__ == "__main__":
