@@ -179,16 +179,12 @@ class Report implements Page {
     for (const box of this.boxes) box.dispose();
     const figures = figuresOf(this.data, this.runs);
     this.boxes = figures.map((figure) => new ChartBox(figure));
-    const worlds = [...distinct(this.runs, (run) => run.world), ""];
-    const groups = worlds.map((world) =>
-      element(
-        "div",
-        {},
-        element("h3", {}, world || "Error against cost"),
-        element("div", { className: "figures" }, ...this.boxes.filter((box) => box.figure.world === world).map((box) => box.root)),
-      ),
-    );
+    const groups = distinct(this.boxes, (box) => box.figure.world).map((world) => {
+      const ofWorld = this.boxes.filter((box) => box.figure.world === world).map((box) => box.root);
+      return element("div", {}, element("h3", {}, world || "Error against cost"), element("div", { className: "figures" }, ...ofWorld));
+    });
     this.charts.replaceChildren(element("h2", {}, "Charts"), ...groups);
+    this.charts.hidden = groups.length === 0;
     marks.figures = String(figures.length);
   }
 

@@ -99,11 +99,10 @@ class Answer {
     const best = this.tried[0];
     const head = (text: string) => element("p", { className: "verdict" }, element("b", {}, `${this.world}: `), text);
     if (!best) return head("no run passes the filters.");
+    if (!this.tried.some(({ map }) => map)) return head("no run has a scored map.");
     if (!best.candidate.usable) {
-      return element(
-        "div",
-        {},
-        head(`nothing that was tried keeps tracking in real time; closest is ${this.name(best)} (${best.candidate.verdict}).`),
+      return head(
+        `nothing that was tried keeps tracking in real time. Closest is ${this.name(best)} (${best.candidate.verdict}): ${this.figures(best)}.`,
       );
     }
     const use = head("use the ");
