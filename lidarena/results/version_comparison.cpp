@@ -143,6 +143,13 @@ std::optional<double> FigureChange::worsening_percent() const {
   return 100.0 * (after - before) / std::abs(before);
 }
 
+std::size_t VersionComparison::pairs_needed() const {
+  std::size_t pairs = 1;
+  double p = 1.0;  // two-sided, of this many differences of one sign: 2 / 2^pairs
+  for (; p * static_cast<double>(std::max<std::size_t>(tests, 1)) >= kLevel; p *= 0.5) ++pairs;
+  return pairs;
+}
+
 VersionComparison compare_versions(const StudyResults& before, const StudyResults& after) {
   const Pairs pairs = pairs_of(before, after);
   if (pairs.empty()) {
@@ -162,6 +169,8 @@ VersionComparison compare_versions(const StudyResults& before, const StudyResult
         comparison.changes.push_back(*std::move(change));
   }
   comparison.unpaired = before.rows.size() + after.rows.size() - 2 * paired;
+  comparison.tests = static_cast<std::size_t>(std::ranges::count_if(
+      comparison.changes, [](const FigureChange& change) { return change.p.has_value(); }));
   correct(comparison.changes);
   std::ranges::stable_sort(comparison.changes, {}, [](const FigureChange& change) {
     const int order = change.verdict == Verdict::kWorse    ? 0
@@ -177,8 +186,8 @@ Table table_of(const VersionComparison& comparison) {
               "Before and after",
               fmt::format("Medians over pairs of runs on the same scene, flight and seed that both "
                           "succeeded; better or worse by Wilcoxon's signed-rank test at {:.0f} % "
-                          "after Holm's correction, which takes at least six pairs.",
-                          100.0 * kLevel),
+                          "after Holm's correction, which here takes at least {} pairs.",
+                          100.0 * kLevel, comparison.pairs_needed()),
               {"sensor", "method", "figure", "before", "after", "change", "pairs", "p", "verdict"},
               {}};
   for (const FigureChange& change : comparison.changes) {

@@ -39,6 +39,10 @@ struct VersionComparison {
   std::vector<FigureChange> changes;  ///< worse ones first, then better, each by the change
   std::vector<LostRuns> lost;
   std::size_t unpaired = 0;  ///< runs of which the other study has no counterpart
+  std::size_t tests = 0;     ///< figures that changed, for which the level is corrected
+
+  /// The fewest pairs of which the test can say anything if all of them changed alike.
+  std::size_t pairs_needed() const;
 };
 
 inline constexpr double kLevel = 0.05;  ///< of the test that a verdict needs
@@ -46,8 +50,8 @@ inline constexpr double kLevel = 0.05;  ///< of the test that a verdict needs
 /// Pairs each run of `after` with that of `before` on the same world, flight, mode and seed, with
 /// the same sensor and method; studies of a single method are compared whatever it is called. A
 /// figure is better or worse if Wilcoxon's signed-rank test says so at kLevel, corrected for the
-/// number of figures (Holm, "A simple sequentially rejective multiple test procedure", 1979), which
-/// takes at least six pairs. Throws InputError if no two runs are pairs.
+/// number of figures (Holm, "A simple sequentially rejective multiple test procedure", 1979).
+/// Throws InputError if no two runs are pairs.
 VersionComparison compare_versions(const StudyResults& before, const StudyResults& after);
 
 Table table_of(const VersionComparison& comparison);

@@ -54,6 +54,8 @@ TEST(CompareVersions, FivePairsAreTooFewForAVerdict) {
   EXPECT_EQ(change_of(found, "os0", kDrift).paired.pairs, 5U);
   EXPECT_EQ(change_of(found, "os0", kDrift).verdict, Verdict::kNeither);
   EXPECT_EQ(found.unpaired, 6U);
+  EXPECT_EQ(found.tests, 2U);
+  EXPECT_EQ(found.pairs_needed(), 7U) << "2 / 2^7 * 2 = 0.03";
 }
 
 TEST(CompareVersions, LostRunsAreCountedAndNamedNotLeftOut) {
