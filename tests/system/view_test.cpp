@@ -227,7 +227,11 @@ class ReportInBrowser : public ViewInBrowser {
   nlohmann::json evaluate(const std::string& script, const std::string& state = "",
                           const std::string& gl = kSoftwareGl) {
     write("page.html",
-          page_ + "<script>setTimeout(async () => { const value = await (async () => {" + script +
+          page_ +
+              "<script>const until = async ready => { for (let i = 0; i < 150 && !ready(); ++i) "
+              "await new Promise(done => setTimeout(done, 100)); }; setTimeout(async () => { const "
+              "value = await (async () => {" +
+              script +
               "})(); document.documentElement.dataset.test = "
               "encodeURIComponent(JSON.stringify(value)) }, 1000)</script>");
     const std::string dom = browse("--dump-dom", state, gl);
@@ -358,12 +362,14 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
                "kiss_icp')]");
   EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 0, true})) << "charts come later";
   const nlohmann::json later = evaluate(
-      "return [document.documentElement.dataset.view, document.querySelectorAll('#run "
+      "await until(() => document.documentElement.dataset.view); return "
+      "[document.documentElement.dataset.view, document.querySelectorAll('#run "
       ".chart').length, document.querySelectorAll('#run canvas').length]",
       "#run=livox_mid360-kiss_icp-1");
   EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 3, 1}));
   const nlohmann::json without_gl = evaluate(
-      "return [document.documentElement.dataset.picture, document.querySelectorAll('#run .map "
+      "await until(() => document.documentElement.dataset.picture); return "
+      "[document.documentElement.dataset.picture, document.querySelectorAll('#run .map "
       "svg image').length]",
       "#run=livox_mid360-kiss_icp-1", "--disable-gpu --disable-3d-apis");
   EXPECT_EQ(without_gl, nlohmann::json({"livox_mid360-kiss_icp-1", 1}));
@@ -377,9 +383,10 @@ TEST_F(ReportInBrowser, TheTimeLineOfTheMapMovesAMarkThroughTheCharts) {
   const nlohmann::json marks = evaluate(
       "const marks = () => [...document.querySelectorAll('#run .charts svg path')].filter(p => "
       "p.getAttribute('stroke') === '#f97316').length; document.querySelectorAll('#run .chart')"
-      ".forEach(c => c.scrollIntoView()); const rest = () => new Promise(done => setTimeout(done, "
-      "500)); await rest(); const time = document.querySelector('#run .timebar input'); "
-      "time.value = 1; time.oninput(); await rest(); return [time.value, marks()];",
+      ".forEach(c => c.scrollIntoView()); await until(() => document.documentElement.dataset.view "
+      "&& document.querySelectorAll('#run .chart svg').length === 3); const time = "
+      "document.querySelector('#run .timebar input'); time.value = 1; time.oninput(); "
+      "await until(() => marks() === 3); return [time.value, marks()];",
       "#run=livox_mid360-kiss_icp-1");
   EXPECT_EQ(marks, nlohmann::json({"1", 3}));
 }

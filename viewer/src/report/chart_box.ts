@@ -24,6 +24,7 @@ function rowsOf(figure: Figure): (string | number | null)[][] {
 export class ChartBox {
   readonly root: HTMLElement;
   chart: Chart | null = null;
+  private marked: number | null = null;
   private canvas = element("div", { className: "chart" });
   private watch = whenInSight(this.canvas, () => this.draw());
 
@@ -53,6 +54,7 @@ export class ChartBox {
     this.chart = echarts.init(this.canvas, null, { renderer: "svg", width: this.figure.width, height: this.figure.height });
     this.chart.setOption(this.figure.option);
     this.canvas.querySelector("svg")!.setAttribute("viewBox", `0 0 ${this.figure.width} ${this.figure.height}`); // paper is narrower
+    if (this.marked !== null) this.markTime(this.marked);
     this.onDraw(this.chart);
     return this.chart;
   }
@@ -64,6 +66,7 @@ export class ChartBox {
 
   /** Marks an instant in every panel of a chart over time. */
   markTime(time: number) {
+    this.marked = time;
     const seen = new Set<number>();
     this.chart?.setOption({
       series: seriesOf(this.figure).map(({ xAxisIndex = 0 }) => {
