@@ -139,8 +139,9 @@ def node_lost_in_the_middle(studies):
 def task_requeued(studies):
     job = studies.submit("requeued", slow=2)
     studies.wait_until("requeued", lambda status: status["done"] >= 2, "two cells")
-    victim = studies.status("requeued")["workers"][0]["job"]
-    studies.cluster.call("scontrol", "requeue", victim)
+    at_work = studies.status("requeued")["workers"][0]["job"]
+    task = next(task for task in studies.tasks(job)[0] if task["JobId"] == at_work)
+    studies.cluster.call("scontrol", "requeue", f"{job}_{task['ArrayTaskId']}")
     studies.wait_for_end(job)
     studies.check_whole("requeued", job)
     assert sum(int(task["Restarts"]) for task in studies.tasks(job)[0]) == 1
