@@ -35,9 +35,11 @@ trap 'warned=1; kill -USR1 "$worker" 2>/dev/null' USR1  # soon out of time
 trap 'kill -TERM "$worker" 2>/dev/null' TERM
 # A signal ends wait (128 + its number), but not the worker.
 while wait "$worker"; code=$?; [ "$code" = 138 ] || [ "$code" = 143 ]; do :; done
-# 75: it has ended early, with work left. Slurm ends a requeued script; one that ends by itself
-# meanwhile may count as completed.
-if [ -n "$warned" ] && [ "$code" = 75 ]; then scontrol requeue "$SLURM_JOB_ID" && sleep 60; fi
+# 75: it has ended early, with work left. The number of one of the tasks is that of the whole array,
+# hence ARRAY_TASK. Slurm ends a requeued script; one that ends by itself may count as completed.
+if [ -n "$warned" ] && [ "$code" = 75 ]; then
+  scontrol requeue "${{SLURM_ARRAY_JOB_ID}}_$SLURM_ARRAY_TASK_ID" && sleep 60
+fi
 exit "$code"
 )sh";
 

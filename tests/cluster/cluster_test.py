@@ -48,6 +48,7 @@ class Studies:
 
     def __init__(self, program, configs, here, cluster):
         self.program, self.configs, self.here, self.cluster = program, configs, here, cluster
+        self.requeued_at = {}  # by job and number of its restart
         os.environ["SLOW"] = "0"
         (here / "room.obj").write_text(ROOM)
         (here / "flight.yaml").write_text(FLIGHT)
@@ -82,9 +83,13 @@ class Studies:
         return tasks, min(report, key=lambda fields: int(fields["JobId"]))
 
     def start_requeued(self, job):
-        """Slurm lets requeued tasks wait for two minutes; this starts them."""
+        """Slurm lets requeued tasks wait for two minutes. This starts them after a few seconds, which the node needs to
+        end the earlier start of the task."""
         for task in self.tasks(job)[0]:
-            if task["JobState"] == "PENDING" and int(task["Restarts"]) > 0:
+            start = (task["JobId"], task["Restarts"])
+            if task["JobState"] != "PENDING" or task["Restarts"] == "0":
+                continue
+            if time.monotonic() - self.requeued_at.setdefault(start, time.monotonic()) > 6:
                 # fails if the task has just started
                 subprocess.run(["scontrol", "update", f"jobid={task['JobId']}", "starttime=now"], check=False,
                                stderr=subprocess.DEVNULL)
@@ -134,8 +139,9 @@ def node_lost_in_the_middle(studies):
 def task_requeued(studies):
     job = studies.submit("requeued", slow=2)
     studies.wait_until("requeued", lambda status: status["done"] >= 2, "two cells")
-    victim = studies.status("requeued")["workers"][0]["job"]
-    studies.cluster.call("scontrol", "requeue", victim)
+    at_work = studies.status("requeued")["workers"][0]["job"]
+    task = next(task for task in studies.tasks(job)[0] if task["JobId"] == at_work)
+    studies.cluster.call("scontrol", "requeue", f"{job}_{task['ArrayTaskId']}")
     studies.wait_for_end(job)
     studies.check_whole("requeued", job)
     assert sum(int(task["Restarts"]) for task in studies.tasks(job)[0]) == 1
