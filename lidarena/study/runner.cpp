@@ -163,8 +163,10 @@ class Runner {
     const auto end = slot.process->poll();
     if (!end) return;
     slot.process.reset();
-    const bool done = end->exit_code == 0 || (end->exit_code == kWorkFailed &&
-                                              fs::exists(slot.stage.steps[slot.step].product));
+    // A run that diverged ends so, too, and is whole; a flight is not without its example scans.
+    const bool whole_run = slot.stage.cell != nullptr && end->exit_code == kWorkFailed &&
+                           fs::exists(slot.stage.steps[slot.step].product);
+    const bool done = end->exit_code == 0 || whole_run;
     const bool is_last = slot.step + 1 == slot.stage.steps.size();
     if (done && !is_last) {
       slot.stage.record(slot.step, 0.0);

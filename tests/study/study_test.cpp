@@ -376,6 +376,20 @@ TEST(RunStudy, WithoutTheProgramItSaysHowToGiveIt) {
   }
 }
 
+TEST(RunStudy, AFlightThatFailsAfterItsManifestIsNotTakenForWhole) {
+  const TemporaryFolder scratch;
+  LogSink log;
+  const std::filesystem::path program = scratch.path() / "lidarena";
+  std::ofstream(program) << "#!/bin/sh\n" LIDARENA_BINARY " \"$@\" && [ \"$1\" != simulate ]\n";
+  std::filesystem::permissions(program, std::filesystem::perms::owner_all);
+  StudyOptions options;
+  options.program = program;
+  const StudyOutcome outcome =
+      run_study(tiny_spec(), configs(), scratch.path() / "out", options, log);
+  EXPECT_EQ(outcome.failed, outcome.runs);
+  EXPECT_TRUE(std::filesystem::is_empty(scratch.path() / "out/datasets"));
+}
+
 TEST(ProgramCode, OfAProgramThatWasKilledSaysSo) {
   const TemporaryFolder scratch;
   const std::filesystem::path program = scratch.path() / "lidarena";
