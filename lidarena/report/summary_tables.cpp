@@ -97,7 +97,8 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
       "runs-" + world,
       "All runs, " + world,
       "RPE over 1 m. ATE after alignment by SE(3). Own map: as published by the algorithm; all "
-      "returns: every return placed along the estimated path. P95 of the processing time per "
+      "returns: at most 20,000 of a scan, placed by the estimated motion. P95 of the processing "
+      "time per "
       "scan. Own memory: map, scan buffer and backlog as the algorithm counts them.",
       {"sensor, algorithm, seed", "RPE, cm per m", "RPE, deg per m", "ATE, cm", "coverage, %",
        "own map RMSE, cm", "own map > 20 cm, %", "all returns RMSE, cm", "all returns > 20 cm, %",

@@ -26,7 +26,7 @@ export interface Run {
   coverage_percent: number | null;
   values: (number | null)[]; // of ReportData.figures
   own_map?: DistanceHistogram | null; // as published by the algorithm
-  all_returns?: DistanceHistogram | null; // every return, placed by the estimated path
+  all_returns?: DistanceHistogram | null; // the scored returns, placed by the estimated motion
   error?: ErrorsOverTime | null; // after SE(3) alignment
   drift?: ErrorsOverTime | null; // over pieces of 1 m
   resources?: ResourcesOverTime | null;

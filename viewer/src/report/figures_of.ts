@@ -73,7 +73,7 @@ function histograms(all: Run[], world: string, kind: "own_map" | "all_returns"):
       `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar is the share beyond ${bins} cm (yellow line). ` +
       (own
         ? "The map is the one that the algorithm publishes."
-        : "The map consists of every return, placed by the estimated path, in the same way for every algorithm."),
+        : "The map consists of the scored returns (at most 20,000 a scan), placed by the estimated motion."),
     names: algorithms,
     legend: sensors,
     columns: 4,
