@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "lidarena/dataset/existing_folder.hpp"
 #include "lidarena/study/claim.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/runner.hpp"
@@ -107,9 +108,7 @@ StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const
 }
 
 std::uint64_t default_scratch_bytes(const fs::path& folder) {
-  fs::path place = fs::absolute(folder);
-  while (!fs::exists(place) && place.has_relative_path()) place = place.parent_path();
-  return fs::space(place).available / 2;
+  return fs::space(dataset::existing_folder(folder)).available / 2;
 }
 
 }  // namespace lidarena::study

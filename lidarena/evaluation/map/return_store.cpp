@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/existing_folder.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
 
 namespace lidarena::evaluation {
@@ -45,13 +46,6 @@ Point point_of(const KeptPoint& p) {
   throw Error(folder.string() + ": " + what + ": " + std::strerror(errno));
 }
 
-/// The folder itself, or the nearest one above it that exists.
-fs::path existing(fs::path folder) {
-  folder = fs::absolute(folder);
-  while (!fs::exists(folder)) folder = folder.parent_path();
-  return folder;
-}
-
 /// A file without a name.
 std::FILE* open_unnamed(const fs::path& folder) {
   std::string name = (folder / ".returns_XXXXXX").string();
@@ -64,7 +58,7 @@ std::FILE* open_unnamed(const fs::path& folder) {
 }  // namespace
 
 ReturnStore::ReturnStore(const fs::path& folder, std::string lidar_id, std::size_t max_returns)
-    : folder_(existing(folder)),
+    : folder_(dataset::existing_folder(folder)),
       lidar_id_(std::move(lidar_id)),
       max_returns_(max_returns),
       file_(open_unnamed(folder_), &std::fclose) {}
