@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 packages=(g++ cmake ninja-build pkg-config ca-certificates
           libeigen3-dev libembree-dev libtbb-dev libassimp-dev libyaml-cpp-dev
           nlohmann-json3-dev libfmt-dev libcli11-dev robin-map-dev libzstd-dev libdeflate-dev libpng-dev
-          liblz4-dev liblzf-dev libmd-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev
+          liblz4-dev libxxhash-dev liblzf-dev libmd-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev
           dpkg-dev file)
 # Debian 12 has sdformat 12; later releases dropped it, which disables SDF worlds. Without libbz2,
 # ROS 1 bags with bz2 chunks cannot be read; without nanoflann, benchmarks leave out the comparison

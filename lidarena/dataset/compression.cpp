@@ -6,11 +6,17 @@
 #endif
 #include <libdeflate.h>
 #include <lz4frame.h>
+#define XXH_INLINE_ALL  // no library to link with
+#include <xxhash.h>
 #include <zstd.h>
 
 #include <algorithm>
+#include <cstring>
+#include <functional>
+#include <memory>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace lidarena::dataset {
 namespace {
@@ -68,20 +74,70 @@ void decompress_zstd(Bytes input, std::uint64_t size, std::vector<std::byte>& ou
   });
 }
 
-void decompress_lz4(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
-  LZ4F_dctx* created = nullptr;
-  if (LZ4F_isError(LZ4F_createDecompressionContext(&created, LZ4F_VERSION))) throw std::bad_alloc();
-  const std::unique_ptr<LZ4F_dctx, DeleteLz4> context(created);
-  decompress_stream(input, size, output, [&](std::span<std::byte>& free_output, Bytes& rest) {
+/// liblz4 before 1.9.4 always verifies them.
+template <class Options>
+void skip_checksums(Options& options) {
+  if constexpr (requires { options.skipChecksums; }) options.skipChecksums = 1;
+}
+
+/// Decompresses LZ4 frames. The checksum of a frame's content is verified here, because Debian's
+/// liblz4 computes it slower than it decompresses; those of blocks are verified by liblz4.
+class Lz4Frames {
+ public:
+  Lz4Frames() {
+    LZ4F_dctx* created = nullptr;
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&created, LZ4F_VERSION)))
+      throw std::bad_alloc();
+    context_.reset(created);
+  }
+
+  /// A step of decompress_stream().
+  bool operator()(std::span<std::byte>& free_output, Bytes& rest) {
+    if (frame_size_ == 0) read_header(rest);
+    LZ4F_decompressOptions_t options{};
+    if (has_checksum_) skip_checksums(options);
     std::size_t consumed = rest.size();
     std::size_t produced = free_output.size();
-    const std::size_t result = LZ4F_decompress(context.get(), free_output.data(), &produced,
-                                               rest.data(), &consumed, nullptr);
-    if (LZ4F_isError(result)) throw std::runtime_error(LZ4F_getErrorName(result));
+    const std::size_t result = checked(LZ4F_decompress(
+        context_.get(), free_output.data(), &produced, rest.data(), &consumed, &options));
     rest = rest.subspan(consumed);
     free_output = free_output.subspan(produced);
+    frame_size_ += produced;
+    if (result == 0)
+      verify({free_output.data() - frame_size_, std::exchange(frame_size_, 0)}, rest);
     return result == 0;
-  });
+  }
+
+ private:
+  static std::size_t checked(std::size_t result) {
+    if (LZ4F_isError(result)) throw std::runtime_error(LZ4F_getErrorName(result));
+    return result;
+  }
+  void read_header(Bytes& rest) {
+    LZ4F_frameInfo_t info{};
+    std::size_t consumed = rest.size();
+    checked(LZ4F_getFrameInfo(context_.get(), &info, rest.data(), &consumed));
+    rest = rest.subspan(consumed);
+    has_checksum_ = info.contentChecksumFlag == LZ4F_contentChecksumEnabled &&
+                    info.blockChecksumFlag == LZ4F_noBlockChecksum;
+  }
+  /// `rest`: what follows the frame, whose last bytes are the checksum.
+  void verify(Bytes content, Bytes rest) const {
+    if (!has_checksum_) return;
+    std::uint32_t stored = 0;
+    std::memcpy(&stored, rest.data() - sizeof stored, sizeof stored);
+    if (XXH32(content.data(), content.size(), 0) != stored)
+      throw std::runtime_error("has a wrong checksum");
+  }
+
+  std::unique_ptr<LZ4F_dctx, DeleteLz4> context_;
+  std::size_t frame_size_ = 0;  ///< bytes of the current frame that were decompressed
+  bool has_checksum_ = false;   ///< of the current frame, to be verified here
+};
+
+void decompress_lz4(Bytes input, std::uint64_t size, std::vector<std::byte>& output) {
+  Lz4Frames frames;
+  decompress_stream(input, size, output, std::ref(frames));
 }
 
 #ifdef LIDARENA_HAVE_BZIP2

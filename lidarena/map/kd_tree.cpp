@@ -38,8 +38,14 @@ void KdTree::Search::offer(const Leaf& leaf) {
     const float dz = z[i] - query.z();
     squared[i] = dx * dx + (dy * dy + dz * dz);
   }
-  for (std::uint32_t i = 0; i < leaf.count; ++i) {
-    if (squared[i] < bound()) keep(leaf.point(i), squared[i]);
+  constexpr std::uint32_t kGroup = 4;  // most groups have no point that is near enough
+  for (std::uint32_t first = 0; first < leaf.count; first += kGroup) {
+    const float* const group = squared.data() + first;
+    if (!(std::min(std::min(group[0], group[1]), std::min(group[2], group[3])) < bound())) continue;
+    const std::uint32_t end = std::min(first + kGroup, leaf.count);
+    for (std::uint32_t i = first; i < end; ++i) {
+      if (squared[i] < bound()) keep(leaf.point(i), squared[i]);
+    }
   }
 }
 

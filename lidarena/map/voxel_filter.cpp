@@ -70,7 +70,7 @@ std::vector<std::uint32_t> first_of_each_voxel(std::span<const Eigen::Vector3f> 
 std::vector<Eigen::Vector3f> voxel_means(std::span<const Eigen::Vector3f> points, double voxel_size,
                                          GridAxes axes) {
   const Eigen::Matrix3f cells_from_points = (grid_from_points(axes) / voxel_size).cast<float>();
-  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells;
+  tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> cells(points.size() / 4);
   std::vector<Eigen::Vector3f> sums;
   std::vector<std::uint32_t> counts;
   for (const Eigen::Vector3f& point : points) {

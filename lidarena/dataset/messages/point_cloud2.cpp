@@ -43,24 +43,25 @@ bool is_float(FieldType type) { return type == FieldType::kFloat32 || type == Fi
 
 /// Points that are decoded together, so that each is read from memory once.
 constexpr std::size_t kBlock = 512;
-using Column = std::array<double, kBlock>;
+template <class Value>
+using Column = std::array<Value, kBlock>;
 
-template <class T>
-void load(const std::byte* at, std::size_t step, std::span<double> values) {
-  for (double& value : values) {
-    T stored;
+template <class Stored, class Value>
+void load(const std::byte* at, std::size_t step, std::span<Value> values) {
+  for (Value& value : values) {
+    Stored stored;
     std::memcpy(&stored, at, sizeof stored);
-    value = static_cast<double>(stored);
+    value = static_cast<Value>(stored);
     at += step;
   }
 }
 
-/// Values of a field of the points from `first` on; a double holds every field type exactly. Zeros
-/// if there is no such field.
+/// Values of a field of the points from `first` on. Zeros if there is no such field.
+template <class Value>
 void load_column(const PointCloud2& cloud, const PointField* field, std::size_t first,
-                 std::span<double> values) {
+                 std::span<Value> values) {
   if (field == nullptr) {
-    std::ranges::fill(values, 0.0);
+    std::ranges::fill(values, Value{0});
     return;
   }
   const std::byte* at = cloud.data.data() + first * cloud.point_step + field->offset;
@@ -118,9 +119,11 @@ struct TimeUnit {
 /// ns since header.stamp. Whole units are converted as integers: an absolute time in ns exceeds the
 /// 53 bits of a double.
 std::int64_t since_stamp(double value, const TimeUnit& unit, Time stamp) {
-  const double whole = std::floor(value);
-  const std::int64_t ns = static_cast<std::int64_t>(whole) * unit.ns +
-                          std::llround((value - whole) * static_cast<double>(unit.ns));
+  auto whole = static_cast<std::int64_t>(value);
+  if (static_cast<double>(whole) > value) --whole;
+  const double rest = value - static_cast<double>(whole);
+  std::int64_t ns = whole * unit.ns;
+  if (rest > 0.0) ns += std::llround(rest * static_cast<double>(unit.ns));
   return unit.absolute ? ns - stamp.count() : ns;
 }
 
@@ -152,33 +155,39 @@ std::optional<TimeUnit> guess_unit(const PointField& field, double low, double h
   return std::nullopt;
 }
 
-/// ns since header.stamp of each return, from the values of its time field; empty if the scan is
-/// untimed.
-std::vector<std::int64_t> times_of(const PointField* field, const std::vector<double>& values,
-                                   Time stamp, std::string_view place) {
-  if (field == nullptr || values.empty()) return {};
-  if (!std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
+/// Lowest and highest of the values of a scan's time field.
+struct TimeRange {
+  double low = 0.0;
+  double high = 0.0;
+};
+
+/// The range of `values`, which must be finite; none if the scan is untimed.
+std::optional<TimeRange> range_of(const PointField* field, const std::vector<double>& values,
+                                  std::string_view place) {
+  if (field == nullptr || values.empty()) return std::nullopt;
+  if (is_float(field->type) &&
+      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
     throw InputError(place, fmt::format("field '{}' of a return is not finite", field->name));
   }
   const auto [low, high] = std::ranges::minmax(values);
-  if (low == 0.0 && high == 0.0) return {};
-  if (!is_float(field->type)) return {values.begin(), values.end()};  // ns since header.stamp
-  const std::optional<TimeUnit> unit = guess_unit(*field, low, high, stamp);
-  if (!unit) {
-    throw InputError(place,
-                     fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
-                                 "near the stamp {} ns in s, us or ns",
-                                 field->name, low, high, stamp.count()),
-                     "record with a driver that writes times in s, us or ns");
-  }
-  std::vector<std::int64_t> times(values.size());
-  std::ranges::transform(values, times.begin(),
-                         [&](double value) { return since_stamp(value, *unit, stamp); });
-  return times;
+  if (low == 0.0 && high == 0.0) return std::nullopt;
+  return TimeRange{low, high};
 }
 
-std::uint16_t as_ring(double value) {
-  constexpr double kLast = std::numeric_limits<std::uint16_t>::max();
+TimeUnit unit_of(const PointField& field, const TimeRange& range, Time stamp,
+                 std::string_view place) {
+  if (!is_float(field.type)) return {};  // ns since header.stamp
+  const std::optional<TimeUnit> unit = guess_unit(field, range.low, range.high, stamp);
+  if (unit) return *unit;
+  throw InputError(place,
+                   fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
+                               "near the stamp {} ns in s, us or ns",
+                               field.name, range.low, range.high, stamp.count()),
+                   "record with a driver that writes times in s, us or ns");
+}
+
+std::uint16_t as_ring(float value) {
+  constexpr float kLast = std::numeric_limits<std::uint16_t>::max();
   return value >= 0.0 && value <= kLast ? static_cast<std::uint16_t>(value) : std::uint16_t{0};
 }
 
@@ -204,17 +213,28 @@ PointFields fields_of(const PointCloud2& cloud, std::string_view place) {
           find(cloud, {"t", "offset_time", "time", "timestamp"})};
 }
 
-/// Appends the returns to `points`, without times; gives the values of their time field.
-std::vector<double> append_returns(const PointCloud2& cloud, const PointFields& fields,
-                                   std::vector<Point>& points) {
+/// A driver writes zeros or NaN where nothing came back. A difference of a float to itself is 0 if
+/// it is finite, else NaN.
+bool is_return(float x, float y, float z) {
+  const bool is_finite = (x - x) + (y - y) + (z - z) == 0.0F;
+  const bool is_zero = std::abs(x) + std::abs(y) + std::abs(z) == 0.0F;
+  return is_finite & !is_zero;
+}
+
+/// Reads the returns into `points`, without times, and the values of their time field.
+void read_returns(const PointCloud2& cloud, const PointFields& fields, std::vector<Point>& points,
+                  std::vector<double>& times) {
   const std::size_t count = std::size_t{cloud.width} * cloud.height;
+  points.clear();
   points.reserve(count);
-  std::vector<double> times;
+  times.clear();
   times.reserve(count);
-  Column x, y, z, intensity, ring, time;
+  Column<float> x, y, z, intensity, ring;
+  Column<double> time;
+  Column<Point> returns;
   for (std::size_t first = 0; first < count; first += kBlock) {
     const std::size_t size = std::min(kBlock, count - first);
-    const auto load = [&](const PointField* field, Column& column) {
+    const auto load = [&](const PointField* field, auto& column) {
       load_column(cloud, field, first, std::span(column).first(size));
     };
     load(fields.position[0], x);
@@ -223,26 +243,29 @@ std::vector<double> append_returns(const PointCloud2& cloud, const PointFields& 
     load(fields.intensity, intensity);
     load(fields.ring, ring);
     load(fields.time, time);
+    std::size_t kept = 0;  // without a branch: which pixels have a return cannot be predicted
     for (std::size_t i = 0; i < size; ++i) {
-      const Eigen::Vector3d p(x[i], y[i], z[i]);
-      if (!p.allFinite() || p.isZero(0.0)) continue;
-      points.push_back({p.cast<float>(), static_cast<float>(intensity[i]), 0, as_ring(ring[i]), 0});
-      times.push_back(time[i]);
+      returns[kept] = {{x[i], y[i], z[i]}, intensity[i], 0, as_ring(ring[i]), 0};
+      time[kept] = time[i];
+      kept += is_return(x[i], y[i], z[i]) ? 1 : 0;
     }
+    points.insert(points.end(), returns.begin(), returns.begin() + kept);
+    times.insert(times.end(), time.begin(), time.begin() + kept);
   }
-  return times;
 }
 
-/// Sets stamp and dt_ns so that no point is earlier than the stamp, and sorts by time.
-void set_times(Scan& scan, const std::vector<std::int64_t>& times, std::string_view place) {
-  const auto [low, high] = std::ranges::minmax(times);
-  const std::int64_t shift = std::min<std::int64_t>(low, 0);
-  if (high - shift > std::numeric_limits<std::int32_t>::max()) {
+/// Sets stamp and dt_ns by the `values` of the time field, so that no point is earlier than the
+/// stamp, and sorts by time.
+void set_times(Scan& scan, const std::vector<double>& values, const TimeRange& range,
+               const TimeUnit& unit, std::string_view place) {
+  const Time stamp = scan.stamp;
+  const std::int64_t shift = std::min<std::int64_t>(since_stamp(range.low, unit, stamp), 0);
+  if (since_stamp(range.high, unit, stamp) - shift > std::numeric_limits<std::int32_t>::max()) {
     throw InputError(place, "a scan is longer than 2.1 s", "split it into shorter scans");
   }
   scan.stamp += Time{shift};
-  for (std::size_t i = 0; i < times.size(); ++i) {
-    scan.points[i].dt_ns = static_cast<std::int32_t>(times[i] - shift);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    scan.points[i].dt_ns = static_cast<std::int32_t>(since_stamp(values[i], unit, stamp) - shift);
   }
   sort_in_firing_order(scan.points);
 }
@@ -357,10 +380,12 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
   }
   const PointFields fields = fields_of(cloud, place);
   Scan scan{header_stamp, {}, true};
-  const std::vector<double> time_values = append_returns(cloud, fields, scan.points);
-  const std::vector<std::int64_t> times = times_of(fields.time, time_values, header_stamp, place);
-  scan.timed = !times.empty();
-  if (scan.timed) set_times(scan, times, place);
+  static thread_local std::vector<double> times;  // kept, because new memory costs more
+  read_returns(cloud, fields, scan.points, times);
+  const std::optional<TimeRange> range = range_of(fields.time, times, place);
+  scan.timed = range.has_value();
+  if (range)
+    set_times(scan, times, *range, unit_of(*fields.time, *range, header_stamp, place), place);
   return scan;
 }
 

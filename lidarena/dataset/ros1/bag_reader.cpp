@@ -53,9 +53,10 @@ struct BagReader::Impl {
   std::uint64_t messages_indexed = 0;  ///< sum of their message counts
 
   std::vector<std::byte> header;
-  std::vector<std::byte> data;
-  std::vector<std::byte> unpacked;  ///< of a compressed chunk
-  ByteReader chunk{Bytes{}};        ///< unread rest of the current chunk
+  Bytes data;                          ///< of the top-level record being read, in `data_buffer`
+  std::vector<std::byte> data_buffer;  ///< only grows: new bytes of a vector are cleared first
+  std::vector<std::byte> unpacked;     ///< of a compressed chunk
+  ByteReader chunk{Bytes{}};           ///< unread rest of the current chunk
 
   std::map<std::uint32_t, std::size_t> connections;  ///< id -> index in met.topics
   RecordingInfo contents;
@@ -128,8 +129,11 @@ Fields BagReader::Impl::read_record() {
   record_offset = offset;
   header.resize(read_length());
   read(header);
-  data.resize(read_length());
-  read(data);
+  const std::uint32_t length = read_length();
+  if (length > data_buffer.size()) data_buffer.resize(length);
+  const std::span<std::byte> bytes = std::span(data_buffer).first(length);
+  read(bytes);
+  data = bytes;
   return Fields(header);
 }
 

@@ -95,7 +95,10 @@ void FastLio2::predict(const ScanSpan& scan) {
 void FastLio2::publish(std::vector<Eigen::Vector3f> in_world) {
   registered_scan_ = std::move(in_world);
   if (!config_.keep_all_scans) return;
-  for (const Eigen::Vector3f& p : registered_scan_) archive_.push_back({p.x(), p.y(), p.z()});
+  archive_.emplace_back().reserve(registered_scan_.size());
+  for (const Eigen::Vector3f& p : registered_scan_)
+    archive_.back().push_back({p.x(), p.y(), p.z()});
+  archived_bytes_ += archive_.back().size() * sizeof(ArchivedPoint);
 }
 
 /// A scan out of time order is counted and changes nothing else.
@@ -128,10 +131,9 @@ std::vector<Eigen::Vector3f> FastLio2::map() const {
 }
 
 std::map<std::string, std::uint64_t> FastLio2::memory() const {
-  const std::size_t archived = archive_.size() * sizeof(ArchivedPoint);
   const std::size_t published = registered_scan_.capacity() * sizeof(Eigen::Vector3f);
   return {{"map", map_.memory_bytes()},
-          {"scan_buffer", archived + published},
+          {"scan_buffer", archived_bytes_ + published},
           {"backlog", imu_.memory_bytes()},
           {"other", poses_.capacity() * sizeof(StampedPose)}};
 }

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <array>
-#include <deque>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -69,7 +68,8 @@ class FastLio2 : public Odometry {
   std::vector<Eigen::Vector3f> registered_scan_;
   /// A point as stored in the program's buffer (48 bytes).
   using ArchivedPoint = std::array<float, 12>;
-  std::deque<ArchivedPoint> archive_;  ///< no vector, whose growth would copy gigabytes in a scan
+  std::vector<std::vector<ArchivedPoint>> archive_;  ///< by scan
+  std::size_t archived_bytes_ = 0;
 };
 
 }  // namespace lidarena::odometry::fast_lio2

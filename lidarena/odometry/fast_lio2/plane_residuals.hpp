@@ -28,11 +28,15 @@ class PlaneResiduals {
   const std::vector<Neighbors>& neighbors() const { return neighbors_; }
 
  private:
+  /// Neighbors and plane of the point with index `i`, which is at `point` (m) in the map.
+  void find(std::size_t i, const Eigen::Vector3f& point);
+
   std::span<const Eigen::Vector3f> points_;
   const map::KdTree& map_;
   bool estimate_extrinsics_;
   const Parallel& parallel_;
   std::vector<Neighbors> neighbors_;
+  estimation::PointPlanes fitted_;  ///< through the neighbors, whether or not still in use
   estimation::PointPlanes planes_;
 };
 
