@@ -26,6 +26,17 @@ Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& an
   return (axis + angles.x() * left + angles.y() * axis.cross(left)).normalized();
 }
 
+Eigen::Vector3f slightly_deflected(const Eigen::Vector3f& axis, float left, float up) {
+  const float length = std::sqrt(axis.x() * axis.x() + axis.y() * axis.y());
+  // The same direction "left" as in deflected().
+  const float x = length > 1e-6F ? -axis.y() / length : 0.0F;
+  const float y = length > 1e-6F ? axis.x() / length : 1.0F;
+  const Eigen::Vector3f to_left(x, y, 0.0F);
+  // The three directions are orthogonal: the sum has the length sqrt(1 + left^2 + up^2).
+  const float shorten = 1.0F - 0.5F * (left * left + up * up);
+  return shorten * (axis + left * to_left + up * axis.cross(to_left));
+}
+
 void merge_echoes(std::span<Echo> parts, double pulse_length, std::vector<Echo>& echoes) {
   std::ranges::sort(parts, [](const Echo& a, const Echo& b) {
     return a.range < b.range || (a.range == b.range && a.sub_ray < b.sub_ray);

@@ -28,6 +28,9 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count);
 /// rad, to its left and upwards.
 Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles);
 
+/// The same in single precision for angles of at most some mrad: 1e-7 of the direction.
+Eigen::Vector3f slightly_deflected(const Eigen::Vector3f& axis, float left, float up);
+
 /// Sorts `parts` by range and merges them into pulses, which replace `echoes`, nearest first. A
 /// part belongs to the pulse of the previous part if it lies at most `pulse_length` meters behind
 /// it.

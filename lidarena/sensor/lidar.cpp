@@ -2,15 +2,14 @@
 #include "lidarena/sensor/lidar.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <optional>
 #include <span>
 #include <utility>
 
 #include "lidarena/sensor/lidar_motion.hpp"
+#include "lidarena/sensor/normal_pairs.hpp"
 
 namespace lidarena::sensor {
 namespace {
@@ -83,8 +82,8 @@ struct Lidar::Block {
   std::vector<std::uint32_t> places;  ///< index in `rays` of each shot's first sub-ray
   std::vector<world::Ray> rays;       ///< in casting order
   std::vector<world::Hit> hits;
-  std::array<double, 2> normals{};  ///< of the current pair of shots
-  std::uint64_t normals_of = std::numeric_limits<std::uint64_t>::max();  ///< the pair's number
+  NormalPairs range_noise;      ///< of the first echoes; two consecutive shots share a pair
+  NormalPairs direction_noise;  ///< to the left and upwards, by shot
   // Of the current shot.
   double axis_to_origin = 0.0;  ///< m; ranges are measured from the sensor's axis
   std::vector<Echo> parts;
@@ -101,11 +100,13 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       beam_sigma_(kRadians * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
       energy_of_ray_(1.0 / static_cast<double>(sub_rays_.size())),
+      angle_sigma_(static_cast<float>(kRadians * config_.noise.angle_noise_deg)),
       table_(*pattern_),
       order_(first_beams(*pattern_)) {
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);
   for (const Beam& beam : first_beams(*pattern_)) last_dt_ns_ = std::max(last_dt_ns_, beam.dt_ns);
   shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
+  has_range_noise_ = config_.range_noise_m > 0.0 || config_.noise.near_range_noise_m > 0.0;
   needs_signal_ = sub_rays_.size() > 1 || config_.noise.dropouts ||
                   config_.noise.weak_signal_noise ||
                   config_.returns.intensity == IntensityKind::kSignal;
@@ -176,66 +177,61 @@ std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t
   return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
 }
 
-/// Fills block.echoes with the shot's detected echoes, in reporting order.
+/// Fills block.echoes with the detected echoes of a shot of several sub-rays, in reporting order.
 void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block) const {
   block.echoes.clear();
   block.parts.clear();
   for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
     const auto part = receive_ray(world, shot, k, block);
-    if (part) (sub_rays_.size() == 1 ? block.echoes : block.parts).push_back(*part);
+    if (part) block.parts.push_back(*part);
   }
-  if (!block.parts.empty()) {
-    merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
-  }
-  if (config_.noise.dropouts) {
-    std::size_t number = 0;
-    std::erase_if(block.echoes, [&](const Echo& echo) {
-      return !is_detected(echo, block.first_ray + shot, number++);
-    });
-  }
+  if (block.parts.empty()) return;
+  merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
+  std::size_t number = 0;
+  std::erase_if(block.echoes, [&](const Echo& echo) {
+    return !is_detected(echo, block.first_ray + shot, number++);
+  });
   choose_echoes(config_.returns, block.echoes);
 }
 
 bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {
+  if (!config_.noise.dropouts) return true;
   const double probability = signal_.detection_probability(echo.signal);
   return probability >= 1.0 || random_.uniform(ray, draw_of(kDetection, number)) < probability;
 }
 
-/// Range noise of an echo, in sigmas. Normal random numbers come in pairs; two consecutive shots
-/// share a pair.
-double Lidar::range_noise(std::uint64_t ray, std::size_t number, Block& block) const {
+/// Range noise of an echo, in sigmas.
+double Lidar::range_noise(std::size_t shot, std::size_t number, const Block& block) const {
+  const std::uint64_t ray = block.first_ray + shot;
   if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
-  if (block.normals_of != ray / 2) {
-    block.normals_of = ray / 2;
-    block.normals = random_.normals(ray / 2, kRange);
-  }
-  return block.normals[ray % 2];
+  const std::uint64_t pair = ray / 2 - block.first_ray / 2;
+  return static_cast<double>(ray % 2 == 0 ? block.range_noise.first(pair)
+                                          : block.range_noise.second(pair));
 }
 
-double Lidar::measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,
-                             Block& block) const {
+double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number,
+                             const Block& block) const {
   const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
   double range = echo.range;
-  if (sigma > 0.0) range += sigma * range_noise(ray, number, block);
+  if (sigma > 0.0) range += sigma * range_noise(shot, number, block);
   const double step = config_.noise.range_step_m;
-  return step > 0.0 ? step * std::round(range / step) : range;
+  return step > 0.0 ? step * std::nearbyint(range / step) : range;
 }
 
-Vector3f Lidar::reported_direction(const Beam& beam, std::uint64_t ray) const {
-  const double sigma = kRadians * config_.noise.angle_noise_deg;
-  if (sigma == 0.0) return beam.direction;
-  const auto [left, up] = random_.normals(ray, kAngle);
-  return deflected(beam.direction.cast<double>(), {sigma * left, sigma * up}).cast<float>();
+Vector3f Lidar::reported_direction(std::size_t shot, const Block& block) const {
+  const Vector3f& direction = block.shots[shot].direction;
+  if (angle_sigma_ == 0.0F) return direction;
+  return slightly_deflected(direction, angle_sigma_ * block.direction_noise.first(shot),
+                            angle_sigma_ * block.direction_noise.second(shot));
 }
 
 /// Appends the point, and its truth, of the shot's echo `number`.
 void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const {
   const Beam& beam = block.shots[shot];
-  const std::uint64_t ray = block.first_ray + shot;
-  const double distance = measured_range(echo, ray, number, block) - block.axis_to_origin;
+  const double distance = measured_range(echo, shot, number, block) - block.axis_to_origin;
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
   Point point;
-  point.position = beam.origin + static_cast<float>(distance) * reported_direction(beam, ray);
+  point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
   point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
   point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
   point.ring = beam.ring;
@@ -254,6 +250,13 @@ void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block
       .triangle = hit.triangle};
 }
 
+/// Normal random numbers come in pairs; two consecutive shots share one for their ranges.
+void Lidar::draw_noise(Block& block) const {
+  const std::size_t shots = block.shots.size();
+  if (has_range_noise_) block.range_noise.draw(random_, block.first_ray / 2, shots / 2 + 1, kRange);
+  if (angle_sigma_ > 0.0F) block.direction_noise.draw(random_, block.first_ray, shots, kAngle);
+}
+
 void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
                   Block& block) const {
   place_rays(block);
@@ -261,12 +264,12 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
   world.cast(block.rays, config_.max_range_m - start_offset(config_), block.hits,
              world::RayOrder::kNeighbors);
   block.count = 0;
-  const bool single_echo = sub_rays_.size() == 1 && !config_.noise.dropouts;
+  draw_noise(block);
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
     block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
-    if (single_echo) {
+    if (sub_rays_.size() == 1) {
       const auto echo = receive_ray(world, shot, 0, block);
-      if (echo) report(shot, *echo, 0, block);
+      if (echo && is_detected(*echo, block.first_ray + shot, 0)) report(shot, *echo, 0, block);
       continue;
     }
     receive(world, shot, block);

@@ -84,10 +84,11 @@ class Lidar {
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
                  std::vector<Point>& points, std::vector<dataset::PointTruth>* truth) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
-  double range_noise(std::uint64_t ray, std::size_t number, Block& block) const;
-  double measured_range(const Echo& echo, std::uint64_t ray, std::size_t number,
-                        Block& block) const;
-  Eigen::Vector3f reported_direction(const Beam& beam, std::uint64_t ray) const;
+  void draw_noise(Block& block) const;
+  double range_noise(std::size_t shot, std::size_t number, const Block& block) const;
+  double measured_range(const Echo& echo, std::size_t shot, std::size_t number,
+                        const Block& block) const;
+  Eigen::Vector3f reported_direction(std::size_t shot, const Block& block) const;
 
   SensorConfig config_;
   std::unique_ptr<ScanPattern> pattern_;
@@ -96,6 +97,8 @@ class Lidar {
   std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
   double energy_of_ray_;                   ///< of a sub-ray, as share of the beam's energy
+  float angle_sigma_;                      ///< rad
+  bool has_range_noise_ = false;
   bool needs_signal_ = false;
   BeamTable table_;
   CastOrder order_;

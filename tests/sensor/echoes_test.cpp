@@ -6,6 +6,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "lidarena/base/random.hpp"
+
 namespace lidarena::sensor {
 namespace {
 
@@ -89,6 +91,18 @@ TEST(SubRays, AreTurnedAsideByTheAnglesAsked) {
       EXPECT_GT(up.z(), axis.z());
       EXPECT_GT(axis.cross(left).z(), 0.0);  // left is counterclockwise seen from above
     }
+  }
+}
+
+TEST(SlightlyDeflected, IsTheExactRotationInSinglePrecision) {
+  SequentialRandom random(2);
+  for (int i = 0; i < 1000; ++i) {
+    Eigen::Vector3d axis(random.normal(), random.normal(), i % 10 == 0 ? 1e9 : random.normal());
+    axis.normalize();
+    const Eigen::Vector2d angles(2e-3 * random.normal(), 2e-3 * random.normal());
+    const Eigen::Vector3f fast = slightly_deflected(
+        axis.cast<float>(), static_cast<float>(angles.x()), static_cast<float>(angles.y()));
+    EXPECT_LT((fast.cast<double>() - deflected(axis, angles)).norm(), 3e-7) << axis.transpose();
   }
 }
 
