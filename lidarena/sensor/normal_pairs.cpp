@@ -6,16 +6,19 @@
 namespace lidarena::sensor {
 namespace {
 
-/// Uniform bits as a number in (0, 1], 1 minus that of CounterRandom::uniform(). The smallest
-/// value is that of a normal number of 6.7 sigma.
-float positive_unit(std::uint32_t bits) {
-  return (static_cast<float>(static_cast<std::int32_t>(~bits >> 1U)) + 0.5F) * 0x1.0p-31F;
+/// The uniform number of CounterRandom: 53 bits.
+std::int64_t fraction(std::uint32_t high, std::uint32_t low) {
+  return static_cast<std::int64_t>(((static_cast<std::uint64_t>(high) << 32U) | low) >> 11U);
 }
 
-/// In [0, 2 pi), rad.
-float full_circle(std::uint32_t bits) {
-  constexpr float kStep = 2.0F * std::numbers::pi_v<float> * 0x1.0p-31F;
-  return static_cast<float>(static_cast<std::int32_t>(bits >> 1U)) * kStep;
+/// 1 minus the uniform number, in (0, 1].
+float complement(std::int64_t fraction) {
+  return static_cast<float>((std::int64_t{1} << 53U) - fraction) * 0x1.0p-53F;
+}
+
+/// In [0, 2 pi], rad.
+float full_circle(std::int64_t fraction) {
+  return static_cast<float>(fraction) * (2.0F * std::numbers::pi_v<float> * 0x1.0p-53F);
 }
 
 }  // namespace
@@ -32,8 +35,8 @@ void NormalPairs::draw(const CounterRandom& random, std::uint64_t first, std::si
   }
   for (std::size_t i = 0; i < count; ++i) {
     const auto bits = random.bits(first + i, draw);
-    radius_[static_cast<Eigen::Index>(i)] = positive_unit(bits[0]);
-    angle_[static_cast<Eigen::Index>(i)] = full_circle(bits[2]);
+    radius_[static_cast<Eigen::Index>(i)] = complement(fraction(bits[0], bits[1]));
+    angle_[static_cast<Eigen::Index>(i)] = full_circle(fraction(bits[2], bits[3]));
   }
   radius_ = (-2.0F * radius_.log()).sqrt();  // Box and Muller
   first_ = radius_ * angle_.cos();

@@ -64,8 +64,7 @@ SignalModel::SignalModel(const SignalConfig& config)
 }
 
 double SignalModel::signal(double energy, double range) const {
-  const double ratio = reference_m_ / range;
-  const double signal = energy / 0.1 * ratio * ratio;
+  const double signal = 10.0 * reference_m_ * reference_m_ * energy / (range * range);
   return extinction_ == 0.0 ? signal
                             : signal * std::exp(-2.0 * extinction_ * (range - reference_m_));
 }
@@ -78,10 +77,10 @@ double SignalModel::detection_probability(double signal) const {
 
 double range_sigma(double range_noise_m, const NoiseConfig& noise, double range, double signal) {
   double sigma = range_noise_m;
-  if (noise.near_range_noise_m > 0.0) {
+  if (noise.near_range_noise_m > 0.0 && range < noise.near_until_m) {
     const double fraction =
         (noise.near_until_m - range) / (noise.near_until_m - noise.near_range_m);
-    sigma += (noise.near_range_noise_m - range_noise_m) * std::clamp(fraction, 0.0, 1.0);
+    sigma += (noise.near_range_noise_m - range_noise_m) * std::min(fraction, 1.0);
   }
   return noise.weak_signal_noise && signal < 1.0 ? sigma / std::sqrt(signal) : sigma;
 }

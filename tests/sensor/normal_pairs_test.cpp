@@ -20,9 +20,10 @@ TEST(NormalPairs, AreThoseOfTheCounterBasedNumbers) {
   pairs.draw(random, 11, kPairs, 2);
   for (std::size_t i = 0; i < kPairs; ++i) {
     const auto [first, second] = random.normals(11 + i, 2);
-    // Rounded in single precision: angles up to 2 pi, and the uniform number u near 1 of
-    // r^2 = -2 log u, so that the error of r is that of u divided by r.
-    const double bound = 2e-6 + 0x1.0p-24 / std::max(std::hypot(first, second), 0x1.0p-12);
+    // What single precision leaves of the angle (up to 2 pi) and of the logarithm of u, which is
+    // up to 2^-24 off 1 where r is small.
+    const double r = std::hypot(first, second);
+    const double bound = 1e-6 * std::max(r, 1.0) + 0x1.0p-24 / std::max(r, 0x1.0p-12);
     ASSERT_NEAR(static_cast<double>(pairs.first(i)), first, bound) << i;
     ASSERT_NEAR(static_cast<double>(pairs.second(i)), second, bound) << i;
   }
