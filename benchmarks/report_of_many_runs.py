@@ -20,7 +20,7 @@ CORNERS = [(x, y, z) for z in (0, 4) for y in (0, 8) for x in (0, 12)]
 FACES = ["1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"]
 ROOM = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(f"f {f}\n" for f in FACES)
 ALGORITHMS = ("kiss_icp", "ct_icp", "fast_lio2", "arena_lo", "arena_lio")
-SENSORS = ("livox_mid360", "ouster_os0_128_1024")
+SENSORS = ("livox_mid360", "ouster_os0_128")
 SCANS = 600
 MISSING = 3
 

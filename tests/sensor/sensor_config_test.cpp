@@ -50,8 +50,8 @@ TEST(SensorConfig, TheOusterFilesAreTheFiveModesOfTheMaker) {
     double rate_hz;
   };
   for (const auto& [file, columns, rate_hz] :
-       {Mode{"ouster_os0_128_512.yaml", 512, 10}, Mode{"ouster_os0_128_1024.yaml", 1024, 10},
-        Mode{"ouster_os0_128.yaml", 2048, 10}, Mode{"ouster_os0_128_512x20.yaml", 512, 20},
+       {Mode{"ouster_os0_128_512.yaml", 512, 10}, Mode{"ouster_os0_128.yaml", 1024, 10},
+        Mode{"ouster_os0_128_2048.yaml", 2048, 10}, Mode{"ouster_os0_128_512x20.yaml", 512, 20},
         Mode{"ouster_os0_128_1024x20.yaml", 1024, 20}}) {
     const auto pattern = make_pattern(load_sensor(kConfigs / file));
     EXPECT_EQ(pattern->beams_per_scan(), 128 * columns);

@@ -36,13 +36,17 @@ constexpr double kMillimeter = 1e-3;
 /// The first seconds of a calm flight, simulated as for the programs.
 class CalmFlight {
  public:
-  CalmFlight(std::string world, std::string sensor_file, std::string sensor_name,
+  /// `sensor`: with range noise alone. It is simulated by the name that it had for the programs,
+  /// since its noise depends on the name.
+  CalmFlight(std::string world, const std::string& sensor, std::string sensor_name,
              double seconds = kSeconds)
       : world_(std::move(world)), sensor_(std::move(sensor_name)) {
+    const fs::path named = temporary_.path() / (sensor + ".yaml");
+    fs::copy_file(kConfigs / "sensors" / (sensor + "_range_noise.yaml"), named);
     SimulateRequest request;
     request.world = kConfigs / "worlds" / (world_ + ".yaml");
     request.flight = kConfigs / "flights" / (world_ + ".yaml");
-    request.sensors = {kConfigs / "sensors" / (sensor_file + ".yaml")};
+    request.sensors = {named};
     request.seconds = seconds;
     LogSink log;
     simulate_dataset(request, folder(), Parallel(2), log);

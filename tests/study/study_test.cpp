@@ -421,7 +421,7 @@ TEST(RunStudy, ADatasetIsSimulatedOnceForItsRunsAndTheResultsAreThoseOfSimulatin
   const TemporaryFolder scratch;
   LogSink log;
   StudySpec spec = tiny_spec();
-  spec.sensors = {"livox_mid360", "ouster_os0_128_1024"};
+  spec.sensors = {"livox_mid360", "ouster_os0_128"};
   StudyOptions options = with_program();
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "kept", options, log).failed, 0U);
   options.scratch_bytes = 0;

@@ -33,9 +33,9 @@ def main():
     worlds = {
         "Mid-360": variant(text, "livox_mid360"),
         "Mid-360 and Gazebo's ray sensor, 20,000 rays at 10 Hz": variant(text, "livox_mid360", stock=True),
-        "OS0-128 1024x10": variant(text, "ouster_os0_128_1024"),
-        "OS0-128 2048x10": variant(text, "ouster_os0_128"),
-        "OS0-128 2048x10, a second thread": variant(text, "ouster_os0_128", "<threads>1</threads>"),
+        "OS0-128 1024x10": variant(text, "ouster_os0_128"),
+        "OS0-128 2048x10": variant(text, "ouster_os0_128_2048"),
+        "OS0-128 2048x10, a second thread": variant(text, "ouster_os0_128_2048", "<threads>1</threads>"),
     }
     for name, world in worlds.items():
         file = ready / "costs.world"
