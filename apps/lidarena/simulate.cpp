@@ -77,6 +77,9 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--seed", o->request.seed,
                    "Seed of all noise (a procedural world has its own seed in its file)")
       ->capture_default_str();
+  verb->add_flag("--new-scene", o->request.new_scene,
+                 "The seed also draws the procedural world, where and in which direction its route "
+                 "begins, and the gusts");
   verb->add_option("--seconds", o->request.seconds, "Length of the flight; 0 = all of it")
       ->check(CLI::NonNegativeNumber);
   verb->add_option("--noise", o->noise, "Sensor noise: on or off")

@@ -99,8 +99,9 @@ void require_clear(const Flight& flight, const world::World& world, double clear
 
 std::unique_ptr<Flight> make_flight(const std::filesystem::path& file,
                                     const world::WorldModel& model, const world::World& world,
-                                    LogSink& log) {
-  const FlightConfig config = config_of(file);
+                                    LogSink& log, std::optional<std::uint64_t> gust_seed) {
+  FlightConfig config = config_of(file);
+  if (config.dynamics && gust_seed) config.dynamics->gusts.seed = *gust_seed;
   std::unique_ptr<Flight> flight = build(file, config, model, world, log);
   if (config.dynamics) flight = flown(*flight, *config.dynamics, file.string(), log);
   require_clear(*flight, world, config.clearance_m, file.string());

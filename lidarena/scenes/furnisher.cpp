@@ -79,6 +79,10 @@ Eigen::AlignedBox2d Furnisher::inner_floor(RoomUse use) const {
   return {floor.min() + inset, floor.max() - inset};
 }
 
+bool Furnisher::is_wanted() {
+  return config_.furnishing >= 1.0 || random_.uniform() < config_.furnishing;
+}
+
 bool Furnisher::is_free(RoomUse use, const AlignedBox3d& box, Handle ignore) const {
   const Eigen::AlignedBox2d floor = inner_floor(use);
   if (!floor.contains(
@@ -115,6 +119,8 @@ Furnisher::Handle Furnisher::try_place(RoomUse use, const Piece& piece, const Po
 
 Furnisher::Handle Furnisher::against_wall(RoomUse use, const Piece& piece, double z,
                                           std::optional<Side> side) {
+  const bool fits = z + piece.mesh.bounds().max().z() < plan_.room(use).height;
+  if (!fits || !is_wanted()) return {};
   const Eigen::AlignedBox2d floor = inner_floor(use);
   const AlignedBox3d bounds = piece.mesh.bounds();
   for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -138,6 +144,7 @@ Furnisher::Handle Furnisher::against_wall(RoomUse use, const Piece& piece, doubl
 }
 
 Furnisher::Handle Furnisher::standing(RoomUse use, const Piece& piece, double u, double v) {
+  if (!is_wanted()) return {};
   const Eigen::AlignedBox2d floor = inner_floor(use);
   const Vector3d middle = piece.mesh.bounds().center();
   for (int attempt = 0; attempt < kTries; ++attempt) {
@@ -153,6 +160,7 @@ Furnisher::Handle Furnisher::standing(RoomUse use, const Piece& piece, double u,
 }
 
 Furnisher::Handle Furnisher::hanging(RoomUse use, const Piece& piece, double u, double v) {
+  if (!is_wanted()) return {};
   const Eigen::AlignedBox2d floor = inner_floor(use);
   for (int attempt = 0; attempt < kTries; ++attempt) {
     const double stray = 0.4 * attempt / kTries;
@@ -212,6 +220,7 @@ void Furnisher::around(RoomUse use, Handle host, const std::vector<Piece>& piece
 }
 
 Furnisher::Handle Furnisher::at_window(const Opening& window, const Piece& piece, double z) {
+  if (!is_wanted()) return {};
   // The wall's positive normal points into the house at x = 0 and y = 0.
   const double inward = window.line == 0 ? 1 : -1;
   const Vector3d foot = window.point(inward * (0.5 * config_.wall_thickness_m + kBack), z);

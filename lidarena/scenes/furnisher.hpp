@@ -16,7 +16,7 @@ enum class Side { kSouth, kEast, kNorth, kWest };
 class Furnisher {
  public:
   using Piece = furniture::Piece;
-  /// Index of a placed object; empty when no place was found.
+  /// Index of a placed object; empty when no place was found, or the piece is left out.
   using Handle = std::optional<std::size_t>;
 
   Furnisher(const HousePlan& plan, const HouseConfig& config, SequentialRandom& random);
@@ -41,6 +41,8 @@ class Furnisher {
   std::vector<PlacedObject> take() { return std::move(objects_); }
 
  private:
+  /// Whether the next piece is among the share of the furniture that is there.
+  bool is_wanted();
   bool is_free(RoomUse use, const Eigen::AlignedBox3d& box, Handle ignore) const;
   Handle try_place(RoomUse use, const Piece& piece, const Pose& pose, Handle ignore = {});
   Eigen::AlignedBox2d inner_floor(RoomUse use) const;

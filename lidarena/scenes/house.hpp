@@ -8,9 +8,9 @@
 
 namespace lidarena::scenes {
 
-/// A furnished one-story house of seven rooms, two of them (living room and hall) open over two
-/// stories. The seed determines the positions of inner walls and doors and the shapes and positions
-/// of the furniture.
+/// A furnished one-story house of seven rooms, two of which (living room and hall) may be open over
+/// two stories. The seed determines the positions of inner walls and doors and the shapes and
+/// positions of the furniture.
 struct HouseConfig {
   double width_m = 16;
   double depth_m = 10.4;
@@ -18,6 +18,8 @@ struct HouseConfig {
   double wall_thickness_m = 0.15;
   double door_width_m = 0.9;
   double door_height_m = 2.05;
+  bool high_rooms = true;
+  double furnishing = 1;
   bool panes = true;
   double variation_m = 0.25;
   double detail = 1;
@@ -30,11 +32,13 @@ struct HouseConfig {
   static void visit(Self& self, V&& v) {
     v("width_m", self.width_m, "m", "length of the house along x", between(15, 24));
     v("depth_m", self.depth_m, "m", "length of the house along y", between(10, 16));
-    v("story_height_m", self.story_height_m, "m", "height of a story; two rooms are twice as high",
-      between(2.6, 3.2));
+    v("story_height_m", self.story_height_m, "m", "height of a story", between(2.5, 3.2));
     v("wall_thickness_m", self.wall_thickness_m, "m", "thickness of walls", between(0.1, 0.2));
     v("door_width_m", self.door_width_m, "m", "clear width of the doors", between(0.86, 0.9));
     v("door_height_m", self.door_height_m, "m", "clear height of the doors", between(2, 2.2));
+    v("high_rooms", self.high_rooms, "",
+      "living room, with a gallery, and hall are two stories high");
+    v("furnishing", self.furnishing, "", "share of the furniture that is there", between(0, 1));
     v("panes", self.panes, "",
       "close the windows with glass panes; otherwise rays leave the house through them");
     v("variation_m", self.variation_m, "m", "maximum random displacement of inner walls and doors",

@@ -29,6 +29,7 @@ void hang_curtains(Site& s) {
 }
 
 void build_gallery(Site& s) {
+  if (!s.config.high_rooms) return;
   const GalleryPlan plan = plan_gallery(s.plan, s.config);
   const auto at = [](double x, double y) {
     Pose pose = Pose::Identity();

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/scenes/house_plan.hpp"
 
+#include <algorithm>
+
 #include "lidarena/base/random.hpp"
 
 namespace lidarena::scenes {
 namespace {
 
+constexpr double kBelowCeiling = 0.6;  // m
 constexpr double kDoorApproach = 0.8;  // m before and behind a door where the route is straight
 
 /// Center lines of the inner walls. South of y: living room, dining room, kitchen; north of it:
@@ -33,12 +36,13 @@ std::vector<Room> make_rooms(const HouseConfig& c, const InnerWalls& w) {
     return Room{use, Eigen::AlignedBox2d(Eigen::Vector2d(x0, y0), Eigen::Vector2d(x1, y1)),
                 stories * c.story_height_m};
   };
-  return {room(RoomUse::kLiving, 0, 0, w.living_dining, w.y, 2),
+  const int high = c.high_rooms ? 2 : 1;
+  return {room(RoomUse::kLiving, 0, 0, w.living_dining, w.y, high),
           room(RoomUse::kDining, w.living_dining, 0, w.dining_kitchen, w.y, 1),
           room(RoomUse::kKitchen, w.dining_kitchen, 0, c.width_m, w.y, 1),
           room(RoomUse::kMainBedroom, w.bath_main, w.y, c.width_m, c.depth_m, 1),
           room(RoomUse::kBathroom, w.hall_bath, w.y, w.bath_main, c.depth_m, 1),
-          room(RoomUse::kHall, w.child_hall, w.y, w.hall_bath, c.depth_m, 2),
+          room(RoomUse::kHall, w.child_hall, w.y, w.hall_bath, c.depth_m, high),
           room(RoomUse::kChildBedroom, 0, w.y, w.child_hall, c.depth_m, 1)};
 }
 
@@ -79,20 +83,23 @@ std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
   const double north = 0.5 * (w.y + c.depth_m);
   const double main = 0.5 * (w.bath_main + c.width_m);
   const double hall = 0.5 * (w.child_hall + w.hall_bath);
-  return {{0, 0, 0.30 * w.living_dining, 1.6, low, head},
-          {0, 0, 0.72 * w.living_dining, 1.6, low, head},
-          {0, 0, 0.30 * w.living_dining, 1.6, upper, upper_head},
-          {0, 0, 0.72 * w.living_dining, 1.6, upper, upper_head},
-          {1, 0, 0.5 * w.y, 1.4, upper, upper_head},
-          {0, 0, 0.5 * (w.living_dining + w.dining_kitchen), 1.8, low, head},
-          {0, 0, 0.5 * (w.dining_kitchen + c.width_m), 1.2, 1.1, head},
-          {1, c.width_m, 0.5 * w.y, 1.2, 1.1, head},
-          {1, c.width_m, north, 1.5, low, head},
-          {0, c.depth_m, main, 1.3, low, head},
-          {0, c.depth_m, 0.5 * (w.hall_bath + w.bath_main), 0.7, 1.5, head},
-          {0, c.depth_m, hall, 1.5, upper, upper_head},
-          {0, c.depth_m, 0.5 * w.child_hall, 1.5, low, head},
-          {1, 0, north, 1.3, low, head}};
+  std::vector<Opening> windows{{0, 0, 0.30 * w.living_dining, 1.6, low, head},
+                               {0, 0, 0.72 * w.living_dining, 1.6, low, head},
+                               {0, 0, 0.30 * w.living_dining, 1.6, upper, upper_head},
+                               {0, 0, 0.72 * w.living_dining, 1.6, upper, upper_head},
+                               {1, 0, 0.5 * w.y, 1.4, upper, upper_head},
+                               {0, 0, 0.5 * (w.living_dining + w.dining_kitchen), 1.8, low, head},
+                               {0, 0, 0.5 * (w.dining_kitchen + c.width_m), 1.2, 1.1, head},
+                               {1, c.width_m, 0.5 * w.y, 1.2, 1.1, head},
+                               {1, c.width_m, north, 1.5, low, head},
+                               {0, c.depth_m, main, 1.3, low, head},
+                               {0, c.depth_m, 0.5 * (w.hall_bath + w.bath_main), 0.7, 1.5, head},
+                               {0, c.depth_m, hall, 1.5, upper, upper_head},
+                               {0, c.depth_m, 0.5 * w.child_hall, 1.5, low, head},
+                               {1, 0, north, 1.3, low, head}};
+  if (!c.high_rooms)
+    std::erase_if(windows, [&](const Opening& window) { return window.sill >= upper; });
+  return windows;
 }
 
 /// Assembles the route from points in rooms and straight passages through doors.
@@ -100,11 +107,12 @@ class RouteBuilder {
  public:
   explicit RouteBuilder(const HousePlan& plan) : plan_(plan) {}
 
-  /// Adds the point at fractions (u, v) of the room's floor, at height z (m).
+  /// Adds the point at fractions (u, v) of the room's floor, at height z (m) or, in a lower room,
+  /// below its ceiling.
   RouteBuilder& in(RoomUse use, double u, double v, double z) {
-    const Eigen::AlignedBox2d& floor = plan_.room(use).floor;
+    const auto& [_, floor, height] = plan_.room(use);
     const Eigen::Vector2d p = floor.min() + Eigen::Vector2d(u, v).cwiseProduct(floor.sizes());
-    route_.emplace_back(p.x(), p.y(), z);
+    route_.emplace_back(p.x(), p.y(), std::min(z, height - kBelowCeiling));
     return *this;
   }
   /// Adds a passage through a door at half its height, along the wall's normal or against it.

@@ -5,6 +5,7 @@
 #include <cctype>
 
 #include "lidarena/base/config.hpp"
+#include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/world_config.hpp"
 
 namespace lidarena::scenes {
@@ -23,9 +24,9 @@ std::string ending_of(const fs::path& file) {
 std::vector<std::string> keys_of(WorldKind kind) {
   switch (kind) {
     case WorldKind::kHouse:
-      return {"kind", "seed", "house"};
+      return {"kind", "seed", "vary", "house"};
     case WorldKind::kCave:
-      return {"kind", "seed", "cave"};
+      return {"kind", "seed", "vary", "cave"};
     case WorldKind::kMesh:
       return {"kind", "file", "up_axis"};
     case WorldKind::kSdf:
@@ -68,10 +69,10 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
   world::WorldModel model;
   switch (config.kind) {
     case WorldKind::kHouse:
-      model = make_house(config.house, seed);
+      model = make_house(config.vary ? drawn_house(config.house, seed) : config.house, seed);
       break;
     case WorldKind::kCave:
-      model = make_cave(config.cave, seed);
+      model = make_cave(config.vary ? drawn_cave(config.cave, seed) : config.cave, seed);
       break;
     case WorldKind::kMesh:
       model.mesh = world::load_mesh(base / config.file, config.up_axis);

@@ -25,6 +25,7 @@ constexpr auto enum_names(WorldKind) {
 struct WorldConfig {
   WorldKind kind = WorldKind::kMesh;
   std::uint64_t seed = 1;
+  bool vary = false;
   HouseConfig house;
   CaveConfig cave;
   std::string file;
@@ -37,6 +38,8 @@ struct WorldConfig {
   static void visit(Self& self, V&& v) {
     v("kind", self.kind, "", "house, cave: procedural; mesh, sdf: from a file");
     v("seed", self.seed, "", "seed of a procedural world");
+    v("vary", self.vary, "",
+      "draw the procedural world's parameters from the seed; they replace those given here");
     v("house", self.house, "", "parameters of kind house");
     v("cave", self.cave, "", "parameters of kind cave");
     v("file", self.file, "", "the mesh or SDF file, relative to this file");

@@ -39,6 +39,7 @@ Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFo
           {"flight", digests.of(configs.resolve("flights", cell.flight))},
           {"sensors", sensors},
           {"seed", cell.seed},
+          {"new_scene", spec.new_scenes},
           {"seconds", cell.seconds},
           {"mode", value_to_json(cell.mode)}};
 }

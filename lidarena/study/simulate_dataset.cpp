@@ -12,6 +12,7 @@
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
+#include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/mesh_io.hpp"
@@ -44,11 +45,12 @@ struct Scene {
 
 std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& flight_file,
                                   std::vector<sensor::SensorConfig> sensors,
-                                  const sensor::SimulationOptions& options, LogSink& log) {
+                                  const sensor::SimulationOptions& options,
+                                  std::optional<std::uint64_t> gust_seed, LogSink& log) {
   auto scene = std::make_unique<Scene>();
   scene->world = std::make_unique<world::World>(std::move(model.mesh), model.name);
   scene->model = std::move(model);
-  scene->flight = flight::make_flight(flight_file, scene->model, *scene->world, log);
+  scene->flight = flight::make_flight(flight_file, scene->model, *scene->world, log, gust_seed);
   scene->sensors = std::move(sensors);
   scene->options = options;
   return scene;
@@ -89,6 +91,7 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"flight", "flight" + request.flight.extension().string()},
             {"flight_source", request.flight.filename().string()},
             {"seed", request.seed},
+            {"new_scene", request.new_scene},
             {"seconds", to_seconds(scene.duration())},
             {"noise", request.noise},
             {"sensors", sensors},
@@ -231,8 +234,10 @@ std::unique_ptr<Scene> scene_of_manifest(const fs::path& folder, const Json& man
   options.seed = simulation.at("seed").get<std::uint64_t>();
   options.duration = from_seconds(simulation.at("seconds").get<double>());
   options.noise = simulation.at("noise").get<bool>();
+  std::optional<std::uint64_t> gust_seed;  // the routes in the manifest are those that were drawn
+  if (simulation.value("new_scene", false)) gust_seed = options.seed;
   return make_scene(std::move(model), folder / simulation.at("flight").get<std::string>(),
-                    std::move(sensors), options, silent);
+                    std::move(sensors), options, gust_seed, silent);
 }
 
 /// The manifest of a dataset without measurements, which has to be simulated; null for any other.
@@ -292,14 +297,21 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
     sensors.push_back(sensor::load_sensor(file));
     if (request.mode) sensors.back().mode = *request.mode;
   }
-  world::WorldModel model = scenes::load_world(request.world, {}, log);
+  std::optional<std::uint64_t> scene_seed;
+  if (request.new_scene) scene_seed = request.seed;
+  scenes::WorldOptions world_options;
+  world_options.seed = scene_seed;
+  world::WorldModel model = scenes::load_world(request.world, world_options, log);
+  if (request.new_scene)
+    for (auto& route : model.routes) route = scenes::drawn_route(route, request.seed);
   sensor::SimulationOptions options;
   options.seed = request.seed;
   options.duration = from_seconds(request.seconds);
   options.noise = request.noise;
 
   // The flight is checked before anything is written.
-  const auto scene = make_scene(std::move(model), request.flight, std::move(sensors), options, log);
+  const auto scene =
+      make_scene(std::move(model), request.flight, std::move(sensors), options, scene_seed, log);
   if (request.seconds > 0 && options.duration > scene->flight->duration()) {
     log.warn(fmt::format("the flight ends after {:.1f} s; {:.1f} s were requested",
                          to_seconds(scene->flight->duration()), request.seconds));

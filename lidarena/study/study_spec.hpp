@@ -75,6 +75,7 @@ struct StudySpec {
   std::vector<std::string> sensors;
   std::vector<std::string> algorithms;  ///< NAME or NAME:PRESET, or the name of an external program
   std::vector<std::uint64_t> seeds = {1};
+  bool new_scenes = false;
   std::vector<sensor::ScanMode> modes;  ///< of all sensors; empty = as in their files
   std::vector<ExternalProgram> external;
   std::string reference;  ///< CSV of published figures, see load_reference(); may be empty
@@ -91,6 +92,8 @@ struct StudySpec {
     v("sensors", self.sensors, "", "names in configs/sensors, or files");
     v("algorithms", self.algorithms, "", "NAME or NAME:PRESET, or an external program's name");
     v("seeds", self.seeds, "", "seeds of the noise");
+    v("new_scenes", self.new_scenes, "",
+      "each seed also has its own world (of a generated one), route and gusts");
     v("modes", self.modes, "", "timing modes of the sensors; none = as in their files");
     v("external", self.external, "", "external SLAM programs, run by a command line");
     v("reference", self.reference, "", "CSV of published figures, beside the study's own");

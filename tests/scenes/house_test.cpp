@@ -36,7 +36,7 @@ std::vector<HouseConfig> extreme_houses() {
     HouseConfig config = coarse_house();
     config.width_m = large ? 24 : 15;
     config.depth_m = large ? 16 : 10;
-    config.story_height_m = large ? 3.2 : 2.6;
+    config.story_height_m = large ? 3.2 : 2.5;
     config.wall_thickness_m = large ? 0.1 : 0.2;
     config.door_width_m = large ? 0.9 : 0.86;
     config.door_height_m = large ? 2.2 : 2.0;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <vector>
+
+#include "lidarena/scenes/cave.hpp"
+#include "lidarena/scenes/house.hpp"
+
+namespace lidarena::scenes {
+
+/// The house with sizes, heights, doors and furniture drawn from `seed`: from low, bare rooms to
+/// high, crowded ones.
+HouseConfig drawn_house(HouseConfig config, std::uint64_t seed);
+
+/// The cave with its number of loops, lengths, widths, relief and roughness drawn from `seed`.
+CaveConfig drawn_cave(CaveConfig config, std::uint64_t seed);
+
+/// A closed route (the last point equals the first, m) that begins at a point of `route` and goes
+/// in a direction drawn from `seed`. An open route is only turned around or not.
+std::vector<Eigen::Vector3d> drawn_route(std::vector<Eigen::Vector3d> route, std::uint64_t seed);
+
+}  // namespace lidarena::scenes
