@@ -20,7 +20,8 @@
 namespace lidarena::evaluation {
 namespace {
 
-constexpr std::size_t kMaxPoints = 2'000'000;  // of a map that are scored
+constexpr std::size_t kMaxPoints = 2'000'000;       // of a map, scored in the gauge of its figures
+constexpr std::size_t kMaxPointsOfOther = 250'000;  // in the other gauges
 
 /// No more than `max_points` points of the map: every k-th point.
 std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
@@ -44,25 +45,24 @@ std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& 
   return preview.outliers_percent > kFailed_percent ? kMaxPointsOfFailed : kMaxPoints;
 }
 
-/// A map and what is computed once from it for all gauges.
+/// The points of a map that are scored, and what is computed once from them for several gauges.
 struct Subject {
   std::vector<Eigen::Vector3f> map;
   const MapReference& reference;
   const Parallel& parallel;
   const IdentifiedMap* identified;
   MortonOrder order;
-  std::optional<PointGrid> grid;  ///< if completeness is computed
+  const PointGrid* grid;  ///< of all points; null if completeness is not computed
 
   Subject(std::span<const Eigen::Vector3f> points, std::size_t max_points,
           const MapReference& scored_against, const Parallel& workers,
-          const IdentifiedMap* with_hits)
+          const IdentifiedMap* with_hits, const PointGrid* of_all)
       : map(sample_of(points, max_points)),
         reference(scored_against),
         parallel(workers),
         identified(with_hits),
-        order(morton_order(map, workers)) {
-    if (reference.seen) grid.emplace(completeness_grid(points, workers));
-  }
+        order(morton_order(map, workers)),
+        grid(of_all) {}
 };
 
 std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map) {
@@ -81,7 +81,7 @@ results::MapInGauge measure(const Subject& subject, std::span<const PointScore> 
   if (subject.identified != nullptr) {
     measured.identity = identity_error(*subject.identified, mesh_from_map);
   }
-  if (!subject.reference.seen) return measured;
+  if (subject.grid == nullptr) return measured;
   measured.signed_distance = signed_distance(scores, subject.reference.seen->observed.free_side);
   measured.completeness = completeness(subject.reference.seen->samples, *subject.grid, scores,
                                        mesh_from_map, subject.reference.world, subject.parallel);
@@ -94,11 +94,37 @@ results::MapInGauge refused(const std::string& reason) {
   return map;
 }
 
-/// The transform from the first-pose gauge to this one is the rigid part of the drift.
-results::MapInGauge measure_robust(const Subject& subject, const Pose& start,
+results::MapInGauge measure_in(const Alignment& gauge, const Subject& subject) {
+  if (!gauge.determined()) return refused(gauge.refusal);
+  const Pose& moved = gauge.truth_from_estimate;
+  return measure(subject, score(subject, moved), moved);
+}
+
+/// As measure_in(), with the distance to vertices.
+results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject& subject) {
+  if (!gauge.determined()) return refused(gauge.refusal);
+  const Pose& moved = gauge.truth_from_estimate;
+  const std::vector<PointScore> scores = score(subject, moved);
+  results::MapInGauge measured = measure(subject, scores, moved);
+  // The distance to vertices only serves comparison with those who measure it: a sample will do.
+  const std::size_t stride = scores.size() / kMaxPointsOfOther + 1;
+  MortonOrder order;
+  std::vector<PointScore> sample;
+  for (std::size_t k = 0; k < scores.size(); k += stride) {
+    order.entries.push_back(subject.order.entries[k]);
+    sample.push_back(scores[k]);
+  }
+  measured.point_vertex =
+      subject.reference.subdivided.distance_of(subject.map, order, sample, moved, subject.parallel);
+  return measured;
+}
+
+/// Aligns all of the map's scored points, and scores `subject`. The transform from the first-pose
+/// gauge to this one is the rigid part of the drift.
+results::MapInGauge measure_robust(const Subject& all, const Subject& subject, const Pose& start,
                                    const Pose& first_pose) {
   const MeshAlignment alignment =
-      align_to_mesh(subject.map, start, subject.reference.world, subject.parallel);
+      align_to_mesh(all.map, start, subject.reference.world, subject.parallel);
   const Pose& moved = alignment.mesh_from_map;
   results::MapInGauge measured = alignment.determined()
                                      ? measure(subject, score(subject, moved), moved)
@@ -148,27 +174,20 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
   const Alignment first_pose = align(estimate, truth, Gauge::kFirstPose);
   const std::size_t max_points =
       max_scored_points(map, se3.truth_from_estimate, reference.world, parallel);
-  const Subject subject(map, max_points, reference, parallel, identified);
+  std::optional<PointGrid> grid;
+  if (reference.seen) grid.emplace(completeness_grid(map, parallel));
+  const auto part_of_map = [&](std::size_t count) {
+    return Subject(map, count, reference, parallel, identified, grid ? &*grid : nullptr);
+  };
+  const Subject all = part_of_map(max_points);
+  const Subject some = part_of_map(std::min(max_points, kMaxPointsOfOther));
   results::MapMetrics metrics;
-  if (first_pose.determined()) {
-    const Pose& moved = first_pose.truth_from_estimate;
-    metrics.first_pose = measure(subject, score(subject, moved), moved);
-  } else {
-    metrics.first_pose = refused(first_pose.refusal);
-  }
-  if (se3.determined()) {
-    const Pose& moved = se3.truth_from_estimate;
-    const std::vector<PointScore> scores = score(subject, moved);
-    metrics.se3 = measure(subject, scores, moved);
-    metrics.se3.point_vertex =
-        reference.subdivided.distance_of(subject.map, subject.order, scores, moved, parallel);
-  } else {
-    metrics.se3 = refused(se3.refusal);
-  }
+  metrics.se3 = measure_with_vertices(se3, all);
+  metrics.first_pose = measure_in(first_pose, se3.determined() ? some : all);
   const Alignment& start = se3.determined() ? se3 : first_pose;
   metrics.robust =
       first_pose.determined()
-          ? measure_robust(subject, start.truth_from_estimate, first_pose.truth_from_estimate)
+          ? measure_robust(all, some, start.truth_from_estimate, first_pose.truth_from_estimate)
           : refused("neither first_pose nor se3 gives a pose to start from");
   return metrics;
 }
