@@ -77,7 +77,7 @@ class RecordingStore final : public DatasetStore {
     write_mounting(sample.stamp);
     const ImuTopic& imu = imus_.at(id);
     encode_driver_imu(sample, imu.driver, imu_frame(id), message_);
-    write_measurement(imu.topic, sample.stamp);
+    write_message(imu.topic, sample.stamp);
   }
 
   void write(const std::string& id, const Scan& scan) override {
@@ -87,14 +87,14 @@ class RecordingStore final : public DatasetStore {
     const Time end = end_of(scan);
     if (lidar.driver == Driver::kLivox) {
       encode_livox_custom(scan, lidar.info, frame, message_);
-      write_measurement(lidar.custom, end);
+      write_message(lidar.custom, end);
       encode_livox_cloud(scan, lidar.info, frame, message_);
     } else if (lidar.driver == Driver::kOuster) {
       encode_ouster_cloud(scan, lidar.info, frame, message_);
     } else {
       ros::encode_scan(scan, frame, message_);
     }
-    write_measurement(lidar.points, end);
+    write_message(lidar.points, end);
   }
 
   void write(const ScanTruth& truth) override {
@@ -105,7 +105,7 @@ class RecordingStore final : public DatasetStore {
     }
     write_mounting(truth.stamp);
     ros::encode_scan_truth(truth, kWorldFrame, message_);
-    recording_->write(entry->second, truth.stamp, truth.stamp, message_.bytes());
+    write_message(entry->second, truth.stamp);
   }
 
   void write_truth(const StampedPose& pose) override {
@@ -115,11 +115,11 @@ class RecordingStore final : public DatasetStore {
     }
     write_mounting(pose.stamp);
     ros::encode_odometry(pose, kWorldFrame, rig_.body_frame, message_);
-    recording_->write(*odometry_, pose.stamp, pose.stamp, message_.bytes());
+    write_message(*odometry_, pose.stamp);
     const ros::StampedTransform transform{pose.stamp, kWorldFrame, rig_.body_frame,
                                           pose.world_from_body};
     ros::encode_transforms(std::span(&transform, 1), message_);
-    recording_->write(tf_, pose.stamp, pose.stamp, message_.bytes());
+    write_message(tf_, pose.stamp);
   }
 
   Json finish() override {
@@ -146,12 +146,12 @@ class RecordingStore final : public DatasetStore {
       mounting.push_back({time, rig_.body_frame, imu_frame(imu.id), imu.body_from_imu});
     }
     ros::encode_transforms(mounting, message_);
-    recording_->write(tf_static_, time, time, message_.bytes());
+    write_message(tf_static_, time);
   }
 
-  /// Writes a measurement. Its log time is never earlier than that of the previous measurement, so
+  /// Writes the encoded message. Its log time is never earlier than that of the message before, so
   /// that readers that sort by log time keep the order of EventSource.
-  void write_measurement(std::uint16_t topic, Time published) {
+  void write_message(std::uint16_t topic, Time published) {
     latest_ = std::max(latest_, published);
     recording_->write(topic, latest_, published, message_.bytes());
   }
@@ -178,7 +178,7 @@ class RecordingStore final : public DatasetStore {
   std::optional<std::uint16_t> odometry_;
   MessageWriter message_;
   bool mounting_written_ = false;
-  Time latest_{0};  ///< log time of the last measurement written
+  Time latest_{1};  ///< log time of the last message; ROS 1 takes a time of 0 for an invalid one
 };
 
 }  // namespace

@@ -134,6 +134,11 @@ class ScoredReturns : public dataset::EventSource {
   std::size_t max_count_;
 };
 
+Time end_of_measurement(const dataset::Event& event) {
+  const auto* scan = std::get_if<Scan>(&event.data);
+  return scan != nullptr ? end_of(*scan) : std::get<ImuSample>(event.data).stamp;
+}
+
 void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
                   const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
   dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), request.write);
@@ -152,10 +157,11 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
   }
   auto events = sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
   while (const auto event = events->next()) {
+    // Before the event, so that all messages stand in the order of their times.
+    write_truth_until(end_of_measurement(*event));
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
       summary.points += scan->points.size();
-      write_truth_until(scan->stamp);
       log.progress("flying", to_seconds(scan->stamp), summary.seconds);
     } else {
       ++summary.imu_samples;
