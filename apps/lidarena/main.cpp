@@ -33,6 +33,11 @@ void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& 
   verb.callback([action = std::move(action), &exit_code] { exit_code = action(); });
 }
 
+void add_allow_missing(CLI::App& verb, bool& allow_missing) {
+  verb.add_flag("--allow-missing", allow_missing,
+                "Load an SDF world without the models and meshes that cannot be found");
+}
+
 void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {

@@ -105,6 +105,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_flag(
       "--no-data", o->no_data,
       "Write a manifest only: the same points are simulated whenever the dataset is read");
+  add_allow_missing(*verb, o->request.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return simulate_verb(common, *o); }, exit_code);
 }

@@ -28,6 +28,7 @@ struct StudyRequest {
   std::vector<std::string> algorithms{"all"};
   bool tour = false;  ///< plan a tour of the world automatically
   double seconds = 0.0;
+  bool allow_missing = false;
   std::string out;
   bool dry = false;
   int jobs = 1;
@@ -68,7 +69,7 @@ study::StudySpec spec_of_one_world(const StudyRequest& request) {
   }
   study::StudySpec spec;
   spec.title = "Which LiDAR, which SLAM: " + std::filesystem::path(request.world).stem().string();
-  spec.scenes = {{request.world, "auto", request.seconds}};
+  spec.scenes = {{request.world, "auto", request.seconds, request.allow_missing}};
   spec.sensors = request.sensors;
   for (const std::string& algorithm : request.algorithms) {
     if (algorithm != "all") {
@@ -363,6 +364,7 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
   verb->add_flag("--auto", request->tour, "With --world: plan a tour of the world automatically");
   verb->add_option("--seconds", request->seconds,
                    "With --world: length of the flight, s; 0 = the whole tour");
+  add_allow_missing(*verb, request->allow_missing);
   verb->add_flag("--dry", request->dry, "Only list the runs, with estimated time and disk space");
   verb->add_option("--jobs", request->jobs,
                    "Number of runs at the same time, each on its own cores")

@@ -40,6 +40,7 @@ Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFo
           {"sensors", sensors},
           {"seed", cell.seed},
           {"seconds", cell.seconds},
+          {"allow_missing", cell.allow_missing},
           {"mode", value_to_json(cell.mode)}};
 }
 

@@ -292,7 +292,9 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
     sensors.push_back(sensor::load_sensor(file));
     if (request.mode) sensors.back().mode = *request.mode;
   }
-  world::WorldModel model = scenes::load_world(request.world, {}, log);
+  scenes::WorldOptions world;
+  world.allow_missing = request.allow_missing;
+  world::WorldModel model = scenes::load_world(request.world, world, log);
   sensor::SimulationOptions options;
   options.seed = request.seed;
   options.duration = from_seconds(request.seconds);

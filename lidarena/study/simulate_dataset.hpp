@@ -20,8 +20,9 @@ struct SimulateRequest {
   std::filesystem::path world;
   std::filesystem::path flight;
   std::vector<std::filesystem::path> sensors;
-  std::uint64_t seed = 1;  ///< of all noise; the seed of a procedural world is in its own file
-  double seconds = 0.0;    ///< 0 = the whole flight
+  std::uint64_t seed = 1;      ///< of all noise; the seed of a procedural world is in its own file
+  double seconds = 0.0;        ///< 0 = the whole flight
+  bool allow_missing = false;  ///< load an SDF world without models and meshes that are missing
   bool noise = true;
   std::optional<sensor::ScanMode> mode;  ///< of all sensors; empty = as in their files
   bool data = true;                      ///< false: a manifest only; simulated whenever it is read

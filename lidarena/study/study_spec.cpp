@@ -68,6 +68,7 @@ PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t
   cell.preset = external ? "external" : request.preset;
   cell.seed = seed;
   cell.seconds = scene.seconds;
+  cell.allow_missing = scene.allow_missing;
   cell.mode = mode;
   cell.name = fmt::format("{}-{}-{}{}{}", cell.dataset, stem(sensor), cell.algorithm,
                           cell.preset.empty() ? "" : "-", cell.preset);
