@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/odometry/factory.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/config_folder.hpp"
@@ -128,6 +129,9 @@ struct PlannedRun {
     v("mode", self.mode, "", "");
   }
 };
+
+/// NAME or NAME:PRESET into its parts, with the algorithm's default preset if none is named.
+odometry::OdometryRequest parse_algorithm(const std::string& text);
 
 /// The external program of this name, or null.
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name);
