@@ -251,7 +251,8 @@ int study_verb(const Common& common, const StudyRequest& request) {
   if (request.dry) {
     const auto code = study::ProgramCode::ask(study::find_program(options.program));
     print_plan(study::make_plan(spec, configs, code, options.shard.of), options.shard, configs,
-               options.scratch_bytes.value_or(study::default_scratch_bytes(request.out)));
+               options.scratch_bytes.value_or(
+                   study::default_scratch_bytes(request.out.empty() ? "." : request.out)));
     return kDone;
   }
   study::planned_cells(spec, configs);  // judges all names

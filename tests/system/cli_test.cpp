@@ -55,6 +55,7 @@ TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
   EXPECT_THAT(refusal("study --algorithms fastlio2"), HasSubstr("fast_lio2"));
   EXPECT_THAT(refusal("study --world house --auto --sensors livox_mid360"), HasSubstr("--out"));
   EXPECT_THAT(refusal("study quick"), HasSubstr("--out"));
+  EXPECT_THAT(call("study quick --dry").out, HasSubstr("32 runs"));
 }
 
 TEST_F(Cli, OutputsAreNamedAfterWhatIsInThem) {
