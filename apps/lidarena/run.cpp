@@ -52,6 +52,27 @@ std::string default_output(const study::RunRequest& request) {
                                odometry.preset.empty() ? "" : "-", odometry.preset));
 }
 
+void print_summary(const Common& common, const odometry::RunSummary& s, bool paced,
+                   const std::string& out) {
+  if (common.json) {
+    Json json{{"run", out}};
+    json.update(study::summary_json(s));
+    json["reason"] = s.reason;
+    return print_json(json);
+  }
+  std::string counts;
+  for (const auto& [status, count] : s.statuses)
+    counts +=
+        fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
+  fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
+             s.compute_seconds, s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0);
+  if (paced) {
+    fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
+               s.dropped, s.longest_delay_s);
+  }
+  fmt::print("run: {}\n", out);
+}
+
 int run_verb(const Common& common, const RunOptions& o) {
   check_options(o);
   study::RunRequest request = o.request;
@@ -65,33 +86,7 @@ int run_verb(const Common& common, const RunOptions& o) {
       o.external.empty() ? study::run_algorithm(request, out, parallel, console)
                          : study::run_external(load_config<study::ExternalProgram>(o.external),
                                                request, out, parallel, console);
-  const double factor = s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0;
-  Json statuses = Json::object();
-  std::string counts;
-  for (const auto& [status, count] : s.statuses) {
-    statuses[odometry::to_string(status)] = count;
-    counts +=
-        fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
-  }
-  if (common.json) {
-    print_json({{"run", out},
-                {"scans", s.scans},
-                {"dropped", s.dropped},
-                {"longest_delay_s", s.longest_delay_s},
-                {"statuses", statuses},
-                {"sensor_seconds", s.sensor_seconds},
-                {"compute_seconds", s.compute_seconds},
-                {"diverged", s.diverged},
-                {"reason", s.reason}});
-  } else {
-    fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
-               s.compute_seconds, factor);
-    if (request.paced) {
-      fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
-                 s.dropped, s.longest_delay_s);
-    }
-    fmt::print("run: {}\n", out);
-  }
+  print_summary(common, s, request.paced, out);
   if (s.diverged) {
     console.warn("the run diverged: " + s.reason);
     return kWorkFailed;
