@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
@@ -128,6 +129,19 @@ Json info_of(const study::ConfigFolder& configs, const InfoOptions& o, LogSink& 
                                    : "did you mean '" + nearest + "'?");
 }
 
+/// A value for people: numbers with six digits, large ones (times since 1970) with twelve.
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    return std::abs(number) < 1e6 ? fmt::format("{:.6g}", number) : fmt::format("{:.12g}", number);
+  }
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> items;
+  for (const Json& item : value) items.push_back(text_of(item));
+  return fmt::format("[{}]", fmt::join(items, ", "));
+}
+
 void print_tree(const Json& json, int depth) {
   for (const auto& [key, value] : json.items()) {
     const std::string indent(static_cast<std::size_t>(2 * depth), ' ');
@@ -135,7 +149,7 @@ void print_tree(const Json& json, int depth) {
       fmt::print("{}{}:\n", indent, key);
       print_tree(value, depth + 1);
     } else {
-      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      const std::string text = text_of(value);
       fmt::print("{}{}: {}\n", indent, key, text.size() > 160 ? text.substr(0, 157) + "..." : text);
     }
   }
