@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: BSD-3-Clause
-"""Draws each sensor's shots by direction as docs/images/sensor_NAME.png. usage: draw_sensors.py
+"""Writes docs/sensor_pictures.md and its pictures. usage: draw_sensors.py PROGRAM
 
-Azimuth 180 to -180 deg from left to right, elevation 90 to -90 deg from top to bottom, half a degree
+docs/images/sensor_NAME.png shows a sensor's shots by direction: azimuth 180 to -180 deg from left to right, elevation 90 to -90 deg from top to bottom, half a degree
 per pixel; top: the first 0.1 s, bottom: the first 1 s; the darker a pixel, the more shots.
 """
+import json
 import pathlib
 import struct
+import subprocess
+import sys
 import zlib
 
 import numpy as np
@@ -14,6 +17,14 @@ import numpy as np
 import lidarena
 
 STEP = 0.5  # deg per pixel
+HEAD = """# Pictures of the sensors
+
+Directions of each sensor's shots in its own frame: azimuth from 180 deg (left) to -180 deg (right), elevation from 90 deg (top)
+to -90 deg, half a degree per pixel; the darker a pixel, the more shots. The upper picture shows the first 0.1 s, the lower one
+the first 1 s; if they differ, the pattern does not repeat with every scan. The tables give the share of the field of view's solid
+angle that the shots have covered, in cells of 0.5 deg (0.25 deg where the field of view is narrower than 180 deg). Written by
+`docs/draw_sensors.py`; `lidarena info SENSOR --pattern --out FILE.svg` draws your own sensors and computes the same shares.
+"""
 
 
 def panel(lidar, seconds):
@@ -41,11 +52,33 @@ def write_png(file, gray):
                      chunk(b"IDAT", zlib.compress(rows, 9)) + chunk(b"IEND", b""))
 
 
-images = pathlib.Path(__file__).parent / "images"
-for name in lidarena.configs.names("sensors"):
-    if name.endswith(("_paper", "_full")) or "1024x20" in name or "512" in name:
+def told_by(program, *arguments):
+    return json.loads(subprocess.run([program, *arguments, "--json"], check=True,
+                                     capture_output=True).stdout)
+
+
+def draw(file, sensor):
+    lidar = lidarena.Lidar(lidarena.load_sensor(sensor))
+    write_png(file, np.vstack([panel(lidar, 0.1), panel(lidar, 1.0)]))
+
+
+def section(program, sensor):
+    name, summary = sensor["name"], sensor["summary"]
+    pattern = told_by(program, "info", name, "--pattern")
+    shares = pattern["coverage"]
+    if "approximate" in pattern:
+        summary += f" Approximate: {pattern['approximate']}."
+    return "\n".join([f"\n## {name}\n", summary + "\n", "| covered in | " + " | ".join(shares) + " |",
+                      "|---|" + "---:|" * len(shares),
+                      "| | " + " | ".join(f"{100 * s:.1f} %" for s in shares.values()) + " |\n",
+                      f"![Shots of {name} by direction](images/sensor_{name}.png)", ""])
+
+
+docs = pathlib.Path(__file__).parent
+page = HEAD
+for listed in told_by(sys.argv[1], "list", "sensors"):
+    if listed["name"].endswith(("_paper", "_full")) or "1024x20" in listed["name"] or "512" in listed["name"]:
         continue  # same pattern, or a thinned one, as a sensor that is drawn
-    lidar = lidarena.Lidar(lidarena.load_sensor(name))
-    picture = np.vstack([panel(lidar, 0.1), panel(lidar, 1.0)])
-    write_png(images / f"sensor_{name}.png", picture)
-    print(name)
+    draw(docs / "images" / f"sensor_{listed['name']}.png", listed["name"])
+    page += section(sys.argv[1], listed)
+(docs / "sensor_pictures.md").write_text(page)

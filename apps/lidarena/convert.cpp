@@ -26,6 +26,7 @@ struct ConvertOptions {
   std::string format;  ///< of datasets; empty: chosen by the extension of `out`
   std::string dialect = "si";
   bool compress = false;
+  scenes::WorldOptions world{};
   dataset::ReadOptions read;
 };
 
@@ -67,8 +68,9 @@ Kind kind_of(const fs::path& in, const fs::path& out) {
                    "use " + extensions);
 }
 
-Json convert_world(const fs::path& in, const fs::path& out, LogSink& log) {
-  world::WorldModel model = scenes::load_world(in, {}, log);
+Json convert_world(const fs::path& in, const fs::path& out, const scenes::WorldOptions& options,
+                   LogSink& log) {
+  world::WorldModel model = scenes::load_world(in, options, log);
   const std::size_t dropped = world::clean_mesh(model.mesh, in.string());
   if (dropped > 0) log.info(fmt::format("left out {} degenerate triangles", dropped));
   world::save_world(out, model.mesh);
@@ -132,7 +134,7 @@ int convert_verb(const Common& common, const ConvertOptions& o) {
   Json done;
   switch (kind_of(in, o.out)) {
     case Kind::kWorld:
-      done = convert_world(in, o.out, console);
+      done = convert_world(in, o.out, o.world, console);
       break;
     case Kind::kCloud:
       done = convert_cloud(in, o.out);
@@ -186,6 +188,7 @@ void add_convert(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--rate", o->read.rate_hz, "Sweeps or poses per second, for input without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_allow_missing(*verb, o->world.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return convert_verb(common, *o); }, exit_code);
 }

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <set>
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/pattern_info.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "apps/lidarena/yaml_info.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
-#include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
@@ -23,37 +25,8 @@ struct InfoOptions {
   std::size_t rays = 0;
   bool pattern = false;
   std::string out;
+  scenes::WorldOptions world{};
 };
-
-Json sensor_info(const sensor::SensorConfig& sensor) {
-  Json json = to_json(sensor);
-  const auto pattern = sensor::make_pattern(sensor);
-  json["beams_per_scan"] = pattern->beams_per_scan();
-  json["points_per_second"] =
-      static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
-  return json;
-}
-
-Json box_json(const Eigen::AlignedBox3d& box) {
-  return {{"min", value_to_json(Eigen::Vector3d(box.min()))},
-          {"max", value_to_json(Eigen::Vector3d(box.max()))}};
-}
-
-Json world_info(const fs::path& file, LogSink& log) {
-  const world::WorldModel model = scenes::load_world(file, {}, log);
-  Json routes = Json::array();
-  for (const auto& route : model.routes) {
-    double length = 0.0;
-    for (std::size_t i = 1; i < route.size(); ++i) length += (route[i] - route[i - 1]).norm();
-    routes.push_back({{"points", route.size()}, {"length_m", length}});
-  }
-  return {{"kind", "world"},
-          {"triangles", model.mesh.triangles.size()},
-          {"vertices", model.mesh.vertices.size()},
-          {"area_m2", model.mesh.area()},
-          {"bounds_m", box_json(model.mesh.bounds())},
-          {"routes", routes}};
-}
 
 Json cloud_info(const fs::path& file) {
   const dataset::Cloud cloud = dataset::read_cloud(file);
@@ -105,55 +78,68 @@ Json dataset_info(const fs::path& path) {
   return json;
 }
 
-bool is_mesh_or_world(const fs::path& file) {
-  static const std::set<std::string> extensions{".obj", ".stl", ".dae",  ".gltf",
-                                                ".glb", ".sdf", ".world"};
-  return extensions.contains(file.extension().string());
-}
-
 /// Describes a .ply as a mesh if it has faces, else as a cloud.
 Json ply_info(const fs::path& file, LogSink& log) {
   try {
-    return world_info(file, log);
+    return world_info(file, {}, log);
   } catch (const InputError&) {
     return cloud_info(file);
   }
 }
 
-Json info_of(const study::ConfigFolder& configs, const std::string& thing, LogSink& log) {
-  const fs::path path = thing;
-  if (fs::is_directory(path)) {
-    if (fs::exists(path / "manifest.json")) {
-      const Json manifest = dataset::read_json(path / "manifest.json");
-      if (manifest.value("kind", "") == "run") {
-        Json json = manifest;
-        if (fs::exists(path / "metrics.json"))
-          json["metrics"] = dataset::read_json(path / "metrics.json");
-        return json;
-      }
-    }
-    return dataset_info(path);
-  }
-  if (fs::exists(path)) {
-    if (path.extension() == ".ply") return ply_info(path, log);
-    if (is_mesh_or_world(path)) return world_info(path, log);
-    if (path.extension() == ".mcap" || path.extension() == ".bag") return dataset_info(path);
-    if (path.extension() == ".pcd") return cloud_info(path);
-  }
-  for (const char* kind : {"sensors", "worlds"}) {
+Json folder_info(const fs::path& folder) {
+  const fs::path file = folder / "manifest.json";
+  Json manifest = fs::exists(file) ? dataset::read_json(file) : Json::object();
+  if (manifest.value("kind", "") != "run") return dataset_info(folder);
+  if (fs::exists(folder / "metrics.json"))
+    manifest["metrics"] = dataset::read_json(folder / "metrics.json");
+  return manifest;
+}
+
+Json file_info(const fs::path& file, const study::ConfigFolder& configs, const InfoOptions& o,
+               LogSink& log) {
+  static const std::set<std::string> worlds{".obj", ".stl", ".dae",  ".gltf",
+                                            ".glb", ".sdf", ".world"};
+  const std::string ending = file.extension().string();
+  if (ending == ".yaml" || ending == ".yml") return yaml_info(file, configs, o.world, log);
+  if (ending == ".ply") return ply_info(file, log);
+  if (worlds.contains(ending)) return world_info(file, o.world, log);
+  if (ending == ".mcap" || ending == ".bag") return dataset_info(file);
+  if (ending == ".pcd") return cloud_info(file);
+  throw InputError(file.string(), "is of no kind that info describes",
+                   fmt::format("it describes .yaml, .mcap, .bag, .pcd, .ply, {}, and folders of "
+                               "datasets and runs",
+                               fmt::join(worlds, ", ")));
+}
+
+/// Describes the file or folder `thing`, else what has this name in configs/.
+Json info_of(const study::ConfigFolder& configs, const InfoOptions& o, LogSink& log) {
+  if (fs::is_directory(o.thing)) return folder_info(o.thing);
+  if (fs::exists(o.thing)) return file_info(o.thing, configs, o, log);
+  std::vector<std::string> all;
+  for (const char* kind : {"sensors", "worlds", "flights", "studies", "odometry"}) {
     const auto names = configs.names(kind);
-    const bool known = std::find(names.begin(), names.end(), thing) != names.end();
-    if (!known && !(fs::exists(path) && std::string(kind) == "sensors")) continue;
-    const fs::path file = configs.resolve(kind, thing);
-    return std::string(kind) == "sensors" ? sensor_info(sensor::load_sensor(file))
-                                          : world_info(file, log);
+    if (std::ranges::find(names, o.thing) != names.end())
+      return yaml_info(configs.resolve(kind, o.thing), configs, o.world, log);
+    all.insert(all.end(), names.begin(), names.end());
   }
-  std::vector<std::string> names = configs.names("sensors");
-  for (const std::string& world : configs.names("worlds")) names.push_back(world);
-  const std::string nearest = nearest_word(thing, names);
-  throw InputError(thing, "is neither a file nor the name of a world or sensor",
-                   nearest.empty() ? "see: lidarena list worlds, lidarena list sensors"
+  const std::string nearest = nearest_word(o.thing, all);
+  throw InputError(o.thing, "is neither a file nor a name in " + configs.root().string(),
+                   nearest.empty() ? "see: lidarena list sensors (or worlds, flights, studies)"
                                    : "did you mean '" + nearest + "'?");
+}
+
+/// A value for people: numbers with six digits, large ones (times since 1970) with twelve.
+std::string text_of(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_number_float()) {
+    const double number = value.get<double>();
+    return std::abs(number) < 1e6 ? fmt::format("{:.6g}", number) : fmt::format("{:.12g}", number);
+  }
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> items;
+  for (const Json& item : value) items.push_back(text_of(item));
+  return fmt::format("[{}]", fmt::join(items, ", "));
 }
 
 void print_tree(const Json& json, int depth) {
@@ -163,7 +149,7 @@ void print_tree(const Json& json, int depth) {
       fmt::print("{}{}:\n", indent, key);
       print_tree(value, depth + 1);
     } else {
-      const std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+      const std::string text = text_of(value);
       fmt::print("{}{}: {}\n", indent, key, text.size() > 160 ? text.substr(0, 157) + "..." : text);
     }
   }
@@ -181,7 +167,7 @@ int info_verb(const Common& common, const InfoOptions& o) {
   }
   const Json json =
       o.pattern ? pattern_info(sensor::load_sensor(configs.resolve("sensors", o.thing)), o.out)
-                : info_of(configs, o.thing, console);
+                : info_of(configs, o, console);
   if (common.json) {
     print_json(json);
   } else {
@@ -194,13 +180,16 @@ int info_verb(const Common& common, const InfoOptions& o) {
 
 void add_info(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "info", "Describe a world, sensor, dataset, cloud, mesh or run: sizes, times, rates");
+      "info",
+      "Describe a world, sensor, flight, study, dataset, cloud, mesh or run: sizes, times, rates");
   auto o = std::make_shared<InfoOptions>();
-  verb->add_option("thing", o->thing, "Name of a world or sensor, or a path")->required();
+  verb->add_option("thing", o->thing, "Path, or name of a sensor, world, flight or study")
+      ->required();
   verb->add_option("--rays", o->rays, "Print the first N rays of a sensor as CSV");
   verb->add_flag("--pattern", o->pattern,
                  "Share of a sensor's field of view that its shots cover in 0.1, 0.5, 1 and 4 s");
   verb->add_option("--out", o->out, "With --pattern: SVG file to write the drawing to");
+  add_allow_missing(*verb, o->world.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return info_verb(common, *o); }, exit_code);
 }

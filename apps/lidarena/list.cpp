@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 
 #include "apps/lidarena/verbs.hpp"
@@ -44,6 +45,52 @@ std::string range_text(double low, double high, const char* unit) {
                                  : fmt::format("{:g} {}", high, unit);
 }
 
+/// Limits of the sensors to list; 0 = none.
+struct SensorFilter {
+  double fov_min = 0.0;     ///< deg
+  double points_min = 0.0;  ///< 1/s
+  double range_min = 0.0;   ///< m
+  double weight_max = 0.0;  ///< kg
+  double power_max = 0.0;   ///< W
+};
+
+bool is_empty(const SensorFilter& filter) {
+  return filter.fov_min + filter.points_min + filter.range_min + filter.weight_max +
+             filter.power_max ==
+         0.0;
+}
+
+/// The smaller of the two angles of a field of view, deg.
+double smaller_angle(const sensor::FieldOfView& fov) {
+  return std::min({fov.azimuth_max_deg - fov.azimuth_min_deg,
+                   fov.elevation_max_deg - fov.elevation_min_deg, 2.0 * fov.half_angle_deg});
+}
+
+enum class Verdict { kListed, kLeftOut, kUnknown };
+
+/// Judges by one figure, 0 = unknown; a limit of 0 admits all.
+Verdict judge(double figure, double low, double high) {
+  if (low <= 0.0 && high <= 0.0) return Verdict::kListed;
+  if (figure <= 0.0) return Verdict::kUnknown;
+  const bool is_within = figure >= low && (high <= 0.0 || figure <= high);
+  return is_within ? Verdict::kListed : Verdict::kLeftOut;
+}
+
+/// A figure beyond its limit outweighs one that is unknown.
+Verdict judge(const SensorFilter& filter, const sensor::SensorConfig& sensor, double points) {
+  const sensor::SensorFacts& facts = sensor.facts;
+  Verdict verdict = Verdict::kListed;
+  for (const Verdict one :
+       {judge(facts.fov ? smaller_angle(*facts.fov) : 0.0, filter.fov_min, 0.0),
+        judge(points, filter.points_min, 0.0), judge(sensor.max_range_m, filter.range_min, 0.0),
+        judge(facts.weight_kg, 0.0, filter.weight_max),
+        judge(facts.power_max_w, 0.0, filter.power_max)}) {
+    if (one == Verdict::kLeftOut) return one;
+    if (one == Verdict::kUnknown) verdict = one;
+  }
+  return verdict;
+}
+
 std::string fov_of(const sensor::SensorFacts& facts) {
   if (!facts.fov) return "-";
   const sensor::FieldOfView& fov = *facts.fov;
@@ -52,34 +99,45 @@ std::string fov_of(const sensor::SensorFacts& facts) {
                      fov.elevation_max_deg - fov.elevation_min_deg);
 }
 
-/// Prints one line per sensor with its main specifications, or the error if its file is invalid.
-int list_sensors(const Common& common) {
+constexpr const char* kSensorRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
+
+void print_sensor(const sensor::SensorConfig& sensor, double points) {
+  const sensor::SensorFacts& facts = sensor.facts;
+  fmt::print(kSensorRow, sensor.name, fov_of(facts), fmt::format("{:.0f}", points),
+             range_text(0.0, sensor.max_range_m, "m"),
+             range_text(0.0, 1000.0 * facts.weight_kg, "g"),
+             range_text(facts.power_min_w, facts.power_max_w, "W"),
+             facts.price.empty() ? "-" : facts.price);
+}
+
+double points_per_second(const sensor::SensorConfig& sensor) {
+  const auto pattern = sensor::make_pattern(sensor);
+  return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
+}
+
+/// Prints one line per sensor within the limits, or the error if its file is invalid. Says which
+/// sensors could not be judged.
+int list_sensors(const Common& common, const SensorFilter& filter) {
   const study::ConfigFolder configs = common.config_folder();
-  constexpr const char* kRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
   if (!common.json) {
-    fmt::print(kRow, "sensor", "FOV, deg", "points/s", "range", "weight", "power", "price");
+    fmt::print(kSensorRow, "sensor", "FOV, deg", "points/s", "range", "weight", "power", "price");
   }
   Json list = Json::array();
+  std::vector<std::string> unknown;
   for (const std::string& name : configs.names("sensors")) {
     const auto file = configs.resolve("sensors", name);
     Json json{{"name", name}, {"summary", first_comment(file)}};
     try {
       const sensor::SensorConfig sensor = sensor::load_sensor(file);
-      const auto pattern = sensor::make_pattern(sensor);
-      const double rate =
-          static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
-      const sensor::SensorFacts& facts = sensor.facts;
-      json.update({{"fov_deg", fov_of(facts)},
-                   {"points_per_second", rate},
+      const double points = points_per_second(sensor);
+      const Verdict verdict = judge(filter, sensor, points);
+      if (verdict == Verdict::kUnknown) unknown.push_back(name);
+      if (verdict != Verdict::kListed) continue;
+      json.update({{"fov_deg", fov_of(sensor.facts)},
+                   {"points_per_second", points},
                    {"max_range_m", sensor.max_range_m},
-                   {"facts", to_json(facts)}});
-      if (!common.json) {
-        fmt::print(kRow, name, fov_of(facts), fmt::format("{:.0f}", rate),
-                   range_text(0.0, sensor.max_range_m, "m"),
-                   range_text(0.0, 1000.0 * facts.weight_kg, "g"),
-                   range_text(facts.power_min_w, facts.power_max_w, "W"),
-                   facts.price.empty() ? "-" : facts.price);
-      }
+                   {"facts", to_json(sensor.facts)}});
+      if (!common.json) print_sensor(sensor, points);
     } catch (const InputError& error) {
       json["error"] = error.what();
       if (!common.json) fmt::print("{:<26} {}\n", name, error.what());
@@ -87,6 +145,10 @@ int list_sensors(const Common& common) {
     list.push_back(json);
   }
   if (common.json) print_json(list);
+  if (!unknown.empty() && !common.quiet) {
+    fmt::print(stderr, "not listed, since a figure of theirs is unknown: {}\n",
+               fmt::join(unknown, ", "));
+  }
   return kDone;
 }
 
@@ -108,15 +170,28 @@ void add_list(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
       "list", "List the available worlds, flights, sensors, algorithms or studies");
   auto kind = std::make_shared<std::string>();
+  auto filter = std::make_shared<SensorFilter>();
   verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms or studies")
       ->required()
       ->check(CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies"}));
+  const auto add_limit = [verb](const char* name, double& limit, const char* what) {
+    return verb->add_option(name, limit, what)->check(CLI::PositiveNumber);
+  };
+  add_limit("--fov-min", filter->fov_min,
+            "Of sensors, those with this field of view, deg: the smaller of its two angles");
+  add_limit("--points-min", filter->points_min, "... with this many points per second");
+  add_limit("--range-min", filter->range_min, "... with this range, m");
+  add_limit("--weight-max", filter->weight_max, "... of at most this weight, kg");
+  add_limit("--power-max", filter->power_max, "... that take at most this power, W");
   set_verb(
       *verb, common,
-      [&common, kind] {
-        if (*kind == "algorithms") return list_algorithms_verb(common);
-        if (*kind == "sensors") return list_sensors(common);
-        return list_configs(common, *kind);
+      [&common, kind, filter] {
+        if (*kind == "sensors") return list_sensors(common, *filter);
+        if (!is_empty(*filter)) {
+          throw InputError("list " + *kind, "has no limits to choose by",
+                           "--fov-min and the like are for: lidarena list sensors");
+        }
+        return *kind == "algorithms" ? list_algorithms_verb(common) : list_configs(common, *kind);
       },
       exit_code);
 }

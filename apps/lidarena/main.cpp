@@ -33,6 +33,17 @@ void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& 
   verb.callback([action = std::move(action), &exit_code] { exit_code = action(); });
 }
 
+void add_allow_missing(CLI::App& verb, bool& allow_missing) {
+  verb.add_flag("--allow-missing", allow_missing,
+                "Load an SDF world without the models and meshes that cannot be found");
+}
+
+std::string free_name(const std::string& wanted) {
+  std::string name = wanted;
+  for (int i = 2; std::filesystem::exists(name); ++i) name = fmt::format("{}-{}", wanted, i);
+  return name;
+}
+
 void print_json(const Json& json) { fmt::print("{}\n", json.dump(2)); }
 
 namespace {
@@ -73,26 +84,39 @@ void add_text(CLI::App& app, const std::string& name, const std::string& what,
   app.add_subcommand(name, what)->callback([&app, make] { fmt::print("{}", make(app)); });
 }
 
+constexpr const char* kOverview =
+    "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
+    "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on their scans, and\n"
+    "scores odometry and map against the mesh that was scanned.\n\n"
+    "Three commands to begin with:\n"
+    "  lidarena list sensors\n"
+    "      the LiDARs: field of view, points, range, weight, power, price\n"
+    "  lidarena study --world house --sensors livox_mid360,ouster_os0_32 --auto --seconds 10 --out "
+    "my_study\n"
+    "      which of them, and which SLAM, for this place; your own place: --world my.obj\n"
+    "  lidarena run arena_lio my.bag\n"
+    "      a SLAM on your own recording\n";
+
+/// The program without a verb: what it is for and how to begin.
+void print_overview(const CLI::App& app) {
+  fmt::print("{}\nVerbs:", kOverview);
+  for (const CLI::App* verb : app.get_subcommands([](const CLI::App*) { return true; }))
+    fmt::print(" {}", verb->get_name());
+  fmt::print(
+      "\n`lidarena VERB --help` explains one, `lidarena --help` all; the first hour step by "
+      "step: docs/first_hour.md\n");
+}
+
 int parse_and_do(int argc, char** argv) {
   if (asks_for_version_json(argc, argv)) {
     print_json(version_json());
     return kDone;
   }
-  CLI::App app{
-      "Lidarena: which LiDAR, and which SLAM, for my robot?\n"
-      "Simulates LiDARs on a flying quadcopter in mesh worlds, runs SLAM on their scans, and\n"
-      "scores odometry and map against the mesh that was scanned.\n\n"
-      "Step by step:\n"
-      "  lidarena simulate --world house --flight house --sensor livox_mid360 --out my_data\n"
-      "  lidarena run kiss_icp my_data --out my_run\n"
-      "  lidarena evaluate my_run\n"
-      "or with one command, which also writes a report page:\n"
-      "  lidarena study quick --out my_study\n",
-      "lidarena"};
+  CLI::App app{kOverview, "lidarena"};
   CLI::Option* version = app.set_version_flag("--version", version_text());
   app.add_flag("--json")->needs(version)->description(
       "With --version: also hashes of the code of simulator, methods and scorer");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.failure_message(CLI::FailureMessage::simple);
   Common common;
   int exit_code = kDone;
@@ -115,6 +139,7 @@ int parse_and_do(int argc, char** argv) {
   } catch (const CLI::ParseError& e) {
     return app.exit(e) == 0 ? kDone : kBadInput;
   }
+  if (app.get_subcommands().empty()) print_overview(app);
   return exit_code;
 }
 

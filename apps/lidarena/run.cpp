@@ -3,11 +3,14 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/run_external.hpp"
 
 namespace lidarena {
 namespace {
+
+namespace fs = std::filesystem;
 
 /// "body_from_lidar=x,y,z,qx,qy,qz,qw" to a pose.
 Pose parse_extrinsics(const std::string& text) {
@@ -20,41 +23,70 @@ Pose parse_extrinsics(const std::string& text) {
   return pose;
 }
 
-int run_verb(const Common& common, const study::RunRequest& request, const std::string& external,
-             const std::string& out) {
-  Console console(common.quiet);
-  const Parallel parallel(common.threads);
-  const odometry::RunSummary s =
-      external.empty() ? study::run_algorithm(request, out, parallel, console)
-                       : study::run_external(load_config<study::ExternalProgram>(external), request,
-                                             out, parallel, console);
-  const double factor = s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0;
-  Json statuses = Json::object();
+/// Options of `run` as given.
+struct RunOptions {
+  study::RunRequest request;
+  std::string dataset, extrinsics, external, out;
+};
+
+/// Checks first what is given, then whether all is given.
+void check_options(const RunOptions& o) {
+  const std::string& algorithm = o.request.odometry.algorithm;
+  if (algorithm.empty()) {
+    throw InputError("run", "needs an algorithm and a dataset",
+                     "see lidarena list algorithms; for example: lidarena run arena_lio my.bag");
+  }
+  if (o.external.empty()) odometry::check_algorithm(o.request.odometry);
+  if (o.dataset.empty()) {
+    throw InputError("run " + algorithm, "needs a dataset",
+                     "give a dataset folder, .mcap, .bag or folder of sweeps");
+  }
+}
+
+/// DATASET-ALGORITHM[-PRESET], in the working folder.
+std::string default_output(const study::RunRequest& request) {
+  const fs::path dataset = fs::weakly_canonical(request.dataset);
+  const fs::path name = fs::is_directory(dataset) ? dataset.filename() : dataset.stem();
+  const odometry::OdometryRequest& odometry = request.odometry;
+  return free_name(fmt::format("{}-{}{}{}", name.string(), odometry.algorithm,
+                               odometry.preset.empty() ? "" : "-", odometry.preset));
+}
+
+void print_summary(const Common& common, const odometry::RunSummary& s, bool paced,
+                   const std::string& out) {
+  if (common.json) {
+    Json json{{"run", out}};
+    json.update(study::summary_json(s));
+    json["reason"] = s.reason;
+    return print_json(json);
+  }
   std::string counts;
-  for (const auto& [status, count] : s.statuses) {
-    statuses[odometry::to_string(status)] = count;
+  for (const auto& [status, count] : s.statuses)
     counts +=
         fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
+  fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
+             s.compute_seconds, s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0);
+  if (paced) {
+    fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
+               s.dropped, s.longest_delay_s);
   }
-  if (common.json) {
-    print_json({{"run", out},
-                {"scans", s.scans},
-                {"dropped", s.dropped},
-                {"longest_delay_s", s.longest_delay_s},
-                {"statuses", statuses},
-                {"sensor_seconds", s.sensor_seconds},
-                {"compute_seconds", s.compute_seconds},
-                {"diverged", s.diverged},
-                {"reason", s.reason}});
-  } else {
-    fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
-               s.compute_seconds, factor);
-    if (request.paced) {
-      fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
-                 s.dropped, s.longest_delay_s);
-    }
-    fmt::print("run: {}\n", out);
-  }
+  fmt::print("run: {}\n", out);
+}
+
+int run_verb(const Common& common, const RunOptions& o) {
+  check_options(o);
+  study::RunRequest request = o.request;
+  request.dataset = o.dataset;
+  if (!o.extrinsics.empty()) request.read.body_from_lidar = parse_extrinsics(o.extrinsics);
+  const std::string out = o.out.empty() ? default_output(request) : o.out;
+  Console console(common.quiet);
+  if (o.out.empty()) console.info("writes to " + out);
+  const Parallel parallel(common.threads);
+  const odometry::RunSummary s =
+      o.external.empty() ? study::run_algorithm(request, out, parallel, console)
+                         : study::run_external(load_config<study::ExternalProgram>(o.external),
+                                               request, out, parallel, console);
+  print_summary(common, s, request.paced, out);
   if (s.diverged) {
     console.warn("the run diverged: " + s.reason);
     return kWorkFailed;
@@ -66,44 +98,34 @@ int run_verb(const Common& common, const study::RunRequest& request, const std::
 
 void add_run(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand("run", "Run an algorithm on a dataset, bag or folder of sweeps");
-  auto r = std::make_shared<study::RunRequest>();
-  auto out = std::make_shared<std::string>();
-  auto dataset = std::make_shared<std::string>();
-  auto extrinsics = std::make_shared<std::string>();
-  auto external = std::make_shared<std::string>();
-  verb->add_option("algorithm", r->odometry.algorithm, "Name (see: list algorithms)")->required();
-  verb->add_option("dataset", *dataset, "Dataset folder, .mcap, .bag or folder of sweeps")
-      ->required();
-  verb->add_option("--out", *out, "Folder to write")->required();
-  verb->add_option("--preset", r->odometry.preset,
+  auto o = std::make_shared<RunOptions>();
+  study::RunRequest& r = o->request;
+  verb->add_option("algorithm", r.odometry.algorithm, "Name (see: list algorithms); required");
+  verb->add_option("dataset", o->dataset,
+                   "Dataset folder, .mcap, .bag or folder of sweeps; required");
+  verb->add_option("--out", o->out,
+                   "Folder to write; default: DATASET-ALGORITHM in the working folder");
+  verb->add_option("--preset", r.odometry.preset,
                    "One of the algorithm's presets; default: its first");
-  verb->add_option("--sensor", r->read.sensor, "Id of the LiDAR to use, if there are several");
-  verb->add_option("--config", r->odometry.config_file,
-                   "YAML file that overrides values of the preset")
-      ->check(CLI::ExistingFile);
-  verb->add_option("--set", r->odometry.overrides,
+  verb->add_option("--sensor", r.read.sensor, "Id of the LiDAR to use, if there are several");
+  verb->add_option("--config", r.odometry.config_file,
+                   "YAML file that overrides values of the preset");
+  verb->add_option("--set", r.odometry.overrides,
                    "key=value, overrides preset and --config; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--external", *external,
-                   "YAML file of an external program (name, command, ...) to run as ALGORITHM")
-      ->check(CLI::ExistingFile);
-  verb->add_flag("--paced", r->paced, "Drop scans when the algorithm is late, as on a live robot");
-  verb->add_option("--layout", r->read.layout, "Fields of a point in raw binary sweeps")
+  verb->add_option("--external", o->external,
+                   "YAML file of an external program (name, command, ...) to run as ALGORITHM");
+  verb->add_flag("--paced", r.paced, "Drop scans when the algorithm is late, as on a live robot");
+  verb->add_option("--layout", r.read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
-  verb->add_option("--extrinsics", *extrinsics,
+  verb->add_option("--extrinsics", o->extrinsics,
                    "Mounting of the LiDAR: body_from_lidar=x,y,z,qx,qy,qz,qw");
-  verb->add_option("--rate", r->read.rate_hz, "Sweeps per second, for a folder without times")
+  verb->add_option("--rate", r.read.rate_hz, "Sweeps per second, for a folder without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   set_verb(
-      *verb, common,
-      [&common, r, out, dataset, extrinsics, external] {
-        r->dataset = *dataset;
-        if (!extrinsics->empty()) r->read.body_from_lidar = parse_extrinsics(*extrinsics);
-        return run_verb(common, *r, *external, *out);
-      },
-      exit_code);
+      *verb, common, [&common, o] { return run_verb(common, *o); }, exit_code);
 }
 
 }  // namespace lidarena

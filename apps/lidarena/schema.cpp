@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <fmt/format.h>
+#include "apps/lidarena/schema.hpp"
 
-#include <functional>
-#include <map>
+#include <fmt/format.h>
 
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/config_schema.hpp"
@@ -15,10 +14,7 @@
 #include "lidarena/study/study_spec.hpp"
 
 namespace lidarena {
-namespace {
 
-/// Functions that make the schema of each kind of YAML file, of each algorithm's configuration, and
-/// of metrics.json.
 std::map<std::string, std::function<Json()>> schemas() {
   std::map<std::string, std::function<Json()>> all{
       {"world", [] { return schema_document<scenes::WorldConfig>("A world of Lidarena"); }},
@@ -26,6 +22,8 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"sensor", [] { return schema_document<sensor::SensorConfig>("A sensor of Lidarena"); }},
       {"beams",
        [] { return schema_document<sensor::SpinningHead>("The beams of a spinning head"); }},
+      {"external",
+       [] { return schema_document<study::ExternalProgram>("A SLAM program of others"); }},
       {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }},
       {"metrics",
        [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }}};
@@ -34,6 +32,8 @@ std::map<std::string, std::function<Json()>> schemas() {
   }
   return all;
 }
+
+namespace {
 
 Json schema_of(const std::string& kind) {
   const auto all = schemas();
@@ -59,7 +59,8 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
       "JSON Schema of a kind of YAML file or of metrics.json: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
-  verb->add_option("kind", *kind, "world, flight, sensor, beams, study, metrics, or an algorithm");
+  verb->add_option("kind", *kind,
+                   "world, flight, sensor, beams, study, external, metrics, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

@@ -10,6 +10,8 @@
 namespace lidarena {
 namespace {
 
+namespace fs = std::filesystem;
+
 struct SimulateOptions {
   std::string world, flight, out;
   std::vector<std::string> sensors;
@@ -23,14 +25,38 @@ struct SimulateOptions {
   bool example_scans = false;
 };
 
-int simulate_verb(const Common& common, const SimulateOptions& options) {
-  const study::ConfigFolder configs = common.config_folder();
-  study::SimulateRequest request = options.request;
-  request.world = configs.resolve("worlds", options.world);
-  request.flight = configs.resolve("flights", options.flight);
+/// Finds the files of sensors, world and flight. What is given is judged first, then what is
+/// missing is named.
+void find_files(const study::ConfigFolder& configs, const SimulateOptions& options,
+                study::SimulateRequest& request) {
   for (const std::string& sensor : options.sensors) {
     request.sensors.push_back(configs.resolve("sensors", sensor));
+    sensor::load_sensor(request.sensors.back());
   }
+  if (!options.world.empty()) request.world = configs.resolve("worlds", options.world);
+  if (!options.flight.empty()) request.flight = configs.resolve("flights", options.flight);
+  std::string missing, lists;
+  for (const auto& [flag, is_given] : {std::pair{"world", !options.world.empty()},
+                                       {"flight", !options.flight.empty()},
+                                       {"sensor", !options.sensors.empty()}}) {
+    if (is_given) continue;
+    missing += fmt::format("{}--{}", missing.empty() ? "" : ", ", flag);
+    lists += fmt::format("{}lidarena list {}s", lists.empty() ? "" : ", ", flag);
+  }
+  if (!missing.empty()) throw InputError("simulate", "needs " + missing, "see " + lists);
+}
+
+/// WORLD-FLIGHT-SENSOR, in the working folder.
+std::string default_output(const study::SimulateRequest& request) {
+  std::string name = request.world.stem().string();
+  if (request.flight.stem() != request.world.stem()) name += "-" + request.flight.stem().string();
+  for (const fs::path& sensor : request.sensors) name += "-" + sensor.stem().string();
+  return free_name(name);
+}
+
+int simulate_verb(const Common& common, const SimulateOptions& options) {
+  study::SimulateRequest request = options.request;
+  find_files(common.config_folder(), options, request);
   request.noise = options.noise == "on";
   request.data = !options.no_data;
   if (!options.mode.empty()) {
@@ -40,12 +66,14 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   read_value(ConfigNode::parse(options.format, "--format"), request.write.format, {});
   read_value(ConfigNode::parse(options.dialect, "--dialect"), request.write.dialect, {});
   request.write.compress = options.compress;
+  const std::string out = options.out.empty() ? default_output(request) : options.out;
   Console console(common.quiet);
+  if (options.out.empty()) console.info("writes to " + out);
   const study::SimulateSummary s =
-      study::simulate_dataset(request, options.out, Parallel(common.threads), console);
-  if (options.example_scans) study::write_example_scans(options.out, Parallel(common.threads));
+      study::simulate_dataset(request, out, Parallel(common.threads), console);
+  if (options.example_scans) study::write_example_scans(out, Parallel(common.threads));
   if (common.json) {
-    print_json({{"dataset", options.out},
+    print_json({{"dataset", out},
                 {"triangles", s.triangles},
                 {"seconds", s.seconds},
                 {"path_m", s.path_m},
@@ -55,7 +83,7 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   } else {
     fmt::print("world {} triangles; flew {:.1f} s, {:.1f} m; {} scans, {} points, {} IMU samples\n",
                s.triangles, s.seconds, s.path_m, s.scans, s.points, s.imu_samples);
-    fmt::print("dataset: {}\n", options.out);
+    fmt::print("dataset: {}\n", out);
   }
   return kDone;
 }
@@ -66,14 +94,15 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand("simulate",
                                   "Simulate sensors on a flight through a world; writes a dataset");
   auto o = std::make_shared<SimulateOptions>();
-  verb->add_option("--world", o->world, "Name (see: list worlds), mesh, or SDF file")->required();
-  verb->add_option("--flight", o->flight, "Name (see: list flights), YAML, or TUM file to replay")
-      ->required();
-  verb->add_option("--sensor", o->sensors, "Name (see: list sensors) or YAML; may be repeated")
-      ->required()
+  verb->add_option("--world", o->world, "Name (see: list worlds), mesh, or SDF file; required");
+  verb->add_option("--flight", o->flight,
+                   "Name (see: list flights), YAML, or TUM file to replay; required");
+  verb->add_option("--sensor", o->sensors,
+                   "Name (see: list sensors) or YAML; required, may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--out", o->out, "Folder to write")->required();
+  verb->add_option("--out", o->out,
+                   "Folder to write; default: WORLD-FLIGHT-SENSOR in the working folder");
   verb->add_option("--seed", o->request.seed,
                    "Seed of all noise (a procedural world has its own seed in its file)")
       ->capture_default_str();
@@ -108,6 +137,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_flag(
       "--no-data", o->no_data,
       "Write a manifest only: the same points are simulated whenever the dataset is read");
+  add_allow_missing(*verb, o->request.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return simulate_verb(common, *o); }, exit_code);
 }

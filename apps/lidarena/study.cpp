@@ -28,6 +28,7 @@ struct StudyRequest {
   std::vector<std::string> algorithms{"all"};
   bool tour = false;  ///< plan a tour of the world automatically
   double seconds = 0.0;
+  bool allow_missing = false;
   std::string out;
   bool dry = false;
   int jobs = 1;
@@ -58,7 +59,13 @@ void listen_to_signals() {
 }
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
-study::StudySpec spec_of_one_world(const StudyRequest& request) {
+/// Sensors and algorithms are judged before anything is said to be missing.
+study::StudySpec spec_of_one_world(const StudyRequest& request,
+                                   const study::ConfigFolder& configs) {
+  for (const std::string& sensor : request.sensors) configs.resolve("sensors", sensor);
+  for (const std::string& algorithm : request.algorithms) {
+    if (algorithm != "all") odometry::check_algorithm(study::parse_algorithm(algorithm));
+  }
   if (request.world.empty()) {
     throw InputError("study", "neither a study nor a world is given",
                      "name a study, or give --world and --sensors");
@@ -68,7 +75,7 @@ study::StudySpec spec_of_one_world(const StudyRequest& request) {
   }
   study::StudySpec spec;
   spec.title = "Which LiDAR, which SLAM: " + std::filesystem::path(request.world).stem().string();
-  spec.scenes = {{request.world, "auto", request.seconds}};
+  spec.scenes = {{request.world, "auto", request.seconds, request.allow_missing}};
   spec.sensors = request.sensors;
   for (const std::string& algorithm : request.algorithms) {
     if (algorithm != "all") {
@@ -224,24 +231,32 @@ int whole_study(const Common& common, const StudyRequest& request,
   return outcome.runs == outcome.cells && report.shortfalls.empty() ? kDone : kWorkFailed;
 }
 
+void need_folder(const StudyRequest& request) {
+  if (request.out.empty()) throw InputError("study", "needs a folder to write", "give --out DIR");
+}
+
 int study_verb(const Common& common, const StudyRequest& request) {
   const study::ConfigFolder configs = common.config_folder();
   const study::StudyOptions options = options_of(common, request);
   Console console(common.quiet);
   if (request.worker) {
+    need_folder(request);
     listen_to_signals();
     return study_part(common, request,
                       study::work_on_study(request.out, configs, options, console));
   }
   const auto spec = request.name.empty()
-                        ? spec_of_one_world(request)
+                        ? spec_of_one_world(request, configs)
                         : study::load_study(configs.resolve("studies", request.name));
   if (request.dry) {
     const auto code = study::ProgramCode::ask(study::find_program(options.program));
     print_plan(study::make_plan(spec, configs, code, options.shard.of), options.shard, configs,
-               options.scratch_bytes.value_or(study::default_scratch_bytes(request.out)));
+               options.scratch_bytes.value_or(
+                   study::default_scratch_bytes(request.out.empty() ? "." : request.out)));
     return kDone;
   }
+  study::planned_cells(spec, configs);  // judges all names
+  need_folder(request);
   if (request.slurm || request.print)
     return submit_study(common, request, study::plan_study(spec, configs, request.out, options));
   listen_to_signals();
@@ -352,8 +367,8 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
       "Simulate, run and score a matrix of worlds, sensors and algorithms; writes a report");
   auto request = std::make_shared<StudyRequest>();
   verb->add_option("study", request->name, "Name (see: list studies) or YAML");
-  verb->add_option("--out", request->out, "Folder to write; complete runs in it are reused")
-      ->required();
+  verb->add_option("--out", request->out,
+                   "Folder to write, required; complete runs in it are reused");
   verb->add_option("--world", request->world,
                    "Instead of a study: one world, a name or a mesh file");
   verb->add_option("--sensors", request->sensors, "With --world: sensors A,B,...")->delimiter(',');
@@ -363,6 +378,7 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
   verb->add_flag("--auto", request->tour, "With --world: plan a tour of the world automatically");
   verb->add_option("--seconds", request->seconds,
                    "With --world: length of the flight, s; 0 = the whole tour");
+  add_allow_missing(*verb, request->allow_missing);
   verb->add_flag("--dry", request->dry, "Only list the runs, with estimated time and disk space");
   verb->add_option("--jobs", request->jobs,
                    "Number of runs at the same time, each on its own cores")

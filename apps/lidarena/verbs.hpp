@@ -31,6 +31,12 @@ struct Common {
 /// stores its result in `exit_code`.
 void set_verb(CLI::App& verb, Common& common, std::function<int()> action, int& exit_code);
 
+/// Adds --allow-missing to a verb that takes a world.
+void add_allow_missing(CLI::App& verb, bool& allow_missing);
+
+/// A name that nothing in the working folder has: `wanted`, else wanted-2, wanted-3, ...
+std::string free_name(const std::string& wanted);
+
 void add_list(CLI::App& app, Common& common, int& exit_code);
 void add_info(CLI::App& app, Common& common, int& exit_code);
 void add_simulate(CLI::App& app, Common& common, int& exit_code);

@@ -26,6 +26,7 @@ struct ViewOptions {
   std::string map = "reprojected";
   double million_points = 5.0;
   int port = 0;
+  scenes::WorldOptions world{};
   dataset::ReadOptions read;
 };
 
@@ -47,8 +48,9 @@ bool has_faces(const fs::path& file) {
   return false;
 }
 
-void add_world(report::Scene& scene, const fs::path& file, LogSink& log) {
-  scene.meshes.push_back({file.stem().string(), scenes::load_world(file, {}, log).mesh});
+void add_world(report::Scene& scene, const fs::path& file, const scenes::WorldOptions& options,
+               LogSink& log) {
+  scene.meshes.push_back({file.stem().string(), scenes::load_world(file, options, log).mesh});
 }
 
 /// Adds a folder, a file, or the world called `name` in configs/worlds to the scene.
@@ -72,7 +74,7 @@ void add_item(report::Scene& scene, const Common& common, const ViewOptions& o,
   } else if (ending == ".tum" || ending == ".txt" || ending == ".csv") {
     report::add_path_file(scene, path);
   } else {
-    add_world(scene, path, log);
+    add_world(scene, path, o.world, log);
   }
 }
 
@@ -180,6 +182,7 @@ void add_view(CLI::App& app, Common& common, int& exit_code) {
                    "Id of the only LiDAR of a dataset to show; default: all");
   verb->add_option("--layout", o->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
+  add_allow_missing(*verb, o->world.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return view_verb(common, *o); }, exit_code);
 }

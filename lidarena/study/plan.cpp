@@ -41,6 +41,7 @@ Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFo
           {"seed", cell.seed},
           {"new_scene", spec.new_scenes},
           {"seconds", cell.seconds},
+          {"allow_missing", cell.allow_missing},
           {"mode", value_to_json(cell.mode)}};
 }
 

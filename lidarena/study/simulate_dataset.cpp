@@ -305,9 +305,10 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   }
   std::optional<std::uint64_t> scene_seed;
   if (request.new_scene) scene_seed = request.seed;
-  scenes::WorldOptions world_options;
-  world_options.seed = scene_seed;
-  world::WorldModel model = scenes::load_world(request.world, world_options, log);
+  scenes::WorldOptions world;
+  world.seed = scene_seed;
+  world.allow_missing = request.allow_missing;
+  world::WorldModel model = scenes::load_world(request.world, world, log);
   if (request.new_scene)
     for (auto& route : model.routes) route = scenes::drawn_route(route, request.seed);
   sensor::SimulationOptions options;

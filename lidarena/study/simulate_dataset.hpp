@@ -24,7 +24,8 @@ struct SimulateRequest {
   /// The seed also draws a procedural world, start and direction of its routes, and the gusts,
   /// whose files have seeds of their own otherwise.
   bool new_scene = false;
-  double seconds = 0.0;  ///< 0 = the whole flight
+  double seconds = 0.0;        ///< 0 = the whole flight
+  bool allow_missing = false;  ///< load an SDF world without models and meshes that are missing
   bool noise = true;
   std::optional<sensor::ScanMode> mode;  ///< of all sensors; empty = as in their files
   bool data = true;                      ///< false: a manifest only; simulated whenever it is read

@@ -93,6 +93,7 @@ Stage Stages::flight(const PlanUnit& unit, const ConfigFolder& configs) const {
   for (const std::string& sensor : plan_.spec.sensors)
     call.insert(call.end(), {"--sensor", configs.resolve("sensors", sensor).string()});
   if (plan_.spec.new_scenes) call.emplace_back("--new-scene");
+  if (cell.allow_missing) call.emplace_back("--allow-missing");
   if (cell.mode) call.insert(call.end(), {"--mode", value_to_json(*cell.mode).get<std::string>()});
   stage.steps.push_back(
       {"flight", unit.flight, stage.folder / "manifest.json", [call] { return call; }});

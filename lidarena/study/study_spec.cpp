@@ -20,15 +20,6 @@ namespace fs = std::filesystem;
 
 std::string stem(const std::string& name_or_path) { return fs::path(name_or_path).stem().string(); }
 
-/// NAME:PRESET into its parts, with the algorithm's default preset if none is named.
-odometry::OdometryRequest parse_algorithm(const std::string& text) {
-  odometry::OdometryRequest request;
-  const std::size_t colon = text.find(':');
-  request.algorithm = text.substr(0, colon);
-  if (colon != std::string::npos) request.preset = text.substr(colon + 1);
-  return odometry::with_default_preset(std::move(request));
-}
-
 /// Throws InputError for an algorithm or preset that neither the factory nor the study lists.
 void check_algorithm(const StudySpec& spec, const std::string& text) {
   if (find_external(spec, text) == nullptr) odometry::check_algorithm(parse_algorithm(text));
@@ -68,6 +59,7 @@ PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t
   cell.preset = external ? "external" : request.preset;
   cell.seed = seed;
   cell.seconds = scene.seconds;
+  cell.allow_missing = scene.allow_missing;
   cell.mode = mode;
   cell.name = fmt::format("{}-{}-{}{}{}", cell.dataset, stem(sensor), cell.algorithm,
                           cell.preset.empty() ? "" : "-", cell.preset);
@@ -112,6 +104,14 @@ double shots_per_second(const std::string& sensor, const ConfigFolder& configs) 
 }
 
 }  // namespace
+
+odometry::OdometryRequest parse_algorithm(const std::string& text) {
+  odometry::OdometryRequest request;
+  const std::size_t colon = text.find(':');
+  request.algorithm = text.substr(0, colon);
+  if (colon != std::string::npos) request.preset = text.substr(colon + 1);
+  return odometry::with_default_preset(std::move(request));
+}
 
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name) {
   const auto found = std::ranges::find(spec.external, name, &ExternalProgram::name);

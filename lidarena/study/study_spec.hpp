@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/odometry/factory.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/config_folder.hpp"
@@ -19,12 +20,15 @@ struct StudyScene {
   std::string world;
   std::string flight;
   double seconds = 0.0;  ///< 0 = the whole flight
+  bool allow_missing = false;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("world", self.world, "", "name in configs/worlds, or a file");
     v("flight", self.flight, "", "name in configs/flights, or a file");
     v("seconds", self.seconds, "s", "length of the flight, 0 = all of it", at_least(0));
+    v("allow_missing", self.allow_missing, "",
+      "load an SDF world without the models and meshes that cannot be found");
   }
 };
 
@@ -110,6 +114,7 @@ struct PlannedRun {
   std::string world, flight, sensor, algorithm, preset;
   std::uint64_t seed = 1;
   double seconds = 0.0;                  ///< of flight, 0 = all of it
+  bool allow_missing = false;            ///< parts of the world
   std::optional<sensor::ScanMode> mode;  ///< of the sensors; empty = as in their files
 
   template <class Self, class V>
@@ -123,9 +128,13 @@ struct PlannedRun {
     v("preset", self.preset, "", "");
     v("seed", self.seed, "", "");
     v("seconds", self.seconds, "s", "");
+    v("allow_missing", self.allow_missing, "", "");
     v("mode", self.mode, "", "");
   }
 };
+
+/// NAME or NAME:PRESET into its parts, with the algorithm's default preset if none is named.
+odometry::OdometryRequest parse_algorithm(const std::string& text);
 
 /// The external program of this name, or null.
 const ExternalProgram* find_external(const StudySpec& spec, const std::string& name);

@@ -18,6 +18,7 @@
 #include "lidarena/world/model_folders.hpp"
 #include "lidarena/world/primitives.hpp"
 #include "lidarena/world/sdf_text.hpp"
+#include "lidarena/world/standard_models.hpp"
 
 namespace lidarena::world {
 
@@ -109,10 +110,13 @@ sdf::Root SdfLoader::parse() {
   if (!in || !fs::is_regular_file(file_)) {
     throw InputError(file_.string(), "cannot be opened", "check the path and the permissions");
   }
-  const FindFile find = [this](const std::string& uri) -> std::string {
+  const GroundPlaneFile ground_plane;
+  const FindFile find = [&](const std::string& uri) -> std::string {
     const auto path = folders_.find(uri, fs::absolute(file_).parent_path());
     if (path) return path->string();
-    if (uri != "model://sun") add_missing(uri);
+    const StandardModel standard = standard_model(uri);
+    if (standard == StandardModel::kGroundPlane) return ground_plane.path().string();
+    if (standard == StandardModel::kNone) add_missing(uri);
     return {};
   };
   sdf::ParserConfig config;
@@ -268,8 +272,9 @@ void SdfLoader::report_missing() {
   if (!options_.allow_missing) {
     throw InputError(file_.string(), "cannot find " + list,
                      "searched " + folders_.listed() +
-                         "; add a folder to model_paths or GAZEBO_MODEL_PATH, or set "
-                         "allow_missing to load the world without the missing parts");
+                         "; add a folder to GAZEBO_MODEL_PATH (or model_paths of a world's YAML), "
+                         "or load the world without them: --allow-missing (in a YAML: "
+                         "allow_missing: true)");
   }
   log_.warn(file_.string() + ": loaded without missing parts: " + list);
 }

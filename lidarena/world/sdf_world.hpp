@@ -32,9 +32,10 @@ struct SdfOptions {
 /// All shapes of an SDF world (or of a model.sdf) as one mesh in the world frame, with nested
 /// models, relative poses, mesh scales and sub-meshes as Gazebo places them. The coordinates of
 /// mesh files are used unchanged (a DAE's <up_axis> is ignored, as in Gazebo). Degenerate triangles
-/// are kept. A <state> saved by Gazebo is not applied, actors and plugins are ignored, and
-/// `model://sun`, a light, may be missing.
-/// Throws InputError, with a list of the folders searched, for a missing model or mesh (unless
+/// are kept. A <state> saved by Gazebo is not applied, actors and plugins are ignored. Where there
+/// is no local copy of Gazebo's models sun and ground_plane, whatever the host in their URI, the
+/// sun is left out (a light casts nothing) and the plane is put where it is included (100 m x 100
+/// m). Throws InputError, with a list of the folders searched, for a missing model or mesh (unless
 /// `allow_missing`), and when nothing with a surface is found or the file is not SDF.
 TriangleMesh load_sdf(const std::filesystem::path& file, const SdfOptions& options, LogSink& log);
 

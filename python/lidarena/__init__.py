@@ -56,9 +56,13 @@ def matrix(pose):
     return out
 
 
-def load_world(name_or_file, seed=None):
-    """Loads a world of configs/worlds by its name, or any mesh, SDF or YAML file."""
-    return _core.load_world_file(configs.resolve("worlds", str(name_or_file)), seed)
+def load_world(name_or_file, seed=None, allow_missing=False):
+    """Loads a world of configs/worlds by its name, or any mesh, SDF or YAML file.
+
+    With allow_missing, an SDF world is loaded without the models and meshes that cannot be found.
+    """
+    file = configs.resolve("worlds", str(name_or_file))
+    return _core.load_world_file(file, seed, allow_missing)
 
 
 def make_flight(name_or_file, world):

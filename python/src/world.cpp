@@ -114,14 +114,15 @@ void bind_world(py::module_& m) {
           py::arg("file"), "Writes .ply, .obj or .sdf, by the file extension.");
   m.def(
       "load_world_file",
-      [](const std::filesystem::path& file, std::optional<std::uint64_t> seed) {
+      [](const std::filesystem::path& file, std::optional<std::uint64_t> seed, bool allow_missing) {
         const py::gil_scoped_release released;
         PythonLog log;
         scenes::WorldOptions options;
         options.seed = seed;
+        options.allow_missing = allow_missing;
         return std::make_unique<SimulatedWorld>(scenes::load_world(file, options, log));
       },
-      py::arg("file"), py::arg("seed") = py::none());
+      py::arg("file"), py::arg("seed") = py::none(), py::arg("allow_missing") = false);
 }
 
 }  // namespace lidarena::python

@@ -54,6 +54,20 @@ def test_bad_meshes_are_refused_with_place():
         lidarena.load_world("huose")
 
 
+def test_an_sdf_world_is_loaded_without_what_is_missing_if_allowed(tmp_path):
+    file = tmp_path / "hall.sdf"
+    file.write_text(
+        "<?xml version='1.0'?><sdf version='1.6'><world name='w'><model name='m'><link name='l'>"
+        "<visual name='v'><geometry><box><size>1 1 1</size></box></geometry></visual></link></model>"
+        "<include><uri>model://no_chair</uri></include></world></sdf>")
+    with pytest.raises(lidarena.InputError) as refused:
+        lidarena.load_world(file)
+    if "cannot read SDF" in str(refused.value):
+        pytest.skip("this build cannot read SDF worlds")
+    assert "model://no_chair" in str(refused.value)
+    assert len(lidarena.load_world(file, allow_missing=True).triangles) == 12
+
+
 def test_other_threads_go_on_during_a_long_call(room):
     """The GIL is released: another thread counts while rays are cast."""
     directions = np.random.default_rng(2).normal(size=(2_000_000, 3)).astype(np.float32)

@@ -40,7 +40,7 @@ TEST(SensorConfig, EveryFileThatShipsLoadsAndNamesItsSourceAndFieldOfView) {
     EXPECT_TRUE(sensor.facts.fov.has_value());
     ++files;
   }
-  EXPECT_GE(files, 13);
+  EXPECT_GE(files, 24);
 }
 
 TEST(SensorConfig, TheOusterFilesAreTheFiveModesOfTheMaker) {

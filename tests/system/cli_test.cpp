@@ -19,7 +19,7 @@ using ::testing::Not;
 TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
   const Outcome help = call("--help");
   EXPECT_EQ(help.exit_code, 0);
-  EXPECT_THAT(help.out, AllOf(HasSubstr("lidarena simulate --world house"), HasSubstr("evaluate"),
+  EXPECT_THAT(help.out, AllOf(HasSubstr("lidarena study --world house"), HasSubstr("evaluate"),
                               HasSubstr("study")));
   for (const char* verb : {"list", "info", "simulate", "run", "evaluate", "study", "status",
                            "report", "convert", "view"}) {
@@ -29,8 +29,141 @@ TEST_F(Cli, HelpTeachesAndTheVersionIsTold) {
   }
   EXPECT_EQ(call("--version").exit_code, 0);
   EXPECT_THAT(call("--version").out, HasSubstr("lidarena 0."));
-  EXPECT_EQ(call("").exit_code, 2);
   EXPECT_EQ(call("fly").exit_code, 2);
+}
+
+TEST_F(Cli, AloneItSaysWhatItIsForAndHowToBegin) {
+  const Outcome outcome = call("");
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_THAT(outcome.out,
+              AllOf(HasSubstr("which LiDAR, and which SLAM"), HasSubstr("lidarena list sensors"),
+                    HasSubstr("lidarena study"), HasSubstr("lidarena run"), HasSubstr("convert")));
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST_F(Cli, AWrongNameIsToldBeforeWhatIsMissing) {
+  EXPECT_THAT(refusal("run fastlio2"), HasSubstr("did you mean 'fast_lio2'?"));
+  EXPECT_THAT(refusal("run kiss_icp --preset indor"), HasSubstr("published"));
+  EXPECT_THAT(refusal("run fastlio2 nowhere --config none.yaml"), HasSubstr("fast_lio2"));
+  EXPECT_THAT(refusal("run kiss_icp"), HasSubstr("needs a dataset"));
+  EXPECT_THAT(refusal("run"), HasSubstr("lidarena list algorithms"));
+  EXPECT_THAT(refusal("simulate --sensor livox_mid306"), HasSubstr("livox_mid360"));
+  EXPECT_THAT(refusal("simulate --world hosue"), HasSubstr("did you mean 'house'?"));
+  EXPECT_THAT(refusal("simulate --world house"),
+              AllOf(HasSubstr("--flight, --sensor"), HasSubstr("list flights, lidarena list sen")));
+  EXPECT_THAT(refusal("study --sensors livox_mid306"), HasSubstr("livox_mid360"));
+  EXPECT_THAT(refusal("study --algorithms fastlio2"), HasSubstr("fast_lio2"));
+  EXPECT_THAT(refusal("study --world house --auto --sensors livox_mid360"), HasSubstr("--out"));
+  EXPECT_THAT(refusal("study quick"), HasSubstr("--out"));
+  EXPECT_THAT(call("study quick --dry").out, HasSubstr("32 runs"));
+}
+
+TEST_F(Cli, OutputsAreNamedAfterWhatIsInThem) {
+  write("room.obj", room_obj());
+  write("round.yaml", kRoomFlight);
+  const std::string simulate =
+      "simulate --json --world room.obj --flight round.yaml --sensor livox_mid360 --seconds 1";
+  for (const char* name : {"room-round-livox_mid360", "room-round-livox_mid360-2"}) {
+    const Outcome flown = call(simulate);
+    ASSERT_EQ(flown.exit_code, 0) << flown.err;
+    EXPECT_EQ(nlohmann::json::parse(flown.out).at("dataset"), name);
+    EXPECT_THAT(flown.err, HasSubstr(std::string("writes to ") + name));
+    EXPECT_TRUE(fs::exists(path(name) + "/manifest.json"));
+  }
+  for (const char* name :
+       {"room-round-livox_mid360-kiss_icp-head", "room-round-livox_mid360-kiss_icp-head-2"}) {
+    const Outcome ran = call("run kiss_icp room-round-livox_mid360/ --preset head");
+    ASSERT_EQ(ran.exit_code, 0) << ran.err;
+    EXPECT_THAT(ran.out, HasSubstr(std::string("run: ") + name + "\n"));
+    EXPECT_TRUE(fs::exists(path(name) + "/manifest.json"));
+  }
+}
+
+TEST_F(Cli, InfoTellsWhatAYamlFileDescribesFromItsKeys) {
+  const auto info = [&](const std::string& thing) {
+    const Outcome outcome = call("info --json " + thing);
+    EXPECT_EQ(outcome.exit_code, 0) << thing << outcome.err;
+    return nlohmann::json::parse(outcome.out);
+  };
+  const std::string configs = std::string(LIDARENA_SOURCE_DIR) + "/configs/";
+  EXPECT_EQ(info(configs + "worlds/house.yaml").at("kind"), "world");
+  EXPECT_GT(info(configs + "worlds/house.yaml").at("triangles"), 1000);
+  EXPECT_EQ(info(configs + "flights/house.yaml").at("/flight/duration_s"_json_pointer), 60);
+  EXPECT_EQ(info("auto").at("kind"), "flight");
+  EXPECT_EQ(info(configs + "sensors/velodyne_vlp16.yaml").at("beams_per_scan"), 16 * 1808);
+  EXPECT_EQ(info(configs + "sensors/beams/velodyne_vlp16.yaml").at("beams"), 16);
+  EXPECT_EQ(info("quick").at("runs"), 2 * 2 * 8);
+  EXPECT_THAT(info(configs + "odometry/ct_icp_subt.yaml").at("algorithms"),
+              ::testing::Contains("ct_icp"));
+  EXPECT_EQ(info(write("slam.yaml", "name: mine\ncommand: ./mine {input} {output}\n")).at("kind"),
+            "external program");
+  for (const auto& entry : fs::recursive_directory_iterator(configs)) {
+    if (entry.path().extension() == ".yaml") info(entry.path().string());
+  }
+}
+
+TEST_F(Cli, InfoSaysWhatItTriedWhereTheKeysTellNothing) {
+  EXPECT_THAT(refusal("info " + write("a.yaml", "foo: 1\nbar: 2\n")),
+              AllOf(HasSubstr("a.yaml"), HasSubstr("foo, bar"), HasSubstr("world, flight, sensor"),
+                    HasSubstr("lidarena schema")));
+  EXPECT_THAT(refusal("info " + write("b.yaml", "seed: 1\nduration_s: 2\n")),
+              AllOf(HasSubstr("b.yaml"), HasSubstr("flight"), HasSubstr("world")));
+  EXPECT_THAT(refusal("info " + write("c.yaml", "kind: cave\nsed: 2\n")),
+              AllOf(HasSubstr("c.yaml:2"), HasSubstr("seed")));
+  EXPECT_THAT(refusal("info " + write("d.yaml", "[1, 2]\n")), HasSubstr("d.yaml"));
+  EXPECT_THAT(refusal("info " + write("e.doc", "text")), HasSubstr(".mcap"));
+  EXPECT_THAT(refusal("info hause"), HasSubstr("did you mean 'house'?"));
+}
+
+TEST_F(Cli, EveryVerbThatTakesAWorldGoesOnWithoutMissingModels) {
+#if !LIDARENA_TEST_SDF
+  GTEST_SKIP() << "this build cannot read SDF worlds";
+#endif
+  const std::string box =
+      "<model name='m'><link name='l'><visual name='v'><geometry><box><size>20 20 8</size></box>"
+      "</geometry></visual></link></model>";
+  write("hall.world",
+        "<?xml version='1.0'?><sdf version='1.6'><world name='w'><include><uri>model://no_chair"
+        "</uri></include><include><uri>https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun</uri>"
+        "</include>" +
+            box + "</world></sdf>");
+  write("flight.yaml", "kind: waypoints\nwaypoints: [[-3, 0, 0], [3, 0, 0]]\n");
+  for (const char* arguments :
+       {"info hall.world", "convert hall.world hall.ply", "view hall.world --out view.html",
+        "simulate --world hall.world --flight flight.yaml --sensor livox_mid360 --seconds 0.5"}) {
+    EXPECT_THAT(refusal(arguments), AllOf(HasSubstr("no_chair"), HasSubstr("--allow-missing")));
+    const Outcome outcome = call(std::string(arguments) + " --allow-missing");
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("no_chair"));
+  }
+  const Outcome study = call(
+      "study --world hall.world --sensors livox_mid360 --algorithms kiss_icp --auto --seconds 1 "
+      "--out study --json --allow-missing");
+  EXPECT_EQ(study.exit_code, 0) << study.err;
+  EXPECT_EQ(nlohmann::json::parse(study.out).at("failed"), 0) << study.out;
+}
+
+TEST_F(Cli, SensorsAreListedWithinLimits) {
+  const auto names = [&](const std::string& limits) {
+    const Outcome list = call("list sensors --json " + limits);
+    EXPECT_EQ(list.exit_code, 0) << list.err;
+    std::vector<std::string> found;
+    for (const auto& entry : nlohmann::json::parse(list.out)) found.push_back(entry.at("name"));
+    return found;
+  };
+  using ::testing::Contains;
+  EXPECT_THAT(names("--weight-max 0.3"),
+              AllOf(Contains("livox_mid360"), Not(Contains("ouster_os0_128"))));
+  EXPECT_THAT(names("--fov-min 59"), AllOf(Contains("livox_mid360"), Contains("ouster_os0_128"),
+                                           Not(Contains("velodyne_vlp16"))));
+  EXPECT_THAT(names("--fov-min 60 --weight-max 0.5 --points-min 100000"),
+              AllOf(Contains("ouster_os0_128"), Not(Contains("livox_mid360"))));
+  EXPECT_THAT(names("--points-min 1e6 --range-min 45"),
+              AllOf(Contains("ouster_os0_128"), Not(Contains("ouster_os0_128_512"))));
+  EXPECT_THAT(names("--power-max 15"),
+              AllOf(Contains("livox_mid360"), Not(Contains("ouster_os0_128"))));
+  EXPECT_THAT(call("list sensors --weight-max 0.3").err, HasSubstr("livox_avia"));
+  EXPECT_THAT(refusal("list worlds --weight-max 0.3"), HasSubstr("list sensors"));
 }
 
 TEST_F(Cli, EveryListedNameIsUsable) {

@@ -182,7 +182,7 @@ TEST_F(SdfWorld, AMissingModelIsNamedWithTheWorldAndTheFoldersSearched) {
   const std::string error = input_error_of([&] { load(text); });
   EXPECT_THAT(error,
               AllOf(HasSubstr("model://cone"), HasSubstr("test.world"),
-                    HasSubstr((folder_.path() / "models").string()), HasSubstr("allow_missing")));
+                    HasSubstr((folder_.path() / "models").string()), HasSubstr("--allow-missing")));
   EXPECT_EQ(load(text, {ShapeKind::kVisual, {}, true}).triangles.size(), 12U);
   EXPECT_THAT(log_.warnings, HasSubstr("model://cone"));
 }
@@ -205,12 +205,52 @@ TEST_F(SdfWorld, AModelThatCannotBeReadWithinAModelIsNoSilentHole) {
   EXPECT_THAT(input_error_of([&] { load(text); }), HasSubstr("branch"));
 }
 
-TEST_F(SdfWorld, AMissingLampIsNoHole) {
-  const std::string text =
-      world_with("<model name='m'><link name='l'>" + visual(kUnitBox) + "</link></model>" +
-                 include("model://sun", "sun", "0 0 0 0 0 0"));
-  EXPECT_EQ(load(text).triangles.size(), 12U);
-  EXPECT_EQ(log_.warnings, "");
+TEST_F(SdfWorld, TheSunIsNoHoleWhateverItsUri) {
+  for (const char* uri :
+       {"model://sun", "model://Sun/2", "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Sun",
+        "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/sun/tip"}) {
+    const std::string text = world_with("<model name='m'><link name='l'>" + visual(kUnitBox) +
+                                        "</link></model>" + include(uri, "sun", "0 0 0 0 0 0"));
+    EXPECT_EQ(load(text).triangles.size(), 12U) << uri;
+    EXPECT_EQ(log_.warnings, "");
+  }
+}
+
+TEST_F(SdfWorld, TheGroundPlaneIsBuiltInWhateverItsUri) {
+  for (const char* uri :
+       {"model://ground_plane", "model://Ground Plane/model.sdf",
+        "https://fuel.gazebosim.org/1.0/OpenRobotics/models/Ground Plane",
+        "https://fuel.ignitionrobotics.org/1.0/openrobotics/models/ground-plane/3",
+        "http://host/models/Ground%20Plane/tip/files/model.sdf"}) {
+    const std::string text = world_with(include(uri, "floor", "1 2 3 0 0 0"));
+    const TriangleMesh mesh = load(text);
+    EXPECT_EQ(mesh.triangles.size(), 2U) << uri;
+    expect_bounds(mesh, {-49, -48, 3}, {51, 52, 3});
+    EXPECT_EQ(load(text, {ShapeKind::kCollision, {}, false}).triangles.size(), 2U);
+    EXPECT_EQ(log_.warnings, "");
+  }
+}
+
+TEST_F(SdfWorld, TwoGroundPlanesWithinModelsHaveTheirPlaces) {
+  write_model("floor", "<link name='l'/>" + include("model://ground_plane", "p", "0 0 1 0 0 0"));
+  const TriangleMesh mesh = load(world_with(include("model://floor", "a", "0 0 0 0 0 0") +
+                                            include("model://floor", "b", "0 0 5 0 0 0")));
+  EXPECT_EQ(mesh.triangles.size(), 4U);
+  expect_bounds(mesh, {-50, -50, 1}, {50, 50, 6});
+}
+
+TEST_F(SdfWorld, AGroundPlaneOfOnesOwnIsTakenInsteadOfTheOneBuiltIn) {
+  write_model("ground_plane", "<link name='l'>" + visual(kUnitBox) + "</link>");
+  EXPECT_EQ(load(world_with(include("model://ground_plane", "p", "0 0 0 0 0 0"))).triangles.size(),
+            12U);
+}
+
+TEST_F(SdfWorld, ModelsThatAreMerelyCalledAlikeAreMissing) {
+  for (const char* uri : {"model://sunflower", "model://ground_plane_asphalt", "model://sun_lamp",
+                          "https://host/1.0/sun/models/Chair", "https://host/1.0/o/models/"}) {
+    const std::string text = world_with(include(uri, "a", "0 0 0 0 0 0"));
+    EXPECT_THAT(input_error_of([&] { load(text); }), HasSubstr(uri));
+  }
 }
 
 TEST_F(SdfWorld, AMissingMeshIsNamedWithItsShape) {
