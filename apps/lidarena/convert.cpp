@@ -105,7 +105,9 @@ Json convert_trajectory(const fs::path& in, const fs::path& out, double rate_hz)
   } else {
     reject_extension(out, "trajectories", ".tum (TUM) or .txt (KITTI)");
   }
-  return {{"kind", "trajectory"}, {"poses", trajectory.size()}};
+  return {{"kind", "trajectory"},
+          {"poses", trajectory.size()},
+          {"repeated_times_left_out", read.repeated.size()}};
 }
 
 dataset::WriteOptions write_options(const ConvertOptions& o) {

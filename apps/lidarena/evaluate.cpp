@@ -50,17 +50,33 @@ Pose parse_lever(const std::string& text) {
 
 /// The estimate as poses of the truth's body frame. Throws InputError if no `lever` is given and
 /// both files name their body frame, with different names.
-Trajectory in_body_of_truth(const dataset::FramedTrajectory& estimate,
-                            const dataset::FramedTrajectory& truth, const std::string& name,
-                            const std::string& lever) {
-  if (!lever.empty()) return evaluation::moved_to_body(estimate.trajectory, parse_lever(lever));
+dataset::FramedTrajectory in_body_of_truth(dataset::FramedTrajectory estimate,
+                                           const dataset::FramedTrajectory& truth,
+                                           const std::string& name, const std::string& lever) {
+  if (!lever.empty()) {
+    const Pose body_from_estimate = parse_lever(lever);
+    estimate.trajectory = evaluation::moved_to_body(estimate.trajectory, body_from_estimate);
+    for (StampedPose& pose : estimate.repeated)
+      pose.world_from_body = pose.world_from_body * body_from_estimate.inverse();
+    return estimate;
+  }
   if (!estimate.body.empty() && !truth.body.empty() && estimate.body != truth.body) {
     throw InputError(
         name,
         fmt::format("contains poses of '{}', the truth those of '{}'", estimate.body, truth.body),
         fmt::format("give --lever {}_from_{}=x,y,z,qx,qy,qz,qw", truth.body, estimate.body));
   }
-  return estimate.trajectory;
+  return estimate;
+}
+
+/// Says of how many rows the first of equal times is used; nothing if no time is repeated.
+void warn_of_repeats(const dataset::FramedTrajectory& poses, const std::string& name,
+                     results::RunMetrics& metrics, LogSink& log) {
+  if (poses.repeated.empty()) return;
+  metrics.warnings.push_back(
+      fmt::format("{}: {} rows repeat the time of the row before; the first of equal times is used",
+                  name, poses.repeated.size()));
+  log.warn(metrics.warnings.back());
 }
 
 /// Trajectories and a map given as files, without a RUN folder.
@@ -81,19 +97,22 @@ class Files {
     map_ = dataset::read_cloud(o.map);
     world_ = std::make_unique<world::World>(world::load_mesh(o.mesh), o.mesh);
   }
-  const Trajectory& truth() const { return truth_.trajectory; }
-  Trajectory estimate(const std::string& file) const {
+  const dataset::FramedTrajectory& truth() const { return truth_; }
+  dataset::FramedTrajectory estimate(const std::string& file) const {
     return in_body_of_truth(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
   }
   results::ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
     dataset::RunFiles run;
-    run.trajectory = estimate(file);
+    const dataset::FramedTrajectory read = estimate(file);
+    run.trajectory = read.trajectory;
     run.live = run.trajectory;
     run.map = map_;
     results::ScoredRun scored;
     scored.name = file;
     scored.metrics = evaluation::evaluate_run(run, truth_.trajectory, world_.get(), parallel, log);
     scored.metrics.frames = {truth_.body, o_.lever};
+    warn_of_repeats(truth_, o_.truth, scored.metrics, log);
+    warn_of_repeats(read, file, scored.metrics, log);
     return scored;
   }
 
@@ -188,7 +207,8 @@ int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
     throw InputError("--compat evo", "needs exactly one --trajectory with --truth, and no map");
   }
   const Files files(o);
-  const Json result = evo_json(files.truth(), files.estimate(o.trajectories[0]), o.evo);
+  const Json result =
+      evo_json(files.truth().rows(), files.estimate(o.trajectories[0]).rows(), o.evo);
   if (common.json) {
     print_json(result);
   } else {

@@ -97,7 +97,8 @@ void add_evo_options(CLI::App& verb, EvoArguments& a) {
        "Measure path and angle of pairs on the truth");
 }
 
-Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments) {
+Json evo_json(std::span<const StampedPose> truth, std::span<const StampedPose> estimate,
+              const EvoArguments& arguments) {
   const evaluation::EvoOptions options = options_of(arguments);
   const evaluation::EvoResult result = evaluation::compat_evo(truth, estimate, options);
   const evaluation::EvoStatistics& s = result.statistics;

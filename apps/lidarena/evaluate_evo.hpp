@@ -25,7 +25,8 @@ struct EvoArguments {
 void add_evo_options(CLI::App& verb, EvoArguments& arguments);
 
 /// Metrics of one pair of trajectories as evo computes them: options, pairs, statistics, alignment.
-Json evo_json(const Trajectory& truth, const Trajectory& estimate, const EvoArguments& arguments);
+Json evo_json(std::span<const StampedPose> truth, std::span<const StampedPose> estimate,
+              const EvoArguments& arguments);
 std::string evo_text(const Json& result);
 
 }  // namespace lidarena

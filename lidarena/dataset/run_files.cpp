@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kResourceHeader =
-    "t_sensor_s,latency_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes";
+    "t_sensor_s,latency_s,cpu_s,rss_bytes,pss_bytes,map_bytes,scan_buffer_bytes,backlog_bytes";
 constexpr std::string_view kFinalHeader =
     "final estimate: pose of the body in the world (world_from_body) at the stamped instant\n"
     "time[s] x y z[m] qx qy qz qw";
@@ -36,9 +36,9 @@ constexpr std::string_view kMotionHeader =
 std::string resource_rows(const std::vector<ResourceRow>& rows) {
   std::string text = std::string(kResourceHeader) + "\n";
   for (const ResourceRow& row : rows) {
-    fmt::format_to(std::back_inserter(text), "{:.9f},{:.9f},{},{},{},{},{}\n", row.t_sensor_s,
-                   row.latency_s, row.rss_bytes, row.pss_bytes, row.map_bytes,
-                   row.scan_buffer_bytes, row.backlog_bytes);
+    fmt::format_to(std::back_inserter(text), "{:.9f},{:.9f},{:.9f},{},{},{},{},{}\n",
+                   row.t_sensor_s, row.latency_s, row.cpu_s, row.rss_bytes, row.pss_bytes,
+                   row.map_bytes, row.scan_buffer_bytes, row.backlog_bytes);
   }
   return text;
 }
@@ -65,13 +65,13 @@ std::vector<ResourceRow> read_resources(const fs::path& file) {
   while (const auto row = rows.next()) {
     const auto parts = split_commas(*row);
     const std::string place = rows.place();
-    if (parts.size() != 7) {
-      throw InputError(place, fmt::format("holds {} columns, not 7", parts.size()));
+    if (parts.size() != 8) {
+      throw InputError(place, fmt::format("holds {} columns, not 8", parts.size()));
     }
     resources.push_back({finite_number(parts[0], place), finite_number(parts[1], place),
-                         bytes_at(parts[2], place), bytes_at(parts[3], place),
+                         finite_number(parts[2], place), bytes_at(parts[3], place),
                          bytes_at(parts[4], place), bytes_at(parts[5], place),
-                         bytes_at(parts[6], place)});
+                         bytes_at(parts[6], place), bytes_at(parts[7], place)});
   }
   return resources;
 }

@@ -16,6 +16,8 @@ namespace lidarena::dataset {
 struct ResourceRow {
   double t_sensor_s = 0.0;  ///< end of the scan, since the first scan's stamp
   double latency_s = 0.0;   ///< wall time of register_scan
+  double cpu_s =
+      0.0;  ///< CPU time of register_imu since the scan before and register_scan, all threads
   std::uint64_t rss_bytes = 0;
   std::uint64_t pss_bytes = 0;
   std::uint64_t map_bytes = 0;  ///< this and the next two: as reported by the algorithm

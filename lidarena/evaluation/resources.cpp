@@ -50,12 +50,12 @@ results::MemoryMetrics memory_of(Rows rows, Bytes bytes) {
   return memory;
 }
 
-/// Share of scans that were not processed when the next one ended.
-double late_share(Rows rows) {
+/// Share of scans whose `time` is longer than that to the end of the next one.
+double late_share(Rows rows, double ResourceRow::*time) {
   if (rows.size() < 2) return 0.0;
   std::size_t late = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows[i - 1].latency_s > rows[i].t_sensor_s - rows[i - 1].t_sensor_s) ++late;
+    if (rows[i - 1].*time > rows[i].t_sensor_s - rows[i - 1].t_sensor_s) ++late;
   }
   return static_cast<double>(late) / static_cast<double>(rows.size() - 1);
 }
@@ -80,15 +80,21 @@ Metrics resource_metrics(Rows rows, std::size_t limit) {
   Metrics metrics;
   if (rows.empty()) return metrics;
   metrics.scans = rows.size();
-  std::vector<double> latencies;
-  double compute_s = 0.0;
+  std::vector<double> latencies, cpu;
+  double compute_s = 0.0, cpu_s = 0.0;
   for (const ResourceRow& row : rows) {
     latencies.push_back(row.latency_s);
+    cpu.push_back(row.cpu_s);
     compute_s += row.latency_s;
+    cpu_s += row.cpu_s;
   }
   metrics.latency = results::summarize(latencies);
+  metrics.cpu = results::summarize(cpu);
+  if (rows.back().t_sensor_s > 0.0)
+    metrics.cpu_load_percent = 100.0 * cpu_s / rows.back().t_sensor_s;
+  metrics.cpu_late_scans = late_share(rows, &ResourceRow::cpu_s);
   if (compute_s > 0.0) metrics.real_time_factor = rows.back().t_sensor_s / compute_s;
-  metrics.late_scans = late_share(rows);
+  metrics.late_scans = late_share(rows, &ResourceRow::latency_s);
   for (const Kind& kind : kKinds) metrics.*kind.metrics = memory_of(rows, kind.bytes);
   metrics.over_time = curves_of(rows, limit);
   return metrics;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/run.hpp"
 
+#include <time.h>
+
 #include <chrono>
+#include <utility>
 
 #include "lidarena/map/point_map.hpp"
 #include "lidarena/odometry/motion_record.hpp"
@@ -11,6 +14,13 @@
 namespace lidarena::odometry {
 
 namespace {
+
+/// CPU time of all threads of this process, s.
+double cpu_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
 
 constexpr std::size_t kScansPerProportional = 10;  // reading smaps_rollup is slow
 
@@ -52,6 +62,7 @@ class Recorder {
   std::string lidar_id_;
   std::optional<Time> first_stamp_;
   Time last_stamp_{0};
+  double cpu_s_ = 0.0;  // of the calls since the scan before
   std::vector<StampedPose> live_;
   MotionRecord motion_;
   map::PointMap map_;
@@ -67,6 +78,7 @@ bool Recorder::wants(const dataset::Event& event) {
 
 double Recorder::feed(const dataset::Event& event) {
   if (diverged()) return 0.0;
+  const double cpu_start_s = cpu_seconds();
   const auto start = std::chrono::steady_clock::now();
   const auto seconds = [&start] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -74,10 +86,12 @@ double Recorder::feed(const dataset::Event& event) {
   const auto* scan = std::get_if<Scan>(&event.data);
   if (scan == nullptr) {
     odometry_.register_imu(std::get<ImuSample>(event.data));
+    cpu_s_ += cpu_seconds() - cpu_start_s;
     return seconds();
   }
   const ScanResult result = odometry_.register_scan(*scan);
   const double latency = seconds();
+  cpu_s_ += cpu_seconds() - cpu_start_s;
   keep_result(result);
   keep_resources(*scan, latency);
   log_.progress("run", static_cast<double>(summary().scans),
@@ -115,6 +129,7 @@ void Recorder::keep_resources(const Scan& scan, double latency_s) {
   dataset::ResourceRow row;
   row.t_sensor_s = to_seconds(end_of(scan) - *first_stamp_);
   row.latency_s = latency_s;
+  row.cpu_s = std::exchange(cpu_s_, 0.0);
   row.rss_bytes = resident_bytes();
   row.pss_bytes = rows.size() % kScansPerProportional == 0 ? proportional_bytes().value_or(0)
                                                            : rows.back().pss_bytes;

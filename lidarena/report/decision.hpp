@@ -2,35 +2,53 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "lidarena/results/run_record.hpp"
+#include "lidarena/results/statistics.hpp"
 #include "lidarena/results/table.hpp"
 
 namespace lidarena::report {
 
-/// A combination of sensor and algorithm in one world, with medians over flights and seeds.
+/// A property by which combinations of sensor and method are compared; less is better.
+struct Criterion {
+  const char* key;
+  const char* label;
+  const char* unit;
+  double weight;                  ///< by default, in the order of the page
+  const results::Figure* figure;  ///< median over flights and seeds; null: a fact of the sensor
+};
+/// Drift, map, CPU time, weight, power and price.
+std::span<const Criterion> criteria();
+
+/// A combination of sensor and method in one world.
 struct Candidate {
   std::string sensor, algorithm, variant;
-  std::size_t runs = 0, good_runs = 0;
-  std::optional<double> map_rmse_cm;       ///< of all scored returns along the estimated path
-  std::optional<double> outliers_percent;  ///< of the same map
-  std::optional<double> drift_cm_per_m;    ///< RPE over 1 m
-  std::optional<double> period_share;      ///< P95 of the processing time in scan periods
-  std::optional<double> memory_mb;         ///< the algorithm's own memory
+  std::vector<const results::RunRecord*> runs;  ///< in this world
+  std::size_t kept = 0;                         ///< runs that are not lost
+  /// Of criteria(); infinite: the median is that of a lost run; empty: not known.
+  std::vector<std::optional<double>> values;
+  std::vector<results::TableCell> cells;  ///< the same as text, with the range over the runs
+  results::TableCell own_map;             ///< RMSE of the own map, cm
+  std::optional<bool> is_real_time;       ///< see verdict(); empty: not measured
+  bool on_front = false;     ///< keeps tracking, and no other one that does dominates it
+  std::string dominated_by;  ///< which one dominates it, and what a test says of that
 
-  bool keeps_tracking() const { return runs > 0 && good_runs == runs; }
-  bool is_real_time() const { return period_share && *period_share < 1.0; }
-  bool is_usable() const { return keeps_tracking() && is_real_time(); }
+  bool keeps_tracking() const { return !runs.empty() && kept == runs.size(); }
 };
 
-/// All combinations of a world, the best first: usable ones, then too slow ones, then those that
-/// lost tracking, each group sorted by map RMSE. Runs in a timing mode other than `rolling` (faults
-/// of simulators) are left out.
+/// All combinations of a world: first the Pareto front, then what is dominated, then what lost
+/// track, each by its drift. One dominates another if it is no worse in every criterion and better
+/// in one; a criterion that is known of one of them alone forbids it. Whether the difference is
+/// more than chance is tested over the paired runs of all worlds (results/claims.hpp). Runs in a
+/// timing mode other than `rolling` (faults of simulators) are left out.
 std::vector<Candidate> candidates(const results::StudyResults& results, const std::string& world);
 
-/// "usable", or what is against it.
+/// "lost in 1 of 8", else "real time on one core" (at most 5 % of the scans of each run take more
+/// CPU time than their period; in paced runs more time by the clock), "too slow for one core" or
+/// "time not measured".
 std::string verdict(const Candidate& candidate);
 
 /// The candidates of a world with their figures.

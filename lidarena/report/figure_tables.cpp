@@ -5,7 +5,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <utility>
 
+#include "lidarena/report/summary_tables.hpp"
+#include "lidarena/results/claims.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
@@ -25,30 +29,82 @@ struct Kind {
 };
 const std::array kKinds{
     Kind{"drift", "RMSE of the drift, cm per 1 m", results::kDrift},
-    Kind{"outliers", "Points of the map beyond 20 cm, %", results::kOwnMapOutliers},
-    Kind{"map", "RMSE of the point-to-mesh distance, cm", results::kOwnMapRmse}};
+    Kind{"live-drift", "RMSE of the drift of the live trajectory, cm per 1 m", results::kLiveDrift},
+    Kind{"map", "Own map: RMSE of the point-to-mesh distance, cm", results::kOwnMapRmse},
+    Kind{"map-all", "All returns: RMSE of the point-to-mesh distance, cm", results::kMapRmse},
+    Kind{"outliers", "Own map: points beyond 20 cm, %", results::kOwnMapOutliers},
+    Kind{"outliers-all", "All returns: points beyond 20 cm, %", results::kMapOutliers},
+    Kind{"cpu", "CPU time, % of one core", results::kCpuLoad}};
 
-/// Sets `mark` of the cell with the smallest value, if at least two cells have a value.
-void mark_smallest(const std::vector<TableCell*>& cells, bool TableCell::*mark) {
-  std::vector<TableCell*> measured;
-  std::ranges::copy_if(cells, std::back_inserter(measured),
-                       [](const TableCell* cell) { return cell->value.has_value(); });
-  if (measured.size() < 2) return;
-  (*std::ranges::min_element(measured, {}, [](const TableCell* c) { return *c->value; }))->*mark =
-      true;
+/// The cells of an accuracy table: sensors by algorithms, with the claims between the cells of each
+/// row and of each column, pooled over worlds.
+class Marks {
+ public:
+  Marks(const StudyCells& cells, const results::Figure& figure)
+      : sensors_(cells.sensors()), algorithms_(cells.algorithms()) {
+    std::vector<results::Contest> contests;
+    const auto add = [&](std::size_t s1, std::size_t a1, std::size_t s2, std::size_t a2) {
+      results::Contest contest{cells.rows("", sensors_[s1], algorithms_[a1]),
+                               cells.rows("", sensors_[s2], algorithms_[a2]), &figure};
+      if (contest.a.empty() || contest.b.empty()) return;
+      pairs_.push_back({{s1, a1}, {s2, a2}});
+      contests.push_back(std::move(contest));
+    };
+    for (std::size_t s = 0; s < sensors_.size(); ++s)
+      for (std::size_t a = 0; a < algorithms_.size(); ++a) {
+        for (std::size_t b = a + 1; b < algorithms_.size(); ++b) add(s, a, s, b);
+        for (std::size_t t = s + 1; t < sensors_.size(); ++t) add(s, a, t, a);
+      }
+    claims_ = results::claims_of(contests);
+  }
+
+  /// Whether a cell is better than each other one of its row (`in_row`) or column.
+  bool is_best(std::size_t sensor, std::size_t algorithm, bool in_row) const {
+    const Place place{sensor, algorithm};
+    bool best = false;
+    for (std::size_t i = 0; i < claims_.size(); ++i) {
+      const auto& [a, b] = pairs_[i];
+      if ((a != place && b != place) || (a.first == b.first) != in_row) continue;
+      best = a == place ? claims_[i].a_is_better : claims_[i].b_is_better;
+      if (!best) return false;
+    }
+    return best;
+  }
+
+  /// On how many pairs the marks are based, or why there are none.
+  std::string words() const {
+    const auto fewest = std::ranges::min_element(claims_, {}, &results::Claim::pairs);
+    if (fewest == claims_.end()) return "nothing to compare";
+    return fewest->pairs < results::kMinPairs ? fewest->words()
+                                              : fmt::format("at least {} pairs", fewest->pairs);
+  }
+
+ private:
+  using Place = std::pair<std::size_t, std::size_t>;  // of sensor and algorithm
+  std::vector<std::string> sensors_, algorithms_;
+  std::vector<std::pair<Place, Place>> pairs_;
+  std::vector<results::Claim> claims_;
+};
+
+/// Whether the smallest of `cells` is at `index`.
+bool is_smallest(const std::vector<TableCell*>& cells, std::size_t index) {
+  return std::ranges::all_of(cells, [&](const TableCell* cell) {
+    return !cell->value || (cells[index]->value && *cells[index]->value <= *cell->value);
+  });
 }
 
-/// Marks the smallest value of each column (bold) and row (underlined).
-void mark_smallest(Table& table) {
-  for (std::vector<TableCell>& row : table.rows) {
-    std::vector<TableCell*> cells;
-    for (TableCell& cell : row) cells.push_back(&cell);
-    mark_smallest(cells, &TableCell::underlined);
-  }
-  for (std::size_t column = 1; column < table.head.size(); ++column) {
-    std::vector<TableCell*> cells;
-    for (std::vector<TableCell>& row : table.rows) cells.push_back(&row.at(column));
-    mark_smallest(cells, &TableCell::bold);
+/// Underlines the best of each row, prints the best of each column in bold: where the claims and
+/// the medians of this table agree.
+void mark_best(Table& table, const Marks& marks) {
+  for (std::size_t s = 0; s < table.rows.size(); ++s) {
+    for (std::size_t a = 0; a + 1 < table.head.size(); ++a) {
+      std::vector<TableCell*> row, column;
+      for (std::size_t i = 1; i < table.head.size(); ++i) row.push_back(&table.rows[s][i]);
+      for (std::vector<TableCell>& other : table.rows) column.push_back(&other[a + 1]);
+      TableCell& cell = table.rows[s][a + 1];
+      cell.underlined = marks.is_best(s, a, true) && is_smallest(row, a);
+      cell.bold = marks.is_best(s, a, false) && is_smallest(column, s);
+    }
   }
 }
 
@@ -56,17 +112,17 @@ std::string published(std::optional<double> value) {
   return value ? fmt::format("{:g}", *value) : std::string();
 }
 
-/// The median, or how many runs did not succeed.
+/// Median, range and how many runs kept tracking; the state of the runs where there is no figure.
 TableCell cell_of(const StudyCells& cells, const std::string& world, const std::string& sensor,
                   const std::string& algorithm, const Kind& kind) {
-  TableCell cell = number(cells.median(world, sensor, algorithm, kind.figure));
-  if (!cell.value) cell.text = cells.status_text(world, sensor, algorithm);
+  TableCell cell = results::spread_cell(cells.spread(world, sensor, algorithm, kind.figure));
+  if (cell.text.empty()) cell.text = cells.status_text(world, sensor, algorithm);
   return cell;
 }
 
 /// One row per sensor and one column per algorithm.
 Table accuracy_table(const StudyResults& results, const StudyCells& cells, const std::string& world,
-                     const Kind& kind) {
+                     const Kind& kind, const Marks& marks) {
   Table table;
   table.head = {"sensor"};
   for (const std::string& algorithm : cells.algorithms()) table.head.push_back(algorithm);
@@ -80,8 +136,36 @@ Table accuracy_table(const StudyResults& results, const StudyCells& cells, const
     }
     table.rows.push_back(std::move(row));
   }
-  mark_smallest(table);
+  mark_best(table, marks);
   return table;
+}
+
+/// Whether a table of this kind tells anything: some run has the figure; the live trajectory
+/// differs from the final one in some run.
+bool is_told(const StudyResults& results, const Kind& kind) {
+  return std::ranges::any_of(results.rows, [&](const results::RunRecord& run) {
+    const auto value = results::value_of(run, kind.figure);
+    return value && (&kind.figure != &results::kLiveDrift ||
+                     value != results::value_of(run, results::kDrift));
+  });
+}
+
+/// What the marks of a table mean, and which own maps are means.
+std::string note_of(const StudyResults& results, const Kind& kind, const Marks& marks) {
+  std::string note = fmt::format(
+      "Medians over flights and seeds; behind them the range from the best run to the worst and "
+      "how "
+      "many of how many runs kept tracking: a lost run is the worst of its cell. Bold: the best "
+      "sensor for each algorithm; underlined: the best algorithm for each sensor, where the paired "
+      "differences over all worlds pass Wilcoxon's test (5 % after Holm's correction for this "
+      "table; here: {}). In brackets: published figures.",
+      marks.words());
+  if (&kind.figure == &results::kOwnMapRmse || &kind.figure == &results::kOwnMapOutliers) {
+    const std::string means = methods_with_mean_maps(results);
+    if (!means.empty())
+      note += " The own maps of " + means + " are means of several returns, which removes noise.";
+  }
+  return note;
 }
 
 /// From the datasets' descriptions of their sensors.
@@ -132,14 +216,17 @@ std::optional<Table> increase_table(const StudyResults& results, const StudyCell
     std::vector<TableCell> row{word(sensor)};
     for (const std::string& algorithm : cells.algorithms()) {
       const auto ours = [&](const std::string& world) {
-        return cells.median(world, sensor, algorithm, results::kDrift);
+        return cells.spread(world, sensor, algorithm, results::kDrift).median;
       };
       const auto theirs = [&](const std::string& world) {
         return results::reference_of(results, world, sensor, algorithm, results::kDrift.key);
       };
       for (const auto formula : {increase_of_last, increase}) {
         TableCell cell;
-        if (ours(a) && ours(b)) cell = number(formula(*ours(a), *ours(b)));
+        if (ours(a) && ours(b)) {
+          const double growth = formula(*ours(a), *ours(b));
+          cell = std::isfinite(growth) && std::isfinite(*ours(b)) ? number(growth) : word("lost");
+        }
         if (theirs(a) && theirs(b)) cell.reference = number(formula(*theirs(a), *theirs(b))).text;
         row.push_back(std::move(cell));
       }
@@ -192,13 +279,13 @@ std::vector<Table> figure_tables(const StudyResults& results, const std::string&
     tables.push_back(std::move(sensors));
   }
   for (const Kind& kind : kKinds) {
+    if (!is_told(results, kind)) continue;
+    const Marks marks(cells, kind.figure);
     for (const std::string& world : cells.worlds()) {
-      Table table = accuracy_table(results, cells, world, kind);
+      Table table = accuracy_table(results, cells, world, kind, marks);
       table.id = fmt::format("{}-{}-{}", kind.id, world, variant);
       table.title = fmt::format("{}: {}, {}", kind.title, world, variant);
-      table.note =
-          "Bold: the best sensor for each algorithm; underlined: the best algorithm for each "
-          "sensor; medians over flights and seeds; in brackets: published figures.";
+      table.note = note_of(results, kind, marks);
       tables.push_back(std::move(table));
     }
     if (&kind != &kKinds[0]) continue;
@@ -216,6 +303,7 @@ std::vector<Table> timing_tables(const StudyResults& results) {
   for (const std::string& world : all.worlds()) {
     for (const std::string& preset : all.presets()) {
       for (const Kind& kind : kKinds) {
+        if (!is_told(results, kind)) continue;
         Table table = timing_table(results, modes, world, preset, kind);
         if (!table.rows.empty()) tables.push_back(std::move(table));
       }

@@ -16,9 +16,10 @@ double increase_of_last(double a, double b);
 /// The usual definition: (b - a) / a, in percent.
 double increase(double a, double b);
 
-/// Drift, outliers and map error of the runs of one variant by sensor and algorithm, for each
-/// world; the growth of the drift between the worlds of a study of two; the sensors as simulated.
-/// Published figures of the study's `reference` stand beside.
+/// Drift (final, and live where that differs), own map and map of all returns, CPU time of the runs
+/// of one variant by sensor and algorithm, for each world; the growth of the drift between the
+/// worlds of a study of two; the sensors as simulated. Published figures of the study's `reference`
+/// stand beside.
 std::vector<results::Table> figure_tables(const results::StudyResults& results,
                                           const std::string& variant);
 

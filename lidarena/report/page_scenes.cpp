@@ -7,6 +7,7 @@
 
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
@@ -29,7 +30,7 @@ std::size_t points_of_each(std::size_t runs) {
   return std::min(share, kMaxPoints / runs);
 }
 
-/// The first run of each flight, sensor and method, one that went well if there is one.
+/// The first run of each flight, sensor and method, one that is not lost if there is one.
 std::vector<const results::RunRecord*> shown_rows(const results::StudyResults& results,
                                                   const std::string& world) {
   std::vector<const results::RunRecord*> rows;
@@ -40,7 +41,7 @@ std::vector<const results::RunRecord*> shown_rows(const results::StudyResults& r
     const auto [place, is_new] = places.emplace(cell, rows.size());
     if (is_new) {
       rows.push_back(&row);
-    } else if (rows[place->second]->status != "ok" && row.status == "ok") {
+    } else if (results::is_lost(*rows[place->second]) && !results::is_lost(row)) {
       rows[place->second] = &row;
     }
   }

@@ -19,7 +19,7 @@ namespace {
 
 /// Expectations as judged, and tables that compare cells.
 std::vector<results::Table> comparison_tables(const results::StudyResults& results) {
-  std::vector<results::Table> tables{winners_table(results)};
+  std::vector<results::Table> tables;
   const auto add = [&](std::vector<results::Table> more) {
     std::ranges::move(more, std::back_inserter(tables));
   };

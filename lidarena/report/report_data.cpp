@@ -3,10 +3,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <set>
 
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/summary_tables.hpp"
+#include "lidarena/results/claims.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
@@ -69,16 +73,29 @@ std::string dataset_of(const RunRecord& row) {
 }
 
 Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
-  Json run{{"name", row.name},           {"folder", fs::relative(row.folder, out).generic_string()},
-           {"dataset", dataset_of(row)}, {"world", row.world},
-           {"flight", row.flight},       {"sensor", row.sensor},
-           {"algorithm", row.algorithm}, {"preset", results::variant_of(row)},
-           {"seed", row.seed},           {"status", row.status},
-           {"reason", row.reason},       {"command", command_of(row)},
-           {"statuses", nullptr},        {"coverage_percent", nullptr},
+  Json run{{"name", row.name},
+           {"folder", fs::relative(row.folder, out).generic_string()},
+           {"dataset", dataset_of(row)},
+           {"world", row.world},
+           {"flight", row.flight},
+           {"sensor", row.sensor},
+           {"algorithm", row.algorithm},
+           {"preset", results::variant_of(row)},
+           {"seed", row.seed},
+           {"status", row.status},
+           {"lost", results::lost_reason(row)},
+           {"mean_map", has_mean_map(row)},
+           {"command", command_of(row)},
+           {"statuses", nullptr},
+           {"coverage_percent", nullptr},
            {"values", Json::array()}};
   for (const results::Figure& figure : results::figures()) {
     run["values"].push_back(rounded(results::value_of(row, figure)));
+    if (!row.metrics) continue;
+    const results::Reading reading = figure.read(*row.metrics);
+    if (const auto bound = results::zero_bound(reading)) run["zero_bounds"][figure.key] = *bound;
+    if (reading.is_share && reading.used < reading.total)
+      run["sampled"][figure.key] = {*reading.used, *reading.total};
   }
   const Json::json_pointer statuses("/summary/statuses");
   if (row.manifest.contains(statuses)) run["statuses"] = row.manifest.at(statuses);
@@ -123,19 +140,69 @@ Json sensors_json(const results::StudyResults& results) {
   return list;
 }
 
+/// Null if not known or that of a lost run.
+Json finite(std::optional<double> value) {
+  return value && std::isfinite(*value) ? rounded(*value) : Json(nullptr);
+}
+
+/// What the decision compares, and all candidates in the order of decision.hpp.
 Json decision_json(const results::StudyResults& results) {
-  Json ranking = Json::array();
+  Json decision{{"criteria", Json::array()}, {"candidates", Json::array()}};
+  for (const Criterion& c : criteria())
+    decision["criteria"].push_back(
+        {{"key", c.key}, {"label", c.label}, {"unit", c.unit}, {"weight", c.weight}});
   for (const std::string& world : results::StudyCells(results, "").worlds()) {
     for (const Candidate& c : candidates(results, world)) {
-      ranking.push_back({{"world", world},
-                         {"sensor", c.sensor},
-                         {"algorithm", c.algorithm},
-                         {"preset", c.variant},
-                         {"usable", c.is_usable()},
-                         {"verdict", verdict(c)}});
+      Json values = Json::array(), cells = Json::array();
+      for (const auto& value : c.values) values.push_back(finite(value));
+      for (const results::TableCell& cell : c.cells) cells.push_back(table_cell_json(cell));
+      decision["candidates"].push_back({{"world", world},
+                                        {"sensor", c.sensor},
+                                        {"algorithm", c.algorithm},
+                                        {"preset", c.variant},
+                                        {"runs", c.runs.size()},
+                                        {"kept", c.kept},
+                                        {"values", values},
+                                        {"cells", cells},
+                                        {"own_map", table_cell_json(c.own_map)},
+                                        {"verdict", verdict(c)},
+                                        {"on_front", c.on_front},
+                                        {"dominated_by", c.dominated_by}});
     }
   }
-  return ranking;
+  return decision;
+}
+
+/// Which combination of sensor and method is better than which, figure by figure, as the test of
+/// results/claims.hpp says: "cells": their names; "better": {figure: [[better, worse], ...]}.
+Json claims_json(const results::StudyResults& results) {
+  std::map<std::string, results::Runs> cells;
+  for (const RunRecord& row : results.rows)
+    cells[row.sensor + "|" + results::label_of(row)].push_back(&row);
+  Json claims{{"cells", Json::array()}, {"better", Json::object()}};
+  for (const auto& [name, runs] : cells) claims["cells"].push_back(name);
+  for (const results::Figure* figure :
+       {&results::kDrift, &results::kLiveDrift, &results::kOwnMapRmse, &results::kOwnMapOutliers,
+        &results::kMapRmse, &results::kMapOutliers, &results::kCpuLoad, &results::kOwnMemory}) {
+    std::vector<results::Contest> contests;
+    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+    std::size_t a = 0;
+    for (auto one = cells.begin(); one != cells.end(); ++one, ++a) {
+      std::size_t b = a + 1;
+      for (auto other = std::next(one); other != cells.end(); ++other, ++b) {
+        contests.push_back({one->second, other->second, figure});
+        pairs.emplace_back(a, b);
+      }
+    }
+    Json better = Json::array();
+    const std::vector<results::Claim> made = results::claims_of(contests);
+    for (std::size_t i = 0; i < made.size(); ++i) {
+      if (made[i].a_is_better) better.push_back({pairs[i].first, pairs[i].second});
+      if (made[i].b_is_better) better.push_back({pairs[i].second, pairs[i].first});
+    }
+    claims["better"][figure->key] = better;
+  }
+  return claims;
 }
 
 /// The machines and versions of lidarena that the runs were made with.
@@ -155,15 +222,11 @@ std::set<std::string> made_on(const results::StudyResults& results) {
 
 Json report_data(const results::StudyResults& results, const std::vector<results::Table>& tables,
                  const fs::path& out) {
-  Json data{{"title", results.title},
-            {"version", LIDARENA_VERSION},
-            {"made_on", made_on(results)},
-            {"figures", figures_json()},
-            {"sensors", sensors_json(results)},
-            {"decision", decision_json(results)},
-            {"reference", value_to_json(results.reference)},
-            {"tables", Json::array()},
-            {"runs", Json::array()}};
+  Json data{{"title", results.title},           {"version", LIDARENA_VERSION},
+            {"made_on", made_on(results)},      {"figures", figures_json()},
+            {"sensors", sensors_json(results)}, {"decision", decision_json(results)},
+            {"claims", claims_json(results)},   {"reference", value_to_json(results.reference)},
+            {"tables", Json::array()},          {"runs", Json::array()}};
   for (const results::Table& table : tables) data["tables"].push_back(results::table_json(table));
   const std::size_t rows =
       std::min(kMaxRows, kRowsOfAllCurves / std::max<std::size_t>(results.rows.size(), 1));

@@ -11,7 +11,8 @@
 namespace lidarena::report {
 
 /// What the report's page draws, as viewer/src/report/data.ts describes it: the figures and curves
-/// of each run, the sensors, the ranking of what was tried, published figures, and `tables`.
+/// of each run, the sensors, the decision, which claims a test supports, published figures,
+/// and `tables`.
 /// Folders of runs are relative to `out`. Curves are thinned so that their peaks stay; a study of
 /// more than some 5,000 runs has none.
 Json report_data(const results::StudyResults& results, const std::vector<results::Table>& tables,

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 
 #include "lidarena/base/shell_word.hpp"
 #include "lidarena/results/expectation.hpp"
-#include "lidarena/results/study_cells.hpp"
+#include "lidarena/results/lost.hpp"
 
 namespace lidarena::report {
 namespace {
@@ -17,28 +18,19 @@ using results::Table;
 using results::TableCell;
 using results::word;
 
-/// The columns of the table of all runs; the coverage follows the third.
-const std::array kShown{&results::kDrift,       &results::kDriftRotation,  &results::kAte,
-                        &results::kOwnMapRmse,  &results::kOwnMapOutliers, &results::kMapRmse,
-                        &results::kMapOutliers, &results::kRealTimeFactor, &results::kLatencyP95,
-                        &results::kOwnMemory};
+/// The columns of the table of all runs after the coverage.
+const std::array kShown{
+    &results::kDrift,      &results::kLiveDrift, &results::kDriftRotation,  &results::kAte,
+    &results::kOwnMapRmse, &results::kMapRmse,   &results::kOwnMapOutliers, &results::kMapOutliers,
+    &results::kCpuLoad,    &results::kCpuP95,    &results::kOwnMemory};
 
-/// The smallest figure with its algorithm: "fast_lio2 (indoor): 0.84"; empty if there is none.
-std::string smallest_figure(const results::StudyResults& results, const std::string& world,
-                            const std::string& sensor, const results::Figure& of) {
-  std::optional<double> best;
-  std::string text;
-  for (const std::string& preset : results::variants_of(results)) {
-    const results::StudyCells cells(results, preset);
-    for (const std::string& algorithm : cells.algorithms()) {
-      const auto value = cells.median(world, sensor, algorithm, of);
-      if (!value || (best && *best <= *value)) continue;
-      best = value;
-      const results::RunRecord& row = *cells.rows(world, sensor, algorithm).front();
-      text = fmt::format("{}: {}", results::label_of(row), number(value).text);
-    }
-  }
-  return text;
+/// The figure; a share of zero with its bound, a map of means named as one.
+TableCell figure_cell(const results::RunRecord& run, const results::Figure& figure) {
+  TableCell cell = number(results::value_of(run, figure));
+  if (run.metrics)
+    cell.text = results::value_text(cell.value, results::zero_bound(figure.read(*run.metrics)));
+  if (&figure == &results::kOwnMapRmse && cell.value && has_mean_map(run)) cell.text += ", means";
+  return cell;
 }
 
 std::string simulate_command(const results::RunRecord& row) {
@@ -74,56 +66,54 @@ Json facts_of(const results::RunRecord& row) {
   return nullptr;
 }
 
-Table winners_table(const results::StudyResults& results) {
-  Table table{"winners",
-              "Best algorithm for each world and sensor",
-              "Medians over flights and seeds of the successful runs.",
-              {"world, sensor", "lowest drift, cm per m", "fewest points beyond 20 cm, %"},
-              {}};
-  const results::StudyCells all(results, "");
-  for (const std::string& world : all.worlds()) {
-    for (const std::string& sensor : all.sensors()) {
-      table.rows.push_back(
-          {word(world + ", " + sensor),
-           word(smallest_figure(results, world, sensor, results::kDrift)),
-           word(smallest_figure(results, world, sensor, results::kOwnMapOutliers))});
-    }
+bool has_mean_map(const results::RunRecord& run) {
+  return run.manifest.is_object() && run.manifest.value("own_map", "") == "means";
+}
+
+std::string methods_with_mean_maps(const results::StudyResults& results) {
+  std::vector<std::string> names;
+  for (const results::RunRecord& run : results.rows) {
+    if (has_mean_map(run) && std::ranges::find(names, run.algorithm) == names.end())
+      names.push_back(run.algorithm);
   }
-  return table;
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 Table runs_table(const results::StudyResults& results, const std::string& world) {
   Table table{
       "runs-" + world,
       "All runs, " + world,
-      "RPE over 1 m. ATE after alignment by SE(3). Own map: as published by the algorithm; all "
-      "returns: at most 20,000 of a scan, placed by the estimated motion. P95 of the processing "
-      "time per "
-      "scan. Own memory: map, scan buffer and backlog as the algorithm counts them.",
-      {"sensor, algorithm, seed", "RPE, cm per m", "RPE, deg per m", "ATE, cm", "coverage, %",
-       "own map RMSE, cm", "own map > 20 cm, %", "all returns RMSE, cm", "all returns > 20 cm, %",
-       "times real time", "P95, ms", "own memory, MB"},
+      "RPE over 1 m, of the final trajectory and as known live. ATE after alignment by SE(3). Own "
+      "map: as published by the algorithm (\"means\": its points are means of several returns); "
+      "all "
+      "returns: at most 20,000 of a scan, placed by the estimated motion. CPU time of all threads: "
+      "share of one core, and P95 per scan. Own memory: map, scan buffer and backlog as the "
+      "algorithm counts them. Below: the upper bound of a share of 0 of N points, 3/N.",
+      {"sensor, algorithm, seed", "state", "coverage, %", "RPE, cm per m", "live RPE, cm per m",
+       "RPE, deg per m", "ATE, cm", "own map RMSE, cm", "all returns RMSE, cm",
+       "own map > 20 cm, %", "all returns > 20 cm, %", "CPU, % of a core", "CPU P95, ms",
+       "own memory, MB"},
       {}};
   for (const results::RunRecord& row : results.rows) {
     if (row.world != world) continue;
+    const std::string lost = results::lost_reason(row);
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {}, {}", row.sensor, results::label_of(row), row.seed))};
-    for (const results::Figure* figure : kShown) {
-      cells.push_back(number(results::value_of(row, *figure)));
-    }
-    const auto coverage = row.metrics ? results::coverage_of(*row.metrics) : std::nullopt;
-    cells.insert(cells.begin() + 4, number(coverage));
-    if (row.status != "ok") cells[1] = word(row.status + ": " + row.reason);
+        word(fmt::format("{}, {}, {}", row.sensor, results::label_of(row), row.seed)),
+        word(lost.empty() ? "ok" : lost),
+        number(row.metrics ? results::coverage_of(*row.metrics) : std::nullopt)};
+    for (const results::Figure* figure : kShown) cells.push_back(figure_cell(row, *figure));
     table.rows.push_back(std::move(cells));
   }
   return table;
 }
 
 Table failures_table(const results::StudyResults& results) {
-  Table table{"failures", "Runs that did not succeed", "", {"run", "state", "reason"}, {}};
+  Table table{"failures", "Runs that are lost", "", {"run", "state", "reason"}, {}};
   for (const results::RunRecord& row : results.rows) {
-    if (row.status == "ok") continue;
-    table.rows.push_back({word(row.name), word(row.status), word(row.reason)});
+    const std::string lost = results::lost_reason(row);
+    if (lost.empty()) continue;
+    table.rows.push_back({word(row.name), word(row.status == "ok" ? "lost" : row.status),
+                          word(row.status == "ok" ? lost : row.reason)});
   }
   return table;
 }

@@ -13,11 +13,14 @@ std::string command_of(const results::RunRecord& row);
 /// What the file of the run's sensor says of the device: weight, power, price; null if nothing.
 Json facts_of(const results::RunRecord& row);
 
-/// The best algorithm for each world and sensor by drift, and by outliers of the map.
-results::Table winners_table(const results::StudyResults& results);
-/// All runs of a world with all their figures; failed runs are rows, too.
+/// Whether the points of the run's own map are means of several returns.
+bool has_mean_map(const results::RunRecord& run);
+/// The algorithms with such maps: "arena_slam, lio_sam"; empty if there is none.
+std::string methods_with_mean_maps(const results::StudyResults& results);
+
+/// All runs of a world with all their figures; lost runs are rows, too.
 results::Table runs_table(const results::StudyResults& results, const std::string& world);
-/// Runs that failed, diverged or were not scored, with their reasons.
+/// Lost runs (results/lost.hpp) with their reasons.
 results::Table failures_table(const results::StudyResults& results);
 /// The commands that reproduce each run, including its dataset.
 results::Table commands_table(const results::StudyResults& results);

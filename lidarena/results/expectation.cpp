@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/results/figures.hpp"
@@ -87,8 +88,9 @@ class Judge {
     return true;
   }
 
-  std::optional<double> median(const Cell& cell, const Figure& figure) const {
-    return cells_.median(cell[0], cell[1], cell[2], figure);
+  /// Infinite if it is that of a lost run.
+  std::optional<double> median(const Cell& cell) const {
+    return cells_.spread(cell[0], cell[1], cell[2], figure_).median;
   }
 
   /// "cave, livox_mid360", without the kind `left_out`.
@@ -101,18 +103,19 @@ class Judge {
   }
 
   std::string with_unit(double value) const {
-    return fmt::format("{} {}", shown(value), figure_.unit);
+    return std::isinf(value) ? "lost" : fmt::format("{} {}", shown(value), figure_.unit);
   }
 
-  /// The state of the runs of a cell without a figure.
+  /// Why a cell has no figure.
   std::string state_of(const Cell& cell) const {
     const std::string state = cells_.status_text(cell[0], cell[1], cell[2]);
     return fmt::format("{} {}", cell[2], state.empty() ? "not measured" : state);
   }
 
-  bool is_lost(const Cell& cell) const {
-    if (!e_.lost) return false;
-    return median(cell, figure_of(e_.lost->figure, e_.finding)).value_or(0.0) > e_.lost->above;
+  /// The value in words, with the runs that are lost.
+  std::string words_of(const Cell& cell, double value) const {
+    const std::string state = cells_.status_text(cell[0], cell[1], cell[2]);
+    return with_unit(value) + (state.empty() ? "" : " (" + state + ")");
   }
 
   Value ratio_at(const Cell& cell) const {
@@ -120,18 +123,18 @@ class Judge {
     Cell other = cell;
     other[kind] = text_of(e_.ratio->to);
     Value value{cell, place_of(cell, kind), {}, {}};
-    const auto own = median(cell, figure_);
-    const auto theirs = median(other, figure_);
+    const auto own = median(cell);
+    const auto theirs = median(other);
     if (!own || !theirs) {
       value.words = state_of(own ? other : cell);
-    } else if (is_lost(cell) && is_lost(other)) {
-      value.words = "tracking lost with both";
+    } else if (std::isinf(*own) && std::isinf(*theirs)) {
+      value.words = "lost with both";
     } else if (*theirs == 0.0) {
       value.words = fmt::format("nothing to compare, {} with {}", with_unit(0.0), other[kind]);
     } else {
       value.value = *own / *theirs;
-      value.words = fmt::format("{} with {}, {} with {}", with_unit(*own), cell[kind],
-                                with_unit(*theirs), other[kind]);
+      value.words = fmt::format("{} with {}, {} with {}", words_of(cell, *own), cell[kind],
+                                words_of(other, *theirs), other[kind]);
     }
     return value;
   }
@@ -143,9 +146,9 @@ class Judge {
         found.push_back(ratio_at(cell));
         continue;
       }
-      const auto value = median(cell, figure_);
-      found.push_back(
-          {cell, place_of(cell, kKinds.size()), value, value ? with_unit(*value) : state_of(cell)});
+      const auto value = median(cell);
+      found.push_back({cell, place_of(cell, kKinds.size()), value,
+                       value ? words_of(cell, *value) : state_of(cell)});
     }
     return found;
   }
@@ -202,7 +205,6 @@ void check_name(const CellName& name, const CellFilter& names, const std::string
 void check(const Expectation& e, const CellFilter& names, const std::string& place) {
   const std::string here = place + ": expect: " + (e.finding.empty() ? e.figure : e.finding);
   figure_of(e.figure, here);
-  if (e.lost) figure_of(e.lost->figure, here);
   if (!e.lowest && !e.highest && !e.above && !e.below) {
     throw InputError(here, "says nothing of the figure",
                      "give one of lowest, highest, above, below");

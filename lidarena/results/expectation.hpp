@@ -46,25 +46,14 @@ struct FigureRatio {
   }
 };
 
-/// Cells whose tracking is lost: a figure of two lost cells is not compared.
-struct LostTracking {
-  std::string figure;
-  double above = 0.0;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("figure", self.figure, "", "key of a figure");
-    v("above", self.above, "", "tracking is lost where it is larger, in its unit");
-  }
-};
-
 enum class Extent { kAll, kSome };
 constexpr auto enum_names(Extent) {
   return std::array{std::pair{"all", Extent::kAll}, std::pair{"some", Extent::kSome}};
 }
 
 /// What the figures of a study should show: a finding of others that is put to the test, or what a
-/// change to an algorithm must not break. A figure of a cell is the median over flights and seeds.
+/// change to an algorithm must not break. A figure of a cell is the median over flights and seeds,
+/// in which lost runs are the worst; a ratio of two lost cells is not judged.
 struct Expectation {
   std::string finding;
   std::string figure;
@@ -73,7 +62,6 @@ struct Expectation {
   std::optional<CellName> lowest, highest;
   std::optional<double> above, below;
   Extent cells = Extent::kAll;
-  std::optional<LostTracking> lost;
   std::string rule, otherwise;
 
   template <class Self, class V>
@@ -87,7 +75,6 @@ struct Expectation {
     v("above", self.above, "", "the value is larger than this, in the figure's unit");
     v("below", self.below, "", "the value is smaller than this, in the figure's unit");
     v("cells", self.cells, "", "whether all or only some of the cells must meet it");
-    v("lost", self.lost, "", "where tracking is lost on both sides, a ratio is not judged");
     v("rule", self.rule, "", "what is checked, in words");
     v("otherwise", self.otherwise, "", "a possible reason if it falls short");
   }

@@ -66,19 +66,32 @@ Reading translation(const KittiError& kitti) {
           count_of(kitti.pieces, "pieces")};
 }
 
+/// How many points were scored: "900 points", "900 of 1800 points" where they are a sample.
+std::string points_of(const MapInGauge& map) {
+  return map.points < map.map_points ? fmt::format("{} of {} points", map.points, map.map_points)
+                                     : count_of(map.points, "points");
+}
+
 /// A reading of a map or of a part of its scores with a definition of its own.
 Reading of_map(std::optional<double> value, const std::string& definition, std::string samples,
                const std::optional<std::string>& refused = {}) {
-  return {value, definition, refused.value_or(""), "", {}, {}, std::move(samples)};
+  return {value, definition, refused.value_or(""), "", {}, {}, std::move(samples), false};
 }
 Reading of_points(const MapInGauge& map, std::optional<double> value) {
-  return of_map(value, map.definition, count_of(map.points, "points"), map.refused);
+  Reading reading = of_map(value, map.definition, points_of(map), map.refused);
+  reading.used = map.points;
+  reading.total = std::max(map.points, map.map_points);
+  return reading;
 }
 Reading rmse(const MapInGauge& map) {
   return of_points(map, known(map.distance_m, &Summary::rmse));
 }
 Reading rmse_inliers(const MapInGauge& map) { return of_points(map, map.rmse_inliers_m); }
-Reading outliers(const MapInGauge& map) { return of_points(map, map.outliers_percent); }
+Reading outliers(const MapInGauge& map) {
+  Reading reading = of_points(map, map.outliers_percent);
+  reading.is_share = true;
+  return reading;
+}
 Reading of_completeness(const MapInGauge& map, double CompletenessRow::*share) {
   const CompletenessRow* row = map.completeness.within(kNear_m);
   return of_map(row == nullptr ? std::nullopt : std::optional(row->*share),
@@ -148,9 +161,12 @@ Reading floor_of_map(const RunMetrics& m) {
   const InterpolationFloor& floor = m.maps.interpolation_floor;
   return {floor.*value, "", "", "", {}, {}, count_of(floor.points, "points")};
 }
-template <double Summary::*statistic>
-Reading latency(const RunMetrics& m) {
-  return {known(m.resources.latency, statistic), "", "", "", {}, {}, ""};
+template <SummaryInSeconds ResourceMetrics::*time, double Summary::*statistic>
+Reading time_of_scan(const RunMetrics& m) {
+  return {known(m.resources.*time, statistic), "", "", "", {}, {}, ""};
+}
+Reading cpu_load(const RunMetrics& m) {
+  return {m.resources.cpu_load_percent, "", "", "", {}, {}, ""};
 }
 template <MemoryMetrics ResourceMetrics::*memory>
 Reading peak(const RunMetrics& m) {
@@ -256,11 +272,16 @@ constexpr std::array kFigures{
            "reprojected map, beyond 20 cm (floor)", kOfMap,
            floor_of_map<&InterpolationFloor::outliers_percent>, kMapTable},
     Figure{"latency_median", nullptr, 1e3, "ms", "latency, median", kOfRun,
-           latency<&Summary::median>},
-    Figure{"latency_p95", "P95 ms", 1e3, "ms", "latency, P95", kOfRun, latency<&Summary::p95>,
-           kMain},
-    Figure{"latency_p99", nullptr, 1e3, "ms", "latency, P99", kOfRun, latency<&Summary::p99>},
-    Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun, latency<&Summary::max>},
+           time_of_scan<&ResourceMetrics::latency, &Summary::median>},
+    Figure{"latency_p95", nullptr, 1e3, "ms", "latency, P95", kOfRun,
+           time_of_scan<&ResourceMetrics::latency, &Summary::p95>},
+    Figure{"latency_p99", nullptr, 1e3, "ms", "latency, P99", kOfRun,
+           time_of_scan<&ResourceMetrics::latency, &Summary::p99>},
+    Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun,
+           time_of_scan<&ResourceMetrics::latency, &Summary::max>},
+    Figure{"cpu_p95", "CPU P95 ms", 1e3, "ms", "CPU time of a scan, P95", kOfRun,
+           time_of_scan<&ResourceMetrics::cpu, &Summary::p95>, kMain},
+    Figure{"cpu_load", "CPU %", 1, "%", "CPU time, share of one core", kOfRun, cpu_load, kMain},
     Figure{"real_time_factor", nullptr, 1, "x", "real-time factor", kOfRun, real_time_factor, kNone,
            Better::kMore},
     Figure{"own_memory_peak", "own MB", 1e-6, "MB", "own memory, peak", kOfRun,
@@ -291,10 +312,20 @@ const Figure& kOwnMapOutliers = known("own_map_outliers");
 const Figure& kMapRmse = known("reprojected_map_rmse");
 const Figure& kMapOutliers = known("reprojected_map_outliers");
 const Figure& kLatencyP95 = known("latency_p95");
-const Figure& kRealTimeFactor = known("real_time_factor");
+const Figure& kCpuP95 = known("cpu_p95");
+const Figure& kCpuLoad = known("cpu_load");
+const Figure& kLiveDrift = known("live_rpe_1m_at_poses_translation");
 const Figure& kOwnMemory = known("own_memory_peak");
 
 std::span<const Figure> figures() { return kFigures; }
+
+double upper_bound_of_zero(std::size_t n) { return 300.0 / static_cast<double>(n); }
+
+std::optional<double> zero_bound(const Reading& reading) {
+  if (!reading.is_share || reading.value != 0.0 || reading.used.value_or(0) == 0)
+    return std::nullopt;
+  return upper_bound_of_zero(*reading.used);
+}
 
 std::string column_of(const Figure& figure) {
   std::string unit = figure.unit;

@@ -27,9 +27,16 @@ struct Reading {
   std::string definition;       ///< id in docs/metrics.md
   std::string refused;          ///< why there is no value; empty if that is not known
   std::string warning;
-  std::optional<std::size_t> used, total;  ///< pieces of the path
-  std::string samples;                     ///< "38 of 45 pieces", "900 points"
+  std::optional<std::size_t> used, total;  ///< pieces of the path, points of a map
+  std::string samples;                     ///< "38 of 45 pieces", "900 of 1800 points"
+  bool is_share = false;                   ///< a share of the `used` ones
 };
+
+/// The upper bound (%) of a share of which 0 of `n` independent samples were found, at a level of
+/// 5 %: 300 / n.
+double upper_bound_of_zero(std::size_t n);
+/// That of a reading which is a share and zero; empty for any other.
+std::optional<double> zero_bound(const Reading& reading);
 
 /// One figure: where it stands in RunMetrics and how it is shown.
 struct Figure {
@@ -47,7 +54,7 @@ struct Figure {
 // Those that tables and reports name; drift is the RPE per meter from pose to pose, maps are scored
 // in the gauge of scores_of().
 extern const Figure &kDrift, &kDriftRotation, &kAte, &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
-    &kMapOutliers, &kLatencyP95, &kRealTimeFactor, &kOwnMemory;
+    &kMapOutliers, &kLatencyP95, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift;
 
 /// All of them, in the order in which they are shown.
 std::span<const Figure> figures();

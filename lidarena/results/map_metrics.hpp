@@ -265,8 +265,9 @@ struct MeshFit {
 struct MapError {
   static constexpr double kOutlier_m = 0.20;  ///< the paper's threshold
   std::string definition = "map_error[point-triangle,all-points,20cm]";
-  std::size_t points = 0;   ///< number of scored points
-  std::size_t invalid = 0;  ///< NaN or infinite points, left out
+  std::size_t points = 0;      ///< number of scored points
+  std::size_t map_points = 0;  ///< of the whole map, of which large ones are sampled; 0 = not known
+  std::size_t invalid = 0;     ///< NaN or infinite points, left out
   SummaryInMeters distance_m;
   std::size_t inliers = 0;  ///< points within 20 cm
   std::optional<double> rmse_inliers_m, outliers_percent;
@@ -278,6 +279,7 @@ struct MapError {
   static void visit(Self& self, V&& v) {
     v("definition", self.definition, "", "id in docs/metrics.md");
     v("points", self.points, "", "scored ones");
+    v("map_points", self.map_points, "", "of the whole map: fewer are scored if it is large");
     v("invalid_points", self.invalid, "", "not finite, left out");
     v("distance", self.distance_m, "", "point to mesh");
     v("inliers", self.inliers, "", "points within 20 cm");

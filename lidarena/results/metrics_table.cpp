@@ -11,6 +11,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/results/figures.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
@@ -84,6 +85,7 @@ std::string figure_text(const RunMetrics& metrics, const Figure& figure, const R
     line += fmt::format("  coverage {:.0f} %{}{}", *coverage, reading.samples.empty() ? "" : ", ",
                         reading.samples);
   }
+  if (const auto bound = zero_bound(reading)) line += fmt::format(", below {:.2g} %", *bound);
   if (!reading.warning.empty()) line += " (" + reading.warning + ")";
   line.erase(line.find_last_not_of(' ') + 1);
   return line + "\n";
@@ -106,44 +108,22 @@ std::vector<const Figure*> table_figures(std::span<const ScoredRun> runs, Figure
   return columns;
 }
 
-/// How many of the other runs have a better value than run `i`; empty when fewer than two runs have
-/// a value.
-std::optional<std::size_t> rank_of(std::span<const ScoredRun> runs, std::size_t i,
-                                   const Figure& figure) {
-  const Cell mine = value_of(runs[i].metrics, figure);
-  if (!mine) return std::nullopt;
-  const double sign = figure.better == Better::kLess ? 1.0 : -1.0;
-  std::size_t better = 0;
-  std::size_t others = 0;
-  for (const ScoredRun& run : runs) {
-    const Cell value = value_of(run.metrics, figure);
-    if (!value) continue;
-    ++others;
-    if (sign * *value < sign * *mine) ++better;
-  }
-  if (others < 2) return std::nullopt;
-  return better;
-}
-
 std::string title_of(const ScoredRun& run) {
   return run.algorithm.empty() ? run.name : run.name + " (" + run.algorithm + ")";
 }
 
-/// The best value of each column bold, the second best underlined, where several runs have one.
 Table table_of(std::span<const ScoredRun> runs, const std::vector<const Figure*>& columns) {
   Table table{"", "", "", {"run", "coverage %"}, {}};
   for (const Figure* figure : columns) table.head.emplace_back(figure->heading);
   table.head.emplace_back("status");
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    const RunMetrics& metrics = runs[i].metrics;
-    std::vector<TableCell> row{word(title_of(runs[i])), number(coverage_of(metrics))};
+  for (const ScoredRun& run : runs) {
+    std::vector<TableCell> row{word(title_of(run)), number(coverage_of(run.metrics))};
     for (const Figure* figure : columns) {
-      row.push_back(number(value_of(metrics, *figure)));
-      const auto rank = rank_of(runs, i, *figure);
-      row.back().bold = rank == 0U;
-      row.back().underlined = rank == 1U;
+      row.push_back(number(value_of(run.metrics, *figure)));
+      row.back().text = value_text(row.back().value, zero_bound(figure->read(run.metrics)));
     }
-    row.push_back(word(metrics.status_and_reason()));
+    const std::string lost = lost_reason(run.metrics);
+    row.push_back(word(lost.empty() ? "ok" : lost));
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -161,6 +141,7 @@ std::string tables_text(std::span<const ScoredRun> runs, std::string (*write)(co
 std::string metrics_text(const ScoredRun& run) {
   const RunMetrics& m = run.metrics;
   std::string text = fmt::format("{}\nstatus: {}\n", title_of(run), m.status_and_reason());
+  if (m.is_ok() && !lost_reason(m).empty()) text += lost_reason(m) + "\n";
   for (const std::string& warning : m.warnings) text += fmt::format("warning: {}\n", warning);
   if (m.final) text += diagnosis_text(*m.final);
   const bool live_is_final = m.live && m.final && value_to_json(*m.live) == value_to_json(*m.final);

@@ -27,8 +27,7 @@ std::string metrics_text(const ScoredRun& run);
 /// figure, definition, value, unit, used, total. A run without figures is one row.
 std::string metrics_csv(std::span<const ScoredRun> runs);
 
-/// One row per run; the best value of each column is bold, the second best underlined, where
-/// several runs have one. Below it a second table with further metrics of the re-projected maps.
+/// One row per run. Below it a second table with further metrics of the re-projected maps.
 std::string metrics_markdown(std::span<const ScoredRun> runs);
 
 /// The same for the booktabs package.

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "lidarena/results/summary.hpp"
@@ -55,8 +56,11 @@ struct ResourceMetrics {
   SummaryInSeconds latency;       ///< of each scan
   double real_time_factor = 0.0;  ///< sensor time / sum of latencies; above 1: keeps up
   double late_scans = 0.0;        ///< share of scans that took longer than the time to the next one
-  MemoryMetrics rss, pss;         ///< of the whole process, including the harness
-  MemoryMetrics own;              ///< sum of the parts that the algorithm reports
+  SummaryInSeconds cpu;           ///< CPU time of each scan, over all threads; empty: not measured
+  std::optional<double> cpu_load_percent;  ///< CPU time / sensor time: 100 = one core
+  std::optional<double> cpu_late_scans;    ///< late_scans of one core: by CPU time
+  MemoryMetrics rss, pss;                  ///< of the whole process, including the harness
+  MemoryMetrics own;                       ///< sum of the parts that the algorithm reports
   MemoryMetrics map, scan_buffer, backlog;
   ResourcesOverTime over_time;
   bool empty() const { return scans == 0; }
@@ -67,6 +71,10 @@ struct ResourceMetrics {
     v("latency", self.latency, "", "processing time of a scan");
     v("real_time_factor", self.real_time_factor, "", "sensor time / computing time");
     v("late_scans", self.late_scans, "", "share of scans that took longer than their period, 0..1");
+    v("cpu", self.cpu, "", "CPU time of a scan, over all threads");
+    v("cpu_load_percent", self.cpu_load_percent, "%", "CPU time / sensor time: 100 = one core");
+    v("cpu_late_scans", self.cpu_late_scans, "",
+      "share of scans whose CPU time is longer than their period, 0..1");
     v("rss", self.rss, "", "resident memory of the process");
     v("pss", self.pss, "", "the same, shared pages in proportion");
     v("own", self.own, "", "map, scan buffer and backlog as the algorithm counts them");

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
@@ -155,15 +156,16 @@ std::string results_text(const StudyResults& results) {
               "",
               "",
               {"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm", "outliers %",
-               "x real", "own MB", "status"},
+               "CPU %", "own MB", "status"},
               {}};
   for (const RunRecord& r : results.rows) {
     std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r))};
     for (const Figure* figure :
-         {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kRealTimeFactor, &kOwnMemory}) {
+         {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
       row.push_back(number(value_of(r, *figure)));
     }
-    row.push_back(word(r.reason.empty() ? r.status : r.status + ": " + r.reason));
+    const std::string lost = lost_reason(r);
+    row.push_back(word(lost.empty() ? "ok" : lost));
     table.rows.push_back(std::move(row));
   }
   return table_text(table);

@@ -4,11 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
 #include "lidarena/results/figures.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/statistics.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
 namespace {
@@ -18,35 +21,35 @@ std::vector<RunFigure> figures_of(std::span<const ScoredRun> runs, const std::st
   std::vector<RunFigure> found;
   for (const ScoredRun& run : runs) {
     if (run.algorithm != algorithm) continue;
-    if (run.metrics.is_ok()) {
-      found.push_back(
-          {run.flight, run.seed, value_of(run.metrics, figure), figure.read(run.metrics).refused});
-    } else {
-      found.push_back({run.flight, run.seed, std::nullopt, run.metrics.status_and_reason()});
-    }
+    const Reading reading = figure.read(run.metrics);
+    const std::string lost = lost_reason(run.metrics);
+    found.push_back({run.flight, run.seed, judged_value(run.metrics, figure),
+                     lost.empty() ? reading.refused : lost, zero_bound(reading)});
   }
   return found;
 }
 
+/// "lost" for the infinite value of lost runs.
+Json value_json(const std::optional<double>& value) {
+  if (!value) return nullptr;
+  return std::isinf(*value) ? Json("lost") : Json(*value);
+}
+
 Json to_json(const std::optional<Interval>& interval) {
   if (!interval) return nullptr;
-  return {interval->low, interval->high};
+  return {value_json(interval->low), value_json(interval->high)};
 }
 
 Json to_json(const Spread& s, const char* unit) {
-  const bool some = s.values > 0;
-  const auto known = [&](double value) { return some ? Json(value) : Json(nullptr); };
   return {{"unit", unit},
           {"runs", s.runs},
-          {"values", s.values},
+          {"kept", s.kept},
           {"flights", s.flights},
           {"failures", s.failures},
-          {"median", known(s.median)},
-          {"min", known(s.min)},
-          {"max", known(s.max)},
-          {"mean", known(s.mean)},
-          {"median_with_failures",
-           s.median_with_failures ? Json(*s.median_with_failures) : Json(nullptr)},
+          {"median", value_json(s.median)},
+          {"best", value_json(s.best)},
+          {"worst", value_json(s.worst)},
+          {"zero_bound", value_json(s.zero_bound)},
           {"median_95", to_json(s.median_95)}};
 }
 
@@ -57,13 +60,14 @@ Json to_json(const PairedComparison& c, const char* unit) {
           {"b_smaller", c.b_smaller},
           {"a_smaller", c.a_smaller},
           {"ties", c.ties},
-          {"median_difference", c.pairs > 0 ? Json(c.median_difference) : Json(nullptr)},
+          {"median_difference",
+           value_json(c.pairs > 0 ? std::optional(c.median_difference) : std::nullopt)},
           {"difference_95", to_json(c.difference_95)},
           {"wilcoxon_p", c.wilcoxon_p ? Json(*c.wilcoxon_p) : Json(nullptr)}};
 }
 
 std::string interval_text(const std::optional<Interval>& interval) {
-  return interval ? fmt::format("{:.3g} .. {:.3g}", interval->low, interval->high) : "-";
+  return interval ? number(interval->low).text + " .. " + number(interval->high).text : "-";
 }
 
 std::vector<std::string> algorithms_of(std::span<const ScoredRun> runs) {
@@ -83,8 +87,7 @@ RunStatistics statistics_of(std::span<const ScoredRun> runs, std::uint64_t seed)
   for (const std::string& algorithm : algorithms_of(runs)) {
     RunStatistics::OfAlgorithm of{algorithm, {}};
     for (const Figure& figure : figures()) {
-      of.figures.push_back(
-          spread_of(figures_of(runs, algorithm, figure), seed, kResamples, figure.better));
+      of.figures.push_back(spread_of(figures_of(runs, algorithm, figure), figure.better, seed));
     }
     statistics.algorithms.push_back(std::move(of));
   }
@@ -118,20 +121,21 @@ Json to_json(const RunStatistics& statistics) {
 
 std::string statistics_text(const RunStatistics& statistics) {
   std::string text =
-      "medians, ranges, and 95 % intervals by bootstrap over flights (- for fewer than three)\n";
+      "medians, ranges from the best run to the worst, and 95 % intervals by bootstrap over "
+      "flights "
+      "(- for fewer than three)\n";
   for (const RunStatistics::OfAlgorithm& of : statistics.algorithms) {
     text += fmt::format("{}\n", of.algorithm.empty() ? "all" : of.algorithm);
     for (std::size_t i = 0; i < of.figures.size(); ++i) {
       const Figure& figure = figures()[i];
       const Spread& s = of.figures[i];
-      if (s.values == 0 || s.runs == 1) continue;
-      text += fmt::format("  {:<38}{:>8.3g} {:<4} {:.3g} .. {:.3g}, 95 % {}; {} of {} runs\n",
-                          figure.label, s.median, figure.unit, s.min, s.max,
-                          interval_text(s.median_95), s.values, s.runs);
+      if (!s.median || s.runs == 1) continue;
+      text += fmt::format("  {:<38}{:>8} {:<4} {} .. {}, 95 % {}; {} of {} runs\n", figure.label,
+                          number(s.median).text, figure.unit, number(s.best).text,
+                          number(s.worst).text, interval_text(s.median_95), s.kept, s.runs);
     }
-    for (const std::string& failure : of.figures.front().failures) {
+    for (const std::string& failure : of.figures.front().failures)
       text += fmt::format("  no value: {}\n", failure);
-    }
   }
   if (!statistics.paired) return text;
   const RunStatistics::OfPair& pair = *statistics.paired;
@@ -140,9 +144,10 @@ std::string statistics_text(const RunStatistics& statistics) {
     const Figure& figure = figures()[i];
     const PairedComparison& c = pair.figures[i];
     if (c.pairs == 0) continue;
-    text += fmt::format("  {:<38}{:>8.3g} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.label,
-                        c.median_difference, figure.unit, interval_text(c.difference_95),
-                        c.wilcoxon_p ? fmt::format("{:.3g}", *c.wilcoxon_p) : "-", c.pairs);
+    text +=
+        fmt::format("  {:<38}{:>8} {:<4} 95 % {}, Wilcoxon p {}; {} pairs\n", figure.label,
+                    number(c.median_difference).text, figure.unit, interval_text(c.difference_95),
+                    c.wilcoxon_p ? fmt::format("{:.3g}", *c.wilcoxon_p) : "-", c.pairs);
   }
   return text;
 }

@@ -28,8 +28,8 @@ struct RunStatistics {
 };
 RunStatistics statistics_of(std::span<const ScoredRun> runs, std::uint64_t seed = 1);
 
-/// "algorithms": {algorithm: {figure: {runs, values, flights, failures, median, min, max, mean,
-/// ...}}}, and "paired".
+/// "algorithms": {algorithm: {figure: {runs, kept, flights, failures, median, best, worst, ...}}},
+/// and "paired". A value that is that of a lost run is "lost".
 Json to_json(const RunStatistics& statistics);
 /// The same as text for a terminal.
 std::string statistics_text(const RunStatistics& statistics);

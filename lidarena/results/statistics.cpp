@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include "lidarena/base/random.hpp"
@@ -15,7 +16,7 @@ namespace lidarena::results {
 namespace {
 
 constexpr std::size_t kMinFlights = 3;  // of two there are only three different resamples
-constexpr std::size_t kExact = 200;
+constexpr std::size_t kExact = 50;
 
 /// Values of each flight, sorted by its name, so that the order of the runs does not matter.
 using ByFlight = std::map<std::string, std::vector<double>>;
@@ -55,20 +56,8 @@ std::string name_of(const RunFigure& run) {
   return run.seed.empty() ? run.flight : run.flight + " " + run.seed;
 }
 
-std::string reason_of(const RunFigure& run) {
-  return run.failure.empty() ? "has no such figure" : run.failure;
-}
-
-/// Median when `failed` further values count as worse than all.
-std::optional<double> median_with_failures(std::vector<double> values, std::size_t failed,
-                                           Better better) {
-  const std::size_t n = values.size() + failed;
-  const std::size_t upper = n / 2;  // the worse of the middle ones
-  if (n == 0 || upper >= values.size()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  if (better == Better::kMore) std::reverse(values.begin(), values.end());
-  return n % 2 == 1 ? values[upper] : 0.5 * (values[upper - 1] + values[upper]);
-}
+/// The difference of two figures; two lost runs are equal.
+double difference_of(double b, double a) { return b == a ? 0.0 : b - a; }
 
 /// Ranks of the magnitudes, doubled so that shared ranks are integers, and their sums.
 struct SignedRanks {
@@ -132,28 +121,32 @@ double normal_p(const SignedRanks& ranks) {
 
 }  // namespace
 
-Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed, std::size_t resamples,
-                 Better better) {
+bool Spread::is_lost() const { return median && std::isinf(*median); }
+
+Spread spread_of(std::span<const RunFigure> runs, Better better, std::uint64_t seed,
+                 std::size_t resamples) {
   Spread spread;
   spread.runs = runs.size();
   ByFlight flights;
+  std::size_t known = 0;  // of the runs that are kept
   for (const RunFigure& run : runs) {
-    if (run.value) {
-      flights[run.flight].push_back(*run.value);
-    } else {
-      spread.failures.push_back(name_of(run) + ": " + reason_of(run));
-    }
+    const bool lost = run.value && std::isinf(*run.value);
+    spread.kept += lost ? 0 : 1;
+    if (!run.failure.empty()) spread.failures.push_back(name_of(run) + ": " + run.failure);
+    if (!run.value) continue;
+    flights[run.flight].push_back(*run.value);
+    known += lost ? 0 : 1;
   }
-  std::vector<double> values = all_values(flights);
-  spread.values = values.size();
+  if (flights.empty() || (spread.kept > 0 && known == 0)) return spread;
+  const std::vector<double> values = all_values(flights);
+  const auto [smallest, largest] = std::ranges::minmax(values);
   spread.flights = flights.size();
-  spread.median_with_failures = median_with_failures(values, spread.failures.size(), better);
-  if (values.empty()) return spread;
-  std::sort(values.begin(), values.end());
-  for (const double value : values) spread.mean += value / static_cast<double>(values.size());
-  spread.min = values.front();
-  spread.max = values.back();
-  spread.median = quantile(values, 0.5);
+  spread.best = better == Better::kLess ? smallest : largest;
+  spread.worst = better == Better::kLess ? largest : smallest;
+  spread.median = median_of(values);
+  if (spread.median == 0.0)
+    for (const RunFigure& run : runs)
+      spread.zero_bound = std::max(spread.zero_bound, run.zero_bound);
   spread.median_95 = bootstrap_median(std::move(flights), seed, resamples);
   return spread;
 }
@@ -168,12 +161,12 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
     const auto other = others.find({run.flight, run.seed});
     const bool there = other != others.end();
     if (!run.value || !there || !other->second->value) {
-      found.missing.push_back(fmt::format(
-          "{}: {}", name_of(run),
-          !run.value ? "a: " + reason_of(run)
-                     : "b: " + (there ? reason_of(*other->second) : std::string("was not run"))));
+      found.missing.push_back(fmt::format("{}: {}", name_of(run),
+                                          !there       ? "b: was not run"
+                                          : !run.value ? "a: has no such figure"
+                                                       : "b: has no such figure"));
     } else {
-      flights[run.flight].push_back(*other->second->value - *run.value);
+      flights[run.flight].push_back(difference_of(*other->second->value, *run.value));
     }
     if (there) others.erase(other);
   }
@@ -184,6 +177,8 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
     ++(d < 0.0 ? found.b_smaller : d > 0.0 ? found.a_smaller : found.ties);
   }
   if (differences.empty()) return found;
+  const SignedRanks ranks = ranks_of(differences);
+  found.b_ranks_smaller = 2 * ranks.positive < ranks.total;
   found.median_difference = median_of(differences);
   found.difference_95 = bootstrap_median(std::move(flights), seed, resamples);
   found.wilcoxon_p = wilcoxon_signed_rank_p(differences);
@@ -194,6 +189,19 @@ std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences
   const SignedRanks ranks = ranks_of(differences);
   if (ranks.doubled.empty()) return std::nullopt;
   return ranks.doubled.size() <= kExact ? exact_p(ranks) : normal_p(ranks);
+}
+
+std::vector<double> holm(std::span<const double> p) {
+  std::vector<std::size_t> order(p.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {}, [&](std::size_t i) { return p[i]; });
+  std::vector<double> corrected(p.size());
+  double largest = 0.0;
+  for (std::size_t k = 0; k < order.size(); ++k) {
+    largest = std::max(largest, std::min(1.0, p[order[k]] * static_cast<double>(p.size() - k)));
+    corrected[order[k]] = largest;
+  }
+  return corrected;
 }
 
 }  // namespace lidarena::results

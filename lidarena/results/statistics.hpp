@@ -11,15 +11,17 @@
 #include "lidarena/results/figures.hpp"
 
 /// Statistics over several runs: seeds and flights of one algorithm, and two algorithms on the same
-/// flights and seeds. Runs that failed or diverged are counted and listed, never left out silently.
+/// flights and seeds. A lost run (lost.hpp) has an infinite value, the worst: it is counted, listed
+/// and part of every median, range and comparison.
 namespace lidarena::results {
 
 /// One figure of one run.
 struct RunFigure {
   std::string flight;           ///< dataset; errors within one flight are correlated
   std::string seed;             ///< distinguishes runs of one flight
-  std::optional<double> value;  ///< empty when the run has no such figure, ...
-  std::string failure;          ///< ... and why ("diverged: ...")
+  std::optional<double> value;  ///< infinite if the run is lost; empty: it has no such figure
+  std::string failure;          ///< why the run is lost ("diverged: ...") or has no such figure
+  std::optional<double> zero_bound = std::nullopt;  ///< of a share of zero, see figures.hpp
 };
 
 struct Interval {
@@ -27,16 +29,19 @@ struct Interval {
   double high = 0.0;
 };
 
-/// Statistics of the runs that have the figure; `failures` lists the others.
+/// One figure over runs. The values of lost runs are infinite: the worst is infinite where a run is
+/// lost, the median where half of them are, the best where all are.
 struct Spread {
-  std::size_t runs = 0;               ///< all runs, with or without the figure
-  std::size_t values = 0;             ///< runs with the figure
-  std::size_t flights = 0;            ///< flights with at least one value
+  std::size_t runs = 0;               ///< N: all runs
+  std::size_t kept = 0;               ///< n: those that are not lost
+  std::size_t flights = 0;            ///< flights with at least one value, lost runs included
   std::vector<std::string> failures;  ///< "FLIGHT SEED: reason", in the order of the runs
-  double median = 0.0, min = 0.0, max = 0.0, mean = 0.0;
-  /// Median with every failure counted as worse than all: empty when half of the runs failed.
-  std::optional<double> median_with_failures;
-  std::optional<Interval> median_95;  ///< empty with fewer than three flights
+  std::optional<double> median, best, worst;  ///< empty where no run that is kept has the figure
+  std::optional<Interval> median_95;          ///< empty with fewer than three flights
+  /// Where the median is a share of zero: the largest of the upper bounds of such shares.
+  std::optional<double> zero_bound;
+
+  bool is_lost() const;  ///< whether the median is that of a lost run
 };
 
 inline constexpr std::size_t kResamples = 10'000;
@@ -45,15 +50,17 @@ inline constexpr std::size_t kResamples = 10'000;
 /// 1993, ch. 13) of the median over *flights*: a flight is drawn with all of its runs, because runs
 /// of one flight are not independent samples. Bit-identical for the same seed, whatever the order
 /// of the runs.
-Spread spread_of(std::span<const RunFigure> runs, std::uint64_t seed = 1,
-                 std::size_t resamples = kResamples, Better better = Better::kLess);
+Spread spread_of(std::span<const RunFigure> runs, Better better = Better::kLess,
+                 std::uint64_t seed = 1, std::size_t resamples = kResamples);
 
-/// Comparison of `b` with `a` on the same flights and seeds.
+/// Comparison of `b` with `a` on the same flights and seeds. A lost run is worse than any other,
+/// two lost runs are equal.
 struct PairedComparison {
   std::size_t pairs = 0;             ///< pairs of runs that both have the figure
-  std::vector<std::string> missing;  ///< "FLIGHT SEED: a failed: reason", not compared
+  std::vector<std::string> missing;  ///< "FLIGHT SEED: a: was not run", not compared
   std::size_t b_smaller = 0, a_smaller = 0, ties = 0;
-  double median_difference = 0.0;         ///< b - a
+  double median_difference = 0.0;  ///< b - a; infinite where most pairs have one lost run
+  bool b_ranks_smaller = false;    ///< whether the differences below zero have the larger rank sum
   std::optional<Interval> difference_95;  ///< as median_95 of Spread
   /// Two-sided p of Wilcoxon's signed-rank test; empty when all pairs are ties.
   std::optional<double> wilcoxon_p;
@@ -63,8 +70,15 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
 
 /// Two-sided p of the hypothesis that the differences are symmetric about zero (Wilcoxon,
 /// "Individual comparisons by ranking methods", 1945). Zeros are dropped, equal magnitudes share
-/// their mean rank. Exact, by counting all combinations of signs, up to 200 differences; beyond,
-/// the normal approximation. Empty when no difference is left.
+/// their mean rank. Exact, by counting all combinations of signs, up to 50 differences; beyond, the
+/// normal approximation with the variance of shared ranks. Empty when no difference is left.
 std::optional<double> wilcoxon_signed_rank_p(std::span<const double> differences);
+
+/// Level of a test that "better" needs.
+inline constexpr double kLevel = 0.05;
+/// The p values after Holm's correction for their number ("A simple sequentially rejective multiple
+/// test procedure", 1979): the k-th smallest of n is multiplied by n - k + 1, and none is smaller
+/// than one before it. In the given order.
+std::vector<double> holm(std::span<const double> p);
 
 }  // namespace lidarena::results

@@ -6,11 +6,12 @@
 #include <algorithm>
 #include <map>
 
+#include "lidarena/results/lost.hpp"
+
 namespace lidarena::results {
 namespace {
 
-std::vector<std::string> distinct(const std::vector<const RunRecord*>& rows,
-                                  std::string RunRecord::*member) {
+std::vector<std::string> distinct(const Runs& rows, std::string RunRecord::*member) {
   std::vector<std::string> values;
   for (const RunRecord* row : rows) {
     if (std::find(values.begin(), values.end(), row->*member) == values.end()) {
@@ -43,40 +44,30 @@ std::vector<std::string> StudyCells::algorithms() const {
 std::vector<std::string> StudyCells::presets() const { return distinct(rows_, &RunRecord::preset); }
 std::vector<std::string> StudyCells::modes() const { return distinct(rows_, &RunRecord::mode); }
 
-std::vector<const RunRecord*> StudyCells::rows(const std::string& world, const std::string& sensor,
-                                               const std::string& algorithm) const {
-  std::vector<const RunRecord*> found;
-  std::copy_if(rows_.begin(), rows_.end(), std::back_inserter(found), [&](const RunRecord* row) {
-    return row->world == world && row->sensor == sensor && row->algorithm == algorithm;
+Runs StudyCells::rows(const std::string& world, const std::string& sensor,
+                      const std::string& algorithm) const {
+  Runs found;
+  std::ranges::copy_if(rows_, std::back_inserter(found), [&](const RunRecord* row) {
+    return (world.empty() || row->world == world) && row->sensor == sensor &&
+           row->algorithm == algorithm;
   });
   return found;
 }
 
-std::optional<double> StudyCells::median(const std::string& world, const std::string& sensor,
-                                         const std::string& algorithm,
-                                         const RowFigure& figure) const {
-  std::vector<double> values;
-  for (const RunRecord* row : rows(world, sensor, algorithm)) {
-    if (const auto value = figure(*row); value && row->status == "ok") values.push_back(*value);
-  }
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
-}
-
-std::optional<double> StudyCells::median(const std::string& world, const std::string& sensor,
-                                         const std::string& algorithm, const Figure& figure) const {
-  return median(world, sensor, algorithm,
-                [&](const RunRecord& run) { return value_of(run, figure); });
+Spread StudyCells::spread(const std::string& world, const std::string& sensor,
+                          const std::string& algorithm, const Figure& figure) const {
+  std::vector<RunFigure> values;
+  for (const RunRecord* row : rows(world, sensor, algorithm))
+    values.push_back(judged_figure(*row, figure));
+  return spread_of(values, figure.better, 1, 0);
 }
 
 std::string StudyCells::status_text(const std::string& world, const std::string& sensor,
                                     const std::string& algorithm) const {
-  const auto all = rows(world, sensor, algorithm);
+  const Runs all = rows(world, sensor, algorithm);
   std::map<std::string, std::size_t> states;
   for (const RunRecord* row : all) {
-    if (row->status != "ok") ++states[row->status];
+    if (is_lost(*row)) ++states[row->status == "ok" ? "lost" : row->status];
   }
   std::string text;
   for (const auto& [state, count] : states) {

@@ -12,10 +12,10 @@ double quantile(std::span<double> values, double p) {
   const auto below = static_cast<std::ptrdiff_t>(rank);
   const auto at = values.begin() + below;
   std::nth_element(values.begin(), at, values.end());
-  const double low = *at;
-  if (at + 1 == values.end()) return low;
+  const double low = *at, part = rank - static_cast<double>(below);
+  if (part == 0.0 || std::isinf(low)) return low;  // between infinite values nothing is linear
   const double high = *std::min_element(at + 1, values.end());
-  return low + (rank - static_cast<double>(below)) * (high - low);
+  return low + part * (high - low);
 }
 
 Summary summarize(std::span<const double> values) {

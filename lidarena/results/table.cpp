@@ -49,6 +49,7 @@ std::string markdown_cell(const TableCell& cell) {
   std::string text = for_markdown(shown(cell, "-"));
   if (cell.underlined) text = "<u>" + text + "</u>";
   if (cell.bold) text = "**" + text + "**";
+  if (!cell.spread.empty()) text += " [" + for_markdown(cell.spread) + "]";
   return cell.reference.empty() ? text : text + " (" + cell.reference + ")";
 }
 
@@ -56,6 +57,7 @@ std::string latex_cell(const TableCell& cell) {
   std::string text = for_latex(shown(cell, "--"));
   if (cell.underlined) text = "\\underline{" + text + "}";
   if (cell.bold) text = "\\textbf{" + text + "}";
+  if (!cell.spread.empty()) text += " [" + for_latex(cell.spread) + "]";
   return cell.reference.empty() ? text : text + " (" + for_latex(cell.reference) + ")";
 }
 
@@ -69,7 +71,8 @@ TableCell word(std::string text) {
 
 TableCell number(std::optional<double> value, int digits) {
   TableCell cell;
-  if (!value || !std::isfinite(*value)) return cell;
+  if (!value || std::isnan(*value)) return cell;
+  if (std::isinf(*value)) return word("lost");
   cell.value = value;
   const double size = std::abs(*value);
   const bool whole = size >= 1.0 && size < 1e6 && size == std::floor(size);
@@ -81,10 +84,25 @@ TableCell number(std::optional<double> value, int digits) {
   return cell;
 }
 
-bool Table::has_reference() const {
-  return std::any_of(rows.begin(), rows.end(), [](const auto& row) {
+std::string value_text(std::optional<double> value, std::optional<double> zero_bound) {
+  const std::string text = number(value).text;
+  return zero_bound ? fmt::format("{} (below {})", text, number(zero_bound, 2).text) : text;
+}
+
+TableCell spread_cell(const Spread& spread) {
+  TableCell cell = number(spread.median);
+  cell.text = value_text(spread.median, spread.zero_bound);
+  const std::string range = spread.median && spread.runs > 1 ? number(spread.best).text + " to " +
+                                                                   number(spread.worst).text + ", "
+                                                             : "";
+  if (spread.runs > 0) cell.spread = fmt::format("{}{} of {}", range, spread.kept, spread.runs);
+  return cell;
+}
+
+bool Table::has(std::string TableCell::*part) const {
+  return std::any_of(rows.begin(), rows.end(), [&](const auto& row) {
     return std::any_of(row.begin(), row.end(),
-                       [](const TableCell& c) { return !c.reference.empty(); });
+                       [&](const TableCell& c) { return !(c.*part).empty(); });
   });
 }
 
@@ -96,11 +114,12 @@ std::string csv_quoted(const std::string& text) {
 }
 
 std::string table_csv(const Table& table) {
-  const bool reference = table.has_reference();
+  const bool reference = table.has(&TableCell::reference), spread = table.has(&TableCell::spread);
   std::string csv;
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     if (i > 0) csv += ',';
     csv += csv_quoted(table.head[i]);
+    if (spread && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (range, runs)"));
     if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (published)"));
   }
   csv += "\n";
@@ -109,6 +128,7 @@ std::string table_csv(const Table& table) {
       const TableCell& cell = row[i];
       if (i > 0) csv += ',';
       csv += cell.value ? fmt::format("{:.9g}", *cell.value) : csv_quoted(cell.text);
+      if (spread && i > 0) csv += fmt::format(",{}", csv_quoted(cell.spread));
       if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(cell.reference));
     }
     csv += "\n";
@@ -169,18 +189,21 @@ std::string table_text(const Table& table) {
   return text;
 }
 
+Json table_cell_json(const TableCell& cell) {
+  Json json{{"text", cell.text}};
+  if (cell.value) json["value"] = *cell.value;
+  if (!cell.spread.empty()) json["spread"] = cell.spread;
+  if (!cell.reference.empty()) json["reference"] = cell.reference;
+  if (cell.bold) json["bold"] = true;
+  if (cell.underlined) json["underlined"] = true;
+  return json;
+}
+
 Json table_json(const Table& table) {
   Json rows = Json::array();
   for (const auto& row : table.rows) {
     Json cells = Json::array();
-    for (const TableCell& cell : row) {
-      Json json{{"text", cell.text}};
-      if (cell.value) json["value"] = *cell.value;
-      if (!cell.reference.empty()) json["reference"] = cell.reference;
-      if (cell.bold) json["bold"] = true;
-      if (cell.underlined) json["underlined"] = true;
-      cells.push_back(std::move(json));
-    }
+    for (const TableCell& cell : row) cells.push_back(table_cell_json(cell));
     rows.push_back(std::move(cells));
   }
   return {{"id", table.id},

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/results/statistics.hpp"
 
 namespace lidarena::results {
 
@@ -13,6 +14,7 @@ namespace lidarena::results {
 struct TableCell {
   std::string text;             ///< as shown; a dash if empty
   std::optional<double> value;  ///< the unrounded figure
+  std::string spread;           ///< range and runs of a median: "1.1 to 1.4, 8 of 8"
   std::string reference;        ///< a published figure, shown in brackets; empty = none
   bool bold = false;            ///< the table's note says what it marks
   bool underlined = false;
@@ -20,8 +22,14 @@ struct TableCell {
 
 /// A cell with a text.
 TableCell word(std::string text);
-/// A figure with `digits` significant digits (whole numbers in full), or a dash.
+/// A figure with `digits` significant digits (whole numbers in full), "lost" if it is infinite
+/// (that of a lost run), or a dash.
 TableCell number(std::optional<double> value, int digits = 3);
+/// The same as text; a share of zero with its upper bound (see zero_bound()): "0 (below 0.003)".
+std::string value_text(std::optional<double> value, std::optional<double> zero_bound);
+/// Median, range from the best to the worst, and how many runs were kept: "1.2", "1.1 to lost, 7 of
+/// 8".
+TableCell spread_cell(const Spread& spread);
 
 /// A table of CSV, JSON, Markdown and LaTeX files, of a terminal and of the report's page. The
 /// first column names rows.
@@ -32,13 +40,14 @@ struct Table {
   std::vector<std::string> head;
   std::vector<std::vector<TableCell>> rows;
 
-  bool has_reference() const;
+  /// Whether some cell has this part.
+  bool has(std::string TableCell::*part) const;
 };
 
 /// `text` as a cell of a CSV file, quoted if necessary.
 std::string csv_quoted(const std::string& text);
 
-/// Unrounded figures; published ones, if there are any, are in separate columns.
+/// Unrounded figures; spreads and published figures, if there are any, are in separate columns.
 std::string table_csv(const Table& table);
 std::string table_markdown(const Table& table);
 /// For the package booktabs; a tabular alone if the table has no title.
@@ -46,5 +55,6 @@ std::string table_latex(const Table& table);
 /// Aligned for a terminal, without title and note.
 std::string table_text(const Table& table);
 Json table_json(const Table& table);
+Json table_cell_json(const TableCell& cell);
 
 }  // namespace lidarena::results

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "lidarena/base/number.hpp"
+#include "lidarena/results/lost.hpp"
 #include "lidarena/results/summary.hpp"
 
 namespace lidarena::results {
@@ -19,11 +20,11 @@ namespace {
 
 /// The figures that are compared; all are better when small.
 const std::array kCompared{&kDrift,       &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
-                           &kMapOutliers, &kLatencyP95, &kOwnMemory};
+                           &kMapOutliers, &kCpuP95,     &kOwnMemory};
 
 const std::array kShortNames{std::pair{"drift", &kDrift}, std::pair{"map", &kMapRmse},
-                             std::pair{"outliers", &kMapOutliers},
-                             std::pair{"latency", &kLatencyP95}, std::pair{"memory", &kOwnMemory}};
+                             std::pair{"outliers", &kMapOutliers}, std::pair{"cpu", &kCpuP95},
+                             std::pair{"memory", &kOwnMemory}};
 
 /// What the two runs of a pair have in common beside sensor and method.
 using Place = std::tuple<std::string, std::string, std::string, std::uint64_t>;
@@ -62,19 +63,13 @@ Pairs pairs_of(const StudyResults& before, const StudyResults& after) {
   return pairs;
 }
 
-RunFigure figure_of_run(const RunRecord& run, const Figure& figure) {
-  const std::string place = run.world + " " + run.flight + " " + run.mode;
-  return {place, std::to_string(run.seed),
-          run.status == "ok" ? value_of(run, figure) : std::nullopt, run.status};
-}
-
 std::optional<FigureChange> change_of(const Group& group, const std::vector<Pair>& pairs,
                                       const Figure& figure) {
   std::vector<RunFigure> before, after;
   std::vector<double> old_values, new_values;
   for (const Pair& pair : pairs) {
-    before.push_back(figure_of_run(*pair.before, figure));
-    after.push_back(figure_of_run(*pair.after, figure));
+    before.push_back(judged_figure(*pair.before, figure));
+    after.push_back(judged_figure(*pair.after, figure));
     if (!before.back().value || !after.back().value) continue;
     old_values.push_back(*before.back().value);
     new_values.push_back(*after.back().value);
@@ -91,34 +86,37 @@ std::optional<FigureChange> change_of(const Group& group, const std::vector<Pair
   return change;
 }
 
-/// Holm's correction: the k-th smallest of n is multiplied by n - k + 1, and none is smaller than
-/// one before it.
 void correct(std::vector<FigureChange>& changes) {
   std::vector<FigureChange*> tested;
-  for (FigureChange& change : changes)
-    if (change.p) tested.push_back(&change);
-  std::ranges::sort(tested, {}, [](const FigureChange* change) { return *change->p; });
-  double largest = 0.0;
+  std::vector<double> p;
+  for (FigureChange& change : changes) {
+    if (!change.p) continue;
+    tested.push_back(&change);
+    p.push_back(*change.p);
+  }
+  const std::vector<double> corrected = holm(p);
   for (std::size_t k = 0; k < tested.size(); ++k) {
     FigureChange& change = *tested[k];
-    largest = std::max(largest, std::min(1.0, *change.p * static_cast<double>(tested.size() - k)));
-    change.p = largest;
-    if (largest >= kLevel || change.paired.median_difference == 0.0) continue;
-    change.verdict = change.paired.median_difference < 0.0 ? Verdict::kBetter : Verdict::kWorse;
+    change.p = corrected[k];
+    if (corrected[k] < kLevel)
+      change.verdict = change.paired.b_ranks_smaller ? Verdict::kBetter : Verdict::kWorse;
   }
 }
 
 LostRuns lost_of(const Group& group, const std::vector<Pair>& pairs) {
   LostRuns lost{group.first, group.second, pairs.size(), 0, 0, {}};
   for (const auto& [before, after] : pairs) {
-    const bool was_lost = before->status != "ok", is_lost = after->status != "ok";
+    const bool was_lost = is_lost(*before);
+    const std::string reason = lost_reason(*after);
     lost.before += was_lost ? 1 : 0;
-    lost.after += is_lost ? 1 : 0;
-    if (is_lost && !was_lost)
-      lost.newly.push_back(fmt::format("{}: {} {}", after->name, after->status, after->reason));
+    lost.after += reason.empty() ? 0 : 1;
+    if (!reason.empty() && !was_lost) lost.newly.push_back(after->name + ": " + reason);
   }
   return lost;
 }
+
+/// "lost" if it is that of a lost run.
+Json number_json(double value) { return std::isinf(value) ? Json("lost") : Json(value); }
 
 std::string percent_text(std::optional<double> percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : "";
@@ -139,7 +137,7 @@ const char* to_string(Verdict verdict) {
 
 std::optional<double> FigureChange::worsening_percent() const {
   if (after == before) return 0.0;
-  if (before == 0.0) return std::nullopt;
+  if (before == 0.0 || std::isinf(before) || std::isinf(after)) return std::nullopt;
   return 100.0 * (after - before) / std::abs(before);
 }
 
@@ -182,14 +180,16 @@ VersionComparison compare_versions(const StudyResults& before, const StudyResult
 }
 
 Table table_of(const VersionComparison& comparison) {
-  Table table{"comparison",
-              "Before and after",
-              fmt::format("Medians over pairs of runs on the same scene, flight and seed that both "
-                          "succeeded; better or worse by Wilcoxon's signed-rank test at {:.0f} % "
-                          "after Holm's correction, which here takes at least {} pairs.",
-                          100.0 * kLevel, comparison.pairs_needed()),
-              {"sensor", "method", "figure", "before", "after", "change", "pairs", "p", "verdict"},
-              {}};
+  Table table{
+      "comparison",
+      "Before and after",
+      fmt::format("Medians over pairs of runs on the same scene, flight and seed; a lost run "
+                  "is the worse one of its pair; better or worse by Wilcoxon's signed-rank test at "
+                  "{:.0f} % "
+                  "after Holm's correction, which here takes at least {} pairs.",
+                  100.0 * kLevel, comparison.pairs_needed()),
+      {"sensor", "method", "figure", "before", "after", "change", "pairs", "p", "verdict"},
+      {}};
   for (const FigureChange& change : comparison.changes) {
     table.rows.push_back({word(change.sensor), word(change.method),
                           word(fmt::format("{}, {}", change.figure->label, change.figure->unit)),
@@ -209,8 +209,8 @@ Json to_json(const VersionComparison& comparison) {
                        {"method", change.method},
                        {"figure", change.figure->key},
                        {"unit", change.figure->unit},
-                       {"before", change.before},
-                       {"after", change.after},
+                       {"before", number_json(change.before)},
+                       {"after", number_json(change.after)},
                        {"change_percent", value_to_json(change.worsening_percent())},
                        {"pairs", change.paired.pairs},
                        {"p", value_to_json(change.p)},
@@ -262,9 +262,8 @@ ChangeLimit parse_limit(const std::string& text) {
   const auto known = std::ranges::find(kShortNames, name, [](const auto& of) { return of.first; });
   limit.figure = known == kShortNames.end() ? &figure_of(name, place) : known->second;
   if (std::ranges::find(kCompared, limit.figure) == kCompared.end())
-    throw InputError(
-        place, "is not a figure that is compared",
-        "one of drift, map, outliers, latency, memory, own_map_rmse, own_map_outliers");
+    throw InputError(place, "is not a figure that is compared",
+                     "one of drift, map, outliers, cpu, memory, own_map_rmse, own_map_outliers");
   return limit;
 }
 
@@ -283,11 +282,11 @@ std::vector<std::string> exceeded(const VersionComparison& comparison,
       if (change.figure != limit.figure) continue;
       const double allowed =
           limit.in_percent ? 0.01 * limit.limit * std::abs(change.before) : limit.limit;
-      if (change.after - change.before <= allowed) continue;
-      lines.push_back(fmt::format("{}: {} with {}: {} {:.3g} -> {:.3g} {} ({}; {} pairs)",
-                                  limit.text, change.sensor, change.method, change.figure->label,
-                                  change.before, change.after, change.figure->unit,
-                                  percent_text(change.worsening_percent()), change.paired.pairs));
+      if (!(change.after - change.before > allowed)) continue;  // two lost medians are equal
+      lines.push_back(fmt::format(
+          "{}: {} with {}: {} {} -> {} {} ({}; {} pairs)", limit.text, change.sensor, change.method,
+          change.figure->label, number(change.before).text, number(change.after).text,
+          change.figure->unit, percent_text(change.worsening_percent()), change.paired.pairs));
     }
   }
   return lines;

@@ -19,20 +19,20 @@ const char* to_string(Verdict verdict);
 struct FigureChange {
   std::string sensor, method;
   const Figure* figure = nullptr;
-  double before = 0.0, after = 0.0;  ///< medians over the pairs, in the figure's unit
+  double before = 0.0, after = 0.0;  ///< medians over the pairs, infinite where half are lost
   PairedComparison paired;           ///< of which `a` is before and `b` after
   std::optional<double> p;           ///< of Wilcoxon's test, after Holm's correction
   Verdict verdict = Verdict::kNeither;
 
-  /// Change of the median in %, positive = worse; empty if it was zero before and is not after.
+  /// Change of the median in %, positive = worse; empty if it was zero and is not, or is lost.
   std::optional<double> worsening_percent() const;
 };
 
-/// Runs that did not succeed, of those that were planned in both studies.
+/// Lost runs (lost.hpp), of those that were planned in both studies.
 struct LostRuns {
   std::string sensor, method;
   std::size_t runs = 0, before = 0, after = 0;
-  std::vector<std::string> newly;  ///< names of runs that succeeded before, with the reason
+  std::vector<std::string> newly;  ///< names of runs that were not lost before, with the reason
 };
 
 struct VersionComparison {
@@ -45,12 +45,10 @@ struct VersionComparison {
   std::size_t pairs_needed() const;
 };
 
-inline constexpr double kLevel = 0.05;  ///< of the test that a verdict needs
-
 /// Pairs each run of `after` with that of `before` on the same world, flight, mode and seed, with
 /// the same sensor and method; studies of a single method are compared whatever it is called. A
-/// figure is better or worse if Wilcoxon's signed-rank test says so at kLevel, corrected for the
-/// number of figures (Holm, "A simple sequentially rejective multiple test procedure", 1979).
+/// figure is better or worse if Wilcoxon's signed-rank test says so at kLevel, after Holm's
+/// correction for the number of figures.
 /// Throws InputError if no two runs are pairs.
 VersionComparison compare_versions(const StudyResults& before, const StudyResults& after);
 
@@ -66,7 +64,7 @@ struct ChangeLimit {
   double limit = 0.0;              ///< in the figure's unit, or runs
   bool in_percent = false;
 };
-/// "FIGURE=LIMIT" with a figure's key or drift, map, outliers, latency, memory, lost; LIMIT a
+/// "FIGURE=LIMIT" with a figure's key or drift, map, outliers, cpu, memory, lost; LIMIT a
 /// number in the figure's unit or "N%". Throws InputError.
 ChangeLimit parse_limit(const std::string& text);
 /// One line for each sensor and method whose median, or number of lost runs, grew beyond a limit.

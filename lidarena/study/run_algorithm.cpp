@@ -84,18 +84,21 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
         *returns.read(), lidar_id, dataset.rig.find_lidar(lidar_id)->body_from_lidar,
         evaluation::BodyMotion(result.files));
   }
-  result.files.manifest = {{"kind", "run"},
-                           {"algorithm", chosen.algorithm},
-                           {"preset", chosen.preset},
-                           {"config", made.config},
-                           {"dataset", relative_path(request.dataset, out)},
-                           {"sensor", lidar_id},
-                           {"threads", parallel.threads()},
-                           {"paced", request.paced},
-                           {"status", result.summary.diverged ? "diverged" : "ok"},
-                           {"reason", result.summary.reason},
-                           {"made_on", made_on()},
-                           {"summary", summary_json(result.summary)}};
+  result.files.manifest = {
+      {"kind", "run"},
+      {"algorithm", chosen.algorithm},
+      {"preset", chosen.preset},
+      {"config", made.config},
+      {"dataset", relative_path(request.dataset, out)},
+      {"sensor", lidar_id},
+      {"threads", parallel.threads()},
+      {"paced", request.paced},
+      // maps that a method makes itself are voxel means of keyframe clouds
+      {"own_map", made.odometry->traits().publishes_scans ? "returns" : "means"},
+      {"status", result.summary.diverged ? "diverged" : "ok"},
+      {"reason", result.summary.reason},
+      {"made_on", made_on()},
+      {"summary", summary_json(result.summary)}};
   dataset::write_run(out, result.files);
   return result.summary;
 }

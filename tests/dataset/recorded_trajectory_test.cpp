@@ -105,7 +105,8 @@ TEST_P(RecordedTrajectory, WhatIsNoTrajectoryIsRefusedInWords) {
     put_odometry(*out, topic, 1);
     out->close();
   }
-  EXPECT_THAT(error_message(), AllOf(HasSubstr("/odometry message 2"), HasSubstr("repeats")));
+  EXPECT_EQ(read_framed_trajectory(file_).trajectory.size(), 1U);
+  EXPECT_EQ(read_framed_trajectory(file_).repeated.size(), 1U);
   {
     auto out = create();
     const auto topic = out->add_topic("/imu", ros::kImu);

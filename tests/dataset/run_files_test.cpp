@@ -23,7 +23,8 @@ RunFiles small_run() {
   run.map.points = {{1, 2, 3}, {4, 5, 6}};
   run.reprojected.points = {{7, 8, 9}};
   run.reprojected.intensity = {0.5F};
-  run.resources = {{0.1, 0.012345678, 1'000'000'000'000, 2, 3, 4, 5}, {0.2, 0.01, 1, 2, 3, 4, 5}};
+  run.resources = {{0.1, 0.012345678, 0.03, 1'000'000'000'000, 2, 3, 4, 5},
+                   {0.2, 0.01, 0.01, 1, 2, 3, 4, 5}};
   run.manifest = {{"algorithm", "kiss_icp"}, {"seed", 7}};
   return run;
 }
@@ -62,7 +63,7 @@ TEST_F(Run, TrajectoriesNameTheirFramesAndInstant) {
   EXPECT_THAT(file_text(path() / "live.tum"), HasSubstr("as known at each scan"));
   EXPECT_THAT(file_text(path() / "live.tum"), HasSubstr("at the stamped instant"));
   EXPECT_THAT(file_text(path() / "resources.csv"),
-              testing::StartsWith("t_sensor_s,latency_s,rss_bytes"));
+              testing::StartsWith("t_sensor_s,latency_s,cpu_s,rss_bytes"));
 }
 
 TEST_F(Run, AMotionOfAnEarlierRunDoesNotStay) {
@@ -112,9 +113,9 @@ TEST_F(Run, BrokenFilesAreNamed) {
     return error;
   };
   EXPECT_THAT(error_with("resources.csv", "t,latency\n"), HasSubstr("resources.csv:1: is not the"));
-  const std::string header = file_text(path() / "resources.csv").substr(0, 84);
+  const std::string header = file_text(path() / "resources.csv").substr(0, 90);
   EXPECT_THAT(error_with("resources.csv", header + "1,2\n"), HasSubstr("resources.csv:2: holds 2"));
-  EXPECT_THAT(error_with("resources.csv", header + "1,2,-3,4,5,6,7\n"),
+  EXPECT_THAT(error_with("resources.csv", header + "1,2,3,-3,4,5,6,7\n"),
               HasSubstr("resources.csv:2: '-3' is not a number of bytes"));
   EXPECT_THAT(error_with("trajectory.tum", "1 2 3\n"), HasSubstr("trajectory.tum:1: holds 3"));
   EXPECT_THAT(error_with("map.ply", "ply\n"), HasSubstr("map.ply: ends after line 1"));

@@ -132,6 +132,22 @@ TEST_F(Tum, AFileWithoutPosesIsRefusedUnlessAllowed) {
               HasSubstr("no such file"));
 }
 
+TEST_F(Tum, RowsThatRepeatATimeAreCollectedWhereTheyAreAskedFor) {
+  const std::string text =
+      "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n1 3 0 0 0 0 0 1\n2 4 0 0 0 0 0 1\n";
+  const FramedTrajectory read = read_framed_trajectory(put(text));
+  ASSERT_EQ(read.trajectory.size(), 3U);
+  EXPECT_EQ(read.trajectory.poses()[1].world_from_body.translation().x(), 1.0) << "the first one";
+  ASSERT_EQ(read.repeated.size(), 2U);
+  const std::vector<StampedPose> rows = read.rows();
+  ASSERT_EQ(rows.size(), 5U);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    EXPECT_EQ(rows[i].world_from_body.translation().x(), static_cast<double>(i)) << "their order";
+  EXPECT_THAT(
+      input_error([&] { read_framed_trajectory(put("1 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n")); }),
+      HasSubstr("is earlier than"));
+}
+
 TEST_F(Tum, OnePoseIsATrajectory) { EXPECT_EQ(read_tum(put("1 0 0 0 0 0 0 1")).size(), 1U); }
 
 TEST_F(Kitti, RowsAreMatricesAndFramesAreTimed) {

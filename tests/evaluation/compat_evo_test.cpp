@@ -103,7 +103,8 @@ TEST(CompatEvo, GivesTheFiguresAndRefusalsOfEvoItself) {
     const Command command(run["command"]);
     SCOPED_TRACE(run["command"].get<std::string>());
     const auto score = [&] {
-      return compat_evo(files.at(command.reference), files.at(command.estimate), command.options);
+      return compat_evo(files.at(command.reference).poses(), files.at(command.estimate).poses(),
+                        command.options);
     };
     if (!run.contains("stats")) {
       EXPECT_THROW(score(), InputError);
@@ -125,6 +126,25 @@ TEST(CompatEvo, GivesTheFiguresAndRefusalsOfEvoItself) {
 }
 
 // --- behavior in closed form
+
+TEST(CompatEvo, KeepsRowsThatRepeatATime) {
+  // Nearest stamps, the first of equal ones: the second row at 1 s is never paired when the file
+  // with it is the longer one, and is a pair of its own when that is the shorter one.
+  const auto at = [](int seconds, double x) {
+    return StampedPose{Time{seconds * 1'000'000'000LL},
+                       make_pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, 0, 0))};
+  };
+  const std::vector<StampedPose> repeated{at(0, 0.0), at(1, 1.0), at(1, 1.5), at(2, 2.0)};
+  const std::vector<StampedPose> once{at(0, 0.0), at(1, 1.0), at(2, 2.0)};
+  EXPECT_EQ(compat_evo(repeated, once, {}).statistics.max, 0.0);
+  EXPECT_EQ(compat_evo(repeated, once, {}).matched, 3U);
+  const std::vector<StampedPose> longer{at(0, 0.0), at(1, 1.0), at(2, 2.0), at(3, 3.0), at(4, 4.0)};
+  EXPECT_EQ(compat_evo(longer, repeated, {}).matched, 4U);
+  EXPECT_EQ(compat_evo(longer, repeated, {}).statistics.max, 0.5);
+  const std::vector<StampedPose> late{
+      {Time{1'004'000'000}, make_pose(Eigen::Quaterniond::Identity(), Eigen::Vector3d(1, 0, 0))}};
+  EXPECT_EQ(compat_evo(repeated, late, {}).statistics.max, 0.0) << "the first row at 1 s";
+}
 
 std::vector<Pose> poses_along(const std::function<Pose(int)>& pose, int count) {
   std::vector<Pose> poses;
@@ -197,20 +217,20 @@ TEST(EvoAssociation, EveryStampOfTheShorterFindsTheNearestOfTheLongerEvenTwice) 
   const Trajectory slow = sample(still, 400ms, 1200ms);
   const Trajectory fast = flights::shifted(sample(still, 100ms, 800ms), 10ms);
   // 1.2 s is paired with 0.81 s again, 0.39 s away
-  EXPECT_THAT(evo_association(slow, fast, 0.4, 0.0),
+  EXPECT_THAT(evo_association(slow.poses(), fast.poses(), 0.4, 0.0),
               ElementsAre(Pair(0, 0), Pair(1, 4), Pair(2, 8), Pair(3, 8)));
-  EXPECT_THAT(evo_association(fast, slow, 0.4, 0.0),
+  EXPECT_THAT(evo_association(fast.poses(), slow.poses(), 0.4, 0.0),
               ElementsAre(Pair(0, 0), Pair(4, 1), Pair(8, 2), Pair(8, 3)));
-  EXPECT_TRUE(evo_association(slow, fast, 0.009, 0.0).empty());
+  EXPECT_TRUE(evo_association(slow.poses(), fast.poses(), 0.009, 0.0).empty());
 }
 
 TEST(EvoAssociation, TheOffsetIsAddedToTheEstimate) {
   const auto still = [](double) { return level({0, 0, 0}); };
   const Trajectory reference = sample(still, 100ms, 1s);
   const Trajectory late = flights::shifted(reference, 237ms);
-  EXPECT_EQ(evo_association(reference, late, 0.001, -0.237).size(), 11U);
-  EXPECT_EQ(evo_association(late, reference, 0.001, 0.237).size(), 11U);
-  EXPECT_TRUE(evo_association(reference, late, 0.001, 0.237).empty());
+  EXPECT_EQ(evo_association(reference.poses(), late.poses(), 0.001, -0.237).size(), 11U);
+  EXPECT_EQ(evo_association(late.poses(), reference.poses(), 0.001, 0.237).size(), 11U);
+  EXPECT_TRUE(evo_association(reference.poses(), late.poses(), 0.001, 0.237).empty());
 }
 
 /// 1 m/s along x, with the positions multiplied by `scale`.
@@ -221,12 +241,13 @@ Trajectory line(double scale) {
 TEST(CompatEvo, OfALineOnePercentTooLongIsKnown) {
   EvoOptions ratio = pieces(EvoUnit::kMeters, 1.0);
   ratio.relation = EvoRelation::kPointDistanceRatio;
-  const EvoResult relative = compat_evo(line(1.0), line(1.01), ratio);
+  const EvoResult relative = compat_evo(line(1.0).poses(), line(1.01).poses(), ratio);
   EXPECT_EQ(relative.matched, 101U);
   EXPECT_NEAR(relative.statistics.min, 1.0, 1e-9);
   EXPECT_NEAR(relative.statistics.max, 1.0, 1e-9);
   const EvoStatistics ape =
-      compat_evo(line(1.0), line(1.01), absolute(EvoRelation::kTranslation)).statistics;
+      compat_evo(line(1.0).poses(), line(1.01).poses(), absolute(EvoRelation::kTranslation))
+          .statistics;
   // 0.001 i for i = 0 .. 100: sum of squares 338350e-6
   EXPECT_NEAR(ape.sse, 0.33835, 1e-12);
   EXPECT_NEAR(ape.rmse, std::sqrt(0.33835 / 101.0), 1e-12);
@@ -241,7 +262,7 @@ TEST(CompatEvo, ChordsOfNoLengthHaveNoRatio) {
   EvoOptions ratio = pieces(EvoUnit::kFrames, 5);
   ratio.relation = EvoRelation::kPointDistanceRatio;
   const Trajectory flight = sample(rests, 100ms, 2s);
-  EXPECT_EQ(compat_evo(flight, flight, ratio).errors.size(), 2U);  // of 4 pieces
+  EXPECT_EQ(compat_evo(flight.poses(), flight.poses(), ratio).errors.size(), 2U);  // of 4 pieces
 }
 
 TEST(CompatEvo, EveryRelationOfATurnAndAMoveIsKnown) {
@@ -251,7 +272,7 @@ TEST(CompatEvo, EveryRelationOfATurnAndAMoveIsKnown) {
   const Trajectory estimate = flights::mapped(
       flight, [&](const StampedPose& pose) { return pose.world_from_body * error; });
   const auto rmse = [&](EvoRelation relation) {
-    return compat_evo(flight, estimate, absolute(relation)).statistics.rmse;
+    return compat_evo(flight.poses(), estimate.poses(), absolute(relation)).statistics.rmse;
   };
   const double frobenius = 2.0 * std::sqrt(2.0) * std::sin(angle / 2.0);
   EXPECT_NEAR(rmse(EvoRelation::kTranslation), 5.0, 1e-12);
@@ -272,26 +293,27 @@ TEST(CompatEvo, AlignmentsTakeAwayWhatTheySay) {
   });
   EvoOptions o;
   o.align = o.scale = true;
-  EXPECT_LT(compat_evo(flight, estimate, o).statistics.max, 1e-12);
-  EXPECT_NEAR(compat_evo(flight, estimate, o).reference_from_estimate.scale, 0.5, 1e-12);
+  EXPECT_LT(compat_evo(flight.poses(), estimate.poses(), o).statistics.max, 1e-12);
+  EXPECT_NEAR(compat_evo(flight.poses(), estimate.poses(), o).reference_from_estimate.scale, 0.5,
+              1e-12);
   o.n_to_align = 20;
-  EXPECT_LT(compat_evo(flight, estimate, o).statistics.max, 1e-11);
+  EXPECT_LT(compat_evo(flight.poses(), estimate.poses(), o).statistics.max, 1e-11);
   o.align = false;  // scale only: rotation and translation stay
-  const EvoResult scaled = compat_evo(flight, estimate, o);
+  const EvoResult scaled = compat_evo(flight.poses(), estimate.poses(), o);
   EXPECT_NEAR(scaled.reference_from_estimate.scale, 0.5, 1e-12);
   EXPECT_TRUE(scaled.reference_from_estimate.rotation.isIdentity(0.0));
   EvoOptions origin;
   origin.align_origin = true;
-  EXPECT_LT(compat_evo(flight, estimate, origin).errors.front(), 1e-12);
+  EXPECT_LT(compat_evo(flight.poses(), estimate.poses(), origin).errors.front(), 1e-12);
   origin.relation = EvoRelation::kAngleRadians;
-  EXPECT_LT(compat_evo(flight, estimate, origin).statistics.max, 1e-12);
+  EXPECT_LT(compat_evo(flight.poses(), estimate.poses(), origin).statistics.max, 1e-12);
 }
 
 /// The message of the error; empty when there is none.
 std::string refusal(const Trajectory& reference, const Trajectory& estimate,
                     const EvoOptions& options) {
   try {
-    compat_evo(reference, estimate, options);
+    compat_evo(reference.poses(), estimate.poses(), options);
   } catch (const InputError& error) {
     return error.what();
   }

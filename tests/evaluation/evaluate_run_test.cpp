@@ -165,7 +165,7 @@ TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
 
 TEST_F(EvaluateRun, WhatARunCostIsThereEvenWhenItDiverged) {
   EXPECT_TRUE(evaluate()["resources"].is_null());  // no resources.csv
-  run_.resources = {{0.1, 0.02, 100, 90, 50, 5, 0}, {0.2, 0.03, 120, 100, 60, 5, 0}};
+  run_.resources = {{0.1, 0.02, 0.02, 100, 90, 50, 5, 0}, {0.2, 0.03, 0.03, 120, 100, 60, 5, 0}};
   run_.manifest = {{"status", "diverged"}, {"reason", "a pose was not finite"}};
   const Json m = evaluate();
   EXPECT_EQ(m["status"], "diverged");

@@ -14,6 +14,7 @@ std::vector<dataset::ResourceRow> rows_of_a_run() {
     dataset::ResourceRow row;
     row.t_sensor_s = 0.1 * (i + 1);
     row.latency_s = i % 20 == 7 ? 0.15 : 0.02;
+    row.cpu_s = i % 10 == 7 ? 0.3 : 0.06;
     row.map_bytes = 1000U * static_cast<std::uint64_t>(i + 1);
     row.scan_buffer_bytes = 500;
     row.backlog_bytes = i == 33 ? 7777 : 0;
@@ -34,6 +35,13 @@ TEST(Resources, LatencyAndRealTimeFactorOfAKnownRun) {
   EXPECT_DOUBLE_EQ(figures.latency.p99, 0.15);
   EXPECT_NEAR(figures.real_time_factor, 10.0 / (95 * 0.02 + 5 * 0.15), 1e-12);
   EXPECT_NEAR(figures.late_scans, 5.0 / 99.0, 1e-12);
+}
+
+TEST(Resources, CpuTimeSaysWhatOneCoreWouldDo) {
+  const results::ResourceMetrics figures = resource_metrics(rows_of_a_run());
+  EXPECT_DOUBLE_EQ(figures.cpu.median, 0.06);
+  EXPECT_NEAR(*figures.cpu_load_percent, 100.0 * (90 * 0.06 + 10 * 0.3) / 10.0, 1e-9);
+  EXPECT_NEAR(*figures.cpu_late_scans, 10.0 / 99.0, 1e-12) << "two cores keep up, one does not";
 }
 
 TEST(Resources, MemoryHasItsPeakItsEndAndItsGrowth) {

@@ -118,6 +118,7 @@ TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
   EXPECT_EQ(row.backlog_bytes, 3U);
   EXPECT_EQ(row.scan_buffer_bytes, 0U);
   EXPECT_GE(row.latency_s, 0.0);
+  EXPECT_GT(row.cpu_s, 0.0);
   EXPECT_DOUBLE_EQ(result.summary.sensor_seconds, 0.99);
   double latency = 0.0;
   for (const auto& r : result.files.resources) latency += r.latency_s;

@@ -81,22 +81,45 @@ TEST(Expectation, TheBestIsComparedWithItsRivalsInEachPlace) {
   EXPECT_FALSE(judged(results, "lowest: {algorithm: good}").holds) << "there is no rival";
 }
 
-TEST(Expectation, WhatWasNotMeasuredIsLostOrHasNothingToCompareIsNotJudged) {
+TEST(Expectation, ALostCellIsTheWorstAndTwoLostOnesAreNotCompared) {
   StudyResults results = eight_runs();
-  results.rows[0].status = "diverged";
-  results.rows[0].metrics.reset();
+  made_up::lose(results.rows[0]);  // good in the room with the dear sensor
   const std::string place = ", where: {world: [room], algorithm: [good]}";
   const std::string ratio = "ratio: {of: {sensor: cheap}, to: {sensor: dear}}, above: 1";
   const Judgement diverged = judged(results, ratio + place);
-  EXPECT_FALSE(diverged.holds);
-  EXPECT_THAT(diverged.evidence, ElementsAre("room, good: good diverged"));
-  EXPECT_THAT(judged(results, "above: 0" + place).evidence.at(0), HasSubstr("good diverged"));
+  EXPECT_EQ(diverged.holds, false) << "2 cm with the cheap one, lost with the dear one";
+  EXPECT_THAT(diverged.evidence,
+              ElementsAre("room, good: 2 cm with cheap, lost (diverged) with dear"));
+  EXPECT_EQ(judged(results, "below: 100" + place).holds, false);
+  EXPECT_EQ(judged(results, "lowest: {algorithm: good}").holds, false);
+  EXPECT_EQ(judged(results, "lowest: {algorithm: good}").evidence.at(0),
+            "room, dear: lost (diverged), against 2 cm of bad");
   results = eight_runs();
   for (RunRecord& run : results.rows) set_metrics(run, made_up::metrics_of(3.0, 60.0));
-  const std::string lost = ", lost: {figure: own_map_outliers, above: 50}";
-  EXPECT_FALSE(judged(results, ratio + lost + place).holds);
-  EXPECT_THAT(judged(results, ratio + lost + place).evidence.at(0), HasSubstr("tracking lost"));
-  EXPECT_EQ(judged(results, ratio + place).holds, false);
+  EXPECT_FALSE(judged(results, ratio + place).holds);
+  EXPECT_THAT(judged(results, ratio + place).evidence.at(0), HasSubstr("lost with both"));
+}
+
+TEST(Expectation, OfAPartlyFailedCellTheLostRunsCount) {
+  StudyResults results;
+  for (std::uint64_t seed = 1; seed <= 3; ++seed)
+    results.rows.push_back(run_of("room", "dear", "good", static_cast<double>(seed), 0.0, seed));
+  EXPECT_EQ(judged(results, "below: 2.5").holds, true) << "median of 1 2 3";
+  made_up::lose(results.rows[0]);
+  const Judgement one = judged(results, "below: 2.5");
+  EXPECT_EQ(one.holds, false) << "median of 2 3 lost";
+  EXPECT_THAT(one.evidence, ElementsAre("room, dear, good: 3 cm (1 of 3 diverged)"));
+  made_up::lose(results.rows[1]);
+  EXPECT_EQ(judged(results, "below: 1000").holds, false);
+}
+
+TEST(Expectation, WhatWasNotMeasuredOrHasNothingToCompareIsNotJudged) {
+  StudyResults results = eight_runs();
+  const std::string place = ", where: {world: [room], algorithm: [good]}";
+  const std::string ratio = "ratio: {of: {sensor: cheap}, to: {sensor: dear}}, above: 1";
+  for (RunRecord& run : results.rows) run.metrics->final->rpe.reset();
+  EXPECT_FALSE(judged(results, "above: 0" + place).holds);
+  EXPECT_THAT(judged(results, "above: 0" + place).evidence.at(0), HasSubstr("good not measured"));
   for (RunRecord& run : results.rows) set_metrics(run, made_up::metrics_of(0.0, 0.0));
   EXPECT_FALSE(judged(results, ratio + place).holds);
   EXPECT_THAT(judged(results, ratio + place).evidence.at(0), HasSubstr("nothing to compare"));
@@ -133,8 +156,6 @@ TEST(Expectation, IsRefusedWhereItIsIncompleteOrNamesWhatDoesNotExist) {
   EXPECT_THAT(refusal(rpe + "below: 1, where: {sensor: [chaep]}}"), HasSubstr("no sensor 'chaep'"));
   EXPECT_THAT(refusal(rpe + "below: 1, ratio: {of: {world: cave}, to: {sensor: dear}}}"),
               HasSubstr("two different kinds"));
-  EXPECT_THAT(refusal(rpe + "below: 1, lost: {figure: outliers, above: 50}}"),
-              HasSubstr("no figure 'outliers'"));
 }
 
 TEST(ReferenceFigures, AreFoundByTheirNamesAndEmptyNamesStandForAll) {

@@ -46,6 +46,13 @@ inline RunRecord run_of(const std::string& world, const std::string& sensor,
   return run;
 }
 
+/// Makes a run one that diverged.
+inline void lose(RunRecord& run) {
+  run.status = "diverged";
+  run.reason = "12 m from the truth";
+  run.metrics.reset();
+}
+
 /// The published figures of a study, as if they were our runs, in the order of the study.
 inline StudyResults runs_of_reference(std::vector<ReferenceFigure> reference) {
   StudyResults results;

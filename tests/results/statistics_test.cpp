@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "lidarena/base/random.hpp"
 
@@ -23,38 +24,58 @@ std::vector<RunFigure> flights_of(const std::vector<double>& values) {
   return runs;
 }
 
+constexpr double kLost = std::numeric_limits<double>::infinity();
+
 TEST(Spread, MedianAndRangeOfFiveRunsAreKnown) {
   const Spread spread = spread_of(flights_of({5.0, 1.0, 9.0, 2.0, 3.0}));
   EXPECT_EQ(spread.runs, 5U);
-  EXPECT_EQ(spread.values, 5U);
+  EXPECT_EQ(spread.kept, 5U);
   EXPECT_EQ(spread.flights, 5U);
   EXPECT_EQ(spread.median, 3.0);
-  EXPECT_EQ(spread.min, 1.0);
-  EXPECT_EQ(spread.max, 9.0);
-  EXPECT_DOUBLE_EQ(spread.mean, 4.0);
-  EXPECT_EQ(spread.median_with_failures, 3.0);
+  EXPECT_EQ(spread.best, 1.0);
+  EXPECT_EQ(spread.worst, 9.0);
   ASSERT_TRUE(spread.median_95);
   EXPECT_GE(spread.median_95->low, 1.0);
   EXPECT_LE(spread.median_95->high, 9.0);
 }
 
-TEST(Spread, AFailureIsNamedAndCountsAsWorstNotAsAbsent) {
+TEST(Spread, ALostRunIsNamedAndTheWorstOfItsCell) {
   std::vector<RunFigure> runs = flights_of({1.0, 2.0, 3.0});
-  runs.push_back({"flight3", "7", std::nullopt, "diverged: 1e+06 m from the truth"});
-  runs.push_back({"flight4", "1", std::nullopt, ""});
-  Spread spread = spread_of(runs);
+  runs.push_back({"flight3", "7", kLost, "diverged: 1e+06 m from the truth"});
+  runs.push_back({"flight4", "1", kLost, "lost: it drifts by 200 cm per m"});
+  const Spread spread = spread_of(runs);
   EXPECT_EQ(spread.runs, 5U);
-  EXPECT_EQ(spread.values, 3U);
-  EXPECT_EQ(spread.median, 2.0);
-  EXPECT_EQ(spread.median_with_failures, 3.0);                                 // of 1 2 3 inf inf
-  EXPECT_EQ(spread_of(runs, 1, 10, Better::kMore).median_with_failures, 1.0);  // -inf -inf 1 2 3
+  EXPECT_EQ(spread.kept, 3U);
+  EXPECT_EQ(spread.median, 3.0) << "of 1 2 3 and two lost ones";
+  EXPECT_EQ(spread.best, 1.0);
+  EXPECT_EQ(spread.worst, kLost);
+  EXPECT_EQ(spread.median_95->high, kLost);
+  EXPECT_FALSE(spread.is_lost());
   EXPECT_THAT(spread.failures, ElementsAre("flight3 7: diverged: 1e+06 m from the truth",
-                                           "flight4 1: has no such figure"));
-  runs.push_back({"flight5", "1", std::nullopt, "timeout"});
-  EXPECT_FALSE(spread_of(runs).median_with_failures.has_value());  // of 1 2 3 inf inf inf
-  const Spread none = spread_of(std::vector<RunFigure>{{"f", "1", std::nullopt, "crashed"}});
-  EXPECT_EQ(none.values, 0U);
-  EXPECT_FALSE(none.median_95.has_value());
+                                           "flight4 1: lost: it drifts by 200 cm per m"));
+  runs.push_back({"flight5", "1", kLost, "timeout"});
+  EXPECT_TRUE(spread_of(runs).is_lost()) << "half of the runs: the upper of the middle two is lost";
+  EXPECT_EQ(spread_of(runs).best, 1.0);
+}
+
+TEST(Spread, WhereMoreIsBetterALostRunIsBelowAll) {
+  std::vector<RunFigure> runs = flights_of({1.0, 2.0, 3.0});
+  runs.push_back({"flight3", "7", -kLost, "diverged"});
+  runs.push_back({"flight4", "1", -kLost, "diverged"});
+  const Spread spread = spread_of(runs, Better::kMore);
+  EXPECT_EQ(spread.median, 1.0);
+  EXPECT_EQ(spread.best, 3.0);
+  EXPECT_EQ(spread.worst, -kLost);
+  runs.push_back({"flight5", "1", -kLost, "diverged"});
+  EXPECT_EQ(spread_of(runs, Better::kMore).median, -kLost);
+}
+
+TEST(Spread, AFigureThatNoKeptRunHasIsNotCalledLost) {
+  const std::vector<RunFigure> runs{{"a", "1", std::nullopt, ""}, {"b", "1", kLost, "diverged"}};
+  EXPECT_FALSE(spread_of(runs).median) << "100 m of KITTI's error in a short flight";
+  EXPECT_EQ(spread_of(runs).kept, 1U);
+  EXPECT_TRUE(spread_of(std::vector<RunFigure>{{"f", "1", kLost, "crashed"}}).is_lost());
+  EXPECT_FALSE(spread_of(std::vector<RunFigure>{}).median);
 }
 
 TEST(Bootstrap, OfEqualValuesIsThatValueAndOfTwoFlightsIsNone) {
@@ -98,12 +119,11 @@ TEST(Bootstrap, IsTheSameBitsForTheSameSeedInWhateverOrderTheRunsCome) {
   SequentialRandom random(9);
   for (int i = 0; i < 9; ++i) values.push_back(random.normal());
   std::vector<RunFigure> runs = flights_of(values);
-  const Spread a = spread_of(runs, 4);
+  const Spread a = spread_of(runs, Better::kLess, 4);
   std::reverse(runs.begin(), runs.end());
-  const Spread b = spread_of(runs, 4);
+  const Spread b = spread_of(runs, Better::kLess, 4);
   EXPECT_EQ(a.median_95->low, b.median_95->low);
   EXPECT_EQ(a.median_95->high, b.median_95->high);
-  EXPECT_EQ(a.mean, b.mean);
 }
 
 TEST(Bootstrap, CoversTheTrueMedianAboutAsOftenAsItSays) {
@@ -115,7 +135,7 @@ TEST(Bootstrap, CoversTheTrueMedianAboutAsOftenAsItSays) {
   for (int trial = 0; trial < kTrials; ++trial) {
     std::vector<double> values;
     for (int i = 0; i < 25; ++i) values.push_back(std::exp(random.normal()));  // true median 1
-    const auto interval = spread_of(flights_of(values), 1, 400).median_95;
+    const auto interval = spread_of(flights_of(values), Better::kLess, 1, 400).median_95;
     if (interval->low <= 1.0 && 1.0 <= interval->high) ++covered;
   }
   EXPECT_GT(covered, 0.91 * kTrials);
@@ -184,10 +204,39 @@ TEST(Wilcoxon, AgreesWithCountingAllSignsAlsoWithTiesAndZeros) {
   EXPECT_FALSE(wilcoxon_signed_rank_p(std::vector<double>{0.0, 0.0}).has_value());
 }
 
+TEST(Wilcoxon, AgreesWithScipy) {
+  // scipy 1.10.1: wilcoxon([((i*37)%53-20.3)/10 for i in range(n)], mode="exact"), n = 20 and 50
+  std::vector<double> d;
+  for (int i = 0; i < 50; ++i) d.push_back((i * 37 % 53 - 20.3) / 10);
+  EXPECT_NEAR(*wilcoxon_signed_rank_p(std::span(d).first(20)), 0.17685317993164062, 1e-14);
+  EXPECT_NEAR(*wilcoxon_signed_rank_p(d), 0.025500083179634814, 1e-14);
+  // wilcoxon([float((i*37)%53%17-6) for i in range(120)], mode="approx", correction=True): six
+  // zeros and many ties
+  d.clear();
+  for (int i = 0; i < 120; ++i) d.push_back(i * 37 % 53 % 17 - 6);
+  EXPECT_NEAR(*wilcoxon_signed_rank_p(d), 0.0016135375151693054, 1e-14);
+}
+
+TEST(Wilcoxon, HasTheTabulatedCriticalValues) {
+  // Critical values of the smaller rank sum at 5 % (two-sided), as printed in every table: 29 for
+  // 16 differences, 52 for 20, 89 for 25. The sum that is larger by one does not pass.
+  for (const auto& [n, critical] : {std::pair{16, 29}, {20, 52}, {25, 89}}) {
+    for (const int sum : {critical, critical + 1}) {
+      std::vector<double> d;  // ranks 1..n; negative ones, the largest that fit first, sum to `sum`
+      int left = sum;
+      for (int rank = n; rank >= 1; --rank) {
+        d.push_back(rank <= left ? -rank : rank);
+        if (rank <= left) left -= rank;
+      }
+      EXPECT_EQ(*wilcoxon_signed_rank_p(d) <= 0.05, sum == critical) << n << " " << sum;
+    }
+  }
+}
+
 TEST(Wilcoxon, TheNormalApproximationMeetsTheExactCountWhereItTakesOver) {
   SequentialRandom random(14);
   std::vector<double> differences;
-  for (int i = 0; i < 201; ++i) differences.push_back(random.normal() + 0.15);
+  for (int i = 0; i < 51; ++i) differences.push_back(random.normal() + 0.15);
   const double beyond = *wilcoxon_signed_rank_p(differences);
   differences.pop_back();
   const double exact = *wilcoxon_signed_rank_p(differences);
@@ -203,7 +252,7 @@ TEST(PairedComparison, ComparesTheSameFlightsAndSeedsAndNamesWhatIsMissing) {
   const std::vector<RunFigure> b{{"cave", "1", 3.0, ""},
                                  {"house", "1", 1.5, ""},
                                  {"house", "2", 2.5, ""},
-                                 {"mine", "1", std::nullopt, "diverged"},
+                                 {"mine", "1", std::nullopt, ""},
                                  {"yard", "1", 1.0, ""}};
   const PairedComparison found = compare_paired(a, b);
   EXPECT_EQ(found.pairs, 3U);
@@ -211,10 +260,39 @@ TEST(PairedComparison, ComparesTheSameFlightsAndSeedsAndNamesWhatIsMissing) {
   EXPECT_EQ(found.a_smaller, 0U);
   EXPECT_EQ(found.ties, 1U);
   EXPECT_DOUBLE_EQ(found.median_difference, -0.5);
-  EXPECT_THAT(found.missing, ElementsAre("mine 1: b: diverged", "tube 1: b: was not run",
+  EXPECT_THAT(found.missing, ElementsAre("mine 1: b: has no such figure", "tube 1: b: was not run",
                                          "yard 1: a: was not run"));
   EXPECT_DOUBLE_EQ(*found.wilcoxon_p, 0.5);       // two differences of one sign
   EXPECT_FALSE(found.difference_95.has_value());  // of two flights
+}
+
+TEST(PairedComparison, ALostRunIsTheWorseOneOfItsPairAndTwoLostOnesTie) {
+  const std::vector<RunFigure> a{{"f", "1", 1.0, ""},
+                                 {"f", "2", kLost, "diverged"},
+                                 {"f", "3", kLost, "diverged"},
+                                 {"f", "4", 2.0, ""}};
+  const std::vector<RunFigure> b{{"f", "1", 1.5, ""},
+                                 {"f", "2", kLost, "diverged"},
+                                 {"f", "3", 9.0, ""},
+                                 {"f", "4", kLost, "diverged"}};
+  const PairedComparison found = compare_paired(a, b);
+  EXPECT_EQ(found.pairs, 4U);
+  EXPECT_EQ(found.ties, 1U);
+  EXPECT_EQ(found.b_smaller, 1U);
+  EXPECT_EQ(found.a_smaller, 2U);
+  EXPECT_FALSE(found.b_ranks_smaller) << "ranks 1 and 2.5 against 2.5";
+  EXPECT_EQ(found.median_difference, 0.25) << "of -inf, 0, 0.5, inf";
+  EXPECT_TRUE(found.missing.empty());
+}
+
+TEST(Holm, AgreesWithAnExampleByHand) {
+  // 0.01 * 4, 0.02 * 3, 0.03 * 2 (raised to the one before it), 0.5 * 1
+  const std::vector<double> corrected = holm(std::vector<double>{0.03, 0.01, 0.5, 0.02});
+  EXPECT_NEAR(corrected[1], 0.04, 1e-15);
+  EXPECT_NEAR(corrected[3], 0.06, 1e-15);
+  EXPECT_NEAR(corrected[0], 0.06, 1e-15);
+  EXPECT_NEAR(corrected[2], 0.5, 1e-15);
+  EXPECT_TRUE(holm(std::vector<double>{}).empty());
 }
 
 TEST(PairedComparison, SeesASmallConstantGainBelowTheSpreadOfTheFlights) {

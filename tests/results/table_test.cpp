@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <limits>
+
 namespace lidarena::results {
 namespace {
 
@@ -27,6 +29,29 @@ TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
   EXPECT_EQ(table_text(table), "sensor   x_1  y\na,b     1.23  5.90e-04\nc          7  -\n");
   EXPECT_THAT(table_latex(table), HasSubstr("sensor & x\\_1 & y"));
   EXPECT_EQ(table_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
+}
+
+TEST(Table, ACellOfRunsHasItsRangeAndHowManyWereKept) {
+  Spread spread;
+  spread.runs = spread.kept = 8;
+  spread.median = 1.234;
+  spread.best = 1.0;
+  spread.worst = 1.5;
+  EXPECT_EQ(spread_cell(spread).text, "1.23");
+  EXPECT_EQ(spread_cell(spread).spread, "1 to 1.50, 8 of 8");
+  spread.kept = 7;
+  spread.worst = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(spread_cell(spread).spread, "1 to lost, 7 of 8");
+  spread.kept = 3;
+  spread.median = spread.worst;
+  EXPECT_EQ(spread_cell(spread).text, "lost");
+  EXPECT_FALSE(spread_cell(spread).value);
+  spread.median = spread.best = spread.worst = 0.0;
+  spread.zero_bound = 0.0015;
+  EXPECT_EQ(spread_cell(spread).text, "0 (below 0.0015)");
+  const Table table{"", "", "", {"sensor", "x"}, {{word("os0"), spread_cell(spread)}}};
+  EXPECT_EQ(table_csv(table), "sensor,x,\"x (range, runs)\"\nos0,0,\"0 to 0, 3 of 8\"\n");
+  EXPECT_THAT(table_markdown(table), HasSubstr("| 0 (below 0.0015) [0 to 0, 3 of 8] |"));
 }
 
 TEST(Table, WhatAFormatReservesIsEscaped) {

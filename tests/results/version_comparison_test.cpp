@@ -66,9 +66,24 @@ TEST(CompareVersions, LostRunsAreCountedAndNamedNotLeftOut) {
   ASSERT_EQ(found.lost.size(), 2U);
   EXPECT_EQ(found.lost[1].after, 1U);
   EXPECT_EQ(found.lost[1].before, 0U);
-  EXPECT_THAT(found.lost[1].newly, ElementsAre(HasSubstr("os0-kiss_icp-2: diverged 12 m")));
-  EXPECT_EQ(change_of(found, "os0", kDrift).paired.pairs, 7U);
+  EXPECT_THAT(found.lost[1].newly, ElementsAre(HasSubstr("os0-kiss_icp-2: diverged: 12 m")));
+  EXPECT_EQ(change_of(found, "os0", kDrift).paired.pairs, 8U);
+  EXPECT_EQ(change_of(found, "os0", kDrift).paired.a_smaller, 1U)
+      << "the lost run is the worse one";
   EXPECT_THAT(comparison_text(found), HasSubstr("os0 with kiss_icp (indoor): 1 of 8 runs lost"));
+}
+
+TEST(CompareVersions, AMethodThatLosesRunsIsWorseThoughTheOthersGotBetter) {
+  StudyResults after = eight_seeds(0.99);
+  for (std::size_t i = 1; i < after.rows.size(); i += 2) made_up::lose(after.rows[i]);  // all os0
+  const VersionComparison found = compare_versions(eight_seeds(1.0), after);
+  const FigureChange& drift = change_of(found, "os0", kDrift);
+  EXPECT_EQ(drift.verdict, Verdict::kWorse);
+  EXPECT_FALSE(drift.worsening_percent());
+  EXPECT_EQ(to_json(found).at("changes").at(0).at("after"), "lost");
+  EXPECT_EQ(exceeded(found, {parse_limit("drift=500%")}).size(), 1U);
+  const VersionComparison both = compare_versions(after, after);
+  EXPECT_TRUE(exceeded(both, {parse_limit("drift=0%"), parse_limit("lost=0")}).empty());
 }
 
 TEST(CompareVersions, StudiesOfOneMethodAreComparedWhateverItIsCalled) {
@@ -102,7 +117,7 @@ TEST(FailOn, ALimitIsOnTheGrowthOfTheMedianInPercentOrInTheUnit) {
 
 TEST(FailOn, WhatIsNotALimitIsRefused) {
   for (const char* text : {"drift", "drift=", "drift=-1", "drift=5%%", "speed=1", "lost=5%",
-                           "latency_max=1", "drift=nan"}) {
+                           "latency_max=1", "drift=nan", "latency=5%"}) {
     EXPECT_THROW(parse_limit(text), InputError) << text;
   }
 }

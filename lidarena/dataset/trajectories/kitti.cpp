@@ -124,13 +124,13 @@ void write_times(const std::filesystem::path& file, const std::vector<Time>& tim
   write_text_file(file, text);
 }
 
-Trajectory read_euroc_csv(const std::filesystem::path& file) {
+Trajectory read_euroc_csv(const std::filesystem::path& file, std::vector<StampedPose>* repeated) {
   std::string text = read_bytes(file);
   const std::string name = file.string();
   check_euroc_header(first_line(text), name + ":1");
   if (text.front() != '#') text.insert(text.begin(), '#');
   TextRows rows(std::move(text), name);
-  TrajectoryRows poses;
+  TrajectoryRows poses(repeated);
   while (const auto row = rows.next()) {
     const auto parts = split_commas(*row);
     const std::string place = rows.place();

@@ -72,7 +72,7 @@ FramedTrajectory read_recorded_trajectory(const std::filesystem::path& file,
   const std::string topic = chosen_topic(file, asked);
   const auto reader = open_recording(file);
   FramedTrajectory read;
-  TrajectoryRows rows;
+  TrajectoryRows rows(&read.repeated);
   for (std::size_t number = 1; const auto message = reader->next();) {
     if (message->topic != topic) continue;
     const std::string place = fmt::format("{}: {} message {}", file.string(), topic, number++);

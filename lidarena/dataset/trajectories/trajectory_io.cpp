@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <regex>
 #include <sstream>
 
@@ -26,28 +28,40 @@ void read_frames(const std::filesystem::path& file, FramedTrajectory& into) {
   }
 }
 
-}  // namespace
-
-FramedTrajectory read_framed_trajectory(const std::filesystem::path& file, const std::string& topic,
-                                        double rate_hz) {
-  if (recording_format_of(file)) return read_recorded_trajectory(file, topic);
-  FramedTrajectory read;
-  read.trajectory = read_trajectory(file, rate_hz);
-  read_frames(file, read);
-  return read;
-}
-
-Trajectory read_trajectory(const std::filesystem::path& file, double rate_hz) {
+Trajectory read_text(const std::filesystem::path& file, double rate_hz,
+                     std::vector<StampedPose>* repeated) {
   TextRows rows(file);
   const auto row = rows.next();
-  if (row && row->find(',') != std::string_view::npos) return read_euroc_csv(file);
+  if (row && row->find(',') != std::string_view::npos) return read_euroc_csv(file, repeated);
   const std::size_t columns = row ? split_words(*row).size() : 0;
   if (columns == 12 || columns == 13) {
     const std::filesystem::path times = file.parent_path() / "times.txt";
     return std::filesystem::exists(times) ? read_kitti_poses(file, read_times(times))
                                           : read_kitti_poses(file, rate_hz);
   }
-  return read_tum(file);
+  return read_tum(file, EmptyTrajectory::kError, repeated);
+}
+
+}  // namespace
+
+std::vector<StampedPose> FramedTrajectory::rows() const {
+  std::vector<StampedPose> all;
+  std::ranges::merge(trajectory.poses(), repeated, std::back_inserter(all), {}, &StampedPose::stamp,
+                     &StampedPose::stamp);
+  return all;
+}
+
+FramedTrajectory read_framed_trajectory(const std::filesystem::path& file, const std::string& topic,
+                                        double rate_hz) {
+  if (recording_format_of(file)) return read_recorded_trajectory(file, topic);
+  FramedTrajectory read;
+  read.trajectory = read_text(file, rate_hz, &read.repeated);
+  read_frames(file, read);
+  return read;
+}
+
+Trajectory read_trajectory(const std::filesystem::path& file, double rate_hz) {
+  return read_text(file, rate_hz, nullptr);
 }
 
 }  // namespace lidarena::dataset

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/trajectory.hpp"
 
@@ -14,11 +15,16 @@ namespace lidarena::dataset {
 /// line.
 Trajectory read_trajectory(const std::filesystem::path& file, double rate_hz = 10.0);
 
-/// A trajectory with the names of its frames; empty if its file states none.
+/// A trajectory with the names of its frames; empty if its file states none. Recorded truths repeat
+/// times in a row (TUM's fr2_desk does): the trajectory has the first of them.
 struct FramedTrajectory {
   Trajectory trajectory;
   std::string world;
   std::string body;
+  std::vector<StampedPose> repeated = {};  ///< rows whose time repeats that of the row before
+
+  /// All rows in the order of the file.
+  std::vector<StampedPose> rows() const;
 };
 
 /// The same with the names of the frames; also reads the poses on `topic` of an MCAP file or a bag,

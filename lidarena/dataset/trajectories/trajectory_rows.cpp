@@ -21,6 +21,7 @@ constexpr double kRotationTolerance = 1e-3;
 void TrajectoryRows::add(Time stamp, const Pose& pose, const std::string& place) {
   if (!poses_.empty() && stamp <= poses_.back().stamp) {
     const bool same = stamp == poses_.back().stamp;
+    if (same && repeated_ != nullptr) return repeated_->push_back({stamp, pose});
     throw InputError(place,
                      fmt::format("the time {} {} the previous row ({})", format_seconds(stamp),
                                  same ? "repeats that of" : "is earlier than that of",

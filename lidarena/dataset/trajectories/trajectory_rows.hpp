@@ -12,7 +12,11 @@ namespace lidarena::dataset {
 /// Collects the poses of a trajectory file; errors name the line of the file.
 class TrajectoryRows {
  public:
-  /// Throws InputError (place `place`) unless `stamp` is later than the previous one.
+  /// Rows whose time repeats that of the row before are collected in `repeated` instead (motion
+  /// capture writes such rows); if it is null, they are errors.
+  explicit TrajectoryRows(std::vector<StampedPose>* repeated = nullptr) : repeated_(repeated) {}
+  /// Throws InputError (place `place`) if `stamp` is earlier than the previous one, or equal where
+  /// that is an error.
   void add(Time stamp, const Pose& pose, const std::string& place);
   bool empty() const { return poses_.empty(); }
   /// Throws InputError (place `file`) when there is no pose.
@@ -20,6 +24,7 @@ class TrajectoryRows {
 
  private:
   std::vector<StampedPose> poses_;
+  std::vector<StampedPose>* repeated_;
 };
 
 /// Pose from a quaternion as read from a file, which is normalized here; throws InputError unless

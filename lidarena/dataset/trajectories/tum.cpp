@@ -34,9 +34,10 @@ void append_row(std::string& text, const StampedPose& row) {
 
 }  // namespace
 
-Trajectory read_tum(const std::filesystem::path& file, EmptyTrajectory empty) {
+Trajectory read_tum(const std::filesystem::path& file, EmptyTrajectory empty,
+                    std::vector<StampedPose>* repeated) {
   TextRows rows(file);
-  TrajectoryRows poses;
+  TrajectoryRows poses(repeated);
   while (const auto row = rows.next()) {
     const auto words = split_words(*row);
     const std::string place = rows.place();

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/part_file.hpp"
@@ -18,9 +19,10 @@ enum class EmptyTrajectory { kError, kAllowed };
 /// are accepted. Quaternions are normalized. Throws InputError naming file and line: not 8 numbers,
 /// a value that is not finite, a quaternion norm that differs from 1 by more than 1e-3, a time not
 /// later than the previous one, no row at all (unless `empty` allows it, for runs without any
-/// pose).
+/// pose). Rows that repeat the time of the row before go to `repeated` if it is given.
 Trajectory read_tum(const std::filesystem::path& file,
-                    EmptyTrajectory empty = EmptyTrajectory::kError);
+                    EmptyTrajectory empty = EmptyTrajectory::kError,
+                    std::vector<StampedPose>* repeated = nullptr);
 
 /// Writes 9 decimals of time and 9 significant digits elsewhere, qw >= 0; `header` lines become
 /// comments (they state the frames and the time of the poses). Throws Error when the disk is full.

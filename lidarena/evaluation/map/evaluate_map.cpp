@@ -47,7 +47,8 @@ std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& 
 
 /// The points of a map that are scored, and what is computed once from them for several gauges.
 struct Subject {
-  std::vector<Eigen::Vector3f> map;
+  std::vector<Eigen::Vector3f> map;  ///< the points that are scored
+  std::size_t map_points;            ///< of the whole map
   const MapReference& reference;
   const Parallel& parallel;
   const IdentifiedMap* identified;
@@ -58,6 +59,7 @@ struct Subject {
           const MapReference& scored_against, const Parallel& workers,
           const IdentifiedMap* with_hits, const PointGrid* of_all)
       : map(sample_of(points, max_points)),
+        map_points(points.size()),
         reference(scored_against),
         parallel(workers),
         identified(with_hits),
@@ -75,6 +77,7 @@ results::MapInGauge measure(const Subject& subject, std::span<const PointScore> 
                             const Pose& mesh_from_map) {
   results::MapInGauge measured;
   static_cast<MapError&>(measured) = map_error(subject.order, scores, subject.map.size());
+  measured.map_points = subject.map_points;
   measured.mesh_from_map = mesh_from_map;
   measured.per_voxel = voxel_error(subject.order, scores);
   measured.ghosting = ghosting(scores, subject.reference.world, subject.parallel);

@@ -19,23 +19,23 @@ constexpr double kDegree = std::numbers::pi / 180.0;
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// Stamps as evo stores them: the double nearest to the decimal seconds.
-std::vector<double> seconds_of(const Trajectory& trajectory) {
+std::vector<double> seconds_of(std::span<const StampedPose> trajectory) {
   std::vector<double> seconds;
   seconds.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory.poses()) {
+  for (const StampedPose& pose : trajectory) {
     // a mantissa of 64 bits holds every count exactly, so that only the division rounds
     seconds.push_back(static_cast<double>(static_cast<long double>(pose.stamp.count()) / 1e9L));
   }
   return seconds;
 }
 
-/// The first index with the minimum of |stamps[i] - t|; `stamps` in ascending order.
+/// The first index with the minimum of |stamps[i] - t|; `stamps` do not decrease.
 std::size_t nearest(const std::vector<double>& stamps, double t) {
   const auto after = std::lower_bound(stamps.begin(), stamps.end(), t);
   if (after == stamps.begin()) return 0;
   const auto i = static_cast<std::size_t>(after - stamps.begin());
-  if (after == stamps.end()) return i - 1;
-  return t - stamps[i - 1] <= stamps[i] - t ? i - 1 : i;
+  if (after != stamps.end() && t - stamps[i - 1] > stamps[i] - t) return i;
+  return static_cast<std::size_t>(std::ranges::lower_bound(stamps, stamps[i - 1]) - stamps.begin());
 }
 
 // --- alignment
@@ -233,12 +233,12 @@ EvoStatistics statistics_of(const std::vector<double>& errors) {
   return s;
 }
 
-std::vector<PosePair> matched(const Trajectory& reference, const Trajectory& estimate,
-                              const EvoOptions& o) {
+std::vector<PosePair> matched(std::span<const StampedPose> reference,
+                              std::span<const StampedPose> estimate, const EvoOptions& o) {
   std::vector<PosePair> pairs;
   for (const auto& [i, j] : evo_association(reference, estimate, o.max_difference_s, o.offset_s)) {
-    const StampedPose& q = reference.poses()[i];
-    pairs.push_back({q.stamp, q.world_from_body, estimate.poses()[j].world_from_body});
+    pairs.push_back(
+        {reference[i].stamp, reference[i].world_from_body, estimate[j].world_from_body});
   }
   if (pairs.empty()) {
     throw InputError(kPlace,
@@ -279,8 +279,9 @@ const char* unit_of(EvoRelation relation) {
   }
 }
 
-IndexPairs evo_association(const Trajectory& reference, const Trajectory& estimate,
-                           double max_difference_s, double offset_s) {
+IndexPairs evo_association(std::span<const StampedPose> reference,
+                           std::span<const StampedPose> estimate, double max_difference_s,
+                           double offset_s) {
   const bool estimate_is_longer = estimate.size() > reference.size();
   const std::vector<double> q = seconds_of(reference);
   const std::vector<double> p = seconds_of(estimate);
@@ -314,7 +315,8 @@ IndexPairs evo_pieces(std::span<const Pose> poses, const EvoOptions& o) {
   return between_marks(marks);
 }
 
-EvoResult compat_evo(const Trajectory& reference, const Trajectory& estimate, const EvoOptions& o) {
+EvoResult compat_evo(std::span<const StampedPose> reference, std::span<const StampedPose> estimate,
+                     const EvoOptions& o) {
   check_options(o);
   const std::vector<PosePair> pairs = matched(reference, estimate, o);
   EvoResult result;

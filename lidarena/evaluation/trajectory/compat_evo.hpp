@@ -85,11 +85,12 @@ struct EvoResult {
   std::vector<double> errors;
 };
 
-/// Scores `estimate` as evo does. Throws InputError where evo refuses: no common stamps, positions
+/// Scores `estimate` as evo does. Rows are in the order of time and may repeat times, which evo
+/// keeps. Throws InputError where evo refuses: no common stamps, positions
 /// to be aligned (the first `n_to_align`) that lie on a line or a point, no pieces, a delta that is
 /// not positive, not a whole number of frames, or above 180 degrees, options that exclude each
 /// other.
-EvoResult compat_evo(const Trajectory& reference, const Trajectory& estimate,
+EvoResult compat_evo(std::span<const StampedPose> reference, std::span<const StampedPose> estimate,
                      const EvoOptions& options);
 
 /// Unit of the errors: "m", "deg", "rad", "%", or "" for the Frobenius norms.
@@ -98,10 +99,9 @@ const char* unit_of(EvoRelation relation);
 /// Pairs of indices (reference, estimate). Each stamp of the trajectory with fewer poses is paired
 /// with the nearest stamp of the other one, if they differ by at most `max_difference_s`; a pose of
 /// the longer trajectory may be paired twice.
-std::vector<std::pair<std::size_t, std::size_t>> evo_association(const Trajectory& reference,
-                                                                 const Trajectory& estimate,
-                                                                 double max_difference_s,
-                                                                 double offset_s);
+std::vector<std::pair<std::size_t, std::size_t>> evo_association(
+    std::span<const StampedPose> reference, std::span<const StampedPose> estimate,
+    double max_difference_s, double offset_s);
 
 /// Pieces of the length given by the options' delta, as pairs of pose indices (begin, end).
 std::vector<std::pair<std::size_t, std::size_t>> evo_pieces(std::span<const Pose> poses,

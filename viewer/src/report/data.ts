@@ -20,11 +20,14 @@ export interface Run {
   preset: string; // with the timing mode of the sensors, if the study sets one
   seed: number;
   status: string;
-  reason: string;
+  lost: string; // why the run is lost, as lidarena/results/lost.hpp defines it; empty if it is not
+  mean_map: boolean; // the points of its own map are means of several returns
   command: string;
   statuses: Record<string, number> | null; // how many scans had which
   coverage_percent: number | null;
-  values: (number | null)[]; // of ReportData.figures
+  values: (number | null)[]; // of ReportData.figures, as measured
+  zero_bounds?: Record<string, number>; // upper bound (%) of a share of which 0 of N points were found, by its figure
+  sampled?: Record<string, [number, number]>; // scored points of how many, where a map was sampled
   own_map?: DistanceHistogram | null; // as published by the algorithm
   all_returns?: DistanceHistogram | null; // the scored returns, placed by the estimated motion
   error?: ErrorsOverTime | null; // after SE(3) alignment
@@ -38,19 +41,34 @@ export interface Sensor {
   facts: { weight_kg?: number; power_max_w?: number; price?: string } | null;
 }
 
-/** What was tried in a world, the best first. */
+/** What combinations are compared by; less is better. */
+export interface Criterion {
+  key: string;
+  label: string;
+  unit: string;
+  weight: number; // by default
+}
+
+/** A combination of sensor and method in a world. */
 export interface Candidate {
   world: string;
   sensor: string;
   algorithm: string;
   preset: string;
-  usable: boolean;
+  runs: number;
+  kept: number; // runs that are not lost
+  values: (number | null)[]; // of the criteria; null: not known or lost
+  cells: Cell[]; // the same as text
+  own_map: Cell;
   verdict: string;
+  on_front: boolean;
+  dominated_by: string;
 }
 
 export interface Cell {
   text: string;
   value?: number;
+  spread?: string;
   reference?: string;
   bold?: boolean;
   underlined?: boolean;
@@ -70,7 +88,8 @@ export interface ReportData {
   made_on: string[];
   figures: FigureInfo[];
   sensors: Sensor[];
-  decision: Candidate[];
+  decision: { criteria: Criterion[]; candidates: Candidate[] };
+  claims: { cells: string[]; better: Record<string, [number, number][]> }; // of cells, by figure: [better, worse]
   reference: { world: string; sensor: string; algorithm: string; figure: string; value: number }[];
   tables: Table[];
   runs: Run[];
@@ -80,12 +99,18 @@ export interface ReportData {
 export const DRIFT = "rpe_1m_at_poses_translation";
 export const MAP_RMSE = "reprojected_map_rmse";
 export const OUTLIERS = "reprojected_map_outliers";
+export const OWN_RMSE = "own_map_rmse";
 export const OWN_OUTLIERS = "own_map_outliers";
-export const LATENCY = "latency_p95";
+export const LIVE_DRIFT = "live_rpe_1m_at_poses_translation";
 export const MEMORY = "own_memory_peak";
-export const REAL_TIME = "real_time_factor";
+export const CPU = "cpu_load";
 
-export function figureOf(data: ReportData, key: string): { info: FigureInfo; of: (run: Run) => number | null } {
+export interface FigureOf {
+  info: FigureInfo;
+  of: (run: Run) => number | null;
+}
+
+export function figureOf(data: ReportData, key: string): FigureOf {
   const index = data.figures.findIndex((figure) => figure.key === key);
   if (index < 0) throw new Error(`the data has no figure ${key}`);
   return { info: data.figures[index], of: (run) => run.values[index] };
@@ -130,28 +155,47 @@ export function fiveNumbers(values: number[]): number[] {
   });
 }
 
-/** A figure over the runs of a cell that succeeded and have it. */
+/** A figure over the runs of a cell: the value of a lost run is infinite, the worst. */
 export interface Spread {
   median: number;
-  min: number;
-  max: number;
-  n: number;
+  best: number;
+  worst: number;
+  bound: number | null; // of a median share of zero
 }
 
-export function spreadOf(runs: Run[], of: (run: Run) => number | null): Spread | null {
-  const values = runs.filter((run) => run.status === "ok").flatMap((run) => of(run) ?? []);
+export const keptOf = (runs: Run[]) => runs.filter((run) => !run.lost);
+
+/** Null where no run that is kept has the figure. */
+export function spreadOf(runs: Run[], { info, of }: FigureOf): Spread | null {
+  const sign = info.more_is_better ? -1 : 1;
+  const known = keptOf(runs).filter((run) => of(run) !== null);
+  if (known.length === 0 && keptOf(runs).length > 0) return null;
+  const worst = Array<number>(runs.length - keptOf(runs).length).fill(sign * Infinity);
+  const values = [...known.map((run) => of(run)!), ...worst].sort((a, b) => sign * (a - b) || 0);
   if (values.length === 0) return null;
-  const [min, , median, , max] = fiveNumbers(values);
-  return { median, min, max, n: values.length };
+  const half = Math.floor(values.length / 2);
+  const median = values.length % 2 === 1 ? values[half] : (values[half - 1] + values[half]) / 2;
+  const bounds = known.flatMap((run) => run.zero_bounds?.[info.key] ?? []);
+  return {
+    median,
+    best: values[0],
+    worst: values[values.length - 1],
+    bound: median === 0 && bounds.length > 0 ? Math.max(...bounds) : null,
+  };
 }
 
-/** A figure with three significant digits, whole numbers in full. */
+/** A figure with three significant digits, whole numbers in full; an infinite one is that of a lost run. */
 export function shown(value: number | null | undefined): string {
-  if (value === null || value === undefined || !Number.isFinite(value)) return "–";
+  if (value === null || value === undefined || Number.isNaN(value)) return "–";
+  if (!Number.isFinite(value)) return "lost";
   if (Number.isInteger(value) && Math.abs(value) < 1e6) return String(value);
   if (Math.abs(value) < 1e-3) return value.toExponential(1);
   return Math.abs(value) >= 100 ? value.toFixed(0) : String(Number(value.toPrecision(3)));
 }
+
+/** The same with the upper bound of a share of zero. */
+export const shownShare = (value: number | null | undefined, bound: number | null | undefined) =>
+  shown(value) + (bound ? ` (below ${shown(bound)})` : "");
 
 export function count(n: number, one: string, many = `${one}s`): string {
   return `${n} ${n === 1 ? one : many}`;

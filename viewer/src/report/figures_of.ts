@@ -1,7 +1,22 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Every chart of a report: the page and the SVG files draw the same ones.
 import { RUN_COLORS } from "../view/colors";
-import { distinct, DRIFT, figureOf, fiveNumbers, label, meanOf, MEMORY, OWN_OUTLIERS, REAL_TIME, type ReportData, type Run } from "./data";
+import {
+  count,
+  CPU,
+  distinct,
+  DRIFT,
+  figureOf,
+  fiveNumbers,
+  keptOf,
+  label,
+  meanOf,
+  MEMORY,
+  OWN_OUTLIERS,
+  spreadOf,
+  type ReportData,
+  type Run,
+} from "./data";
 import { base, binAxis, groups, legendOf, line, panels, sensorColor, timeAxis, valueAxis, type Figure } from "./figure_parts";
 import type { DistanceHistogram } from "./metrics";
 
@@ -21,6 +36,14 @@ export const MEMORY_PARTS = [
 type Of = (run: Run) => number | null;
 const sensorsOf = (runs: Run[]) => distinct(runs, (run) => run.sensor);
 const cellOf = (runs: Run[], algorithm: string, sensor: string) => runs.filter((run) => label(run) === algorithm && run.sensor === sensor);
+
+/** Says that some of the runs are not in a chart. */
+const absent = (all: Run[], drawn: Run[]) =>
+  drawn.length < all.length
+    ? ` Not drawn, as lost or without the figure: ${all.length - drawn.length} of ${count(all.length, "run")}.`
+    : "";
+
+const inWorld = (runs: Run[], world: string) => runs.filter((run) => run.world === world);
 
 /** The shares of the bins and of what lies beyond them, %. */
 function sharesOf({ counts, beyond }: DistanceHistogram): number[] {
@@ -73,7 +96,8 @@ function histograms(all: Run[], world: string, kind: "own_map" | "all_returns"):
       `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar is the share beyond ${bins} cm (yellow line). ` +
       (own
         ? "The map is the one that the algorithm publishes."
-        : "The map consists of the scored returns (at most 20,000 a scan), placed by the estimated motion."),
+        : "The map consists of the scored returns (at most 20,000 a scan), placed by the estimated motion.") +
+      absent(inWorld(all, world), runs),
     names: algorithms,
     legend: sensors,
     columns: 4,
@@ -148,7 +172,7 @@ const colorOf = (algorithms: string[], run: Run) => RUN_COLORS[algorithms.indexO
 /** RPE over flights and seeds: boxes with every run as a dot. */
 function spread(data: ReportData, all: Run[], world: string): Figure | null {
   const { of } = figureOf(data, DRIFT);
-  const runs = all.filter((run) => run.world === world && of(run) !== null);
+  const runs = keptOf(inWorld(all, world)).filter((run) => of(run) !== null);
   const [algorithms, sensors] = [distinct(runs, label), sensorsOf(runs)];
   if (!algorithms.some((algorithm) => sensors.some((sensor) => cellOf(runs, algorithm, sensor).length > 1))) return null;
   const values = (algorithm: string, sensor: string) => cellOf(runs, algorithm, sensor).map((run) => of(run)!);
@@ -173,7 +197,8 @@ function spread(data: ReportData, all: Run[], world: string): Figure | null {
       title: `Spread over flights and seeds, ${world}`,
       world,
       caption:
-        "RPE over 1 m of each flight and seed: every run is a dot; boxes reach from the lower to the upper quartile with the median, whiskers to the extremes.",
+        "RPE over 1 m of each flight and seed: every run is a dot; boxes reach from the lower to the upper quartile with the median, whiskers to the extremes." +
+        absent(inWorld(all, world), runs),
     },
     algorithms,
     sensors,
@@ -185,7 +210,7 @@ function spread(data: ReportData, all: Run[], world: string): Figure | null {
 /** Error against cost, with the Pareto front: the runs for which no other run is better in both. */
 function pareto(data: ReportData, all: Run[], id: string, title: string, cost: Of, axis: string): Figure | null {
   const { of } = figureOf(data, DRIFT);
-  const runs = all.filter((run) => of(run) !== null && cost(run) !== null);
+  const runs = keptOf(all).filter((run) => of(run) !== null && cost(run) !== null);
   if (runs.length < 2) return null;
   const [algorithms, sensors] = [distinct(runs, label), sensorsOf(runs)];
   const legendHeight = 23 * Math.ceil(algorithms.length / 3);
@@ -215,7 +240,8 @@ function pareto(data: ReportData, all: Run[], id: string, title: string, cost: O
     width: 560,
     height: 360 + legendHeight,
     caption:
-      "Every run of every world: the color shows the algorithm, the shape the sensor. Lower left is better; the gray steps join the runs for which no other run is better in both.",
+      "Every run of every world: the color shows the algorithm, the shape the sensor. Lower left is better; the gray steps join the runs for which no other run is better in both." +
+      absent(all, runs),
     option: {
       ...base(title),
       legend: legendOf(algorithms, { top: 24 }),
@@ -241,12 +267,14 @@ function firstSeed(runs: Run[]): Run[] {
 
 /** Outlier shares as bars, one group per algorithm. */
 function outliers(data: ReportData, all: Run[], world: string): Figure | null {
-  const { of } = figureOf(data, OWN_OUTLIERS);
-  const runs = all.filter((run) => run.world === world && of(run) !== null);
-  if (runs.length === 0) return null;
+  const figure = figureOf(data, OWN_OUTLIERS);
+  const runs = inWorld(all, world);
+  if (!runs.some((run) => figure.of(run) !== null)) return null;
   const [algorithms, sensors] = [distinct(runs, label), sensorsOf(runs)];
-  const share = (same: Run[]) =>
-    same.length === 0 ? null : Number(Math.max(MIN_OUTLIERS_PERCENT, meanOf(same.map((run) => [of(run)!]))[0]).toPrecision(4));
+  const share = (same: Run[]) => {
+    const median = spreadOf(same, figure)?.median;
+    return median === undefined ? null : Number(Math.min(100, Math.max(MIN_OUTLIERS_PERCENT, median)).toPrecision(4));
+  };
   const bars = sensors.map((sensor) => ({
     type: "bar",
     name: sensor,
@@ -254,7 +282,8 @@ function outliers(data: ReportData, all: Run[], world: string): Figure | null {
     itemStyle: { color: sensorColor(sensor, sensors) },
     data: algorithms.map((algorithm) => share(cellOf(runs, algorithm, sensor))),
   }));
-  const caption = "Share of the published map's points farther than 20 cm from the mesh, mean over seeds, on a logarithmic scale.";
+  const caption =
+    "Share of the published map's points farther than 20 cm from the mesh, median over flights and seeds, on a logarithmic scale; 100 %: lost.";
   const yAxis = valueAxis(0, "%", { nameGap: 40, type: "log", min: MIN_OUTLIERS_PERCENT, max: 100, startValue: MIN_OUTLIERS_PERCENT });
   return groups({ id: `outliers-${world}`, title: `Points beyond 20 cm, ${world}`, caption, world }, algorithms, sensors, yAxis, bars, {
     trigger: "axis",
@@ -263,8 +292,6 @@ function outliers(data: ReportData, all: Run[], world: string): Figure | null {
 
 /** The charts of `runs`, world by world. */
 export function figuresOf(data: ReportData, runs: Run[]): Figure[] {
-  const factor = figureOf(data, REAL_TIME).of;
-  const computing = (run: Run) => (factor(run) ? 1 / factor(run)! : null);
   const ofWorld = (world: string) => [
     histograms(runs, world, "own_map"),
     histograms(runs, world, "all_returns"),
@@ -275,7 +302,7 @@ export function figuresOf(data: ReportData, runs: Run[]): Figure[] {
   ];
   return [
     ...distinct(runs, (run) => run.world).flatMap(ofWorld),
-    pareto(data, runs, "pareto-cpu", "Error against computing time", computing, "computing, s per s of flight"),
+    pareto(data, runs, "pareto-cpu", "Error against CPU time", figureOf(data, CPU).of, "CPU time, % of one core"),
     pareto(data, runs, "pareto-memory", "Error against memory", figureOf(data, MEMORY).of, "memory of the algorithm, MB"),
   ].filter((figure): figure is Figure => figure !== null);
 }

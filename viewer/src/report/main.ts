@@ -5,9 +5,10 @@ import "./report.css";
 import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
-import { cellOf, distinct, label, LATENCY, type ReportData, type Run, type Table } from "./data";
+import { cellOf, distinct, label, type ReportData, type Run, type Table } from "./data";
+import { decision } from "./decision";
 import { figuresOf } from "./figures_of";
-import { answer, bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
+import { bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
 import { RunView } from "./run_view";
 import { drawn } from "./save";
 import { pictureSvg, placePictures, type WorldScene } from "./scenes";
@@ -18,8 +19,10 @@ import { followTheme } from "./theme";
 const DEFINITIONS =
   "Drift (RPE): the true path is cut into segments of 1 m that begin and end at estimated poses; in each, the estimated motion is compared with the true one; " +
   "root mean square over all segments. ATE: distance between the two paths after aligning them. Map: point-to-mesh distance to the same mesh that was scanned, of " +
-  "the method's own map or of all returns, placed along the estimated path. All figures are those of the final trajectory; metrics.json in each run's folder also " +
-  "holds those of the live trajectory, of other segment lengths and alignments, and the id of each definition. A run that failed stays in the tables with its reason.";
+  "the method's own map or of all returns, placed along the estimated path. Figures are those of the final trajectory unless they are called live; metrics.json in each run's folder also " +
+  "holds those of other segment lengths and alignments, and the id of each definition. A run is lost if it has no scored result, if more than half of its own map " +
+  "lies beyond 20 cm, or if it drifts by more than 1 m per m; it counts as the worst run of its cell everywhere. CPU time is that of all threads; 100 % is one core. " +
+  "A share of 0 of N points has the upper bound 3/N, as if points were independent.";
 
 const marks = document.documentElement.dataset; // read by tests only
 const jsonOf = <T>(id: string) => JSON.parse(document.getElementById(id)!.textContent!) as T;
@@ -89,8 +92,9 @@ class Report implements Page {
       for (const part of this.scenesSection.querySelectorAll<HTMLElement>("[data-world]"))
         part.hidden = !worlds.includes(part.dataset.world!);
       this.lists.replaceChildren(...this.listsOfRuns());
-    } else if (changed.includes("figure")) {
-      document.getElementById("matrix")!.replaceWith(matrix(this));
+    } else {
+      if (changed.includes("figure")) document.getElementById("matrix")!.replaceWith(matrix(this));
+      if (changed.includes("weights")) document.getElementById("decision")!.replaceWith(decision(this));
     }
     if (changed.includes("run")) this.showRun();
   }
@@ -103,7 +107,7 @@ class Report implements Page {
       this.navigation(),
     );
     const seen = element("div", { className: "seen" });
-    this.overview.replaceChildren(answer(this), seen, matrix(this));
+    this.overview.replaceChildren(decision(this), seen, matrix(this));
     bestAndWorst(this).then((picture) => {
       if (picture) seen.replaceWith(picture);
       else seen.remove();
@@ -220,18 +224,16 @@ class Report implements Page {
     const columns = this.data.figures
       .map((figure, i) => ({ ...figure, i }))
       .filter(({ i }) => this.runs.some((run) => run.values[i] !== null));
-    const main = columns.filter(
-      ({ key }) =>
-        /^(rpe_1m_at|ate_se3_translation|own_map_(rmse|outliers)$|reprojected_map_(rmse|outliers)$|real|own_memory_peak)/.test(key) ||
-        key === LATENCY,
+    const main = columns.filter(({ key }) =>
+      /^((live_)?rpe_1m_at|ate_se3_translation|own_map_(rmse|outliers)$|reprojected_map_(rmse|outliers)$|cpu|own_memory_peak)/.test(key),
     );
-    const bad = this.runs.filter((run) => run.status !== "ok");
+    const bad = this.runs.filter((run) => run.lost);
     const failed: ShownTable = {
       id: "failures",
-      title: "Runs that did not succeed",
+      title: "Runs that are lost",
       note: "",
       head: ["run", "state", "reason"],
-      rows: bad.map((run) => [open(run), word(run.status), word(run.reason)]),
+      rows: bad.map((run) => [open(run), word(run.status === "ok" ? "lost" : run.status), word(run.lost)]),
     };
     const all: ShownTable = {
       id: "runs",
@@ -255,9 +257,9 @@ class Report implements Page {
         word(run.sensor),
         word(label(run)),
         number(run.seed),
-        word(run.status),
+        word(run.lost ? (run.status === "ok" ? "lost" : run.status) : "ok"),
         number(run.coverage_percent),
-        ...main.map(({ i }) => number(run.values[i])),
+        ...main.map(({ i, key }) => number(run.values[i], run.zero_bounds?.[key])),
       ]),
     };
     return [element("h2", {}, "Runs"), bad.length > 0 ? tableElement(failed) : "", tableElement(all)];

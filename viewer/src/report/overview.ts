@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The first screen: what was compared, which combination to use and what would change that, the figures of all
-// combinations, and the same place as the best and the worst of them map it.
+// The first screen: what was compared, the figures of all combinations, and the same place as the run with the lowest and
+// that with the highest map error map it. decision.ts says which combination to use.
 import { button, element } from "../view/elements";
 import {
   cellOf,
   count,
+  CPU,
   distinct,
   DRIFT,
   figureOf,
   grouped,
+  keptOf,
   label,
-  LATENCY,
   MAP_RMSE,
   MEMORY,
   OUTLIERS,
-  REAL_TIME,
+  OWN_OUTLIERS,
+  OWN_RMSE,
   shown,
+  shownShare,
   spreadOf,
-  type Candidate,
   type FigureInfo,
   type ReportData,
   type Run,
-  type Sensor,
-  type Spread,
 } from "./data";
 import { drawn, saveCsv } from "./save";
 import { commonBox, mapPicture, pictureSvg, sceneOf, type WorldScene } from "./scenes";
@@ -30,13 +30,13 @@ import type { Settings } from "./settings";
 
 const SWITCH: [string, string][] = [
   [DRIFT, "drift"],
-  [MAP_RMSE, "map RMSE"],
-  [OUTLIERS, "outliers"],
-  [REAL_TIME, "CPU"],
+  [OWN_RMSE, "own map"],
+  [MAP_RMSE, "all returns"],
+  [OWN_OUTLIERS, "outliers, own map"],
+  [OUTLIERS, "outliers, all returns"],
+  [CPU, "CPU"],
   [MEMORY, "memory"],
 ];
-const SIMILAR = 1.1; // ratio below which two map errors count as equal
-const MAX_REASONS = 3;
 
 export interface Page {
   data: ReportData;
@@ -51,145 +51,10 @@ export function compared({ runs }: Page): string {
   const [sensors, methods, worlds] = [distinct(runs, (r) => r.sensor), distinct(runs, label), distinct(runs, (r) => r.world)];
   const flights = distinct(runs, (run) => `${run.world} ${run.flight}`).length;
   const seeds = distinct(runs, (run) => run.seed).length;
-  const good = runs.filter((run) => run.status === "ok").length;
   return (
     `${count(sensors.length, "LiDAR")}${names(sensors)} with ${count(methods.length, "SLAM method")} in ` +
     `${count(worlds.length, "world")}${names(worlds)}, ${count(flights, "flight")}, ${count(seeds, "seed")}: ` +
-    `${good} of ${count(runs.length, "run")} succeeded.`
-  );
-}
-
-// --- the answer
-
-function factsOf(sensor: Sensor | undefined): string {
-  const { weight_kg, power_max_w, price } = sensor?.facts ?? {};
-  const words = [weight_kg ? `${weight_kg} kg` : "", power_max_w ? `up to ${power_max_w} W` : "", price ?? ""].filter((word) => word);
-  return words.length > 0 ? ` (${words.join(", ")})` : "";
-}
-
-interface Tried {
-  candidate: Candidate;
-  runs: Run[];
-  map: Spread | null;
-}
-
-const range = ({ min, max, n }: Spread) => (n > 1 ? ` (${shown(min)} – ${shown(max)} in ${n} runs)` : "");
-const overlap = (a: Spread, b: Spread) => a.n > 1 && b.n > 1 && a.min <= b.max && b.min <= a.max;
-
-class Answer {
-  private tried: Tried[];
-  constructor(
-    private page: Page,
-    private world: string,
-  ) {
-    const { data, runs } = page;
-    const map = figureOf(data, MAP_RMSE).of;
-    const cells = grouped(
-      runs.filter((run) => run.world === world),
-      cellOf,
-    );
-    this.tried = data.decision
-      .filter((candidate) => candidate.world === world)
-      .map((candidate) => ({ candidate, runs: cells.get(cellOf(candidate)) ?? [] }))
-      .filter((tried) => tried.runs.length > 0)
-      .map((tried) => ({ ...tried, map: spreadOf(tried.runs, map) }));
-  }
-
-  element(): HTMLElement {
-    const best = this.tried[0];
-    const head = (text: string) => element("p", { className: "verdict" }, element("b", {}, `${this.world}: `), text);
-    if (!best) return head("no run passes the filters.");
-    if (!this.tried.some(({ map }) => map)) return head("no run has a scored map.");
-    if (!best.candidate.usable) {
-      return head(
-        `nothing that was tried keeps tracking in real time. Closest is ${this.name(best)} (${best.candidate.verdict}): ${this.figures(best)}.`,
-      );
-    }
-    const use = head("use the ");
-    use.append(
-      element("b", {}, best.candidate.sensor),
-      this.facts(best),
-      " with ",
-      element("b", {}, label(best.candidate)),
-      `: ${this.figures(best)}.`,
-    );
-    return element("div", {}, use, element("ul", { className: "changes" }, ...this.changes(best).map((text) => element("li", {}, text))));
-  }
-
-  private name = ({ candidate }: Tried) => `${candidate.sensor} with ${label(candidate)}`;
-  private facts = ({ candidate }: Tried) => factsOf(this.page.data.sensors.find(({ name }) => name === candidate.sensor));
-
-  private period({ candidate, runs }: Tried): number | null {
-    const latency = spreadOf(runs, figureOf(this.page.data, LATENCY).of);
-    const lidar = this.page.data.sensors.find(({ name }) => name === candidate.sensor)?.lidar;
-    return latency && lidar ? 0.1 * latency.median * lidar.rate_hz : null;
-  }
-
-  private figures(tried: Tried): string {
-    const { data } = this.page;
-    const drift = spreadOf(tried.runs, figureOf(data, DRIFT).of);
-    const memory = spreadOf(tried.runs, figureOf(data, MEMORY).of);
-    const good = tried.runs.filter((run) => run.status === "ok").length;
-    return [
-      tried.map ? `map RMSE ${shown(tried.map.median)} cm${range(tried.map)}` : "",
-      drift ? `drift ${shown(drift.median)} cm per m${range(drift)}` : "",
-      this.period(tried) === null ? "" : `95 % of the scans within ${this.period(tried)!.toFixed(0)} % of their period`,
-      memory ? `${shown(memory.median)} MB` : "",
-      `tracking kept in ${good} of ${count(tried.runs.length, "run")}`,
-    ]
-      .filter((text) => text)
-      .join("; ");
-  }
-
-  /** What would make another choice right. */
-  private changes(best: Tried): string[] {
-    const usable = this.tried.filter((tried) => tried.candidate.usable);
-    const reasons: string[] = [];
-    const times = (tried: Tried) => (best.map && tried.map && best.map.median > 0 ? tried.map.median / best.map.median : NaN);
-    const error = (tried: Tried) => `${shown(times(tried))} times the map RMSE (${shown(tried.map?.median)} cm)`;
-    const next = usable[1];
-    if (next?.map && best.map && overlap(next.map, best.map)) {
-      reasons.push(`${this.name(next)} lies within its spread over runs: more seeds would tell them apart.`);
-    } else if (next) {
-      const close = times(next) < SIMILAR ? "about the same map error, so that weight, price and computing time decide" : error(next);
-      reasons.push(`Next is ${this.name(next)}: ${close}.`);
-    }
-    for (const sensor of distinct(this.tried, (tried) => tried.candidate.sensor).filter((name) => name !== best.candidate.sensor)) {
-      const other = usable.find((tried) => tried.candidate.sensor === sensor);
-      const any = this.tried.find((tried) => tried.candidate.sensor === sensor)!;
-      if (other && other === next) continue;
-      reasons.push(
-        other
-          ? `With the ${sensor}${this.facts(other)}: ${label(other.candidate)}, ${error(other)}.`
-          : `With the ${sensor}${this.facts(any)} no method keeps tracking in real time.`,
-      );
-    }
-    const slow = this.tried.find((tried) => tried.candidate.verdict.startsWith("too slow") && times(tried) < 1);
-    if (slow)
-      reasons.push(`On a machine ${shown(this.period(slow)! / 100)} times as fast, ${this.name(slow)} would be better: ${error(slow)}.`);
-    return reasons.slice(0, MAX_REASONS);
-  }
-}
-
-export function answer(page: Page): HTMLElement {
-  const worlds = distinct(page.runs, (run) => run.world);
-  const single = distinct(page.runs, (run) => `${run.world}|${cellOf(run)}`).length === page.runs.length;
-  return element(
-    "div",
-    { className: "answer" },
-    element("h2", {}, "Which LiDAR, which SLAM"),
-    element(
-      "div",
-      { className: "verdicts" },
-      ...worlds.map((world) => new Answer(page, world).element()),
-      element(
-        "p",
-        { className: "note" },
-        "Usable is what keeps tracking in every run (less than half of the map beyond 20 cm) and processes 95 % of the scans " +
-          "within their period, over all flights and seeds; of that, the lowest map RMSE." +
-          (single ? " One run each: how much these figures vary over seeds is not known." : ""),
-      ),
-    ),
+    `${keptOf(runs).length} of ${count(runs.length, "run")} kept tracking.`
   );
 }
 
@@ -208,71 +73,111 @@ function heat(value: number, values: number[], info: FigureInfo): string {
 
 /** Of the runs of a cell, the one to open: one with a map in the page, near the median. */
 function runToOpen(page: Page, runs: Run[]): Run {
-  const { of } = figureOf(page.data, page.settings.figure);
-  const middle = spreadOf(runs, of)?.median ?? 0;
-  const far = (run: Run) => (sceneOf(page.scenes, run) ? 0 : 1e9) + Math.abs((of(run) ?? 1e6) - middle);
+  const figure = figureOf(page.data, page.settings.figure);
+  const median = spreadOf(runs, figure)?.median ?? 0;
+  const middle = Number.isFinite(median) ? median : 0;
+  const far = (run: Run) => (sceneOf(page.scenes, run) ? 0 : 1e9) + Math.abs((figure.of(run) ?? 1e6) - middle);
   return [...runs].sort((a, b) => far(a) - far(b))[0];
 }
 
-function failures(runs: Run[]): string {
-  const bad = runs.filter((run) => run.status !== "ok");
-  return distinct(bad, (run) => run.status)
-    .map((status) => `${bad.filter((run) => run.status === status).length} ${status}`)
+/** "2 diverged, 1 lost" */
+function losses(runs: Run[]): string {
+  const state = (run: Run) => (run.status === "ok" ? "lost" : run.status);
+  const bad = runs.filter((run) => run.lost);
+  return distinct(bad, state)
+    .map((name) => `${bad.filter((run) => state(run) === name).length} ${name}`)
     .join(", ");
+}
+
+interface MatrixCell {
+  runs: Run[];
+  spread: ReturnType<typeof spreadOf>;
+}
+
+/** The cell that a test over the whole study calls better than every other one in sight; filters that hide runs of a cell hide it. */
+function claimedBest({ data, settings }: Page, cells: MatrixCell[]): string | null {
+  const all = grouped(data.runs, cellOf);
+  const names = cells.map(({ runs }) => cellOf(runs[0]));
+  if (names.length < 2 || cells.some(({ runs }) => runs.length !== all.get(cellOf(runs[0]))!.length)) return null;
+  const better = data.claims.better[settings.figure] ?? [];
+  const beats = (a: string, b: string) => better.some(([i, j]) => data.claims.cells[i] === a && data.claims.cells[j] === b);
+  return names.find((name) => names.every((other) => other === name || beats(name, other))) ?? null;
+}
+
+function matrixCell(page: Page, { runs, spread }: MatrixCell, values: number[], best: string | null): HTMLElement {
+  if (runs.length === 0) return element("td", { className: "none", title: "not tried" });
+  const { info } = figureOf(page.data, page.settings.figure);
+  const worlds = distinct(page.runs, (run) => run.world);
+  const fits = (pattern: string, name: string) => !pattern || pattern === name;
+  const published = page.data.reference.find(
+    (reference) =>
+      worlds.length === 1 &&
+      reference.figure === info.key &&
+      fits(reference.world, worlds[0]) &&
+      fits(reference.sensor, runs[0].sensor) &&
+      fits(reference.algorithm, runs[0].algorithm),
+  );
+  const open = button("", `open a run of ${runs[0].sensor} with ${label(runs[0])}`, () => page.change({ run: runToOpen(page, runs).name }));
+  open.append(
+    element("span", { className: "value" }, shownShare(spread?.median, spread?.bound)),
+    element(
+      "span",
+      { className: "range" },
+      spread && runs.length > 1 ? `${shown(spread.best)} – ${shown(spread.worst)}` : "",
+      element("span", { className: "runs" }, `${keptOf(runs).length} of ${runs.length}`),
+    ),
+  );
+  const bad = losses(runs);
+  if (bad) open.append(element("span", { className: "bad" }, `✕ ${bad}`));
+  if (published) open.append(element("span", { className: "reference" }, `published ${published.value}`));
+  const cell = element("td", { className: (bad ? "failed" : "") + (cellOf(runs[0]) === best ? " best" : "") }, open);
+  if (spread) {
+    cell.dataset.median = shown(spread.median) === "lost" ? "lost" : String(spread.median);
+    if (Number.isFinite(spread.median)) cell.style.backgroundColor = heat(spread.median, values, info);
+  }
+  cell.dataset.cell = cellOf(runs[0]);
+  return cell;
+}
+
+/** What the reader must know of the figures in sight: the marks, which maps are means or samples. */
+function matrixNote({ data, runs, settings }: Page, best: string | null): string {
+  const { info } = figureOf(data, settings.figure);
+  const means = settings.figure.startsWith("own_map")
+    ? distinct(
+        keptOf(runs).filter((run) => run.mean_map),
+        (run) => run.algorithm,
+      )
+    : [];
+  const sampled = runs.flatMap((run) => (run.sampled?.[info.key] ? [run.sampled[info.key]] : []));
+  const most = sampled.sort((a, b) => b[1] - a[1])[0];
+  return (
+    `${info.label}${info.unit ? `, ${info.unit}` : ""}: median, range from the best run to the worst, and how many runs kept tracking; a lost run is the ` +
+    `worst of its cell. ${info.more_is_better ? "Large" : "Small"} is good: blue is the best median, orange the worst; hatched: runs are lost. ` +
+    (best
+      ? "Framed: better than every other one by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction. "
+      : "None is framed: no combination in sight is better than every other one by the test (at least 16 pairs of runs, 5 %). ") +
+    (means.length > 0 ? `The points of the own maps of ${means.join(", ")} are means of several returns, which removes noise. ` : "") +
+    (most ? `Of large maps a sample is scored (${most[0]} of ${most[1]} points). ` : "") +
+    "A click opens a run."
+  );
 }
 
 export function matrix(page: Page): HTMLElement {
   const { data, runs, settings } = page;
-  const { info, of } = figureOf(data, settings.figure);
-  const worlds = distinct(runs, (run) => run.world);
+  const figure = figureOf(data, settings.figure);
+  const { info } = figure;
   const sensors = distinct(runs, (run) => run.sensor);
   const methods = distinct(runs, label);
   const byCell = grouped(runs, cellOf);
   const cells = sensors.map((sensor) =>
-    methods.map((method) => {
+    methods.map((method): MatrixCell => {
       const inCell = byCell.get(`${sensor}|${method}`) ?? [];
-      return { inCell, spread: spreadOf(inCell, of) };
+      return { runs: inCell, spread: spreadOf(inCell, figure) };
     }),
   );
-  const values = cells.flat().flatMap(({ spread }) => spread?.median ?? []);
-  const best = info.more_is_better ? Math.max(...values) : Math.min(...values);
-  const cellElement = ({ inCell, spread }: (typeof cells)[0][0]) => {
-    if (inCell.length === 0) return element("td", { className: "none", title: "not tried" });
-    const published =
-      worlds.length === 1 &&
-      data.reference.find(
-        (reference) =>
-          reference.figure === info.key &&
-          [
-            [reference.world, worlds[0]],
-            [reference.sensor, inCell[0].sensor],
-            [reference.algorithm, inCell[0].algorithm],
-          ].every(([a, b]) => !a || a === b),
-      );
-    const bad = failures(inCell);
-    const good = inCell.length - inCell.filter((run) => run.status !== "ok").length;
-    const open = button("", `open a run of ${inCell[0].sensor} with ${label(inCell[0])}`, () =>
-      page.change({ run: runToOpen(page, inCell).name }),
-    );
-    open.append(
-      element("span", { className: "value" }, spread ? shown(spread.median) : bad ? "✕" : "–"),
-      element(
-        "span",
-        { className: "range" },
-        spread && spread.n > 1 ? `${shown(spread.min)} – ${shown(spread.max)}` : "",
-        element("span", { className: "runs" }, `${good} of ${inCell.length}`),
-      ),
-    );
-    if (bad) open.append(element("span", { className: "bad" }, `✕ ${bad}`));
-    if (published) open.append(element("span", { className: "reference" }, `published ${published.value}`));
-    const cell = element("td", { className: (bad ? "failed" : "") + (spread?.median === best ? " best" : "") }, open);
-    if (spread) {
-      cell.dataset.median = String(spread.median);
-      cell.style.backgroundColor = heat(spread.median, values, info);
-    }
-    cell.dataset.cell = cellOf(inCell[0]);
-    return cell;
-  };
+  const tried = cells.flat().filter((cell) => cell.runs.length > 0);
+  const values = tried.flatMap(({ spread }) => (spread && Number.isFinite(spread.median) ? [spread.median] : []));
+  const best = claimedBest(page, tried);
   const table = element(
     "table",
     {},
@@ -281,37 +186,27 @@ export function matrix(page: Page): HTMLElement {
       "tbody",
       {},
       ...sensors.map((sensor, i) =>
-        element("tr", {}, element("th", { scope: "row" }, sensor), ...cells[i].map((cell) => cellElement(cell))),
+        element("tr", {}, element("th", { scope: "row" }, sensor), ...cells[i].map((cell) => matrixCell(page, cell, values, best))),
       ),
     ),
   );
   const csv = () =>
     saveCsv(`matrix-${info.key}`, [
-      ["sensor", "method", `median, ${info.unit}`, "min", "max", "succeeded", "runs"],
-      ...cells
-        .flat()
-        .filter(({ inCell }) => inCell.length > 0)
-        .map(({ inCell, spread }) => [
-          inCell[0].sensor,
-          label(inCell[0]),
-          spread?.median,
-          spread?.min,
-          spread?.max,
-          inCell.filter((run) => run.status === "ok").length,
-          inCell.length,
-        ]),
+      ["sensor", "method", `median, ${info.unit}`, "best", "worst", "kept", "runs"],
+      ...tried.map(({ runs: same, spread }) => [
+        same[0].sensor,
+        label(same[0]),
+        ...[spread?.median, spread?.best, spread?.worst].map((value) => (value && !Number.isFinite(value) ? "lost" : value)),
+        keptOf(same).length,
+        same.length,
+      ]),
     ]);
   return element(
     "div",
     { className: "matrix", id: "matrix" },
     figureSwitch(page, csv),
     element("div", { className: "scroll" }, table),
-    element(
-      "p",
-      { className: "note" },
-      `${info.label}${info.unit ? `, ${info.unit}` : ""}: median, range, and how many runs succeeded; ` +
-        `${info.more_is_better ? "large" : "small"} is good: blue is the best, orange the worst, framed the very best; hatched: runs failed. A click opens a run.`,
-    ),
+    element("p", { className: "note" }, matrixNote(page, best)),
   );
 }
 
@@ -341,20 +236,21 @@ function figureSwitch({ data, settings, change }: Page, csv: () => void): HTMLEl
 
 // --- the picture
 
-/** The maps with the lowest and the highest RMSE of the first world that has two. */
+/** The maps with the lowest and the highest RMSE of the first world that has two; lost runs have the highest. */
 export async function bestAndWorst(page: Page): Promise<HTMLElement | null> {
   const map = figureOf(page.data, MAP_RMSE).of;
   for (const world of distinct(page.runs, (run) => run.world)) {
     const known = page.runs.filter((run) => run.world === world && map(run) !== null && sceneOf(page.scenes, run));
     if (known.length < 2) continue;
-    const sorted = [...known].sort((a, b) => map(a)! - map(b)!);
+    const rank = (run: Run) => map(run)! + (run.lost ? 1e9 : 0);
+    const sorted = [...known].sort((a, b) => rank(a) - rank(b));
     const scene = sceneOf(page.scenes, sorted[0])!;
     const [best, worst] = [sorted[0], sorted[sorted.length - 1]];
     const full_m = Math.min(0.2, Math.ceil(2 * map(worst)!) / 100);
     const pictures = await Promise.all([best, worst].map((run) => mapPicture(scene, run, { width: 380, maxHeight: 300, full_m })));
     const box = await commonBox(scene, pictures);
     const figures = [best, worst].map((run, i) => {
-      const title = `${["best", "worst"][i]}: ${run.sensor}, ${label(run)}: ${shown(map(run))} cm`;
+      const title = `${["lowest", "highest"][i]}: ${run.sensor}, ${label(run)}: ${shown(map(run))} cm`;
       const svg = pictureSvg({ ...pictures[i], view: { ...pictures[i].view, title, box } });
       const open = button("", `open ${run.name}`, () => page.change({ run: run.name }));
       return drawn(pictures[i].id, svg, open);
@@ -362,7 +258,7 @@ export async function bestAndWorst(page: Page): Promise<HTMLElement | null> {
     return element(
       "div",
       { className: "seen" },
-      element("h2", {}, `The same place, ${world}, as the best and the worst map it`),
+      element("h2", {}, `The same place, ${world}: the runs with the lowest and the highest map RMSE`),
       element("div", { className: "pair" }, ...figures),
       colorKey(full_m),
     );

@@ -6,7 +6,22 @@ import { pathOf } from "../view/points";
 import { initialState } from "../view/state";
 import { View } from "../view/view";
 import { ChartBox, type Chart } from "./chart_box";
-import { cellOf, DRIFT, figureOf, label, LATENCY, MAP_RMSE, MEMORY, OUTLIERS, shown, type Run } from "./data";
+import {
+  cellOf,
+  CPU,
+  DRIFT,
+  figureOf,
+  label,
+  LIVE_DRIFT,
+  MAP_RMSE,
+  MEMORY,
+  OUTLIERS,
+  OWN_OUTLIERS,
+  OWN_RMSE,
+  shown,
+  shownShare,
+  type Run,
+} from "./data";
 import type { Page } from "./overview";
 import { fastTurns, runCharts } from "./run_charts";
 import { headerOfRuns, mapPicture, pictureSvg, sceneOf } from "./scenes";
@@ -23,7 +38,7 @@ const FILES = [
   "resources.csv",
 ];
 
-const MAIN_FIGURES = [DRIFT, MAP_RMSE, OUTLIERS, LATENCY, MEMORY];
+const MAIN_FIGURES = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE, OWN_OUTLIERS, OUTLIERS, CPU, MEMORY];
 
 export class RunView {
   readonly root = element("section", { id: "run", className: "run", tabIndex: -1 });
@@ -59,7 +74,6 @@ export class RunView {
     choose.onchange = () => page.change({ run: choose.value });
     const close = button("Close", "close this run (Escape)", () => page.change({ run: "" }));
     this.root.addEventListener("keydown", (event) => event.key === "Escape" && page.change({ run: "" }));
-    const good = run.status === "ok";
     return element(
       "div",
       { className: "head" },
@@ -69,8 +83,8 @@ export class RunView {
       close,
       element(
         "p",
-        { className: good ? "status" : "status bad" },
-        good ? "succeeded" : `✕ ${run.status}: ${run.reason}`,
+        { className: run.lost ? "status bad" : "status" },
+        run.lost ? `✕ ${run.lost}` : "kept tracking",
         run.statuses
           ? `; scans: ${Object.entries(run.statuses)
               .map(([name, n]) => `${n} ${name}`)
@@ -84,7 +98,14 @@ export class RunView {
 
   private mainFigures(): string {
     const known = MAIN_FIGURES.map((key) => figureOf(this.page.data, key)).filter(({ of }) => of(this.run) !== null);
-    return known.map(({ info, of }) => `${info.label} ${shown(of(this.run))} ${info.unit}`).join("; ");
+    const { run } = this;
+    const words = known.map(({ info, of }) => {
+      const means = run.mean_map && info.key === OWN_RMSE ? " (of means of several returns)" : "";
+      const sample = run.sampled?.[info.key];
+      const scored = sample ? ` (${sample[0]} of ${sample[1]} points)` : "";
+      return `${info.label} ${shownShare(of(run), run.zero_bounds?.[info.key])} ${info.unit}${means}${scored}`;
+    });
+    return words.join("; ");
   }
 
   /** Chooses a second run to be shown beside this one. */

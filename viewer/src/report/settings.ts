@@ -18,6 +18,7 @@ export interface Settings {
   filters: Partial<Record<FilterName, string>>; // a name that is missing: all
   figure: string; // key, of the matrix
   run: string; // name of the opened run, or ""
+  weights: Record<string, number>; // of the criteria of the decision; one that is missing: the default
 }
 
 export function readSettings(hash: string, data: ReportData): Settings {
@@ -28,13 +29,19 @@ export function readSettings(hash: string, data: ReportData): Settings {
     if (value !== null && data.runs.some((run) => FILTERS[name](run) === value)) filters[name] = value;
   }
   const figure = data.figures.find(({ key }) => key === given.get("figure"))?.key ?? DRIFT;
-  return { filters, figure, run: data.runs.find((run) => run.name === given.get("run"))?.name ?? "" };
+  const weights: Settings["weights"] = {};
+  for (const { key } of data.decision.criteria) {
+    const value = Number(given.get(`weight-${key}`) ?? NaN);
+    if (value >= 0) weights[key] = value;
+  }
+  return { filters, figure, weights, run: data.runs.find((run) => run.name === given.get("run"))?.name ?? "" };
 }
 
-export function writeSettings({ filters, figure, run }: Settings): string {
+export function writeSettings({ filters, figure, run, weights }: Settings): string {
   const out = new URLSearchParams(filters as Record<string, string>);
   if (figure !== DRIFT) out.set("figure", figure);
   if (run) out.set("run", run);
+  for (const [key, weight] of Object.entries(weights)) out.set(`weight-${key}`, String(weight));
   return out.toString();
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Tables that sort by a click on a column's head and save as CSV.
 import { button, element } from "../view/elements";
-import { shown, type Cell, type Table } from "./data";
+import { shownShare, type Cell, type Table } from "./data";
 import { saveCsv } from "./save";
 
 const ROWS_AT_FIRST = 100; // a longer table shows the rest on request
@@ -14,7 +14,10 @@ export interface ShownTable extends Omit<Table, "rows"> {
   rows: ShownCell[][];
 }
 
-export const number = (value: number | null | undefined): Cell => ({ text: shown(value), value: value ?? undefined });
+export const number = (value: number | null | undefined, bound?: number): Cell => ({
+  text: shownShare(value, bound),
+  value: value ?? undefined,
+});
 export const word = (text: string): Cell => ({ text });
 
 function compare(a: Cell, b: Cell): number {
@@ -30,6 +33,7 @@ function cellElement(cell: ShownCell, first: boolean): HTMLElement {
   if (first) made.setAttribute("scope", "row");
   if (cell.bold) content.classList.add("bold");
   if (cell.underlined) content.classList.add("underlined");
+  if (cell.spread) made.append(element("span", { className: "range" }, cell.spread));
   if (cell.reference) made.append(element("span", { className: "reference" }, ` (${cell.reference})`));
   return made;
 }

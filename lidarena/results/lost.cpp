@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/results/lost.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+namespace lidarena::results {
+namespace {
+
+std::string state_of(const std::string& status, const std::string& reason) {
+  return reason.empty() ? status : status + ": " + reason;
+}
+
+/// Of shares of map points; empty for other figures, and where the share is not zero.
+std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure) {
+  return run.metrics ? zero_bound(figure.read(*run.metrics)) : std::nullopt;
+}
+
+}  // namespace
+
+std::string lost_reason(const RunMetrics& metrics) {
+  if (!metrics.is_ok()) return metrics.status_and_reason();
+  if (const auto share = value_of(metrics, kOwnMapOutliers);
+      share && *share > kLostOutliers_percent)
+    return fmt::format("lost: {:.0f} % of its own map lie beyond 20 cm", *share);
+  if (const auto drift = value_of(metrics, kDrift); drift && *drift > kLostDrift_cm_per_m)
+    return fmt::format("lost: it drifts by {:.3g} cm per m", *drift);
+  return {};
+}
+
+std::string lost_reason(const RunRecord& run) {
+  if (run.status != "ok") return state_of(run.status, run.reason);
+  return run.metrics ? lost_reason(*run.metrics) : std::string("not scored");
+}
+
+bool is_lost(const RunRecord& run) { return !lost_reason(run).empty(); }
+
+double lost_value(const Figure& figure) {
+  constexpr double kWorst = std::numeric_limits<double>::infinity();
+  return figure.better == Better::kLess ? kWorst : -kWorst;
+}
+
+std::optional<double> judged_value(const RunMetrics& metrics, const Figure& figure) {
+  return lost_reason(metrics).empty() ? value_of(metrics, figure) : lost_value(figure);
+}
+
+std::optional<double> judged_value(const RunRecord& run, const Figure& figure) {
+  return is_lost(run) ? lost_value(figure) : value_of(run, figure);
+}
+
+RunFigure judged_figure(const RunRecord& run, const Figure& figure) {
+  return {run.world + " " + run.flight + " " + run.mode, std::to_string(run.seed),
+          judged_value(run, figure), lost_reason(run), zero_bound_of(run, figure)};
+}
+
+}  // namespace lidarena::results
