@@ -114,11 +114,14 @@ Reading identity(const MapInGauge& map) {
   return of_map(known(e.distance_m, &Summary::rmse), e.definition,
                 count_of(e.distance_m.count, "points"), map.refused);
 }
+template <std::optional<double> VertexDistance::*value>
 Reading vertices(const MapInGauge& map) {
   const VertexDistance& d = map.point_vertex;
-  return of_map(d.rmse_m, d.definition, count_of(d.points, "points"),
+  return of_map(d.*value, d.definition, count_of(d.points, "points"),
                 d.refused ? d.refused : map.refused);
 }
+constexpr auto kToVertices = vertices<&VertexDistance::rmse_m>;
+constexpr auto kBeyondVertices = vertices<&VertexDistance::outliers_percent>;
 
 // Each makes the function of a figure from the place of its group and how it is read there.
 
@@ -239,6 +242,10 @@ constexpr std::array kFigures{
            map_of<kOwn, outliers>},
     Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust gauge", kOfMap,
            robust_map_of<kOwn, rmse>},
+    Figure{"own_map_rmse_vertices", nullptr, 100, "cm", "own map, RMSE to vertices", kOfMap,
+           map_of<kOwn, kToVertices>},
+    Figure{"own_map_outliers_vertices", nullptr, 1, "%", "own map, beyond 20 cm of vertices",
+           kOfMap, map_of<kOwn, kBeyondVertices>},
     Figure{"own_map_completeness", nullptr, 1, "%", "own map, completeness at 5 cm", kOfMap,
            map_of<kOwn, completeness>, kNone, Better::kMore},
     Figure{"own_map_f_score", nullptr, 1, "%", "own map, F-score at 5 cm", kOfMap,
@@ -255,7 +262,8 @@ constexpr std::array kFigures{
            "reprojected map, RMSE, robust gauge", kOfMap, robust_map_of<kReprojected, rmse>,
            kMapTable},
     Figure{"reprojected_map_rmse_vertices", "to vertices cm", 100, "cm",
-           "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, vertices>, kMapTable},
+           "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, kToVertices>,
+           kMapTable},
     Figure{"reprojected_map_completeness", "complete %", 1, "%",
            "reprojected map, completeness at 5 cm", kOfMap, map_of<kReprojected, completeness>,
            kMapTable, Better::kMore},

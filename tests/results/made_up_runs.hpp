@@ -26,7 +26,7 @@ inline RunMetrics metrics_of(double rpe_cm, double outliers_percent) {
   map.points = 100;
   map.distance_m = rmse_of(0.02 * rpe_cm);
   map.rmse_inliers_m = 0.01 * rpe_cm;
-  map.outliers_percent = outliers_percent;
+  map.outliers_percent = map.point_vertex.outliers_percent = outliers_percent;
   map.histogram.counts.assign(DistanceHistogram::kBins, 5);
   return metrics;
 }
@@ -60,9 +60,9 @@ inline StudyResults runs_of_reference(std::vector<ReferenceFigure> reference) {
   results.reference = std::move(reference);
   for (const ReferenceFigure& drift : results.reference) {
     if (drift.figure != "rpe_1m_at_poses_translation") continue;
-    const double outliers =
-        reference_of(results, drift.world, drift.sensor, drift.algorithm, "own_map_outliers")
-            .value_or(0.0);
+    const double outliers = reference_of(results, drift.world, drift.sensor, drift.algorithm,
+                                         "own_map_outliers_vertices")
+                                .value_or(0.0);
     results.rows.push_back(
         run_of(drift.world, drift.sensor, drift.algorithm, drift.value, outliers));
   }
