@@ -136,6 +136,8 @@ TEST(FigureTables, MapsOfMeansAreCalledMeans) {
               HasSubstr("The own maps of good are means of several returns"));
   EXPECT_THAT(runs_table(results, "cave").rows.at(0).at(7).text, HasSubstr(", means"));
   EXPECT_THAT(runs_table(results, "cave").rows.at(1).at(7).text, Not(HasSubstr("means")));
+  for (const Candidate& c : candidates(results, "cave"))
+    EXPECT_EQ(c.own_map.text.ends_with(", means"), c.algorithm == "good") << c.own_map.text;
 }
 
 TEST(FigureTables, TheIncreaseIsDividedByTheLastWorldAsInThePaper) {
