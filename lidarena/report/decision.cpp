@@ -87,6 +87,9 @@ Candidate candidate(const results::StudyCells& cells, const std::string& world,
     c.values.push_back(value == 0.0 ? std::nullopt : value);
   }
   c.own_map = results::spread_cell(spread(results::kOwnMapRmse));
+  if (c.own_map.value &&
+      std::ranges::any_of(c.runs, [](const RunRecord* run) { return has_mean_map(*run); }))
+    c.own_map.text += ", means";
   c.is_real_time = are_real_time(c.runs);
   return c;
 }

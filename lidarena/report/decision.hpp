@@ -31,7 +31,7 @@ struct Candidate {
   /// Of criteria(); infinite: the median is that of a lost run; empty: not known.
   std::vector<std::optional<double>> values;
   std::vector<results::TableCell> cells;  ///< the same as text, with the range over the runs
-  results::TableCell own_map;             ///< RMSE of the own map, cm
+  results::TableCell own_map;             ///< RMSE of the own map, cm; says if that is of means
   std::optional<bool> is_real_time;       ///< see verdict(); empty: not measured
   bool on_front = false;     ///< keeps tracking, and no other one that does dominates it
   std::string dominated_by;  ///< which one dominates it, and what a test says of that

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <utility>
 
 #include "lidarena/report/summary_tables.hpp"
@@ -71,13 +70,7 @@ class Marks {
     return best;
   }
 
-  /// On how many pairs the marks are based, or why there are none.
-  std::string words() const {
-    const auto fewest = std::ranges::min_element(claims_, {}, &results::Claim::pairs);
-    if (fewest == claims_.end()) return "nothing to compare";
-    return fewest->pairs < results::kMinPairs ? fewest->words()
-                                              : fmt::format("at least {} pairs", fewest->pairs);
-  }
+  std::string words() const { return results::words_of(claims_); }
 
  private:
   using Place = std::pair<std::size_t, std::size_t>;  // of sensor and algorithm
@@ -215,17 +208,17 @@ std::optional<Table> increase_table(const StudyResults& results, const StudyCell
   for (const std::string& sensor : cells.sensors()) {
     std::vector<TableCell> row{word(sensor)};
     for (const std::string& algorithm : cells.algorithms()) {
-      const auto ours = [&](const std::string& world) {
-        return cells.spread(world, sensor, algorithm, results::kDrift).median;
-      };
+      const results::Spread in_a = cells.spread(a, sensor, algorithm, results::kDrift);
+      const results::Spread in_b = cells.spread(b, sensor, algorithm, results::kDrift);
       const auto theirs = [&](const std::string& world) {
         return results::reference_of(results, world, sensor, algorithm, results::kDrift.key);
       };
       for (const auto formula : {increase_of_last, increase}) {
         TableCell cell;
-        if (ours(a) && ours(b)) {
-          const double growth = formula(*ours(a), *ours(b));
-          cell = std::isfinite(growth) && std::isfinite(*ours(b)) ? number(growth) : word("lost");
+        if (in_a.median && in_b.median) {
+          const bool lost = in_a.is_lost() || in_b.is_lost();
+          cell = lost ? word("lost") : number(formula(*in_a.median, *in_b.median));
+          cell.spread = fmt::format("{} of {}", in_a.kept + in_b.kept, in_a.runs + in_b.runs);
         }
         if (theirs(a) && theirs(b)) cell.reference = number(formula(*theirs(a), *theirs(b))).text;
         row.push_back(std::move(cell));

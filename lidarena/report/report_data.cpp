@@ -174,7 +174,8 @@ Json decision_json(const results::StudyResults& results) {
 }
 
 /// Which combination of sensor and method is better than which, figure by figure, as the test of
-/// results/claims.hpp says: "cells": their names; "better": {figure: [[better, worse], ...]}.
+/// results/claims.hpp says: "cells": their names; "better": {figure: [[better, worse],
+/// ...]}; "words": {figure: on how many pairs that rests}.
 Json claims_json(const results::StudyResults& results) {
   std::map<std::string, results::Runs> cells;
   for (const RunRecord& row : results.rows)
@@ -201,6 +202,7 @@ Json claims_json(const results::StudyResults& results) {
       if (made[i].b_is_better) better.push_back({pairs[i].second, pairs[i].first});
     }
     claims["better"][figure->key] = better;
+    claims["words"][figure->key] = results::words_of(made);
   }
   return claims;
 }

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lidarena/results/lost.hpp"
 #include "lidarena/results/statistics.hpp"
 
@@ -47,6 +49,13 @@ std::vector<Claim> claims_of(std::span<const Contest> contests) {
     claims[i].a_is_better = !claims[i].b_is_better;
   }
   return claims;
+}
+
+std::string words_of(std::span<const Claim> claims) {
+  const auto fewest = std::ranges::min_element(claims, {}, &Claim::pairs);
+  if (fewest == claims.end()) return "nothing to compare";
+  return fewest->pairs < kMinPairs ? fewest->words()
+                                   : fmt::format("at least {} pairs", fewest->pairs);
 }
 
 }  // namespace lidarena::results

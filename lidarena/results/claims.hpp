@@ -38,5 +38,7 @@ struct Claim {
 /// contests of the table that have as many pairs. A lost run is the worse one of its pair, two lost
 /// ones tie.
 std::vector<Claim> claims_of(std::span<const Contest> contests);
+/// On how many pairs they rest ("at least 16 pairs"), or why none of them can claim anything.
+std::string words_of(std::span<const Claim> claims);
 
 }  // namespace lidarena::results

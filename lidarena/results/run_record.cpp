@@ -163,6 +163,8 @@ std::string results_text(const StudyResults& results) {
     for (const Figure* figure :
          {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
       row.push_back(number(value_of(r, *figure)));
+      if (r.metrics)
+        row.back().text = value_text(row.back().value, zero_bound(figure->read(*r.metrics)));
     }
     const std::string lost = lost_reason(r);
     row.push_back(word(lost.empty() ? "ok" : lost));

@@ -107,6 +107,9 @@ TEST(FigureTables, LostRunsAreInTheRangeAndTakeTheMark) {
   EXPECT_EQ(drift.rows[0][1].spread, "1.06 to lost, 3 of 8");
   EXPECT_FALSE(drift.rows[0][1].underlined);
   EXPECT_TRUE(drift.rows[1][1].underlined) << "with the cheap sensor it keeps track";
+  EXPECT_EQ(table_called(tables, "increase-indoor").rows[0][1].text, "lost");
+  EXPECT_EQ(table_called(tables, "increase-indoor").rows[0][1].spread, "11 of 16");
+  EXPECT_EQ(table_called(tables, "increase-indoor").rows[1][1].text, "0");
   EXPECT_FALSE(table_called(tables, "drift-house-indoor").rows[0][1].underlined)
       << "11 of 16 pairs say better, the five largest the contrary";
 }
@@ -133,6 +136,8 @@ TEST(FigureTables, MapsOfMeansAreCalledMeans) {
               HasSubstr("The own maps of good are means of several returns"));
   EXPECT_THAT(runs_table(results, "cave").rows.at(0).at(7).text, HasSubstr(", means"));
   EXPECT_THAT(runs_table(results, "cave").rows.at(1).at(7).text, Not(HasSubstr("means")));
+  for (const Candidate& c : candidates(results, "cave"))
+    EXPECT_EQ(c.own_map.text.ends_with(", means"), c.algorithm == "good") << c.own_map.text;
 }
 
 TEST(FigureTables, TheIncreaseIsDividedByTheLastWorldAsInThePaper) {

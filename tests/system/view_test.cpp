@@ -308,7 +308,8 @@ TEST_F(ReportInBrowser, ThreePairsSupportNoMarkAndTheDecisionSaysSo) {
       "document.querySelector('#matrix .note').textContent, "
       "document.querySelector('#decision').textContent]");
   EXPECT_EQ(seen.at(0), 0);
-  EXPECT_THAT(seen.at(1).get<std::string>(), HasSubstr("None is framed"));
+  EXPECT_THAT(seen.at(1).get<std::string>(),
+              AllOf(HasSubstr("None is framed"), HasSubstr("3 pairs: too few for a claim")));
   const std::string decision = seen.at(2);
   EXPECT_THAT(decision, AllOf(HasSubstr("1 of 4 combinations on the Pareto front"),
                               HasSubstr("3 pairs: too few for a claim"),

@@ -82,6 +82,13 @@ export interface Table {
   rows: Cell[][];
 }
 
+/** Which cells are better than which by the test of lidarena/results/claims.hpp, over all runs of the study. */
+export interface Claims {
+  cells: string[];
+  better: Record<string, [number, number][]>; // by figure: [better, worse], indices of cells
+  words: Record<string, string>; // by figure: on how many pairs of runs that rests
+}
+
 export interface ReportData {
   title: string;
   version: string;
@@ -89,7 +96,7 @@ export interface ReportData {
   figures: FigureInfo[];
   sensors: Sensor[];
   decision: { criteria: Criterion[]; candidates: Candidate[] };
-  claims: { cells: string[]; better: Record<string, [number, number][]> }; // of cells, by figure: [better, worse]
+  claims: Claims;
   reference: { world: string; sensor: string; algorithm: string; figure: string; value: number }[];
   tables: Table[];
   runs: Run[];

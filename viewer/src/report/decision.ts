@@ -2,7 +2,7 @@
 // Which LiDAR, which SLAM: for each world the Pareto front, in the order of the reader's weights; what is dominated, and by
 // which; what lost track. lidarena/report/decision.hpp finds the front and what a test says of it.
 import { element } from "../view/elements";
-import { cellOf, count, distinct, label, type Candidate, type Cell } from "./data";
+import { cellOf, count, distinct, DRIFT, label, type Candidate, type Cell } from "./data";
 import type { Page } from "./overview";
 
 const weightsOf = ({ data, settings }: Page) => data.decision.criteria.map(({ key, weight }) => settings.weights[key] ?? weight);
@@ -133,7 +133,7 @@ export function decision(page: Page): HTMLElement {
       "p",
       { className: "note" },
       `On the front is what keeps tracking in every run and is not dominated: no other is as good in all of ${criteria.map(({ label: text }) => text).join(", ")} ` +
-        "and better in one. Medians over flights and seeds, below them the range and the runs that kept tracking; map: of all returns. " +
+        `and better in one, in the medians; what a test says of them (here of the drift: ${page.data.claims.words[DRIFT]}) stands with what is dominated. Medians over flights and seeds, below them the range and the runs that kept tracking; map: of all returns. ` +
         `The weights order the front by the mean logarithm of the ratios to the best (default ${criteria.map(({ label: text, weight }) => `${text} ${weight}`).join(", ")}); that order is a taste, not a test. ` +
         "A price counts by the number in it. Real time: at most 5 % of the scans take more CPU time than their period on one core (in paced runs: more time by the clock)." +
         all,

@@ -149,13 +149,14 @@ function matrixNote({ data, runs, settings }: Page, best: string | null): string
       )
     : [];
   const sampled = runs.flatMap((run) => (run.sampled?.[info.key] ? [run.sampled[info.key]] : []));
+  const rest = data.claims.words[settings.figure] ?? "not tested";
   const most = sampled.sort((a, b) => b[1] - a[1])[0];
   return (
     `${info.label}${info.unit ? `, ${info.unit}` : ""}: median, range from the best run to the worst, and how many runs kept tracking; a lost run is the ` +
     `worst of its cell. ${info.more_is_better ? "Large" : "Small"} is good: blue is the best median, orange the worst; hatched: runs are lost. ` +
     (best
-      ? "Framed: better than every other one by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction. "
-      : "None is framed: no combination in sight is better than every other one by the test (at least 16 pairs of runs, 5 %). ") +
+      ? `Framed: better than every other one by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction (${rest}). `
+      : `None is framed: no combination is shown by the test (at least 16 pairs of runs, 5 %) to be better than every other one in sight (${rest}). `) +
     (means.length > 0 ? `The points of the own maps of ${means.join(", ")} are means of several returns, which removes noise. ` : "") +
     (most ? `Of large maps a sample is scored (${most[0]} of ${most[1]} points). ` : "") +
     "A click opens a run."
