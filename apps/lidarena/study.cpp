@@ -404,7 +404,7 @@ void add_report(CLI::App& app, Common& common, int& exit_code) {
                    "Earlier study, or its parts: compare the same runs of both, figure by figure");
   verb->add_option("--fail-on", request->fail_on,
                    "With --against: FIGURE=LIMIT,... as drift=5%,lost=0 (drift, map, outliers, "
-                   "latency, memory, lost); exit code 1 where a median grew by more")
+                   "cpu, memory, lost); exit code 1 where a median grew by more")
       ->delimiter(',')
       ->allow_extra_args(false);
   set_verb(
