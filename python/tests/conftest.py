@@ -35,4 +35,4 @@ def flight():
 
 @pytest.fixture(scope="session")
 def sensor():
-    return lidarena.load_sensor("livox_mid360")
+    return lidarena.load_sensor("livox_mid360_range_noise")
