@@ -89,8 +89,7 @@ double difference(const EvoStatistics& ours, const Json& theirs) {
 }
 
 TEST(CompatEvo, GivesTheFiguresAndRefusalsOfEvoItself) {
-  std::ifstream in(tum_text::shared("../reference/evo_figures.json"));
-  if (!in) GTEST_SKIP() << "evo_figures.json with the results of evo not found";
+  std::ifstream in(tum_text::test_data("evo/evo_figures.json"));
   const Json document = Json::parse(in);
   std::map<std::string, Trajectory> files;
   for (const auto& [name, text] : document["files"].items()) {

@@ -24,13 +24,13 @@ using namespace std::chrono_literals;
 constexpr double kDegree = M_PI / 180.0;
 
 using tum_text::shared;
+using tum_text::test_data;
 
 /// Small synthetic trajectories and the results of evo v1.36.5 for them.
 class EvoFigures : public ::testing::Test {
  protected:
   void SetUp() override {
-    std::ifstream in(shared("../reference/evo_figures.json"));
-    if (!in) GTEST_SKIP() << "evo_figures.json with the results of evo not found";
+    std::ifstream in(test_data("evo/evo_figures.json"));
     document_ = Json::parse(in);
   }
   Trajectory trajectory(const std::string& name) const {
@@ -170,11 +170,8 @@ TEST_F(EvoFigures, StampsMadeLateBy237MillisecondsAreFoundToBe) {
 // ms away) instead of interpolating it. At the 0.2 .. 0.4 m/s of this sequence that is a random
 // error of about 1 mm per pose: in RMSE, sqrt(13.47^2 +- 1^2) - 13.47 = 0.04 mm.
 TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
-  std::ifstream truth_file(shared("trajectories/tum_rgbd/freiburg1_xyz-groundtruth.txt"));
-  std::ifstream estimate_file(shared("trajectories/tum_rgbd/freiburg1_xyz-rgbdslam.txt"));
-  if (!truth_file || !estimate_file) {
-    GTEST_SKIP() << "TUM RGB-D trajectories not found";
-  }
+  std::ifstream truth_file(test_data("tum_rgbd/freiburg1_xyz-groundtruth.txt"));
+  std::ifstream estimate_file(test_data("tum_rgbd/freiburg1_xyz-rgbdslam.txt"));
   const auto ate = absolute_trajectory_error(tum_text::parse(estimate_file),
                                              tum_text::parse(truth_file), Gauge::kSe3);
   EXPECT_NEAR(ate.translation_m.rmse, 0.01347, 5e-5);
@@ -215,9 +212,11 @@ TEST_F(RealTrajectories, EurocsTwoEstimatesAreOfTheTruthsBodyAndLateByTheSameTim
   EXPECT_NEAR(late[0].late_s, late[1].late_s, 3.0 * std::hypot(late[0].sigma_s, late[1].sigma_s));
 }
 
-TEST_F(RealTrajectories, AKeyframeTrajectorySaysHowLittleItCovers) {
-  const Trajectory truth = read("tum_rgbd/freiburg1_xyz-groundtruth.txt");
-  const Trajectory keyframes = read("tum_rgbd/freiburg1_xyz-ORB_kf_mono.txt");
+TEST(TumFreiburg1, AKeyframeTrajectorySaysHowLittleItCovers) {
+  const Trajectory truth =
+      dataset::read_trajectory(test_data("tum_rgbd/freiburg1_xyz-groundtruth.txt"));
+  const Trajectory keyframes =
+      dataset::read_trajectory(test_data("tum_rgbd/freiburg1_xyz-ORB_kf_mono.txt"));
   EXPECT_LT(associate(keyframes, truth).coverage, 0.1);
   // the camera's z axis points forward: a heading-only fit causes a warning
   EXPECT_NE(align(keyframes, truth, Gauge::kPosYaw).warning, "");

@@ -122,8 +122,7 @@ TEST(LeverArm, AFlightThatDoesNotTurnShowsNone) {
 }
 
 TEST(LeverArm, OfTheFixtureIsTheOneItWasMadeWith) {
-  std::ifstream in(tum_text::shared("../reference/evo_figures.json"));
-  if (!in) GTEST_SKIP() << "evo_figures.json with the synthetic trajectories not found";
+  std::ifstream in(tum_text::test_data("evo/evo_figures.json"));
   const Json files = Json::parse(in)["files"];
   const auto arm = find_lever_arm(tum_text::parse(files["uav_ref_lever.tum"].get<std::string>()),
                                   tum_text::parse(files["uav_ref.tum"].get<std::string>()));

@@ -40,6 +40,11 @@ inline Trajectory parse(const std::string& text) {
   return parse(in);
 }
 
+/// Path of a file of the tests' data in the repository.
+inline std::filesystem::path test_data(const std::string& name) {
+  return std::filesystem::path(LIDARENA_SOURCE_DIR) / "tests/data" / name;
+}
+
 /// Path of a file of the optional test data, which are not part of the repository.
 inline std::filesystem::path shared(const std::string& name) {
   return std::filesystem::path(LIDARENA_SHARED_DATA) / name;
