@@ -154,7 +154,8 @@ TEST(ExpectationsTable, HasAVerdictAndTheFiguresBehindIt) {
   const results::Table table = expectations_table(results, "indoor");
   ASSERT_EQ(table.rows.size(), 12U);
   EXPECT_EQ(table.rows[0][1].text, "holds");
-  EXPECT_THAT(table.rows[0][3].text, HasSubstr("cave, livox_mid360_paper: 1.08 cm, against 1.78 cm of "));
+  EXPECT_THAT(table.rows[0][3].text,
+              HasSubstr("cave, livox_mid360_paper: 1.08 cm, against 1.78 cm of "));
   EXPECT_EQ(table.rows.back()[1].text, "cannot be judged") << "memory was not measured";
   for (results::RunRecord& run : results.rows) {
     if (run.algorithm == "ct_icp") set_metrics(run, results::made_up::metrics_of(0.1, 0.0));
