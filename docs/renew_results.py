@@ -6,7 +6,7 @@ usage: renew_results.py STUDY --as NAME   takes over the figures of the report i
        renew_results.py                   renews the pages from docs/results/data
        renew_results.py --check           fails if a page differs from docs/results/data, if the
                                           tables there are not those of the runs there, or if a
-                                          page has a decimal figure that was typed by hand
+                                          page of docs/results has a decimal figure typed by hand
 
 docs/results/data/NAME.csv has all runs of a study, NAME.json the tables of its report that pages
 use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page has such a table
