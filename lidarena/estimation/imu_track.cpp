@@ -27,6 +27,24 @@ Pose pose_at(const ImuTrack& track, Time t) {
   return extrapolate(after == track.begin() ? *after : *(after - 1), t);
 }
 
+ImuTrack bent_track(ImuTrack track, Time end, const Pose& world_from_imu_at_end) {
+  if (track.empty() || track.front().begin >= end) return track;
+  const Time begin = track.front().begin;
+  const double seconds = to_seconds(end - begin);
+  const Pose predicted = pose_at(track, end);
+  const Eigen::Vector3d shift = world_from_imu_at_end.translation() - predicted.translation();
+  const Eigen::Vector3d turn =
+      so3::log(world_from_imu_at_end.linear() * predicted.linear().transpose());
+  for (ImuStep& step : track) {
+    const double share = to_seconds(step.begin - begin) / seconds;
+    step.world_from_imu = make_pose(so3::exp(share * turn) * step.world_from_imu.linear(),
+                                    step.world_from_imu.translation() + share * shift);
+    step.velocity += shift / seconds;
+    step.rate += step.world_from_imu.linear().transpose() * turn / seconds;
+  }
+  return track;
+}
+
 std::vector<StampedPose> motion_along(const ImuTrack& track, Time begin, Time end, Time at,
                                       const Pose& world_from_imu_at, const Pose& imu_from_body) {
   std::vector<StampedPose> motion;

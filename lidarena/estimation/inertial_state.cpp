@@ -83,25 +83,39 @@ State::Matrix transport(const State& from, const State::Vector& delta) {
   return a;
 }
 
+Eigen::Matrix3d rotation_in_step(const State& state, const Eigen::Vector3d& gyro, double seconds,
+                                 Integration integration) {
+  if (integration == Integration::kFirstOrder) return state.rotation();
+  return state.rotation() * so3::exp(0.5 * seconds * (gyro - state.nav.bias.gyro));
+}
+
 State::Matrix propagate(State& state, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel,
                         double seconds, Integration integration) {
   const Eigen::Vector3d turn = (gyro - state.nav.bias.gyro) * seconds;
   const Eigen::Vector3d force = accel - state.nav.bias.accel;
-  const Eigen::Vector3d acceleration = state.rotation() * force + state.gravity;
-  const double half = integration == Integration::kSecondOrder ? 0.5 * seconds : 0.0;
+  const bool second_order = integration == Integration::kSecondOrder;
+  const double half = second_order ? 0.5 * seconds : 0.0;
+  const Eigen::Matrix3d rotation = rotation_in_step(state, gyro, seconds, integration);
+  const Eigen::Vector3d acceleration = rotation * force + state.gravity;
 
   State::Matrix f = State::Matrix::Identity();
-  const Eigen::Matrix3d by_rotation = -state.rotation() * so3::hat(force) * seconds;
-  const Eigen::Matrix3d by_bias = -state.rotation() * seconds;
+  const Eigen::Vector3d force_at_begin = state.rotation().transpose() * rotation * force;
+  const Eigen::Matrix3d by_rotation = -state.rotation() * so3::hat(force_at_begin) * seconds;
+  const Eigen::Matrix3d by_bias = -rotation * seconds;
+  // The rotation in the step depends on the rate until then.
+  const Eigen::Matrix3d by_gyro_bias =
+      rotation * so3::hat(force) * so3::right_jacobian(0.5 * turn) * half * seconds;
   const Eigen::Matrix<double, 3, 2> by_gravity =
       -so3::hat(state.gravity) * tangent_basis(state.gravity) * seconds;
   f.block<3, 3>(State::kPosition, State::kVelocity).diagonal().setConstant(seconds);
   f.block<3, 3>(State::kPosition, State::kRotation) = half * by_rotation;
+  f.block<3, 3>(State::kPosition, State::kGyroBias) = half * by_gyro_bias;
   f.block<3, 3>(State::kPosition, State::kAccelBias) = half * by_bias;
   f.block<3, 2>(State::kPosition, State::kGravity) = half * by_gravity;
   f.block<3, 3>(State::kRotation, State::kRotation) = so3::exp(-turn);
   f.block<3, 3>(State::kRotation, State::kGyroBias) = -so3::right_jacobian(turn) * seconds;
   f.block<3, 3>(State::kVelocity, State::kRotation) = by_rotation;
+  f.block<3, 3>(State::kVelocity, State::kGyroBias) = by_gyro_bias;
   f.block<3, 3>(State::kVelocity, State::kAccelBias) = by_bias;
   f.block<3, 2>(State::kVelocity, State::kGravity) = by_gravity;
 

@@ -59,8 +59,13 @@ InertialState::Matrix transport(const InertialState& from, const InertialState::
 /// component of `direction` becomes the smallest.
 Eigen::Matrix<double, 3, 2> tangent_basis(const Eigen::Vector3d& direction);
 
-/// How the position is integrated over a step: x + v dt, or x + v dt + a dt^2 / 2.
+/// How a step is integrated: x + v dt, with the specific force turned by the rotation at the step's
+/// begin; or x + v dt + a dt^2 / 2, with the rotation in the middle of the step.
 enum class Integration { kFirstOrder, kSecondOrder };
+
+/// The rotation that turns the specific force of a step of `seconds` into the world.
+Eigen::Matrix3d rotation_in_step(const InertialState& state, const Eigen::Vector3d& gyro,
+                                 double seconds, Integration integration);
 
 /// One IMU step of `seconds` with rate and specific force held constant. Changes `state`; returns
 /// the Jacobian of the new error with respect to the old one.

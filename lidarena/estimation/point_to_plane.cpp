@@ -32,15 +32,15 @@ NormalEquations<kPointDof> sum_residuals(std::span<const Eigen::Vector3f> points
                                          PointPlanes& planes, const Parallel& parallel) {
   return accumulate_normal_equations<kPointDof>(
       parallel, points.size(), [&](std::size_t i, NormalEquations<kPointDof>& sum) {
-        std::optional<WeightedPlane>& match = planes[i];
-        if (!match) return;
+        std::optional<Plane>& plane = planes[i];
+        if (!plane) return;
         const Eigen::Vector3d point = points[i].cast<double>();
-        const PointResidual residual = point_residual(point, match->plane, state, extrinsics);
+        const PointResidual residual = point_residual(point, *plane, state, extrinsics);
         if (!is_inlier(residual.distance, point.norm())) {
-          match.reset();
+          plane.reset();
           return;
         }
-        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), match->weight);
+        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), 1.0);
       });
 }
 

@@ -28,12 +28,8 @@ PointResidual point_residual(const Eigen::Vector3d& point, const Plane& plane,
 /// at 1 m, 0.35 m at 10 m, as in FAST-LIO2's program.
 bool is_inlier(double distance, double range);
 
-/// Plane that a point is registered with, and the weight of its residual.
-struct WeightedPlane {
-  Plane plane;
-  double weight = 1.0;
-};
-using PointPlanes = std::vector<std::optional<WeightedPlane>>;
+/// The plane that each point is registered with.
+using PointPlanes = std::vector<std::optional<Plane>>;
 
 /// Sums of the residuals of `points` (m, LiDAR frame), each with its plane; those without a plane
 /// are left out. A point that is no inlier of its plane loses it.

@@ -54,6 +54,36 @@ TEST(ImuTrack, TheMotionOfABodyIsThatOfTheTrackMovedToTheKnownPose) {
   EXPECT_TRUE(motion_along(track(20), Time{5}, Time{5}, Time{5}, elsewhere, imu_from_body).empty());
 }
 
+TEST(ImuTrack, ABentTrackBeginsWhereItBeganAndEndsAtTheEstimate) {
+  const Eigen::Vector3d shift(0.02, -0.03, 0.01);
+  const Eigen::Vector3d turn(0.004, 0.01, -0.006);
+  const Pose predicted = motion(0.1);
+  const Pose estimate =
+      make_pose(so3::exp(turn) * predicted.linear(), predicted.translation() + shift);
+  const ImuTrack bent = bent_track(track(20), from_seconds(0.1), estimate);
+  const auto expect_near = [](const Pose& a, const Pose& b) {
+    EXPECT_LT((a.translation() - b.translation()).norm(), 1e-7);
+    // within a step of 5 ms the two rotations do not commute: 1.3 * 0.12 / 2 * 0.005^2 rad
+    EXPECT_LT(so3::angle(a.linear().transpose() * b.linear()), 3e-6);
+  };
+  expect_near(pose_at(bent, Time{0}), motion(0.0));
+  expect_near(pose_at(bent, from_seconds(0.1)), estimate);
+  // Halfway half of it, both at a step's begin and within a step; rates and velocities follow.
+  for (const double t : {0.05, 0.0525}) {
+    const double share = t / 0.1;
+    expect_near(pose_at(bent, from_seconds(t)),
+                make_pose(so3::exp(share * turn) * motion(t).linear(),
+                          motion(t).translation() + share * shift));
+  }
+}
+
+TEST(ImuTrack, NothingIsBentInNoTime) {
+  const Pose elsewhere = motion(3.0);
+  EXPECT_TRUE(bent_track({}, Time{5}, elsewhere).empty());
+  const ImuTrack same = bent_track(track(3), Time{0}, elsewhere);
+  EXPECT_EQ(pose_at(same, Time{0}).matrix(), pose_at(track(3), Time{0}).matrix());
+}
+
 TEST(ImuTrack, DeskewedPointsAreSeenFromTheEnd) {
   const Pose imu_from_lidar = make_pose(so3::exp({0.1, 0.2, -0.3}), {0.05, -0.02, 0.1});
   const Eigen::Vector3d landmark(4.0, 3.0, -1.0);

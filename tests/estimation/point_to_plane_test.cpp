@@ -53,11 +53,11 @@ TEST(PointToPlane, SumsAreThoseOfThePointsOnTheirPlanesAndTheOthersLoseThem) {
   const std::vector<Eigen::Vector3f> points{{0, 0, 1}, {1, 0, 1}, {0, 1, 1}};
   const Plane floor{Eigen::Vector3d::UnitZ(), -0.95};
   const Plane far{Eigen::Vector3d::UnitZ(), -0.5};
-  PointPlanes planes{WeightedPlane{floor, 0.25}, std::nullopt, WeightedPlane{far, 1.0}};
+  PointPlanes planes{floor, std::nullopt, far};
   const auto sum = sum_residuals(points, {}, false, planes, Parallel(1));
   EXPECT_EQ(sum.count, 1U);
-  EXPECT_NEAR(sum.hessian(2, 2), 0.25, 1e-12);
-  EXPECT_NEAR(sum.gradient[2], 0.25 * 0.05, 1e-7);
+  EXPECT_NEAR(sum.hessian(2, 2), 1.0, 1e-12);
+  EXPECT_NEAR(sum.gradient[2], 0.05, 1e-7);
   EXPECT_TRUE(planes[0].has_value());
   EXPECT_FALSE(planes[2].has_value()) << "0.5 m off at 1.4 m";
 }

@@ -2,15 +2,16 @@
 #include "lidarena/odometry/arena_lio/arena_lio.hpp"
 
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <functional>
+#include <utility>
 
+#include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
-
-using State = estimation::InertialState;
 
 // Walls that are parallel to the sensor's axes at the start are not parallel to the grids.
 constexpr map::GridAxes kGrid = map::GridAxes::kRotated;
@@ -21,6 +22,35 @@ constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
 constexpr int kLostScans = 15;            // in a row that contradict the map: tracking is lost
 constexpr double kDegenerate = 0.01;      // minimum share of a direction; isotropic: 1/3
+constexpr double kShareMemory = 0.1;      // weight of a scan in the usual share of inliers
+
+/// The data sheet's noise, with a factor for each of the two sensors.
+estimation::ImuNoise noise_for(const ImuInfo& imu, const Config& config) {
+  estimation::ImuNoise noise = estimation::noise_of(imu, config.gyro_noise_factor);
+  const estimation::ImuNoise of_accel = estimation::noise_of(imu, config.accel_noise_factor);
+  noise.accel_density = of_accel.accel_density;
+  noise.accel_bias_walk = of_accel.accel_bias_walk;
+  return noise;
+}
+
+/// The points that are finite and farther than `min_range` (m).
+Scan usable_points(const Scan& scan, double min_range) {
+  Scan usable{.stamp = scan.stamp, .points = {}, .timed = scan.timed};
+  const auto nearest = static_cast<float>(min_range * min_range);
+  usable.points.reserve(scan.points.size());
+  for (const Point& point : scan.points) {
+    const float squared = point.position.squaredNorm();
+    if (std::isfinite(squared) && squared > nearest) usable.points.push_back(point);
+  }
+  return usable;
+}
+
+/// Standard deviation (m) of the position in its least certain direction.
+double position_sigma(const estimation::StateEstimate& estimate) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
+      estimate.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, directions.eigenvalues()[2]));
+}
 
 /// At most `most` of the points, at even intervals of their order.
 std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
@@ -29,6 +59,21 @@ std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int mos
   for (std::size_t i = 0; i < count; ++i) points[i] = points[i * points.size() / count];
   points.resize(count);
   return points;
+}
+
+/// The rotation through the intervals by the gyro alone, which ends in the state's pose: of a
+/// sensor that moves with an unknown velocity.
+estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
+                                   const estimation::InertialState& state) {
+  estimation::ImuTrack track;
+  Pose pose = state.world_from_imu();
+  for (auto interval = intervals.rbegin(); interval != intervals.rend(); ++interval) {
+    const Eigen::Vector3d rate = interval->gyro - state.nav.bias.gyro;
+    pose.linear() = pose.linear() * so3::exp(-interval->seconds() * rate);
+    track.push_back({.begin = interval->begin, .world_from_imu = pose, .rate = rate});
+  }
+  std::ranges::reverse(track);
+  return track;
 }
 
 }  // namespace
@@ -41,10 +86,10 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       world_from_map_(imu.body_from_imu * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
                                                     Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
-      noise_(estimation::noise_of(imu, config.imu_noise_factor)),
+      noise_(noise_for(imu, config)),
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
-      map_window_(config.map_radius_m),
+      map_(config),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult ArenaLio::register_scan(const Scan& scan) {
@@ -52,38 +97,44 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
+  const State before = estimate_.state;
   if (started_) {
     predict(intervals);
-  } else if (!start(samples)) {
+  } else if (!start(samples, intervals)) {
     const bool empty = scan.points.empty();
     return finish_scan(scan.stamp, end,
                        empty ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
   }
 
   const State predicted = estimate_.state;
-  const std::vector<Eigen::Vector3f> points = preprocess(scan);
+  const Scan usable = usable_points(scan, config_.min_range_m);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(map::voxel_means(points, config_.scan_voxel_size_m, kGrid), config_.max_scan_points);
-  PlaneResiduals residuals(reduced, map_, config_, parallel_);
+      evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
+             config_.max_scan_points);
+  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_), config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
       {config_.max_iterations, kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
+  const PlaneResiduals::Agreement agreement = residuals.agreement(estimate_.state);
+  const ScanStatus status = status_of(update, agreement, reduced.size());
+  if (getenv("DBG")) fprintf(stderr, "n %zu near %zu on %zu used %zu v %.3f %.3f %.3f dp %.3f bias %.4f sig %.3f st %s eval %d\n", reduced.size(), agreement.near_planes, agreement.on_planes, update.points.count, estimate_.state.nav.velocity[0], estimate_.state.nav.velocity[1], estimate_.state.nav.velocity[2], (estimate_.state.position()-predicted.position()).norm(), estimate_.state.nav.bias.gyro.norm(), position_sigma(estimate_), to_string(status), update.evaluations);
   const bool still = still_.observe(estimation::statistics(samples), predicted,
                                     estimate_.state.position(), accel_scale_);
   if (still) stand();
   if (!still) has_moved_ = true;
-  const ScanStatus status = status_of(update, residuals);
-  const bool seen_enough = still && still_.scans() > kStandingScansMapped;
-  if (!seen_enough && contradicting_scans_ == 0) grow_map(reduced, residuals);
+  if (status == ScanStatus::kTracked && !still) calibrate(before, predicted);
+  track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
+  const std::vector<Eigen::Vector3f> points = deskewed(usable);
+  if (contradicting_scans_ == 0) grow_map(points, reduced);
   registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
   return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
                       .keypoints = reduced.size(),
-                      .matches = update.points.count,
-                      .near_planes = residuals.near_planes(),
+                      .matches = agreement.on_planes,
+                      .near_planes = agreement.near_planes,
                       .iterations = update.evaluations,
-                      .map_points = map_.size(),
+                      .map_points = map_.fine().size(),
                       .standing = still});
 }
 
@@ -107,7 +158,8 @@ std::vector<estimation::ImuInterval> ArenaLio::intervals_until(Time end) {
   return intervals;
 }
 
-bool ArenaLio::start(const std::vector<ImuSample>& samples) {
+bool ArenaLio::start(const std::vector<ImuSample>& samples,
+                     const std::vector<estimation::ImuInterval>& intervals) {
   start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
   const std::optional<Start> begin = start_from(start_samples_, imu_from_lidar_);
   if (!begin) return false;
@@ -117,6 +169,8 @@ bool ArenaLio::start(const std::vector<ImuSample>& samples) {
   accel_scale_ = begin->accel_scale;
   first_pose_ = estimate_.state.world_from_imu();
   started_ = true;
+  moving_start_ = !begin->still;
+  if (moving_start_) track_ = turning_track(intervals, estimate_.state);
   imu_.set_accel_scale(accel_scale_);
   start_samples_ = {};
   return true;
@@ -133,59 +187,65 @@ void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = estimate_.state;
   track_.clear();
   for (const estimation::ImuInterval& interval : intervals) {
-    Eigen::Vector3d accel = accel_scale_ * interval.accel;
-    if (interval.gap) {  // coast with constant velocity
-      accel = state.nav.bias.accel - state.rotation().transpose() * state.gravity;
-    }
-    const Eigen::Vector3d acceleration =
-        state.rotation() * (accel - state.nav.bias.accel) + state.gravity;
-    track_.push_back({interval.begin, state.world_from_imu(), state.nav.velocity, acceleration,
-                      interval.gyro - state.nav.bias.gyro});
+    constexpr auto kIntegration = estimation::Integration::kSecondOrder;
+    const double dt = interval.seconds();
+    const estimation::ImuBias bias = state.nav.bias;
+    const Eigen::Vector3d rate = gyro_.calibrated(interval.gyro - bias.gyro);
+    const Eigen::Vector3d gyro = rate + bias.gyro;
+    const Eigen::Matrix3d rotation = estimation::rotation_in_step(state, gyro, dt, kIntegration);
+    Eigen::Vector3d force = accel_scale_ * interval.accel - bias.accel;
+    if (interval.gap) force = -rotation.transpose() * state.gravity;  // constant velocity
+    track_.push_back({interval.begin, state.world_from_imu(), state.nav.velocity,
+                      rotation * force + state.gravity, rate});
     const bool unreliable = interval.gap || interval.saturated;
-    const State::Matrix f = estimation::propagate(state, interval.gyro, accel, interval.seconds(),
-                                                  estimation::Integration::kSecondOrder);
-    estimate_.covariance = f * estimate_.covariance * f.transpose() +
-                           estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise_,
-                                                  interval.seconds());
+    const State::Matrix f =
+        estimation::propagate(state, gyro, force + bias.accel, dt, kIntegration);
+    estimate_.covariance =
+        f * estimate_.covariance * f.transpose() +
+        estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise_, dt);
   }
   state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
 }
 
-std::vector<Eigen::Vector3f> ArenaLio::preprocess(const Scan& scan) const {
-  Scan used{.stamp = scan.stamp, .points = {}, .timed = scan.timed};
-  const auto nearest = static_cast<float>(config_.min_range_m * config_.min_range_m);
-  used.points.reserve(scan.points.size());
-  for (const Point& point : scan.points) {
-    const float squared = point.position.squaredNorm();
-    if (std::isfinite(squared) && squared > nearest) used.points.push_back(point);
-  }
-  return estimation::deskew(used, track_, estimate_.state.imu_from_lidar,
-                            estimate_.state.world_from_imu(), parallel_);
+void ArenaLio::calibrate(const State& before, const State& predicted) {
+  if (!config_.calibrate_gyro || longest_gap_s_ > 0.0 || saturated_ > 0) return;
+  gyro_.observe(so3::log(before.rotation().transpose() * predicted.rotation()),
+                so3::log(predicted.rotation().transpose() * estimate_.state.rotation()));
+}
+
+std::vector<Eigen::Vector3f> ArenaLio::deskewed(const Scan& usable) const {
+  const State& state = estimate_.state;
+  return estimation::deskew(usable, track_, state.imu_from_lidar, state.world_from_imu(),
+                            parallel_);
 }
 
 void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points,
-                        const PlaneResiduals& residuals) {
+                        const std::vector<Eigen::Vector3f>& reduced) {
+  if (still_.scans() > kStandingScansMapped) return;
+  if (moving_start_ && !map_.empty()) {  // the second scan, after which the velocity is known
+    map_.clear();
+    moving_start_ = false;
+  }
   const Pose world_from_lidar = estimate_.state.world_from_lidar();
-  add_scan(transformed(world_from_lidar, points),
-           map_.empty() ? std::span<const Nearest>{} : residuals.nearest(),
-           static_cast<float>(config_.map_voxel_size_m), map_);
-  map_window_.follow(world_from_lidar.translation().cast<float>(), map_);
+  map_.insert(transformed(world_from_lidar, points), transformed(world_from_lidar, reduced));
+  map_.follow(world_from_lidar.translation().cast<float>());
 }
 
 ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
-                               const PlaneResiduals& residuals) {
+                               const PlaneResiduals::Agreement& agreement, std::size_t points) {
   if (!estimation::is_plausible(estimate_.state)) {
     contradicting_scans_ = kLostScans + 1;
     return ScanStatus::kDiverged;
   }
-  if (residuals.nearest().empty()) return ScanStatus::kTooFewPoints;
+  if (points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
-  const bool contradicts = static_cast<double>(update.points.count) <
-                           config_.min_inlier_share * static_cast<double>(residuals.near_planes());
+  const double share = agreement.share();
+  const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
+  usual_share_ = usual_share_.value_or(share) * (1.0 - kShareMemory) + kShareMemory * share;
   if (update.points.count == 0) return ScanStatus::kTooFewPoints;
   // The block of the position is the weighted sum of n n^T over all normals n.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
@@ -222,7 +282,7 @@ ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
 }
 
 std::vector<Eigen::Vector3f> ArenaLio::map() const {
-  return transformed(world_from_map_, map_.points());
+  return transformed(world_from_map_, map_.fine().centers());
 }
 
 std::map<std::string, std::uint64_t> ArenaLio::memory() const {

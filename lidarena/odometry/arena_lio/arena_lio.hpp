@@ -6,10 +6,10 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/gyro_calibration.hpp"
 #include "lidarena/estimation/imu_buffer.hpp"
 #include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
-#include "lidarena/map/kd_tree.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
 #include "lidarena/odometry/arena_lio/initialization.hpp"
 #include "lidarena/odometry/arena_lio/local_map.hpp"
@@ -18,9 +18,10 @@
 
 namespace lidarena::odometry::arena_lio {
 
-/// Tightly coupled LiDAR-inertial odometry: FAST-LIO2's iterated Kalman filter on points and
-/// planes, with the planes' uncertainty, grids that are not parallel to walls, the IMU's own noise,
-/// and tests for standstill, saturation and lost tracking. See README.md in this folder.
+/// Tightly coupled LiDAR-inertial odometry: FAST-LIO2's iterated Kalman filter against a map of
+/// planes, with a robust kernel, a calibration of the gyro while it flies, scans that are de-skewed
+/// by the estimate before they enter the map, and tests for standstill, saturation and lost
+/// tracking. See README.md in this folder.
 class ArenaLio : public Odometry {
  public:
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -34,24 +35,32 @@ class ArenaLio : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
+  using State = estimation::InertialState;
+
   /// Instant of the scan's last firing; for a scan without points, its expected instant.
   Time scan_end(const Scan& scan);
   /// The samples since the end of the last scan.
   std::vector<ImuSample> new_samples(Time end) const;
   /// IMU intervals since the end of the last scan, or since the first sample.
   std::vector<estimation::ImuInterval> intervals_until(Time end);
-  /// Collects samples and initializes once there are enough; returns whether it has.
-  bool start(const std::vector<ImuSample>& samples);
+  /// Collects samples and initializes once there are enough; returns whether it has. The scan that
+  /// ends the intervals is de-skewed by its rotation alone if the sensor moves.
+  bool start(const std::vector<ImuSample>& samples,
+             const std::vector<estimation::ImuInterval>& intervals);
   /// Updates the filter with the knowledge that the sensor stands still.
   void stand();
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<estimation::ImuInterval>& intervals);
-  /// The usable points, in the LiDAR's frame at the scan's end.
-  std::vector<Eigen::Vector3f> preprocess(const Scan& scan) const;
-  /// Adds the points to the map and removes map points far from the sensor.
-  void grow_map(const std::vector<Eigen::Vector3f>& points, const PlaneResiduals& residuals);
+  /// Learns the gyro's calibration from what the update has changed in the rotation of a scan.
+  void calibrate(const State& before, const State& predicted);
+  /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
+  std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
+  /// Adds a scan to the map, unless it contradicts the map or adds nothing to it.
+  void grow_map(const std::vector<Eigen::Vector3f>& points,
+                const std::vector<Eigen::Vector3f>& reduced);
   /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const estimation::IteratedUpdate& update, const PlaneResiduals& residuals);
+  ScanStatus status_of(const estimation::IteratedUpdate& update,
+                       const PlaneResiduals::Agreement& agreement, std::size_t points);
   ScanResult refused_scan();
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
@@ -70,18 +79,20 @@ class ArenaLio : public Odometry {
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
   bool started_ = false;
+  bool moving_start_ = false;  ///< the map is of the first scan alone, whose motion was not known
   double accel_scale_ = 1.0;
 
   estimation::StateEstimate
       estimate_;  ///< state and covariance at the end of the last scan, in the map's frame
   estimation::ImuTrack track_;
+  estimation::GyroCalibration gyro_;
+  std::optional<double> usual_share_;  ///< of a scan's points that lie on their planes
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
   StillDetector still_;
   Pose first_pose_ = Pose::Identity();  ///< of the IMU
   bool has_moved_ = false;
-  map::KdTree map_;
-  MapWindow map_window_;
+  LocalMap map_;
 
   Time scan_duration_;  ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;

@@ -10,25 +10,27 @@ struct Config {
   double min_range_m = 0.3;
   double scan_voxel_size_m = 0.2;
   int max_scan_points = 4000;
-  double map_voxel_size_m = 0.2;
+  double map_cell_size_m = 0.3;
+  int max_cell_points = 400;
   double map_radius_m = 150.0;
 
   int max_iterations = 3;
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
-  double max_neighbor_distance_m = 2.236;
-  double max_plane_thickness_m = 0.1;
+  double kernel_scale_m = 0.05;
   double min_inlier_share = 0.75;
   bool estimate_extrinsics = false;
 
-  double imu_noise_factor = 10.0;
+  bool calibrate_gyro = true;
+  double gyro_noise_factor = 10.0;
+  double accel_noise_factor = 3.0;
   double max_imu_gap_s = 0.05;
 
   /// Former names, for the message that names the new one.
   static constexpr RenamedKey renamed_keys[] = {{"scan_voxel_m", "scan_voxel_size_m"},
-                                                {"map_voxel_m", "map_voxel_size_m"},
+                                                {"map_voxel_m", "map_cell_size_m"},
+                                                {"map_voxel_size_m", "map_cell_size_m"},
                                                 {"max_points", "max_scan_points"},
-                                                {"max_neighbour_m", "max_neighbor_distance_m"},
-                                                {"plane_thickness_m", "max_plane_thickness_m"},
+                                                {"imu_noise_factor", "gyro_noise_factor"},
                                                 {"least_agreement", "min_inlier_share"}};
 
   template <class Self, class V>
@@ -40,29 +42,35 @@ struct Config {
       "upper limit on the averaged points of a scan, taken evenly from all; bounds the time of a "
       "scan",
       at_least(100));
-    v("map_voxel_size_m", self.map_voxel_size_m, "m",
-      "voxel size of the map, which keeps one point per cell", above(0));
-    v("map_radius_m", self.map_radius_m, "m",
-      "half the edge of the box around the sensor outside of which map points are removed",
+    v("map_cell_size_m", self.map_cell_size_m, "m",
+      "edge of a cell of the map, which has one plane; where there are few planes, cells of three "
+      "times this edge are used",
       above(0));
+    v("max_cell_points", self.max_cell_points, "",
+      "points after which a cell of the map does not change any more", at_least(10));
+    v("map_radius_m", self.map_radius_m, "m",
+      "half the edge of the box around the sensor outside of which cells are removed", above(0));
     v("max_iterations", self.max_iterations, "",
       "maximum number of iterations of the filter's update", at_least(0));
     v("point_variance_m2", self.point_variance_m2, "m^2",
       "variance of a point's distance from its plane, without the plane's own", above(0));
-    v("max_neighbor_distance_m", self.max_neighbor_distance_m, "m",
-      "maximum distance of the fifth neighbor", above(0));
-    v("max_plane_thickness_m", self.max_plane_thickness_m, "m",
-      "maximum distance of a neighbor from the plane fitted to all", above(0));
+    v("kernel_scale_m", self.kernel_scale_m, "m",
+      "distance from its plane at which a point has a quarter of its weight", above(0));
     v("min_inlier_share", self.min_inlier_share, "",
-      "a scan is not added to the map when a smaller share of its points near planes lies on them; "
-      "after fifteen such scans in a row the status is diverged",
+      "a scan is not added to the map when the share of its points that lie on their planes is "
+      "smaller than this times the usual share; after fifteen such scans in a row the status is "
+      "diverged",
       between(0, 1));
     v("estimate_extrinsics", self.estimate_extrinsics, "",
       "also estimate the LiDAR's pose relative to the IMU");
-    v("imu_noise_factor", self.imu_noise_factor, "",
-      "factor on the data sheet's densities: covers vibration and errors that the planes do not "
-      "show",
+    v("calibrate_gyro", self.calibrate_gyro, "",
+      "also estimate the gyro's scale factors and the misalignment of its axes");
+    v("gyro_noise_factor", self.gyro_noise_factor, "",
+      "factor on the data sheet's densities of the gyro: covers vibration and what is not "
+      "calibrated",
       above(0));
+    v("accel_noise_factor", self.accel_noise_factor, "",
+      "factor on the data sheet's densities of the accelerometer", above(0));
     v("max_imu_gap_s", self.max_imu_gap_s, "s",
       "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
   }

@@ -1,69 +1,96 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+
+#include "lidarena/estimation/point_to_plane.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
 
-constexpr std::size_t kGrain = 64;  // points per task of a search: about 0.1 ms
+constexpr std::size_t kGrain = 512;    // points per task of a search
+constexpr double kNarrowing = 0.4;     // of the kernel, from one evaluation to the next
+constexpr double kCut = 6.0;           // scales of the kernel; points beyond have no weight
+constexpr double kMinFineShare = 0.5;  // of points in cells with fine planes; else coarse ones help
+
+/// rho'(r) / r of S. Geman, D. McClure, "Statistical Methods for Tomographic Image Reconstruction",
+/// 1987: r^2 / 2 for small residuals r, constant for large ones; a quarter at r = `scale`.
+double geman_mcclure_weight(double r, double scale) {
+  const double root = scale * scale / (scale * scale + r * r);
+  return root * root;
+}
+
+double distance(const map::MapPlane& plane, const Eigen::Vector3f& point) {
+  return plane.normal.dot(point - plane.center);
+}
+
+estimation::Plane as_equation(const map::MapPlane& plane) {
+  const Eigen::Vector3d normal = plane.normal.cast<double>();
+  return {normal, -normal.dot(plane.center.cast<double>())};
+}
+
+std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
+  return planes.size() - static_cast<std::size_t>(std::ranges::count(planes, nullptr));
+}
 
 }  // namespace
 
-double plane_variance(const std::array<map::Neighbor, kNeighbors>& points,
-                      const estimation::Plane& plane, double point_variance) {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  for (const map::Neighbor& p : points) center += p.point.cast<double>() / kNeighbors;
-  const Eigen::Matrix<double, 3, 2> basis = estimation::tangent_basis(plane.normal);
-  Eigen::Matrix2d spread = Eigen::Matrix2d::Zero();  // along the plane
-  double reach = 0.0;
-  for (const map::Neighbor& p : points) {
-    const Eigen::Vector2d along = basis.transpose() * (p.point.cast<double>() - center);
-    spread += along * along.transpose();
-    reach = std::max(reach, along.squaredNorm());
-  }
-  const double half = 0.5 * spread.trace();
-  const double width = half - std::sqrt(std::max(0.0, half * half - spread.determinant()));
-  const double tilt = point_variance / std::max(width, 1e-3 * point_variance);
-  return point_variance / kNeighbors + tilt * reach;
+double PlaneResiduals::Agreement::share() const {
+  return near_planes == 0 ? 0.0
+                          : static_cast<double>(on_planes) / static_cast<double>(near_planes);
 }
 
-PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::KdTree& map,
-                               const Config& config, const Parallel& parallel)
+PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map,
+                               double prior_sigma, const Config& config, const Parallel& parallel)
     : points_(points),
       map_(map),
       config_(config),
       parallel_(parallel),
-      nearest_(points.size()),
+      scale_(std::max(prior_sigma, config.kernel_scale_m)),
+      in_map_(points.size()),
       planes_(points.size()) {}
 
-std::optional<estimation::WeightedPlane> PlaneResiduals::plane_of(const Nearest& nearest) const {
-  if (nearest.found < kNeighbors) return std::nullopt;
-  const auto plane =
-      estimation::fit_plane(map::columns_of(nearest.points), estimation::PlaneFit::kPrincipal,
-                            config_.max_plane_thickness_m);
-  if (!plane) return std::nullopt;
-  const double own = config_.point_variance_m2;
-  return {{*plane, own / (own + plane_variance(nearest.points, *plane, own))}};
-}
-
 void PlaneResiduals::find_planes(const Pose& world_from_lidar) {
-  const auto reach = static_cast<float>(config_.max_neighbor_distance_m);
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
-    const Eigen::Vector3f in_world = (world_from_lidar * points_[i].cast<double>()).cast<float>();
-    nearest_[i].found = map_.nearest(in_world, nearest_[i].points, reach);
-    planes_[i] = plane_of(nearest_[i]);
+    in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
+    planes_[i] = map_.fine().plane_at(in_map_[i]);
   });
-  near_planes_ = static_cast<std::size_t>(std::count_if(
-      planes_.begin(), planes_.end(), [](const auto& plane) { return plane.has_value(); }));
+  const double fine = static_cast<double>(count_planes(planes_));
+  if (fine >= kMinFineShare * static_cast<double>(points_.size())) return;
+  parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
+    if (planes_[i] == nullptr) planes_[i] = map_.coarse().plane_at(in_map_[i]);
+  });
 }
 
 estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
-    const estimation::InertialState& state, bool search) {
-  if (search) find_planes(state.world_from_lidar());
-  return estimation::sum_residuals(points_, state, config_.estimate_extrinsics, planes_, parallel_);
+    const estimation::InertialState& state, bool /*search*/) {
+  find_planes(state.world_from_lidar());
+  const double variance = config_.point_variance_m2;
+  auto sums = estimation::accumulate_normal_equations<estimation::kPointDof>(
+      parallel_, points_.size(), [&](std::size_t i, auto& sum) {
+        const map::MapPlane* plane = planes_[i];
+        if (plane == nullptr || std::abs(distance(*plane, in_map_[i])) > kCut * scale_) return;
+        const estimation::PointResidual residual =
+            estimation::point_residual(points_[i].cast<double>(), as_equation(*plane), state,
+                                       config_.estimate_extrinsics);
+        const double of_plane = variance / (variance + plane->variance);
+        sum.template add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance),
+                            of_plane * geman_mcclure_weight(residual.distance, scale_));
+      });
+  scale_ = std::max(kNarrowing * scale_, config_.kernel_scale_m);
+  return sums;
+}
+
+PlaneResiduals::Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
+  find_planes(state.world_from_lidar());
+  Agreement agreement{.near_planes = count_planes(planes_)};
+  for (std::size_t i = 0; i < planes_.size(); ++i) {
+    const bool is_near = planes_[i] != nullptr;
+    if (is_near && std::abs(distance(*planes_[i], in_map_[i])) < config_.kernel_scale_m)
+      ++agreement.on_planes;
+  }
+  return agreement;
 }
 
 }  // namespace lidarena::odometry::arena_lio

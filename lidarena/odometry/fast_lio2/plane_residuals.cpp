@@ -13,11 +13,9 @@ constexpr double kMaxThickness = 0.1;        // m, distance of one of the five f
 constexpr std::size_t kGrain = 64;           // points per task: about 0.1 ms of searches
 
 /// The unit-offset fit has no plane through the world's origin.
-std::optional<estimation::WeightedPlane> plane_through(const Neighbors& points) {
-  const auto plane = estimation::fit_plane(map::columns_of(points),
-                                           estimation::PlaneFit::kUnitOffset, kMaxThickness);
-  if (!plane) return std::nullopt;
-  return estimation::WeightedPlane{*plane};
+std::optional<estimation::Plane> plane_through(const Neighbors& points) {
+  return estimation::fit_plane(map::columns_of(points), estimation::PlaneFit::kUnitOffset,
+                               kMaxThickness);
 }
 
 bool are_same_points(const Neighbors& a, const Neighbors& b) {

@@ -3,21 +3,41 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace lidarena::odometry::arena_lio {
 namespace {
 
-TEST(ArenaLioMap, FollowsTheSensor) {
-  map::KdTree map;
-  for (int i = -100; i <= 100; ++i) map.insert({static_cast<float>(i), 0.0F, 0.0F});
-  MapWindow window(40.0);
-  window.follow({5.0F, 0.0F, 0.0F}, map);
-  EXPECT_EQ(map.size(), 201U) << "less than a quarter of 40 m";
-  window.follow({20.0F, 0.0F, 0.0F}, map);
-  EXPECT_EQ(map.size(), 79U) << "-19 .. 59";
-  for (const Eigen::Vector3f& point : map.points()) {
-    EXPECT_GT(point.x(), -20.5F);
-    EXPECT_LT(point.x(), 60.5F);
+/// A floor 0.6 m wide along x, a point each 5 cm.
+std::vector<Eigen::Vector3f> floor_along_x(float begin, float end) {
+  std::vector<Eigen::Vector3f> points;
+  for (float x = begin; x < end; x += 0.05F) {
+    for (int y = 0; y < 12; ++y) points.emplace_back(x, 0.05F * static_cast<float>(y), 0.02F);
   }
+  return points;
+}
+
+float least_x(const std::vector<Eigen::Vector3f>& points) {
+  const auto by_x = [](const auto& a, const auto& b) { return a.x() < b.x(); };
+  return std::ranges::min_element(points, by_x)->x();
+}
+
+TEST(ArenaLioMap, FollowsTheSensorInStepsOfAQuarterOfItsRadius) {
+  const Config config{.map_radius_m = 40.0};
+  LocalMap map(config);
+  EXPECT_TRUE(map.empty());
+  const auto points = floor_along_x(-50.0F, 50.0F);
+  map.insert(points, points);
+  EXPECT_FALSE(map.empty());
+  const std::size_t all = map.fine().size();
+  map.follow({5.0F, 0.0F, 0.0F});
+  EXPECT_EQ(map.fine().size(), all) << "less than a quarter of 40 m";
+  map.follow({20.0F, 0.0F, 0.0F});
+  EXPECT_NEAR(least_x(map.fine().centers()), -20.0F, 0.4F) << "to the edge of a cell of 0.3 m";
+  EXPECT_NEAR(least_x(map.coarse().centers()), -20.0F, 1.2F) << "of 0.9 m";
+  map.clear();
+  EXPECT_TRUE(map.empty());
+  EXPECT_EQ(map.fine().size(), 0U);
 }
 
 }  // namespace

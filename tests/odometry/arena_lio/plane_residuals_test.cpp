@@ -4,122 +4,112 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <vector>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/base/so3.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
 
-using FiveNeighbors = std::array<map::Neighbor, kNeighbors>;
+using Points = std::vector<Eigen::Vector3f>;
 
-/// A cross with arms `length` and `width` (m) in a tilted plane, with noise `sigma` across it.
-FiveNeighbors cross(double length, double width, double sigma, SequentialRandom& random) {
-  const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
-  FiveNeighbors points;
-  const double arms[5][2] = {{0, 0}, {length, 0}, {-length, 0}, {0, width}, {0, -width}};
-  for (std::size_t i = 0; i < 5; ++i) {
-    const Eigen::Vector3d at(arms[i][0], arms[i][1], 5.0 + sigma * random.normal());
-    points[i].point = (turn * at).cast<float>();
+/// The floor z = 0, 4 x 4 m about the origin, with noise across it (m).
+Points floor_points(double noise = 0.0) {
+  SequentialRandom random(8, 1);
+  Points points;
+  for (int x = -60; x < 60; ++x) {
+    for (int y = -60; y < 60; ++y) {
+      points.emplace_back(static_cast<float>(x) / 30.0F, static_cast<float>(y) / 30.0F,
+                          static_cast<float>(noise * random.normal()));
+    }
   }
   return points;
 }
 
-TEST(ArenaLioPlanes, TheVarianceIsThatOfManyFits) {
-  SequentialRandom random(12, 1);
-  constexpr double kSigma = 0.01;
-  constexpr double kLength = 0.3;
-  constexpr int kFits = 4000;
-  const Eigen::Matrix3d turn = so3::exp({0.4, -0.3, 0.9});
-  for (const double width : {0.08, 0.15, 0.25}) {
-    // In the direction that is determined worst, at the distance of the farthest point.
-    const Eigen::Vector3d end = turn * Eigen::Vector3d(0.0, kLength, 5.0);
-    double squares = 0.0;
-    for (int i = 0; i < kFits; ++i) {
-      const auto plane =
-          estimation::fit_plane(map::columns_of(cross(kLength, width, kSigma, random)),
-                                estimation::PlaneFit::kPrincipal, 0.1);
-      ASSERT_TRUE(plane.has_value());
-      squares += std::pow(plane->normal.dot(end) + plane->offset, 2);
-    }
-    const FiveNeighbors exact = cross(kLength, width, 0.0, random);
-    const auto plane =
-        estimation::fit_plane(map::columns_of(exact), estimation::PlaneFit::kPrincipal, 0.1);
-    const double predicted_variance = plane_variance(exact, *plane, kSigma * kSigma);
-    const double tilt = kSigma * kSigma / (2.0 * width * width);
-    EXPECT_NEAR(predicted_variance, kSigma * kSigma / 5.0 + tilt * kLength * kLength,
-                1e-3 * predicted_variance);
-    // 4000 squares give a variance to 2.2 %; the rest is the second order of the fit.
-    EXPECT_NEAR(squares / kFits, predicted_variance, 0.1 * predicted_variance) << "width " << width;
-  }
+LocalMap map_of(const Points& points) {
+  LocalMap map(Config{});
+  map.insert(points, points);
+  return map;
 }
 
-TEST(ArenaLioPlanes, OfPointsOnALineNothingIsKnown) {
-  SequentialRandom random(13, 1);
-  const FiveNeighbors line = cross(0.3, 0.0, 0.0, random);
-  const auto plane =
-      estimation::fit_plane(map::columns_of(line), estimation::PlaneFit::kPrincipal, 0.1);
-  ASSERT_TRUE(plane.has_value());
-  EXPECT_GT(plane_variance(line, *plane, 1e-3), 1.0) << "m^2; large but finite";
-  EXPECT_LT(plane_variance(line, *plane, 1e-3), 1e3);
-}
-
-TEST(ArenaLioPlanes, ResidualsAreGatedByRangeAndKeptUntilTheNextSearch) {
-  map::KdTree map;
-  for (int x = -20; x <= 20; ++x) {
-    for (int y = -20; y <= 20; ++y) {
-      map.insert({0.2F * static_cast<float>(x), 0.2F * static_cast<float>(y), 0.0F});
-    }
-  }
-  const std::vector<Eigen::Vector3f> points{{0.05F, 0.03F, 1.0F}};  // 1 m below: gate 0.111 m
+/// Sum of w n n^T along z, of the first evaluation, or of a later one.
+double weight(const LocalMap& map, const Eigen::Vector3f& point, double prior_sigma = 0.0,
+              int evaluation = 1) {
+  const Points points{point};
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(points, map, config, parallel);
-  estimation::InertialState state;
-  state.position().z() = -0.9;
-  const auto near = residuals(state, true);
-  ASSERT_EQ(near.count, 1U);
-  EXPECT_EQ(residuals.near_planes(), 1U);
-  state.position().z() = -0.88;
-  EXPECT_EQ(residuals(state, false).count, 0U) << "0.12 m away";
-  EXPECT_EQ(residuals.near_planes(), 1U) << "near the plane, but off it";
-  state.position().z() = -0.95;
-  EXPECT_EQ(residuals(state, false).count, 0U) << "out until the next search";
-  EXPECT_EQ(residuals(state, true).count, 1U);
+  PlaneResiduals residuals(points, map, prior_sigma, config, parallel);
+  estimation::NormalEquations<estimation::kPointDof> sums;
+  for (int i = 0; i < evaluation; ++i) sums = residuals({}, true);
+  return sums.hessian(2, 2);
 }
 
-TEST(ArenaLioPlanes, UncertainPlanesAndThoseThroughTheOriginAreUsedWithTheirWeights) {
-  // Points on the floor z = 0, through the origin; five along a line say nothing about its tilt.
-  map::KdTree map;
-  for (int i = 0; i < 5; ++i) {
-    const float x = 0.2F * static_cast<float>(i);
-    map.insert({x, 0.0F, 0.0F});
-    map.insert({x, 20.0F, 0.0F});
-    map.insert({x, 20.2F, 0.0F});
-    map.insert({x, 19.8F, 0.0F});
-  }
+TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
+  const LocalMap map = map_of(floor_points());
+  const Points points{{0.4F, 0.7F, 0.01F}};
   const Config config;
   const Parallel parallel(1);
-  const estimation::InertialState state;
-  const auto weight = [&](const Eigen::Vector3f& point) {
-    const std::vector<Eigen::Vector3f> points{point};
-    const auto sum = PlaneResiduals(points, map, config, parallel)(state, true);
-    return sum.hessian.topLeftCorner<3, 3>().trace();  // of w n n^T
-  };
-  EXPECT_GT(weight({0.4F, 20.0F, 0.01F}), 0.3);
-  EXPECT_GT(weight({0.4F, 20.0F, 0.01F}), 100.0 * weight({0.4F, 0.0F, 0.01F}));
-  EXPECT_EQ(weight({0.4F, 10.0F, 0.01F}), 0.0) << "no map within 2.2 m";
+  const auto sums = PlaneResiduals(points, map, 0.0, config, parallel)({}, true);
+  ASSERT_EQ(sums.count, 1U);
+  const double kernel = 1.0 / std::pow(1.0 + 0.01 * 0.01 / (0.05 * 0.05), 2);
+  EXPECT_NEAR(sums.hessian(2, 2), kernel, 1e-3);
+  EXPECT_NEAR(std::abs(sums.gradient[2]), 0.01 * kernel, 1e-4);
+  EXPECT_NEAR(sums.hessian(0, 0), 0.0, 1e-4) << "along the floor nothing is known";
+}
+
+TEST(ArenaLioPlanes, AThickPlaneCountsLess) {
+  // 2 cm: half the weight of a plane without thickness
+  EXPECT_NEAR(weight(map_of(floor_points(0.02)), {0.4F, 0.7F, 0.0F}), 0.5, 0.12);
+}
+
+TEST(ArenaLioPlanes, TheKernelNarrowsFromThePriorsUncertaintyToItsScale) {
+  const LocalMap map = map_of(floor_points());
+  const Eigen::Vector3f off(0.4F, 0.7F, 0.04F);
+  EXPECT_NEAR(weight(map, off, 0.0), std::pow(1.0 + 0.64, -2), 0.01);
+  EXPECT_NEAR(weight(map, off, 1.0), 1.0, 0.01) << "1 m";
+  EXPECT_NEAR(weight(map, off, 1.0, 3), std::pow(1.0 + 0.0625, -2), 0.01) << "0.16 m";
+  EXPECT_NEAR(weight(map, off, 1.0, 6), std::pow(1.0 + 0.64, -2), 0.01) << "5 cm";
+}
+
+TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
+  // 20 points in 4 x 4 m: cells of 0.9 m have planes, those of 0.3 m have none.
+  Points sparse;
+  for (int i = 0; i < 20; ++i) {
+    const auto x = static_cast<float>(i % 5);
+    sparse.emplace_back(0.17F * x, 0.2F * static_cast<float>(i / 5), 0.0F);
+  }
+  const LocalMap map = map_of(sparse);
+  const Config config;
+  const Parallel parallel(1);
+  PlaneResiduals residuals(sparse, map, 0.0, config, parallel);
+  EXPECT_GT(residuals({}, true).count, 5U);
+  const LocalMap dense = map_of(floor_points());
+  EXPECT_EQ(weight(dense, {0.4F, 0.7F, 3.0F}), 0.0) << "3 m above";
+}
+
+TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
+  const LocalMap map = map_of(floor_points());
+  const Points points{{0.4F, 0.7F, 0.01F}, {0.4F, 0.6F, -0.02F}, {0.3F, 0.6F, 9.0F}};
+  const Config config;
+  const Parallel parallel(1);
+  PlaneResiduals residuals(points, map, 0.0, config, parallel);
+  const auto here = residuals.agreement({});
+  EXPECT_EQ(here.near_planes, 2U);
+  EXPECT_EQ(here.on_planes, 2U);
+  EXPECT_EQ(here.share(), 1.0);
+  estimation::InertialState moved;
+  moved.position().z() = 0.045;
+  EXPECT_EQ(residuals.agreement(moved).on_planes, 1U) << "one is now 5.5 cm above";
+  EXPECT_EQ(PlaneResiduals::Agreement{}.share(), 0.0);
 }
 
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
-  map::KdTree map;
-  for (int i = 0; i < 25; ++i)
-    map.insert({0.2F * static_cast<float>(i / 5), 0.2F * static_cast<float>(i % 5), -1.0F});
-  const std::vector<Eigen::Vector3f> points{{0.5F, 0.3F, -1.0F}};
+  const LocalMap map = map_of(floor_points());
+  const Points points{{0.5F, 0.3F, 0.0F}};
   const Parallel parallel(1);
   const auto sums = [&](bool extrinsics) {
     const Config config{.estimate_extrinsics = extrinsics};
-    return PlaneResiduals(points, map, config, parallel)({}, true).hessian;
+    return PlaneResiduals(points, map, 0.0, config, parallel)({}, true).hessian;
   };
   EXPECT_EQ(sums(false).rightCols<6>().norm(), 0.0);
   EXPECT_GT(sums(true).diagonal().tail<6>().maxCoeff(), 0.1);
