@@ -52,15 +52,6 @@ double position_sigma(const estimation::StateEstimate& estimate) {
   return std::sqrt(std::max(0.0, directions.eigenvalues()[2]));
 }
 
-/// At most `most` of the points, at even intervals of their order.
-std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
-  const auto count = static_cast<std::size_t>(most);
-  if (points.size() <= count) return points;
-  for (std::size_t i = 0; i < count; ++i) points[i] = points[i * points.size() / count];
-  points.resize(count);
-  return points;
-}
-
 /// The rotation through the intervals by the gyro alone, which ends in the state's pose: of a
 /// sensor that moves with an unknown velocity.
 estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
@@ -126,7 +117,7 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   if (status == ScanStatus::kTracked && !still) calibrate(before, predicted);
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
   const std::vector<Eigen::Vector3f> points = deskewed(usable);
-  if (contradicting_scans_ == 0) grow_map(points, reduced);
+  if (contradicting_scans_ == 0) grow_map(points);
   registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
   return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
@@ -220,15 +211,14 @@ std::vector<Eigen::Vector3f> ArenaLio::deskewed(const Scan& usable) const {
                             parallel_);
 }
 
-void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points,
-                        const std::vector<Eigen::Vector3f>& reduced) {
+void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   if (still_.scans() > kStandingScansMapped) return;
   if (moving_start_ && !map_.empty()) {  // the second scan, after which the velocity is known
     map_.clear();
     moving_start_ = false;
   }
   const Pose world_from_lidar = estimate_.state.world_from_lidar();
-  map_.insert(transformed(world_from_lidar, points), transformed(world_from_lidar, reduced));
+  map_.insert(transformed(world_from_lidar, points));
   map_.follow(world_from_lidar.translation().cast<float>());
 }
 

@@ -56,8 +56,7 @@ class ArenaLio : public Odometry {
   /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
   std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
   /// Adds a scan to the map, unless it contradicts the map or adds nothing to it.
-  void grow_map(const std::vector<Eigen::Vector3f>& points,
-                const std::vector<Eigen::Vector3f>& reduced);
+  void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const estimation::IteratedUpdate& update,
                        const PlaneResiduals::Agreement& agreement, std::size_t points);

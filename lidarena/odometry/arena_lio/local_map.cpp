@@ -5,6 +5,7 @@ namespace lidarena::odometry::arena_lio {
 namespace {
 
 constexpr double kCoarseCells = 3.0;  // edge, in edges of the fine cells
+constexpr int kCoarsePoints = 10'000;  // of a scan
 
 map::PlaneMap plane_map(const Config& config, double scale) {
   return map::PlaneMap(
@@ -13,15 +14,22 @@ map::PlaneMap plane_map(const Config& config, double scale) {
 
 }  // namespace
 
+std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most) {
+  const auto count = static_cast<std::size_t>(most);
+  if (points.size() <= count) return points;
+  for (std::size_t i = 0; i < count; ++i) points[i] = points[i * points.size() / count];
+  points.resize(count);
+  return points;
+}
+
 LocalMap::LocalMap(const Config& config)
     : radius_(static_cast<float>(config.map_radius_m)),
       fine_(plane_map(config, 1.0)),
       coarse_(plane_map(config, kCoarseCells)) {}
 
-void LocalMap::insert(std::span<const Eigen::Vector3f> points,
-                      std::span<const Eigen::Vector3f> reduced) {
+void LocalMap::insert(std::span<const Eigen::Vector3f> points) {
   fine_.insert(points);
-  coarse_.insert(reduced);
+  coarse_.insert(evenly({points.begin(), points.end()}, kCoarsePoints));
 }
 
 void LocalMap::clear() {

@@ -9,14 +9,17 @@
 
 namespace lidarena::odometry::arena_lio {
 
+/// At most `most` of the points, at even intervals of their order.
+std::vector<Eigen::Vector3f> evenly(std::vector<Eigen::Vector3f> points, int most);
+
 /// The planes around the sensor, in cells of two sizes (m, map frame): the coarse ones serve where
 /// points are too sparse, or the pose too uncertain, for the fine ones.
 class LocalMap {
  public:
   explicit LocalMap(const Config& config);
 
-  /// `points`: all of a scan; `reduced`: their averages.
-  void insert(std::span<const Eigen::Vector3f> points, std::span<const Eigen::Vector3f> reduced);
+  /// Adds all points of a scan; to the coarse cells, which need fewer, an even selection.
+  void insert(std::span<const Eigen::Vector3f> points);
   void clear();
   /// Removes what is far from the sensor, each time it has moved by a quarter of the radius.
   void follow(const Eigen::Vector3f& sensor);

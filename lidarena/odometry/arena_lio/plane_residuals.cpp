@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -12,7 +13,7 @@ namespace {
 constexpr std::size_t kGrain = 512;    // points per task of a search
 constexpr double kNarrowing = 0.4;     // of the kernel, from one evaluation to the next
 constexpr double kCut = 6.0;           // scales of the kernel; points beyond have no weight
-constexpr double kMinFineShare = 0.5;  // of points in cells with fine planes; else coarse ones help
+constexpr double kMinFineShare = 0.02;  // of points that determine each direction by fine planes
 
 /// rho'(r) / r of S. Geman, D. McClure, "Statistical Methods for Tomographic Image Reconstruction",
 /// 1987: r^2 / 2 for small residuals r, constant for large ones; a quarter at r = `scale`.
@@ -28,6 +29,19 @@ double distance(const map::MapPlane& plane, const Eigen::Vector3f& point) {
 estimation::Plane as_equation(const map::MapPlane& plane) {
   const Eigen::Vector3d normal = plane.normal.cast<double>();
   return {normal, -normal.dot(plane.center.cast<double>())};
+}
+
+/// Number of planes that determine the position in the direction in which it is determined least:
+/// smallest eigenvalue of the sum of n n^T.
+double weakest_direction(const std::vector<const map::MapPlane*>& planes) {
+  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+  for (const map::MapPlane* plane : planes) {
+    if (plane == nullptr) continue;
+    const Eigen::Vector3d normal = plane->normal.cast<double>();
+    sum += normal * normal.transpose();
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(sum, Eigen::EigenvaluesOnly)
+      .eigenvalues()[0];
 }
 
 std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
@@ -56,8 +70,8 @@ void PlaneResiduals::find_planes(const Pose& world_from_lidar) {
     in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
     planes_[i] = map_.fine().plane_at(in_map_[i]);
   });
-  const double fine = static_cast<double>(count_planes(planes_));
-  if (fine >= kMinFineShare * static_cast<double>(points_.size())) return;
+  const double needed = kMinFineShare * static_cast<double>(points_.size());
+  if (weakest_direction(planes_) >= needed) return;
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
     if (planes_[i] == nullptr) planes_[i] = map_.coarse().plane_at(in_map_[i]);
   });

@@ -27,7 +27,7 @@ TEST(ArenaLioMap, FollowsTheSensorInStepsOfAQuarterOfItsRadius) {
   LocalMap map(config);
   EXPECT_TRUE(map.empty());
   const auto points = floor_along_x(-50.0F, 50.0F);
-  map.insert(points, points);
+  map.insert(points);
   EXPECT_FALSE(map.empty());
   const std::size_t all = map.fine().size();
   map.follow({5.0F, 0.0F, 0.0F});

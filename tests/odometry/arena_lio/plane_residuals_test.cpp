@@ -28,7 +28,7 @@ Points floor_points(double noise = 0.0) {
 
 LocalMap map_of(const Points& points) {
   LocalMap map(Config{});
-  map.insert(points, points);
+  map.insert(points);
   return map;
 }
 
