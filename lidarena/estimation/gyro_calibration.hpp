@@ -23,8 +23,8 @@ class GyroCalibration {
   const Eigen::Matrix3d& correction() const { return a_; }  ///< A
 
  private:
-  static constexpr double kPriorSigma = 0.01;      ///< of each element of A
-  static constexpr double kRotationSigma = 1e-3;   ///< rad, of the estimated rotations
+  static constexpr double kPriorSigma = 0.01;     ///< of each element of A
+  static constexpr double kRotationSigma = 1e-3;  ///< rad, of the estimated rotations
 
   Eigen::Matrix3d a_ = Eigen::Matrix3d::Zero();
   /// Covariance of each row of A.

@@ -27,8 +27,8 @@ using ImuTrack = std::vector<ImuStep>;
 /// if all begin later. `track` must not be empty.
 Pose pose_at(const ImuTrack& track, Time t);
 
-/// The track bent so that its pose at `end` becomes `world_from_imu_at_end`, while that at its begin
-/// stays: an estimate corrects the motion that was predicted since the previous one, and each
+/// The track bent so that its pose at `end` becomes `world_from_imu_at_end`, while that at its
+/// begin stays: an estimate corrects the motion that was predicted since the previous one, and each
 /// instant gets the share of the correction that has accumulated until then (both of translation
 /// and rotation in proportion to time). Unchanged if it is empty or begins at `end` or later.
 ImuTrack bent_track(ImuTrack track, Time end, const Pose& world_from_imu_at_end);

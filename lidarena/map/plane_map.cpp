@@ -71,8 +71,7 @@ void PlaneMap::insert(std::span<const Eigen::Vector3f> points) {
     known = key;
     Cell& cell = cells_[index];
     if (cell.count >= most) continue;
-    const Eigen::Vector3f off =
-        in_cells - voxel.cast<float>() - Eigen::Vector3f::Constant(0.5F);
+    const Eigen::Vector3f off = in_cells - voxel.cast<float>() - Eigen::Vector3f::Constant(0.5F);
     cell.sum += off;
     cell.products += products_of(off);
     if (++cell.count == cell.next_fit) to_fit_.push_back(index);
@@ -89,8 +88,7 @@ void PlaneMap::fit(Cell& cell) const {
       options_.cell_size * options_.cell_size * axes.eigenvalues();  // m^2, ascending
   const Eigen::Matrix3d points_from_grid = grid_from_points(options_.axes).transpose();
   const Eigen::Vector3d middle = voxel_of_key(cell.key).cast<double>().array() + 0.5;
-  cell.plane.center =
-      (options_.cell_size * points_from_grid * (middle + mean)).cast<float>();
+  cell.plane.center = (options_.cell_size * points_from_grid * (middle + mean)).cast<float>();
   cell.plane.normal = (points_from_grid * axes.eigenvectors().col(0)).cast<float>();
   cell.plane.variance = static_cast<float>(std::max(0.0, spread[0]));
   cell.has_plane = spread[1] >= options_.min_width * options_.min_width;

@@ -30,11 +30,11 @@ struct MapPlane {
 class PlaneMap {
  public:
   struct Options {
-    double cell_size = 0.3;    ///< edge of a cell, m
-    int max_points = 400;      ///< of a cell; later ones are left out
-    int min_points = 6;        ///< of a plane
-    double min_width = 0.04;   ///< m, of a plane: standard deviation of its points along the
-                               ///< narrower direction; a line of points fits any plane through it
+    double cell_size = 0.3;   ///< edge of a cell, m
+    int max_points = 400;     ///< of a cell; later ones are left out
+    int min_points = 6;       ///< of a plane
+    double min_width = 0.04;  ///< m, of a plane: standard deviation of its points along the
+                              ///< narrower direction; a line of points fits any plane through it
     GridAxes axes = GridAxes::kRotated;
   };
 

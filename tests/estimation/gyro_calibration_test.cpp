@@ -33,8 +33,8 @@ TEST(GyroCalibration, FindsScaleFactorsAndMisalignments) {
   Eigen::Matrix3d m;
   m << 1.010, 0.004, -0.006, -0.003, 0.993, 0.005, 0.007, -0.002, 1.005;
   const GyroCalibration calibration = calibrated_with(m, 3e-4, 600);
-  const Eigen::Matrix3d rest = (Eigen::Matrix3d::Identity() + calibration.correction()) * m -
-                               Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d rest =
+      (Eigen::Matrix3d::Identity() + calibration.correction()) * m - Eigen::Matrix3d::Identity();
   // 0.3 mrad of 0.15 rad in 600 scans: 8e-5; five sigmas
   EXPECT_LT(rest.cwiseAbs().maxCoeff(), 4e-4);
 }

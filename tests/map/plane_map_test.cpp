@@ -93,8 +93,11 @@ TEST(PlaneMap, ALineOrAFewPointsAreNoPlane) {
   for (int i = 0; i < 50; ++i) line.emplace_back(0.1F, 0.1F, 0.006F * static_cast<float>(i));
   map.insert(line);
   EXPECT_EQ(map.plane_at(line.front()), nullptr);
-  const Points few{{5.15F, 5.15F, 5.0F}, {5.35F, 5.15F, 5.0F}, {5.15F, 5.35F, 5.0F},
-                   {5.35F, 5.35F, 5.0F}, {5.25F, 5.25F, 5.0F}};
+  const Points few{{5.15F, 5.15F, 5.0F},
+                   {5.35F, 5.15F, 5.0F},
+                   {5.15F, 5.35F, 5.0F},
+                   {5.35F, 5.35F, 5.0F},
+                   {5.25F, 5.25F, 5.0F}};
   map.insert(few);
   EXPECT_EQ(map.plane_at(few.front()), nullptr) << "five";
   map.insert(few);
@@ -129,7 +132,8 @@ TEST(PlaneMap, ForgetsWhatIsFarAndKnowsTheRest) {
   EXPECT_LT(map.size(), all);
   const auto found = [&](std::size_t begin) {
     int planes = 0;
-    for (std::size_t i = begin; i < begin + 4'000; ++i) planes += map.plane_at(points[i]) != nullptr;
+    for (std::size_t i = begin; i < begin + 4'000; ++i)
+      planes += map.plane_at(points[i]) != nullptr;
     return planes;
   };
   EXPECT_GT(found(0), 3'200);

@@ -102,14 +102,14 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const std::vector<Eigen::Vector3f> reduced =
       evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
              config_.max_scan_points);
-  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_), config_, parallel_);
+  const double prior_sigma = position_sigma(estimate_);
+  PlaneResiduals residuals(reduced, map_, prior_sigma, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
       {config_.max_iterations, kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
-  const PlaneResiduals::Agreement agreement = residuals.agreement(estimate_.state);
-  const ScanStatus status = status_of(update, agreement, reduced.size());
-  if (getenv("DBG")) fprintf(stderr, "n %zu near %zu on %zu used %zu v %.3f %.3f %.3f dp %.3f bias %.4f sig %.3f st %s eval %d\n", reduced.size(), agreement.near_planes, agreement.on_planes, update.points.count, estimate_.state.nav.velocity[0], estimate_.state.nav.velocity[1], estimate_.state.nav.velocity[2], (estimate_.state.position()-predicted.position()).norm(), estimate_.state.nav.bias.gyro.norm(), position_sigma(estimate_), to_string(status), update.evaluations);
+  const Agreement agreement = residuals.agreement(estimate_.state);
+  const ScanStatus status = status_of(update, agreement, prior_sigma);
   const bool still = still_.observe(estimation::statistics(samples), predicted,
                                     estimate_.state.position(), accel_scale_);
   if (still) stand();
@@ -222,16 +222,18 @@ void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   map_.follow(world_from_lidar.translation().cast<float>());
 }
 
-ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
-                               const PlaneResiduals::Agreement& agreement, std::size_t points) {
+ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update, const Agreement& agreement,
+                               double prior_sigma) {
   if (!estimation::is_plausible(estimate_.state)) {
     contradicting_scans_ = kLostScans + 1;
     return ScanStatus::kDiverged;
   }
-  if (points == 0) return ScanStatus::kTooFewPoints;
+  if (agreement.points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
-  const double share = agreement.share();
+  // Where the prior did not know the place, points that lie in no known cell speak against it.
+  const double share = prior_sigma < config_.kernel_scale_m ? agreement.on_planes_of_near()
+                                                            : agreement.on_planes_of_all();
   const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;

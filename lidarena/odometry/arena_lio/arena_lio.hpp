@@ -58,8 +58,8 @@ class ArenaLio : public Odometry {
   /// Adds a scan to the map, unless it contradicts the map or adds nothing to it.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const estimation::IteratedUpdate& update,
-                       const PlaneResiduals::Agreement& agreement, std::size_t points);
+  ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement,
+                       double prior_sigma);
   ScanResult refused_scan();
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);

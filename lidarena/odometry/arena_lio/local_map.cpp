@@ -4,7 +4,7 @@
 namespace lidarena::odometry::arena_lio {
 namespace {
 
-constexpr double kCoarseCells = 3.0;  // edge, in edges of the fine cells
+constexpr double kCoarseCells = 3.0;   // edge, in edges of the fine cells
 constexpr int kCoarsePoints = 10'000;  // of a scan
 
 map::PlaneMap plane_map(const Config& config, double scale) {

@@ -10,9 +10,9 @@
 namespace lidarena::odometry::arena_lio {
 namespace {
 
-constexpr std::size_t kGrain = 512;    // points per task of a search
-constexpr double kNarrowing = 0.4;     // of the kernel, from one evaluation to the next
-constexpr double kCut = 6.0;           // scales of the kernel; points beyond have no weight
+constexpr std::size_t kGrain = 512;     // points per task of a search
+constexpr double kNarrowing = 0.4;      // of the kernel, from one evaluation to the next
+constexpr double kCut = 6.0;            // scales of the kernel; points beyond have no weight
 constexpr double kMinFineShare = 0.02;  // of points that determine each direction by fine planes
 
 /// rho'(r) / r of S. Geman, D. McClure, "Statistical Methods for Tomographic Image Reconstruction",
@@ -50,11 +50,6 @@ std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
 
 }  // namespace
 
-double PlaneResiduals::Agreement::share() const {
-  return near_planes == 0 ? 0.0
-                          : static_cast<double>(on_planes) / static_cast<double>(near_planes);
-}
-
 PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map,
                                double prior_sigma, const Config& config, const Parallel& parallel)
     : points_(points),
@@ -65,13 +60,13 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Lo
       in_map_(points.size()),
       planes_(points.size()) {}
 
-void PlaneResiduals::find_planes(const Pose& world_from_lidar) {
+void PlaneResiduals::find_planes(const Pose& world_from_lidar, bool with_coarse) {
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
     in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
     planes_[i] = map_.fine().plane_at(in_map_[i]);
   });
   const double needed = kMinFineShare * static_cast<double>(points_.size());
-  if (weakest_direction(planes_) >= needed) return;
+  if (!with_coarse && weakest_direction(planes_) >= needed) return;
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
     if (planes_[i] == nullptr) planes_[i] = map_.coarse().plane_at(in_map_[i]);
   });
@@ -85,10 +80,9 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
       parallel_, points_.size(), [&](std::size_t i, auto& sum) {
         const map::MapPlane* plane = planes_[i];
         if (plane == nullptr || std::abs(distance(*plane, in_map_[i])) > kCut * scale_) return;
-        const estimation::PointResidual residual =
-            estimation::point_residual(points_[i].cast<double>(), as_equation(*plane), state,
-                                       config_.estimate_extrinsics);
-        const double of_plane = variance / (variance + plane->variance);
+        const estimation::PointResidual residual = estimation::point_residual(
+            points_[i].cast<double>(), as_equation(*plane), state, config_.estimate_extrinsics);
+        const double of_plane = variance / std::max(variance, static_cast<double>(plane->variance));
         sum.template add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance),
                             of_plane * geman_mcclure_weight(residual.distance, scale_));
       });
@@ -96,9 +90,9 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
   return sums;
 }
 
-PlaneResiduals::Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
-  find_planes(state.world_from_lidar());
-  Agreement agreement{.near_planes = count_planes(planes_)};
+Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
+  find_planes(state.world_from_lidar(), true);
+  Agreement agreement{.points = points_.size(), .near_planes = count_planes(planes_)};
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const bool is_near = planes_[i] != nullptr;
     if (is_near && std::abs(distance(*planes_[i], in_map_[i])) < config_.kernel_scale_m)

@@ -12,6 +12,21 @@
 
 namespace lidarena::odometry::arena_lio {
 
+/// How many of a scan's points lie in a cell with a plane, and of these on it: within the kernel's
+/// scale.
+struct Agreement {
+  std::size_t points = 0;
+  std::size_t near_planes = 0;
+  std::size_t on_planes = 0;
+  double on_planes_of_near() const { return share_of(near_planes); }
+  double on_planes_of_all() const { return share_of(points); }
+
+ private:
+  double share_of(std::size_t whole) const {
+    return whole == 0 ? 0.0 : static_cast<double>(on_planes) / static_cast<double>(whole);
+  }
+};
+
 /// Residuals of a scan's points (m, LiDAR frame at the scan's end) from the planes of the cells
 /// that they lie in, with a kernel that narrows from one evaluation to the next: from the
 /// uncertainty of the prior's position, so that a bad prediction does not lose the walls, to the
@@ -26,17 +41,11 @@ class PlaneResiduals {
   estimation::NormalEquations<estimation::kPointDof> operator()(
       const estimation::InertialState& state, bool search);
 
-  /// Number of points that lie in a cell with a plane, and that of those which lie on it, within
-  /// the kernel's scale, at `state`.
-  struct Agreement {
-    std::size_t near_planes = 0;
-    std::size_t on_planes = 0;
-    double share() const;  ///< 0 without planes
-  };
+  /// How the points lie in the map at `state`, in cells of both sizes.
   Agreement agreement(const estimation::InertialState& state);
 
  private:
-  void find_planes(const Pose& world_from_lidar);
+  void find_planes(const Pose& world_from_lidar, bool with_coarse = false);
 
   std::span<const Eigen::Vector3f> points_;
   const LocalMap& map_;

@@ -58,8 +58,9 @@ TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
 }
 
 TEST(ArenaLioPlanes, AThickPlaneCountsLess) {
-  // 2 cm: half the weight of a plane without thickness
-  EXPECT_NEAR(weight(map_of(floor_points(0.02)), {0.4F, 0.7F, 0.0F}), 0.5, 0.12);
+  EXPECT_NEAR(weight(map_of(floor_points(0.01)), {0.4F, 0.7F, 0.0F}), 1.0, 0.1)
+      << "within the points' own noise of 2 cm";
+  EXPECT_NEAR(weight(map_of(floor_points(0.04)), {0.4F, 0.7F, 0.0F}), 0.25, 0.08);
 }
 
 TEST(ArenaLioPlanes, TheKernelNarrowsFromThePriorsUncertaintyToItsScale) {
@@ -96,11 +97,12 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
   const auto here = residuals.agreement({});
   EXPECT_EQ(here.near_planes, 2U);
   EXPECT_EQ(here.on_planes, 2U);
-  EXPECT_EQ(here.share(), 1.0);
+  EXPECT_EQ(here.on_planes_of_near(), 1.0);
+  EXPECT_NEAR(here.on_planes_of_all(), 2.0 / 3.0, 1e-12);
   estimation::InertialState moved;
   moved.position().z() = 0.045;
   EXPECT_EQ(residuals.agreement(moved).on_planes, 1U) << "one is now 5.5 cm above";
-  EXPECT_EQ(PlaneResiduals::Agreement{}.share(), 0.0);
+  EXPECT_EQ(Agreement{}.on_planes_of_near(), 0.0);
 }
 
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
