@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Effect of each loop on the map: runs arena_slam without and with loops on a dataset and prints
-// the error of both maps against the mesh after each scan that added a loop, and at the end (SE(3)
-// gauge on the flight up to then, at most 200,000 points). Usage:
+// Effect of each loop on the map: runs arena_lio+loop without and with loops on a dataset and
+// prints the error of both maps against the mesh after each scan that added a loop, and at the end
+// (SE(3) gauge on the flight up to then, at most 200,000 points). Usage:
 //   loop_effect DATASET [KEY=VALUE ...]
 #include <fmt/format.h>
 
@@ -56,12 +56,13 @@ int show(const std::string& path, const std::vector<std::string>& overrides) {
   const world::World world(world::load_mesh(path + "/world.ply"));
   const LidarInfo* lidar = dataset.rig.find_lidar("");
   const auto made = [&](const std::vector<std::string>& settings) {
-    return odometry::make_odometry({"arena_slam", "", "", settings}, dataset.rig, lidar->id,
+    return odometry::make_odometry({"arena_lio+loop", "", "", settings}, dataset.rig, lidar->id,
                                    parallel)
         .odometry;
   };
   std::vector<std::string> no_loops = overrides;
-  no_loops.insert(no_loops.end(), {"loop.search_radius_m=0", "loop.descriptor_candidates=0"});
+  no_loops.insert(no_loops.end(),
+                  {"loops.loop.search_radius_m=0", "loops.loop.descriptor_candidates=0"});
   const Contest contest{made(no_loops), made(overrides), *truth, world, parallel};
   fmt::print(
       "| s | loops | tried | RMSE cm | > 20 cm % | with loops: RMSE cm | > 20 cm % |\n"

@@ -61,11 +61,9 @@ std::optional<FeatureResidual> surface_residual(const Vector3d& point, const Pla
   return residual_along(plane.normal, distance, arm, weight);
 }
 
-Degenerate find_degenerate(const PoseEquations::Matrix& hessian, const PoseEquations::Vector& unit,
-                           double min_eigenvalue) {
+Degenerate find_degenerate(const PoseEquations::Matrix& hessian, double min_eigenvalue) {
   using Matrix6 = PoseEquations::Matrix;
-  const Matrix6 scaled = unit.asDiagonal() * hessian * unit.asDiagonal();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(scaled);
+  const Eigen::SelfAdjointEigenSolver<Matrix6> solver(hessian);
   Degenerate result;
   Matrix6 kept = Matrix6::Zero();
   for (Eigen::Index i = 0; i < 6; ++i) {
@@ -75,8 +73,7 @@ Degenerate find_degenerate(const PoseEquations::Matrix& hessian, const PoseEquat
       kept += solver.eigenvectors().col(i) * solver.eigenvectors().col(i).transpose();
     }
   }
-  if (result.directions > 0)
-    result.observed = unit.asDiagonal() * kept * unit.cwiseInverse().asDiagonal();
+  if (result.directions > 0) result.observed = kept;
   return result;
 }
 

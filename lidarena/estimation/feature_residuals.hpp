@@ -45,9 +45,7 @@ struct Degenerate {
   int directions = 0;
 };
 /// Those with an eigenvalue of J^T J below `min_eigenvalue` (Zhang, Kaess, Singh, "On Degeneracy of
-/// Optimization-based State Estimation Problems", ICRA 2016). `unit` scales each error, to make
-/// rotations and translations comparable.
-Degenerate find_degenerate(const PoseEquations::Matrix& hessian, const PoseEquations::Vector& unit,
-                           double min_eigenvalue);
+/// Optimization-based State Estimation Problems", ICRA 2016).
+Degenerate find_degenerate(const PoseEquations::Matrix& hessian, double min_eigenvalue);
 
 }  // namespace lidarena::estimation

@@ -2,22 +2,19 @@
 #include "lidarena/estimation/inertial_smoother.hpp"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 
 #include "lidarena/base/so3.hpp"
-#include "lidarena/estimation/inertial_state.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 using State = NavState;
 
-constexpr int kIterations = 3;       // quadratic convergence: two suffice, a third at the start
-constexpr double kConverged = 1e-9;  // m, rad, ...: largest element of the step
-constexpr double kKnownGravitySigma = 1e-6;  // rad: sigma of the direction of a known gravity
-constexpr double kMinVariance = 1e-16;       // added to all, for random walks that are set to 0
+constexpr int kIterations = 3;          // quadratic convergence: two suffice, a third at the start
+constexpr double kConverged = 1e-9;     // m, rad, ...: largest element of the step
+constexpr double kMinVariance = 1e-16;  // added to all, for random walks that are set to 0
 
-Eigen::Index block(std::size_t state) { return 2 + static_cast<Eigen::Index>(state) * State::kDof; }
+Eigen::Index block(std::size_t state) { return static_cast<Eigen::Index>(state) * State::kDof; }
 
 State::Matrix inverse(const State::Matrix& covariance) {
   State::Matrix padded = covariance;
@@ -38,14 +35,9 @@ void InertialSmoother::start(const InertialStart& start) {
   states_ = {start.state};
   motions_.clear();
   measurements_ = {{start.state.world_from_imu, PoseMeasurement::Information::Zero()}};
-  start_gravity_ = start.gravity;
+  gravity_ = start.gravity;
   prior_state_ = start.state;
-  prior_tilt_.setZero();
-  set_tilt(Eigen::Vector2d::Zero());
-  const double sigma = std::max(start.gravity_sigma, kKnownGravitySigma);
-  prior_information_.setZero();
-  prior_information_.diagonal().head<2>().setConstant(1.0 / (sigma * sigma));
-  prior_information_.bottomRightCorner<State::kDof, State::kDof>() = inverse(start.covariance);
+  prior_information_ = inverse(start.covariance);
   covariance_ = start.covariance;
 }
 
@@ -80,36 +72,23 @@ InertialSmoother::Equations InertialSmoother::equations(std::size_t states,
 }
 
 void InertialSmoother::add_prior(Equations& sum) const {
-  Prior error;
-  const State::Vector difference = minus(states_.front(), prior_state_);
-  error << tilt_ - prior_tilt_, difference;
-  PriorInformation j = PriorInformation::Identity();
-  j.bottomRightCorner<State::kDof, State::kDof>() = error_of_difference(difference);
-  const PriorInformation weighted = j.transpose() * prior_information_;
-  sum.hessian.topLeftCorner<error.RowsAtCompileTime, error.RowsAtCompileTime>() += weighted * j;
-  sum.gradient.head<error.RowsAtCompileTime>() += weighted * error;
+  const State::Vector error = minus(states_.front(), prior_state_);
+  const State::Matrix j = error_of_difference(error);
+  const State::Matrix weighted = j.transpose() * prior_information_;
+  sum.hessian.topLeftCorner<State::kDof, State::kDof>() += weighted * j;
+  sum.gradient.head<State::kDof>() += weighted * error;
 }
 
 void InertialSmoother::add_motion(std::size_t first, Equations& sum) const {
   const InertialResidual r = motions_[first].residual(states_[first], states_[first + 1], gravity_);
-  const Eigen::Matrix<double, 3, 2> basis = tangent_basis(start_gravity_);
-  const Eigen::Matrix<double, 3, 2> gravity_by_tilt =
-      -so3::hat(gravity_) * so3::left_jacobian(basis * tilt_) * basis;
-  Eigen::Matrix<double, State::kDof, 2 + 2 * State::kDof> j;
-  j << r.by_gravity * gravity_by_tilt, r.by_first, r.by_second;
-  const State::Matrix information = inverse(motions_[first].covariance());
-  const Eigen::Matrix<double, 2 + 2 * State::kDof, State::kDof> weighted =
-      j.transpose() * information;
-  const Eigen::Matrix<double, 2 + 2 * State::kDof, 2 + 2 * State::kDof> product = weighted * j;
-  const Eigen::Matrix<double, 2 + 2 * State::kDof, 1> slope = weighted * r.value;
+  constexpr int kTwoStates = 2 * State::kDof;
+  Eigen::Matrix<double, State::kDof, kTwoStates> j;
+  j << r.by_first, r.by_second;
+  const Eigen::Matrix<double, kTwoStates, State::kDof> weighted =
+      j.transpose() * inverse(motions_[first].covariance());
   const Eigen::Index at = block(first);
-  constexpr Eigen::Index kStates = 2 * State::kDof;
-  sum.hessian.topLeftCorner<2, 2>() += product.topLeftCorner<2, 2>();
-  sum.hessian.block<2, kStates>(0, at) += product.topRightCorner<2, kStates>();
-  sum.hessian.block<kStates, 2>(at, 0) += product.bottomLeftCorner<kStates, 2>();
-  sum.hessian.block<kStates, kStates>(at, at) += product.bottomRightCorner<kStates, kStates>();
-  sum.gradient.head<2>() += slope.head<2>();
-  sum.gradient.segment<kStates>(at) += slope.tail<kStates>();
+  sum.hessian.block<kTwoStates, kTwoStates>(at, at) += weighted * j;
+  sum.gradient.segment<kTwoStates>(at) += weighted * r.value;
 }
 
 void InertialSmoother::add_measurement(std::size_t state, Equations& sum) const {
@@ -128,38 +107,23 @@ void InertialSmoother::add_measurement(std::size_t state, Equations& sum) const 
 }
 
 void InertialSmoother::move(const Eigen::VectorXd& step) {
-  set_tilt(tilt_ + step.head<2>());
   for (std::size_t i = 0; i < states_.size(); ++i) {
     states_[i] = plus(states_[i], step.segment<State::kDof>(block(i)));
     states_[i].world_from_imu = orthonormalized(states_[i].world_from_imu);
   }
 }
 
-void InertialSmoother::set_tilt(const Eigen::Vector2d& tilt) {
-  tilt_ = tilt;
-  gravity_ = so3::exp(tangent_basis(start_gravity_) * tilt) * start_gravity_;
-}
-
 void InertialSmoother::marginalize_oldest() {
-  // The terms that involve the oldest state, as a normal distribution of only the tilt and the
-  // second state.
+  // The terms that involve the oldest state, as a normal distribution of only the second state.
   const Equations sum = equations(2, 1);
-  const Eigen::Index oldest = block(0);
-  const Eigen::Index second = block(1);
-  Eigen::VectorXi keep(Prior::RowsAtCompileTime);
-  for (int i = 0; i < keep.size(); ++i) keep[i] = i < 2 ? i : static_cast<int>(second) + i - 2;
-  const State::Matrix oldest_hessian = sum.hessian.block<State::kDof, State::kDof>(oldest, oldest);
-  const Eigen::MatrixXd coupling =
-      sum.hessian(keep, Eigen::seqN(oldest, Eigen::Index{State::kDof}));
-  const Eigen::LDLT<State::Matrix> factor(oldest_hessian);
-  const PriorInformation schur =
-      sum.hessian(keep, keep) - coupling * factor.solve(coupling.transpose());
-  const Prior gradient =
-      sum.gradient(keep) - coupling * factor.solve(sum.gradient.segment<State::kDof>(oldest));
+  const State::Matrix coupling = sum.hessian.bottomLeftCorner<State::kDof, State::kDof>();
+  const Eigen::LDLT<State::Matrix> oldest(sum.hessian.topLeftCorner<State::kDof, State::kDof>());
+  const State::Matrix schur = sum.hessian.bottomRightCorner<State::kDof, State::kDof>() -
+                              coupling * oldest.solve(coupling.transpose());
+  const State::Vector gradient =
+      sum.gradient.tail<State::kDof>() - coupling * oldest.solve(sum.gradient.head<State::kDof>());
   prior_information_ = 0.5 * (schur + schur.transpose());
-  const Prior to_mean = -prior_information_.ldlt().solve(gradient);
-  prior_tilt_ = tilt_ + to_mean.head<2>();
-  prior_state_ = plus(states_[1], to_mean.tail<State::kDof>());
+  prior_state_ = plus(states_[1], -prior_information_.ldlt().solve(gradient));
   states_.pop_front();
   motions_.pop_front();
   measurements_.pop_front();

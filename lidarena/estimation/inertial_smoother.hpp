@@ -21,14 +21,12 @@ struct PoseMeasurement {
 struct InertialStart {
   NavState state;
   NavState::Matrix covariance = NavState::Matrix::Identity();
-  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world
-  double gravity_sigma = 0.0;                   ///< rad, of its direction; 0: known exactly
+  Eigen::Vector3d gravity{0.0, 0.0, -9.80665};  ///< m/s^2, world; taken as exact
 };
 
 /// Fuses poses from scan matching with the IMU: a factor graph of the last few states joined by
 /// preintegrated measurements (Shan et al., "LIO-SAM", IROS 2020, section III-B), solved by
-/// Gauss-Newton; older states are marginalized into a prior. It can also estimate the direction of
-/// gravity in the world, whose frame is fixed by the first scan.
+/// Gauss-Newton; older states are marginalized into a prior.
 class InertialSmoother {
  public:
   /// `lag`: number of measurements that stay in the graph (at least 1).
@@ -39,19 +37,12 @@ class InertialSmoother {
   void add(const Preintegration& since_last, const PoseMeasurement& measured);
 
   const NavState& latest() const { return states_.back(); }
-  const Eigen::Vector3d& gravity() const { return gravity_; }
   /// Covariance of the latest state.
   const NavState::Matrix& covariance() const { return covariance_; }
   std::size_t size() const { return states_.size(); }
 
  private:
-  /// Order of the unknowns: direction of gravity as a rotation by two angles from its initial one,
-  /// then one state after the other.
-  static constexpr int kGravityDof = 2;
-  using Prior = Eigen::Matrix<double, kGravityDof + NavState::kDof, 1>;
-  using PriorInformation =
-      Eigen::Matrix<double, Prior::RowsAtCompileTime, Prior::RowsAtCompileTime>;
-  struct Equations {
+  struct Equations {  ///< the unknowns are those of one state after the other
     Eigen::MatrixXd hessian;
     Eigen::VectorXd gradient;
   };
@@ -61,19 +52,15 @@ class InertialSmoother {
   void add_motion(std::size_t first, Equations& sum) const;
   void add_measurement(std::size_t state, Equations& sum) const;
   void move(const Eigen::VectorXd& step);
-  void set_tilt(const Eigen::Vector2d& tilt);
   void marginalize_oldest();
 
   std::size_t lag_;
   std::deque<NavState> states_;
   std::deque<Preintegration> motions_;        ///< from each state to the next
   std::deque<PoseMeasurement> measurements_;  ///< of each state
-  Eigen::Vector3d start_gravity_ = Eigen::Vector3d::Zero();
   Eigen::Vector3d gravity_ = Eigen::Vector3d::Zero();
-  Eigen::Vector2d tilt_ = Eigen::Vector2d::Zero();
   NavState prior_state_;  ///< prior mean of the oldest state
-  Eigen::Vector2d prior_tilt_ = Eigen::Vector2d::Zero();
-  PriorInformation prior_information_ = PriorInformation::Identity();
+  NavState::Matrix prior_information_ = NavState::Matrix::Identity();
   NavState::Matrix covariance_ = NavState::Matrix::Identity();
 };
 

@@ -118,9 +118,6 @@ InertialResidual Preintegration::residual(const NavState& first, const NavState&
   r.by_second.block<3, 3>(0, State::kRotation) = by_turn;
   r.by_second.block<3, 3>(3, State::kVelocity) = back;
   r.by_second.block<3, 3>(6, State::kPosition) = back;
-  r.by_gravity.setZero();
-  r.by_gravity.block<3, 3>(3, 0) = -seconds_ * back;
-  r.by_gravity.block<3, 3>(6, 0) = -0.5 * seconds_ * seconds_ * back;
   return r;
 }
 

@@ -22,8 +22,6 @@ struct RelativeMotion {
 struct InertialResidual {
   NavState::Vector value;
   NavState::Matrix by_first, by_second;
-  /// With respect to the gravity vector in the world.
-  Eigen::Matrix<double, NavState::kDof, 3> by_gravity;
 };
 
 /// IMU samples between two instants, summed up once, so that the states at both can be estimated

@@ -7,8 +7,8 @@
 namespace lidarena::map {
 
 Features thinned(const Features& features, const FeatureVoxels& voxels) {
-  return {voxel_means(features.edges, voxels.edge_size_m, voxels.axes),
-          voxel_means(features.surfaces, voxels.surface_size_m, voxels.axes)};
+  return {voxel_means(features.edges, voxels.edge_size_m),
+          voxel_means(features.surfaces, voxels.surface_size_m)};
 }
 
 bool has_moved(const Keyframe& keyframe, const Pose& world_from_lidar, double translation,

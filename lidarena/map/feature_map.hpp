@@ -7,7 +7,6 @@
 
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/time.hpp"
-#include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/submap.hpp"
 
 /// Edges and surfaces, the features of LOAM and LIO-SAM, of scans and of the map around a sensor.
@@ -23,7 +22,6 @@ struct Features {
 struct FeatureVoxels {
   double edge_size_m = 0.0;
   double surface_size_m = 0.0;
-  GridAxes axes = GridAxes::kParallel;
 };
 /// The features averaged in these voxels.
 Features thinned(const Features& features, const FeatureVoxels& voxels);
@@ -55,7 +53,7 @@ struct FeatureMap {
   Submap surfaces;
 
   explicit FeatureMap(const FeatureVoxels& voxels)
-      : edges(voxels.edge_size_m, voxels.axes), surfaces(voxels.surface_size_m, voxels.axes) {}
+      : edges(voxels.edge_size_m), surfaces(voxels.surface_size_m) {}
   /// Selects the keyframes (there must be one) around the last one, for a scan at `now`.
   void follow(const std::vector<Keyframe>& keyframes, Time now, const SubmapExtent& extent);
   /// `chosen`: sorted indices of `keyframes`.

@@ -47,8 +47,7 @@ class Submap {
   /// `placed(keyframe)`: its points in the world (m).
   using Placed = std::function<std::vector<Eigen::Vector3f>(std::uint32_t keyframe)>;
 
-  explicit Submap(double voxel_size, GridAxes axes = GridAxes::kParallel)
-      : sums_(voxel_size, axes) {}
+  explicit Submap(double voxel_size) : sums_(voxel_size) {}
 
   /// `chosen`: sorted indices of keyframes.
   void select(std::span<const std::uint32_t> chosen, const RevisionOf& revision_of,

@@ -19,13 +19,12 @@ Eigen::Matrix<std::int64_t, 3, 1> in_micrometers(const Eigen::Vector3f& point) {
 
 }  // namespace
 
-VoxelSums::VoxelSums(double voxel_size, GridAxes axes)
-    : cells_from_points_((grid_from_points(axes) / voxel_size).cast<float>()) {
+VoxelSums::VoxelSums(double voxel_size) : cells_per_meter_(static_cast<float>(1.0 / voxel_size)) {
   if (!(voxel_size > 0.0)) throw InputError("voxel_size", "must be above 0 m");
 }
 
 VoxelKey VoxelSums::key_of(const Eigen::Vector3f& point) const {
-  return voxel_key(voxel_of(cells_from_points_ * point, 1.0F));
+  return voxel_key(voxel_of(cells_per_meter_ * point, 1.0F));
 }
 
 void VoxelSums::add(std::span<const Eigen::Vector3f> points) {

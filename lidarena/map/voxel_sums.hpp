@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "lidarena/map/grid_axes.hpp"
 #include "lidarena/map/voxel_key.hpp"
 
 namespace lidarena::map {
@@ -20,7 +19,7 @@ namespace lidarena::map {
 class VoxelSums {
  public:
   /// `voxel_size`: edge of a cell (m).
-  explicit VoxelSums(double voxel_size, GridAxes axes = GridAxes::kParallel);
+  explicit VoxelSums(double voxel_size);
 
   void add(std::span<const Eigen::Vector3f> points);
   /// Removes points that were added with exactly the same coordinates.
@@ -42,7 +41,7 @@ class VoxelSums {
   };
   VoxelKey key_of(const Eigen::Vector3f& point) const;
 
-  Eigen::Matrix3f cells_from_points_;
+  float cells_per_meter_;
   std::vector<Cell> cells_;
   tsl::robin_map<VoxelKey, std::uint32_t, VoxelKeyHash> places_;  ///< index in `cells_`
 };

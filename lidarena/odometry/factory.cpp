@@ -7,7 +7,6 @@
 #include "lidarena/base/config_schema.hpp"
 #include "lidarena/odometry/arena_lio/arena_lio.hpp"
 #include "lidarena/odometry/arena_lo/arena_lo.hpp"
-#include "lidarena/odometry/arena_slam/arena_slam.hpp"
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
@@ -128,16 +127,6 @@ struct ArenaLio {
   }
 };
 
-struct ArenaSlam {
-  using Config = arena_slam::Config;
-  static PresetTable<Config> presets() { return {{"", arena_slam::settings_for}}; }
-  static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
-                                         const LidarInfo& lidar, const Parallel& parallel) {
-    const ImuInfo& imu = imu_for("arena_slam", rig, lidar);
-    return std::make_unique<arena_slam::ArenaSlam>(config, lidar, imu, parallel);
-  }
-};
-
 std::string listed(const std::vector<std::string>& words) {
   std::string text;
   for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
@@ -163,9 +152,14 @@ std::string successor_of(const std::string& algorithm, const std::string& preset
   }
   if (preset != "improved") return "";
   if (algorithm.starts_with("fast_lio2")) return "that method is arena_lio now";
-  if (algorithm.starts_with("lio_sam")) return "that method is arena_slam now";
+  if (algorithm.starts_with("lio_sam")) return "it was removed; arena_lio+loop is more accurate";
   if (algorithm.starts_with("ct_icp")) return "that method is arena_lo now";
   return "it was removed; arena_lo is more accurate";
+}
+
+/// What to use instead of a former algorithm.
+std::string successor_of(const std::string& algorithm) {
+  return algorithm == "arena_slam" ? "it was removed; use arena_lio+loop" : "";
 }
 
 template <class Maker>
@@ -245,13 +239,19 @@ std::vector<Algorithm> algorithms() {
       plain<LioSamLc>("lio_sam_lc", "LIO-SAM with its loop closure", true),
       plain<ArenaLo>("arena_lo", "our own, LiDAR only: elastic scans of several segments", false),
       plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true),
-      plain<ArenaSlam>("arena_slam", "our own, LiDAR and IMU: smoothed keyframes, loop closure",
-                       true),
       looped<Kiss>("kiss_icp+loop", "KISS-ICP with our loop closure around it", false),
       looped<FastLio>("fast_lio2+loop", "FAST-LIO2 with our loop closure around it", true),
       looped<ArenaLo>("arena_lo+loop", "arena_lo with our loop closure around it", false),
       looped<ArenaLio>("arena_lio+loop", "arena_lio with our loop closure around it", true),
   };
+}
+
+InputError no_such_algorithm(const std::string& name, const std::vector<std::string>& names) {
+  std::string remedy = successor_of(name);
+  const std::string nearest = nearest_word(name, names);
+  if (remedy.empty() && !nearest.empty()) remedy = "did you mean '" + nearest + "'?";
+  if (remedy.empty()) remedy = "use one of " + listed(names);
+  return {"algorithm", "there is no '" + name + "'", remedy};
 }
 
 /// The algorithm that is asked for, which has the preset that is asked for.
@@ -269,10 +269,7 @@ Algorithm chosen_algorithm(const OdometryRequest& request) {
     throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'",
                      remedy);
   }
-  const std::string nearest = nearest_word(request.algorithm, names);
-  throw InputError(
-      "algorithm", "there is no '" + request.algorithm + "'",
-      nearest.empty() ? "use one of " + listed(names) : "did you mean '" + nearest + "'?");
+  throw no_such_algorithm(request.algorithm, names);
 }
 
 const LidarInfo& chosen_lidar(const Rig& rig, const std::string& lidar_id) {

@@ -15,7 +15,7 @@ Json facts_of(const results::RunRecord& row);
 
 /// Whether the points of the run's own map are means of several returns.
 bool has_mean_map(const results::RunRecord& run);
-/// The algorithms with such maps: "arena_slam, lio_sam"; empty if there is none.
+/// The algorithms with such maps: "arena_lio+loop, lio_sam"; empty if there is none.
 std::string methods_with_mean_maps(const results::StudyResults& results);
 
 /// All runs of a world with all their figures; lost runs are rows, too.

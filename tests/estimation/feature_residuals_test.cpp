@@ -80,14 +80,13 @@ TEST(FeatureResiduals, FarMatchesDoNotCount) {
 TEST(FeatureResiduals, ADirectionWithoutInformationIsDegenerateAndNotObserved) {
   PoseEquations::Matrix hessian = PoseEquations::Matrix::Identity();
   hessian(3, 3) = 0.01;
-  const auto unit = PoseEquations::Vector::Ones();
-  const Degenerate found = find_degenerate(hessian, unit, 0.1);
+  const Degenerate found = find_degenerate(hessian, 0.1);
   EXPECT_EQ(found.directions, 1);
   const PoseEquations::Vector step = found.observed * PoseEquations::Vector::Ones();
   EXPECT_NEAR(step[3], 0.0, 1e-12);
   EXPECT_NEAR(step[4], 1.0, 1e-12);
-  EXPECT_EQ(find_degenerate(hessian, unit, 0.001).directions, 0);
-  EXPECT_TRUE(find_degenerate(hessian, unit, 0.001).observed.isIdentity());
+  EXPECT_EQ(find_degenerate(hessian, 0.001).directions, 0);
+  EXPECT_TRUE(find_degenerate(hessian, 0.001).observed.isIdentity());
 }
 
 }  // namespace

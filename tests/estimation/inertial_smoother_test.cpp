@@ -116,8 +116,7 @@ TEST(InertialSmoother, FindsBiasesAndVelocityOfAPerfectFlight) {
 
 TEST(InertialSmoother, AShortLagGivesWhatAllMeasurementsAtOnceGive) {
   const Flight flight = fly(30, {{0.01, 0.0, -0.01}, {0.05, 0.1, 0.0}}, 1.0, 2);
-  InertialStart start = start_at(flight.truth.front());
-  start.gravity_sigma = 0.02;
+  const InertialStart start = start_at(flight.truth.front());
   InertialSmoother all(1000);
   InertialSmoother some(5);
   all.start(start);
@@ -158,24 +157,6 @@ TEST(InertialSmoother, ItsCovarianceIsHonest) {
   // lower.
   EXPECT_GT(sum, 15.0 - 5.0 * 0.71);
   EXPECT_LT(sum, 15.0 + 3.0 * 0.71);
-}
-
-TEST(InertialSmoother, AWorldThatIsNotUprightShowsInGravity) {
-  const Flight flight = fly(80, {}, 0.1, 3);
-  InertialStart start = start_at(flight.truth.front());
-  start.gravity = so3::exp({0.03, -0.02, 0.0}) * kGravity;
-  start.gravity_sigma = 0.05;
-  InertialSmoother smoother;
-  smoother.start(start);
-  play(flight, smoother);
-  EXPECT_LT((smoother.gravity() - kGravity).norm(), 0.02) << "the initial error is 0.35 m/s^2";
-  EXPECT_NEAR(smoother.gravity().norm(), 9.8, 1e-9);
-
-  start.gravity_sigma = 0.0;
-  InertialSmoother sure;
-  sure.start(start);
-  play(flight, sure);
-  EXPECT_GT((sure.gravity() - kGravity).norm(), 0.3) << "the given direction is taken as exact";
 }
 
 TEST(InertialSmoother, AMeasurementWithoutInformationIsAPrediction) {

@@ -158,12 +158,6 @@ TEST(Preintegration, TheJacobiansAreTheNumericOnes) {
       EXPECT_LT((r.by_first.col(k) - by_first).norm(), 1e-7) << k;
       EXPECT_LT((r.by_second.col(k) - by_second).norm(), 1e-7) << k;
     }
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      const Vector3d unit = Vector3d::Unit(k);
-      const auto by_gravity =
-          slope([&](double h) { return sum.residual(first, second, kGravity + h * unit).value; });
-      EXPECT_LT((r.by_gravity.col(k) - by_gravity).norm(), 1e-7) << k;
-    }
   }
 }
 

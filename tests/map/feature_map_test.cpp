@@ -31,7 +31,7 @@ TEST(Keyframes, TakeTheirPointsAlongWhenTheyMove) {
 TEST(Features, AreAveragedInVoxelsOfTheirKind) {
   const Features features{{{0.1F, 0.1F, 0.1F}, {0.9F, 0.1F, 0.1F}},
                           {{0.1F, 0.1F, 0.1F}, {0.9F, 0.1F, 0.1F}}};
-  const Features means = thinned(features, {0.5, 1.0, GridAxes::kParallel});
+  const Features means = thinned(features, {0.5, 1.0});
   EXPECT_EQ(means.edges, features.edges);
   ASSERT_EQ(means.surfaces.size(), 1U);
   EXPECT_FLOAT_EQ(means.surfaces[0].x(), 0.5F);

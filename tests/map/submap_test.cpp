@@ -44,10 +44,10 @@ TEST(Submap, FollowsAsIfMadeAnew) {
   std::vector<std::uint32_t> revisions(8, 0);
   const auto revision_of = [&](std::uint32_t i) { return revisions[i]; };
   const auto placed = [&](std::uint32_t i) { return clouds[i]; };
-  Submap follows(0.2, GridAxes::kRotated);
+  Submap follows(0.2);
   const auto expect_as_anew = [&](const std::vector<std::uint32_t>& chosen) {
     follows.select(chosen, revision_of, placed);
-    Submap anew(0.2, GridAxes::kRotated);
+    Submap anew(0.2);
     anew.select(chosen, revision_of, placed);
     EXPECT_EQ(sorted(follows.tree().points()), sorted(anew.tree().points()));
   };

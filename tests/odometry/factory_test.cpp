@@ -9,7 +9,6 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
 #include "lidarena/odometry/arena_lo/config.hpp"
-#include "lidarena/odometry/arena_slam/config.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/fast_lio2/config.hpp"
 #include "lidarena/odometry/kiss_icp/config.hpp"
@@ -83,11 +82,10 @@ TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
   expect_defaults("lio_sam", to_json(lio_sam::indoor(unknown)));
   expect_defaults("arena_lo", to_json(arena_lo::settings_for(unknown)));
   expect_defaults("arena_lio", to_json(arena_lio::settings_for(unknown)));
-  expect_defaults("arena_slam", to_json(arena_slam::settings_for(unknown)));
 }
 
 TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
-  EXPECT_THAT(refusal({"arena_slam", "", "", {"loop.least_gap_s=5"}}),
+  EXPECT_THAT(refusal({"arena_lio+loop", "", "", {"loops.loop.least_gap_s=5"}}),
               HasSubstr("write 'min_time_gap_s'"));
   EXPECT_THAT(refusal({"ct_icp", "indoor", "", {"registration.min_neighbours=9"}}),
               HasSubstr("write 'min_neighbors'"));
@@ -116,8 +114,13 @@ TEST(OdometryFactory, AFormerPresetIsRefusedWithItsSuccessor) {
   EXPECT_THAT(refusal({"fast_lio2", "original", "", {}}), HasSubstr("the preset published"));
   EXPECT_THAT(refusal({"fast_lio2+loop", "improved", "", {}}), HasSubstr("arena_lio"));
   EXPECT_THAT(refusal({"lio_sam", "original", "", {}}), HasSubstr("the preset indoor"));
-  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {}}), HasSubstr("arena_slam"));
+  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {}}), HasSubstr("arena_lio+loop"));
   EXPECT_THAT(refusal({"arena_lio", "improved", "", {}}), HasSubstr("leave it out"));
+}
+
+TEST(OdometryFactory, AFormerAlgorithmIsRefusedWithItsSuccessor) {
+  EXPECT_THAT(refusal({"arena_slam", "", "", {}}),
+              AllOf(HasSubstr("there is no 'arena_slam'"), HasSubstr("use arena_lio+loop")));
 }
 
 TEST(OdometryFactory, TheDefaultPresetIsNamedWhereThereIsOne) {

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "lidarena/estimation/imu_track.hpp"
-#include "lidarena/odometry/feature_extraction.hpp"
 #include "lidarena/odometry/lio_sam/config.hpp"
+#include "lidarena/odometry/lio_sam/feature_extraction.hpp"
 
 namespace lidarena::odometry::lio_sam {
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/lio_sam/registration.hpp"
 
-#include "lidarena/odometry/feature_matcher.hpp"
+#include "lidarena/odometry/lio_sam/feature_matching.hpp"
 
 namespace lidarena::odometry::lio_sam {
 namespace {
 
 using estimation::PoseEquations;
 
-constexpr PlaneRule kPlanes{.fit = estimation::PlaneFit::kUnitOffset, .max_thickness_m = 0.2};
 constexpr std::size_t kMinMatches = 50;           // fewer do not determine a pose
 constexpr double kMinEigenvalue = 100.0;          // of J^T J
 constexpr int kSpinningIterations = 30;           // maximum
@@ -22,14 +21,12 @@ Registration register_features(const map::Features& features, const map::Feature
                                const Pose& guess, Sensor sensor, const Parallel& parallel) {
   const int max_iterations = sensor == Sensor::kLivox ? kLivoxIterations : kSpinningIterations;
   Registration result{.map_from_lidar = guess};
-  FeatureMatcher matcher(features, map, kPlanes, parallel);
   estimation::Degenerate degenerate;
   while (result.iterations < max_iterations && !result.converged) {
-    const PoseEquations sum = matcher.equations(result.map_from_lidar, true);
+    const PoseEquations sum = match_features(features, map, result.map_from_lidar, parallel);
     if (sum.count < kMinMatches) break;
     if (result.iterations == 0)
-      degenerate =
-          estimation::find_degenerate(sum.hessian, PoseEquations::Vector::Ones(), kMinEigenvalue);
+      degenerate = estimation::find_degenerate(sum.hessian, kMinEigenvalue);
     const PoseEquations::Vector step = degenerate.observed * sum.solve();
     result.map_from_lidar = estimation::moved(result.map_from_lidar, step);
     result.matches = sum.count;

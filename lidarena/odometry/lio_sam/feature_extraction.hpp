@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <optional>
-
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/estimation/edge_points.hpp"
 #include "lidarena/map/feature_map.hpp"
 
-namespace lidarena::odometry {
+namespace lidarena::odometry::lio_sam {
 
 /// How features are found in a scan.
 struct FeatureRule {
   estimation::ImageLayout layout;
   estimation::EdgeRule edges;
-  /// In which the surface points of each row are averaged; unset: they stay as they are.
-  std::optional<double> row_surface_voxel_size_m;
+  double row_surface_voxel_size_m = 0.4;  ///< in which the surface points of each row are averaged
 };
 
 /// The edges of each row (LOAM, section V-A); all its other points are surface points. In the
@@ -22,4 +19,4 @@ struct FeatureRule {
 map::Features extract_features(const estimation::RangeImage& image, const FeatureRule& rule,
                                const Parallel& parallel);
 
-}  // namespace lidarena::odometry
+}  // namespace lidarena::odometry::lio_sam

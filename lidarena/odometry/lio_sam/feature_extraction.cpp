@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/odometry/feature_extraction.hpp"
+#include "lidarena/odometry/lio_sam/feature_extraction.hpp"
 
 #include "lidarena/map/voxel_filter.hpp"
 
-namespace lidarena::odometry {
+namespace lidarena::odometry::lio_sam {
 namespace {
 
 using map::Features;
@@ -15,8 +15,7 @@ Features features_of(std::span<const estimation::Pixel> row, const FeatureRule& 
   Features features;
   for (std::size_t i = 0; i < row.size(); ++i)
     (is_edge[i] ? features.edges : features.surfaces).push_back(row[i].position);
-  if (rule.row_surface_voxel_size_m)
-    features.surfaces = map::voxel_means(features.surfaces, *rule.row_surface_voxel_size_m);
+  features.surfaces = map::voxel_means(features.surfaces, rule.row_surface_voxel_size_m);
   return features;
 }
 
@@ -39,4 +38,4 @@ Features extract_features(const estimation::RangeImage& image, const FeatureRule
       append);
 }
 
-}  // namespace lidarena::odometry
+}  // namespace lidarena::odometry::lio_sam
