@@ -43,7 +43,8 @@ struct Contest {
     const evaluation::MapError b = error_of(*with, truth, world, parallel);
     fmt::print("| {:.1f} | {} | {} | {:.2f} | {:.2f} | {:.2f} | {:.2f} |\n",
                to_seconds(stamp - truth.begin_time()), loops, tried, 100.0 * a.distance_m.rmse,
-               a.outliers_percent, 100.0 * b.distance_m.rmse, b.outliers_percent);
+               a.outliers_percent.value_or(0.0), 100.0 * b.distance_m.rmse,
+               b.outliers_percent.value_or(0.0));
     std::fflush(stdout);
   }
 };

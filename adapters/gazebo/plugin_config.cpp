@@ -22,7 +22,7 @@ fs::path sensor_folder() {
 }
 
 sensor::SensorConfig named_sensor(const std::string& name, const std::string& place) {
-  if (fs::is_regular_file(name)) return sensor::load_sensor(name);
+  if (fs::is_regular_file(name)) return sensor::load_sensor(name, sensor_folder());
   const fs::path file = sensor_folder() / (name + ".yaml");
   if (fs::is_regular_file(file)) return sensor::load_sensor(file);
   throw InputError(place, "no sensor '" + name + "' in " + sensor_folder().string(),

@@ -159,15 +159,14 @@ int info_verb(const Common& common, const InfoOptions& o) {
   Console console(common.quiet);
   const study::ConfigFolder configs = common.config_folder();
   if (o.rays > 0) {
-    print_rays(sensor::load_sensor(configs.resolve("sensors", o.thing)), o.rays);
+    print_rays(configs.load_sensor(o.thing), o.rays);
     return kDone;
   }
   if (!o.out.empty() && !o.pattern) {
     throw InputError("--out", "is only for the drawing of a scan pattern", "add --pattern");
   }
   const Json json =
-      o.pattern ? pattern_info(sensor::load_sensor(configs.resolve("sensors", o.thing)), o.out)
-                : info_of(configs, o, console);
+      o.pattern ? pattern_info(configs.load_sensor(o.thing), o.out) : info_of(configs, o, console);
   if (common.json) {
     print_json(json);
   } else {

@@ -128,7 +128,7 @@ int list_sensors(const Common& common, const SensorFilter& filter) {
     const auto file = configs.resolve("sensors", name);
     Json json{{"name", name}, {"summary", first_comment(file)}};
     try {
-      const sensor::SensorConfig sensor = sensor::load_sensor(file);
+      const sensor::SensorConfig sensor = configs.load_sensor(name);
       const double points = points_per_second(sensor);
       const Verdict verdict = judge(filter, sensor, points);
       if (verdict == Verdict::kUnknown) unknown.push_back(name);

@@ -19,7 +19,7 @@ std::map<std::string, std::function<Json()>> schemas() {
   std::map<std::string, std::function<Json()>> all{
       {"world", [] { return schema_document<scenes::WorldConfig>("A world of Lidarena"); }},
       {"flight", [] { return schema_document<flight::FlightConfig>("A flight of Lidarena"); }},
-      {"sensor", [] { return schema_document<sensor::SensorConfig>("A sensor of Lidarena"); }},
+      {"sensor", [] { return schema_document<sensor::SensorFile>("A sensor of Lidarena"); }},
       {"beams",
        [] { return schema_document<sensor::SpinningHead>("The beams of a spinning head"); }},
       {"external",

@@ -31,8 +31,9 @@ void find_files(const study::ConfigFolder& configs, const SimulateOptions& optio
                 study::SimulateRequest& request) {
   for (const std::string& sensor : options.sensors) {
     request.sensors.push_back(configs.resolve("sensors", sensor));
-    sensor::load_sensor(request.sensors.back());
+    configs.load_sensor(sensor);
   }
+  request.shipped_sensors = configs.root() / "sensors";
   if (!options.world.empty()) request.world = configs.resolve("worlds", options.world);
   if (!options.flight.empty()) request.flight = configs.resolve("flights", options.flight);
   std::string missing, lists;

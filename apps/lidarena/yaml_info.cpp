@@ -124,7 +124,7 @@ Json yaml_info(const fs::path& file, const study::ConfigFolder& configs,
   if (kinds.size() != 1) reject(file, node, kinds);
   const std::string& kind = kinds.front();
   if (kind == "world") return world_info(file, options, log);
-  if (kind == "sensor") return sensor_info(sensor::load_sensor(file));
+  if (kind == "sensor") return sensor_info(configs.load_sensor(file.string()));
   if (kind == "beams") return beams_info(sensor::load_spinning_head(file));
   if (kind == "study") return study_info(file, configs);
   if (kind == "flight")

@@ -134,6 +134,7 @@ struct FlightConfig {
   double clearance_m = 0.3;
   double duration_s = 0.0;
   double hover_s = 1.0;
+  std::optional<double> begin_s;
   std::optional<DynamicsConfig> dynamics;
 
   template <class Self, class V>
@@ -161,11 +162,16 @@ struct FlightConfig {
     v("clearance_m", self.clearance_m, "m", "minimum distance from body center to any surface",
       at_least(0));
     v("duration_s", self.duration_s, "s",
-      "duration of the flight: the path is repeated (back and forth if it is open) or cut short; "
-      "0 = once through",
+      "duration of what is recorded: the path is repeated (back and forth if it is open) or cut "
+      "short; 0 = once through",
       at_least(0));
     v("hover_s", self.hover_s, "s",
       "rest at the start and at the end; estimators initialize during the first", at_least(0));
+    v("begin_s", self.begin_s, "s",
+      "a start in motion: the recording begins this long after take-off, the end of the rest at "
+      "the "
+      "start (replay: after the first pose); without this key it begins with the rest",
+      at_least(0));
     v("dynamics", self.dynamics, "",
       "simulate a quadrotor that follows the path ({} for the default one); without this key the "
       "path is followed exactly");

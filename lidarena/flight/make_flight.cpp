@@ -8,6 +8,7 @@
 #include "lidarena/flight/figures.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/fly_quadrotor.hpp"
+#include "lidarena/flight/late_start.hpp"
 #include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
@@ -78,6 +79,23 @@ std::unique_ptr<Flight> flown(const Flight& reference, const DynamicsConfig& dyn
   return flight;
 }
 
+/// When the recording begins, s after the begin of the whole flight.
+double begin_of_recording(const FlightConfig& config) {
+  if (!config.begin_s) return 0.0;
+  return *config.begin_s + (config.kind == FlightKind::kReplay ? 0.0 : config.hover_s);
+}
+
+std::unique_ptr<Flight> from(std::unique_ptr<Flight> flight, double begin_s,
+                             const std::string& place) {
+  if (begin_s == 0.0) return flight;
+  if (from_seconds(begin_s) < flight->duration())
+    return std::make_unique<LateStart>(std::move(flight), from_seconds(begin_s));
+  throw InputError(place,
+                   fmt::format("the recording begins {:g} s after the start of a flight of {:g} s",
+                               begin_s, to_seconds(flight->duration())),
+                   "reduce begin_s, or give a longer duration_s");
+}
+
 void require_clear(const Flight& flight, const world::World& world, double clearance,
                    const std::string& place) {
   const auto encounter = first_encounter(flight, world, clearance);
@@ -102,9 +120,12 @@ std::unique_ptr<Flight> make_flight(const std::filesystem::path& file,
                                     LogSink& log, std::optional<std::uint64_t> gust_seed) {
   FlightConfig config = config_of(file);
   if (config.dynamics && gust_seed) config.dynamics->gusts.seed = *gust_seed;
+  const double begin_s = begin_of_recording(config);
+  if (config.duration_s > 0.0) config.duration_s += begin_s;
   std::unique_ptr<Flight> flight = build(file, config, model, world, log);
   if (config.dynamics) flight = flown(*flight, *config.dynamics, file.string(), log);
   require_clear(*flight, world, config.clearance_m, file.string());
+  flight = from(std::move(flight), begin_s, file.string());
   log.info(fmt::format("flight {}: {}", file.string(), describe(figures_of(*flight))));
   return flight;
 }

@@ -6,6 +6,8 @@
 namespace lidarena::sensor {
 namespace {
 
+namespace fs = std::filesystem;
+
 void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) {
   if (!fov) return;
   if (fov->azimuth_min_deg < fov->azimuth_max_deg &&
@@ -16,20 +18,56 @@ void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) 
 
 /// Loads the beam table, or makes the path of the ray table absolute, so that the configuration
 /// does not depend on where its file is.
-void resolve_pattern_file(const std::filesystem::path& file, SensorConfig& sensor) {
+void resolve_pattern_file(const fs::path& file, SensorConfig& sensor) {
   if (sensor.pattern_file.empty()) return;
-  const std::filesystem::path table = file.parent_path() / sensor.pattern_file;
+  const fs::path table = file.parent_path() / sensor.pattern_file;
   if (sensor.model == LidarModel::kLivoxCsv) {
-    sensor.pattern_file = std::filesystem::absolute(table).lexically_normal().string();
+    sensor.pattern_file = fs::absolute(table).lexically_normal().string();
   } else if (sensor.model == LidarModel::kBeamTable && !sensor.beam_table) {
     sensor.beam_table = load_spinning_head(table);
     sensor.pattern_file.clear();
   }
 }
 
+/// Reads a file over its base, which is in `sensor`.
+void read_over(const fs::path& file, SensorConfig& sensor) {
+  SensorFile read{{}, sensor};
+  read.sensor.name.clear();
+  read.sensor.pattern_file.clear();
+  read.sensor.beam_table.reset();
+  read_config(ConfigNode::load(file), read);
+  resolve_pattern_file(file, read.sensor);
+  const bool has_pattern = !read.sensor.pattern_file.empty() || read.sensor.beam_table;
+  if (!has_pattern && read.sensor.model == sensor.model) {
+    read.sensor.pattern_file = sensor.pattern_file;
+    read.sensor.beam_table = sensor.beam_table;
+  }
+  sensor = std::move(read.sensor);
+}
+
+/// The file that `base`, a value in `file`, names.
+fs::path base_file(const ConfigNode& base, const fs::path& file, const fs::path& shipped) {
+  const std::string name = base.text();
+  const fs::path folder = file.parent_path();
+  for (const fs::path& candidate :
+       {folder / name, folder / (name + ".yaml"), shipped / (name + ".yaml")}) {
+    if (fs::is_regular_file(candidate)) return candidate;
+  }
+  std::vector<std::string> known;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(shipped.empty() ? folder : shipped, none)) {
+    if (entry.path().extension() == ".yaml") known.push_back(entry.path().stem().string());
+  }
+  const std::string nearest = nearest_word(name, known);
+  throw InputError(base.where(),
+                   "'" + name + "' is neither a file beside this one nor the name of a sensor",
+                   nearest.empty() ? "lidarena list sensors prints the names"
+                                   : "did you mean '" + nearest + "'?");
+}
+
 }  // namespace
 
-SpinningHead load_spinning_head(const std::filesystem::path& file) {
+SpinningHead load_spinning_head(const fs::path& file) {
   const ConfigNode node = ConfigNode::load(file);
   SpinningHead table;
   read_config(node, table);
@@ -42,9 +80,26 @@ SpinningHead load_spinning_head(const std::filesystem::path& file) {
   return table;
 }
 
-SensorConfig load_sensor(const std::filesystem::path& file) {
-  auto sensor = load_config<SensorConfig>(file);
-  resolve_pattern_file(file, sensor);
+std::vector<fs::path> sensor_files(const fs::path& file, const fs::path& shipped) {
+  std::vector<fs::path> files{file};
+  while (true) {
+    const ConfigNode node = ConfigNode::load(files.back());
+    const auto base = node.is_map() ? node.find("base") : std::nullopt;
+    if (!base) return files;
+    const fs::path next = base_file(*base, files.back(), shipped);
+    for (const fs::path& before : files) {
+      if (fs::equivalent(before, next))
+        throw InputError(base->where(), "leads back to " + before.string(),
+                         "remove one base, so that the last file stands on its own");
+    }
+    files.push_back(next);
+  }
+}
+
+SensorConfig load_sensor(const fs::path& file, const fs::path& shipped) {
+  const std::vector<fs::path> files = sensor_files(file, shipped);
+  SensorConfig sensor;
+  for (auto next = files.rbegin(); next != files.rend(); ++next) read_over(*next, sensor);
   if (sensor.name.empty()) sensor.name = file.stem().string();
   if (sensor.min_range_m >= sensor.max_range_m) {
     throw InputError(file.string(), "min_range_m is not below max_range_m");

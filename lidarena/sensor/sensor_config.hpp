@@ -198,11 +198,43 @@ struct SensorConfig {
   }
 };
 
-/// Reads a sensor file, as in configs/sensors. A beam table is read into `beam_table`, and the
+/// Reads an optional part over the one that is there, so that a file may state only what differs
+/// from its base (and `--set imu.rate_hz=100` changes that alone); null removes the part.
+template <ConfigStruct C>
+void read_value(const ConfigNode& node, std::optional<C>& out, const Limits& limits) {
+  C value = out.value_or(C{});
+  lidarena::read_value(node, value, limits);
+  out = node.is_null() ? std::nullopt : std::optional(std::move(value));
+}
+
+/// The keys of a sensor file: those of the sensor and its base.
+struct SensorFile {
+  std::string base;
+  SensorConfig sensor;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("base", self.base, "",
+      "the sensor whose values hold where this file has none: a file relative to this one, or a "
+      "name "
+      "in configs/sensors; maps are merged key by key, lists and single values are replaced");
+    SensorConfig::visit(self.sensor, v);
+  }
+};
+
+/// The file and, from base to base, those on which it is based. A base is a path relative to the
+/// file that names it, or the name of a sensor in the same folder or in `shipped`. Throws
+/// InputError if there is no such file, or if a base leads back to a file before it.
+std::vector<std::filesystem::path> sensor_files(const std::filesystem::path& file,
+                                                const std::filesystem::path& shipped = {});
+
+/// Reads a sensor file, as in configs/sensors, over its base if it names one (see sensor_files()).
+/// The name is never that of the base. A beam table is read into `beam_table`, and the
 /// `pattern_file` of a livox_csv is made absolute, so that the configuration does not depend on
 /// where its file is. Throws InputError naming file, line and key if a key is unknown, a value is
 /// out of range, or the values contradict each other.
-SensorConfig load_sensor(const std::filesystem::path& file);
+SensorConfig load_sensor(const std::filesystem::path& file,
+                         const std::filesystem::path& shipped = {});
 
 /// The scan pattern of the sensor's model. Throws InputError (place: the sensor's name) if the
 /// model does not have this mode.

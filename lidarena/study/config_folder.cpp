@@ -5,6 +5,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/error.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
 
 namespace lidarena::study {
 
@@ -32,16 +33,28 @@ std::vector<std::string> ConfigFolder::names(const std::string& kind) const {
 }
 
 fs::path ConfigFolder::resolve(const std::string& kind, const std::string& name_or_path) const {
-  // a folder that has the same name as, say, a world must not hide that world
-  if (fs::exists(name_or_path) && !fs::is_directory(name_or_path)) return name_or_path;
+  // A folder or a program that has the same name as, say, a study must not hide that study.
+  const fs::path path = name_or_path;
+  const bool is_file = fs::exists(path) && !fs::is_directory(path);
+  const bool is_bare_word = !path.has_extension() && !path.has_parent_path();
+  if (is_file && !is_bare_word) return path;
   const fs::path file = root_ / kind / (name_or_path + ".yaml");
   if (fs::exists(file)) return file;
+  if (is_file) return path;
   const std::vector<std::string> known = names(kind);
   const std::string nearest = nearest_word(name_or_path, known);
   std::string list;
   for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
   throw InputError(name_or_path, "is neither a file nor a name in " + kind,
                    nearest.empty() ? "known: " + list : "did you mean '" + nearest + "'?");
+}
+
+sensor::SensorConfig ConfigFolder::load_sensor(const std::string& name_or_path) const {
+  return sensor::load_sensor(resolve("sensors", name_or_path), root_ / "sensors");
+}
+
+std::vector<fs::path> ConfigFolder::sensor_files(const std::string& name_or_path) const {
+  return sensor::sensor_files(resolve("sensors", name_or_path), root_ / "sensors");
 }
 
 }  // namespace lidarena::study

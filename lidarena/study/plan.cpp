@@ -32,8 +32,9 @@ class Digests {
 Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFolder& configs,
                    const ProgramCode& code, Digests& digests) {
   Json sensors = Json::array();
-  for (const std::string& sensor : spec.sensors)
-    sensors.push_back(digests.of(configs.resolve("sensors", sensor)));
+  for (const std::string& sensor : spec.sensors) {
+    for (const fs::path& file : configs.sensor_files(sensor)) sensors.push_back(digests.of(file));
+  }
   return {{"code", code.of("simulator")},
           {"world", digests.of(configs.resolve("worlds", cell.world))},
           {"flight", digests.of(configs.resolve("flights", cell.flight))},

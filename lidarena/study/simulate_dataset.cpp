@@ -300,7 +300,7 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
                                  const Parallel& parallel, LogSink& log) {
   std::vector<sensor::SensorConfig> sensors;
   for (const fs::path& file : request.sensors) {
-    sensors.push_back(sensor::load_sensor(file));
+    sensors.push_back(sensor::load_sensor(file, request.shipped_sensors));
     if (request.mode) sensors.back().mode = *request.mode;
   }
   std::optional<std::uint64_t> scene_seed;

@@ -20,7 +20,8 @@ struct SimulateRequest {
   std::filesystem::path world;
   std::filesystem::path flight;
   std::vector<std::filesystem::path> sensors;
-  std::uint64_t seed = 1;  ///< of all noise
+  std::filesystem::path shipped_sensors{};  ///< where files name their base, see load_sensor()
+  std::uint64_t seed = 1;                   ///< of all noise
   /// The seed also draws a procedural world, start and direction of its routes, and the gusts,
   /// whose files have seeds of their own otherwise.
   bool new_scene = false;

@@ -98,8 +98,7 @@ results::CellFilter names_of(const StudySpec& spec) {
 }
 
 double shots_per_second(const std::string& sensor, const ConfigFolder& configs) {
-  const auto pattern =
-      sensor::make_pattern(sensor::load_sensor(configs.resolve("sensors", sensor)));
+  const auto pattern = sensor::make_pattern(configs.load_sensor(sensor));
   return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
 }
 
@@ -159,8 +158,7 @@ std::vector<PlannedRun> planned_cells(const StudySpec& spec, const ConfigFolder&
   need(!spec.sensors.empty(), "sensors");
   need(!spec.algorithms.empty(), "algorithms");
   need(!spec.seeds.empty(), "seeds");
-  for (const std::string& sensor : spec.sensors)
-    sensor::load_sensor(configs.resolve("sensors", sensor));
+  for (const std::string& sensor : spec.sensors) configs.load_sensor(sensor);
   check_external(spec);
   for (const results::Expectation& expectation : spec.expect)
     results::check(expectation, names_of(spec), "study");

@@ -70,9 +70,14 @@ def make_flight(name_or_file, world):
     return _core.make_flight_file(configs.resolve("flights", str(name_or_file)), world)
 
 
+def _sensors():
+    """The folder of the sensors that a file may name as its base."""
+    return _pathlib.Path(configs.root) / "sensors"
+
+
 def load_sensor(name_or_file):
     """Loads a sensor of configs/sensors by its name, or a YAML file."""
-    return _core.load_sensor_file(configs.resolve("sensors", str(name_or_file)))
+    return _core.load_sensor_file(configs.resolve("sensors", str(name_or_file)), _sensors())
 
 
 def simulate_dataset(world, flight, sensors, out, **options):
@@ -82,4 +87,5 @@ def simulate_dataset(world, flight, sensors, out, **options):
     """
     return _core.simulate_dataset_files(
         configs.resolve("worlds", str(world)), configs.resolve("flights", str(flight)),
-        [configs.resolve("sensors", str(s)) for s in sensors], out, **options)
+        [configs.resolve("sensors", str(s)) for s in sensors], out, shipped_sensors=_sensors(),
+        **options)

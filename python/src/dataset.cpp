@@ -76,8 +76,10 @@ void bind_writer(py::module_& m) {
 py::dict simulate_to(const fs::path& world, const fs::path& flight,
                      const std::vector<fs::path>& sensors, const fs::path& out, std::uint64_t seed,
                      double seconds, bool noise, const std::string& mode, bool truth, bool data,
-                     const std::string& format, const std::string& dialect, int threads) {
+                     const std::string& format, const std::string& dialect, int threads,
+                     const fs::path& shipped_sensors) {
   study::SimulateRequest request;
+  request.shipped_sensors = shipped_sensors;
   request.world = world;
   request.flight = flight;
   request.sensors = sensors;
@@ -167,7 +169,7 @@ void bind_dataset(py::module_& m) {
         py::arg("sensors"), py::arg("out"), py::arg("seed") = 1, py::arg("seconds") = 0.0,
         py::arg("noise") = true, py::arg("mode") = "", py::arg("truth") = false,
         py::arg("data") = true, py::arg("format") = "mcap", py::arg("dialect") = "si",
-        py::arg("threads") = 0);
+        py::arg("threads") = 0, py::arg("shipped_sensors") = "");
   bind_writer(m);
   m.def(
       "read_cloud",

@@ -145,6 +145,36 @@ TEST_F(MakeFlight, DynamicsAreOffByDefaultAndTakenFromTheFile) {
               HasSubstr("a.yaml:3: dynamics.gusts.gust_speed: -1 is out of range"));
 }
 
+TEST_F(MakeFlight, BeginningLateItIsTheSameFlightFromThenOnAndInMotion) {
+  const std::string route = "kind: route\nhover_s: 0.5\ndynamics: {gusts: {gust_speed: 0.3}}\n";
+  const auto whole = make(folder_.write("a.yaml", route + "duration_s: 9.75\n"));
+  const auto late = make(folder_.write("b.yaml", route + "duration_s: 8\nbegin_s: 1.25\n"));
+  EXPECT_EQ(late->duration(), std::chrono::seconds(8)) << "of what is recorded";
+  const Time begin = from_seconds(1.75);
+  for (Time t{0}; t <= late->duration(); t += std::chrono::milliseconds(13)) {
+    const Motion a = whole->at(t + begin);
+    const Motion b = late->at(t);
+    EXPECT_EQ(a.world_from_body.matrix(), b.world_from_body.matrix());
+    EXPECT_EQ(a.acceleration_world, b.acceleration_world);
+    EXPECT_EQ(late->pose_at(t).matrix(), whole->pose_at(t + begin).matrix());
+  }
+  EXPECT_GT(late->at(Time{0}).velocity_world.norm(), 0.3) << "a start in motion";
+  conformance::expect_rest_outside(*late);
+}
+
+TEST_F(MakeFlight, AReplayBeginsLateAfterItsFirstPose) {
+  folder_.write("a.tum", "5 0 0 1 0 0 0 1\n6 0 0 2 0 0 0 1\n7 0 0 4 0 0 0 1\n");
+  const auto flight = make(folder_.write("a.yaml", "kind: replay\nreplay: a.tum\nbegin_s: 1\n"));
+  EXPECT_EQ(flight->duration(), std::chrono::seconds(1));
+  EXPECT_NEAR(flight->pose_at(Time{0}).translation().z(), 2.0, 1e-12);
+  EXPECT_THAT(
+      error_of("b.yaml", "kind: replay\nreplay: a.tum\nbegin_s: 2\n"),
+      AllOf(HasSubstr("b.yaml: the recording begins 2 s after the start of a flight of 2 s"),
+            HasSubstr("reduce begin_s")));
+  EXPECT_THAT(error_of("b.yaml", "kind: route\nbegin_s: -1\n"),
+              HasSubstr("b.yaml:2: begin_s: -1 is out of range"));
+}
+
 TEST_F(MakeFlight, ClearanceHoldsForThePathAsFlownNotAsPlanned) {
   const std::string path = "kind: route\n";
   make(folder_.write("a.yaml", path));  // the reference passes through the center of the door

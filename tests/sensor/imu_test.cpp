@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <filesystem>
+#include <numbers>
 #include <vector>
 
 #include "tests/sensor/flights.hpp"
@@ -224,6 +227,66 @@ TEST(Imu, VibratesWithItsTonesAndHarderUnderMoreThrust) {
       EXPECT_LT((accel - gain * tone.accel_amplitude).norm(), 1e-12);
       EXPECT_LT((gyro - gain * tone.gyro_amplitude).norm(), 1e-12);
     }
+  }
+}
+
+/// Amplitudes of the tone of this frequency in samples at `rate_hz` (over whole periods).
+Vector3d amplitudes(const std::vector<Vector3d>& samples, double frequency_hz, double rate_hz) {
+  Eigen::Matrix<std::complex<double>, 3, 1> sum = Eigen::Matrix<std::complex<double>, 3, 1>::Zero();
+  for (std::size_t k = 0; k < samples.size(); ++k) {
+    const double phase = 2.0 * std::numbers::pi * frequency_hz * static_cast<double>(k) / rate_hz;
+    sum += samples[k].cast<std::complex<double>>() * std::polar(1.0, -phase);
+  }
+  return 2.0 / static_cast<double>(samples.size()) * sum.cwiseAbs();
+}
+
+/// Frequency at which a tone appears in samples that have no filter before them.
+double aliased(double frequency_hz, double rate_hz) {
+  return std::abs(frequency_hz - rate_hz * std::round(frequency_hz / rate_hz));
+}
+
+TEST(Imu, TheShippedVibrationIsTwoTonesOfTheStatedSizeAndNothingElse) {
+  for (const char* name : {"livox_mid360", "ouster_os0_128"}) {
+    const std::filesystem::path folder = LIDARENA_SOURCE_DIR "/configs/sensors";
+    const ImuConfig shipped = *load_sensor(folder / (std::string(name) + "_vibrating.yaml")).imu;
+    const ImuConfig still = *load_sensor(folder / (std::string(name) + ".yaml")).imu;
+    ASSERT_EQ(shipped.vibration.size(), 2U);
+    EXPECT_EQ(shipped.vibration[1].frequency_hz, 2.0 * shipped.vibration[0].frequency_hz);
+    EXPECT_EQ(shipped.gyro_noise_density, still.gyro_noise_density);
+
+    ImuConfig config;  // of all errors the vibration alone
+    config.rate_hz = shipped.rate_hz;
+    config.vibration = shipped.vibration;
+    Imu imu(config, Pose::Identity(), "test", 5, true);
+    Imu again(config, Pose::Identity(), "test", 5, true);
+    Imu other(config, Pose::Identity(), "test", 6, true);
+    const auto flight = testing::rest(Pose::Identity());
+    std::vector<Vector3d> accel, gyro;
+    Vector3d accel_power = Vector3d::Zero(), gyro_power = Vector3d::Zero();
+    const auto count = static_cast<std::size_t>(10.0 * config.rate_hz);  // whole periods
+    for (std::size_t k = 0; k < count; ++k) {
+      const ImuSample sample = imu.measure(flight);
+      EXPECT_EQ(sample.accel, again.measure(flight).accel);
+      EXPECT_NE(sample.accel, other.measure(flight).accel) << "another unit, other phases";
+      accel.emplace_back(sample.accel - Vector3d(0, 0, flight::kGravity));
+      gyro.push_back(sample.gyro);
+      accel_power += accel.back().cwiseAbs2() / static_cast<double>(count);
+      gyro_power += gyro.back().cwiseAbs2() / static_cast<double>(count);
+    }
+    // A sine of amplitude A has the mean square A^2 / 2; those of different tones add up.
+    Vector3d accel_expected = Vector3d::Zero(), gyro_expected = Vector3d::Zero();
+    for (const VibrationTone& tone : config.vibration) {
+      const double seen_hz = aliased(tone.frequency_hz, config.rate_hz);
+      EXPECT_LT((amplitudes(accel, seen_hz, config.rate_hz) - tone.accel_amplitude).norm(), 1e-9);
+      EXPECT_LT((amplitudes(gyro, seen_hz, config.rate_hz) - tone.gyro_amplitude).norm(), 1e-11);
+      accel_expected += 0.5 * tone.accel_amplitude.cwiseAbs2();
+      gyro_expected += 0.5 * tone.gyro_amplitude.cwiseAbs2();
+    }
+    EXPECT_LT((accel_power - accel_expected).norm(), 1e-9) << "nothing between the tones";
+    EXPECT_LT((gyro_power - gyro_expected).norm(), 1e-12);
+    EXPECT_LT(amplitudes(accel, 5.0, config.rate_hz).norm(), 1e-9);
+    // The comment of the files: an RMS of 2 m/s^2 on each axis.
+    for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(std::sqrt(accel_power[axis]), 2.0, 0.4);
   }
 }
 

@@ -81,6 +81,124 @@ TEST(SensorConfig, WhatIsSavedAsJsonLoadsAsTheSame) {
   }
 }
 
+/// The sensor of `yaml`, in a folder of its own, with the shipped sensors as bases.
+SensorConfig variant(const std::string& yaml) {
+  const TemporaryFolder folder;
+  return load_sensor(folder.write("variant.yaml", yaml), kConfigs);
+}
+
+TEST(SensorConfig, AVariantStatesOnlyWhatDiffersFromItsBase) {
+  Json expected = to_json(load_sensor(kConfigs / "livox_mid360.yaml"));
+  EXPECT_EQ(to_json(variant("base: livox_mid360\nname: livox_mid360\n")), expected);
+
+  const SensorConfig own = variant(
+      "base: livox_mid360\n"
+      "rate_hz: 20\n"
+      "noise: {signal: {range_at_10_m: 30}}\n"
+      "imu:\n"
+      "  rate_hz: 400\n"
+      "  vibration: [{frequency_hz: 90}]\n"
+      "facts: {fov: {elevation_max_deg: 50}}\n");
+  expected["name"] = "variant";
+  expected["rate_hz"] = 20.0;
+  expected["noise"]["signal"]["range_at_10_m"] = 30.0;
+  expected["imu"]["rate_hz"] = 400.0;
+  expected["imu"]["vibration"] = to_json(own)["imu"]["vibration"];
+  expected["facts"]["fov"]["elevation_max_deg"] = 50.0;
+  EXPECT_EQ(to_json(own), expected) << "all else, within the maps too, is the base's";
+  ASSERT_EQ(own.imu->vibration.size(), 1U);
+  EXPECT_EQ(own.imu->vibration.front().frequency_hz, 90.0);
+  EXPECT_FALSE(variant("base: livox_mid360\nimu: null\n").imu.has_value());
+}
+
+TEST(SensorConfig, SettingOneKeyOfTheImuLeavesItsOthers) {
+  SensorConfig sensor = load_sensor(kConfigs / "livox_mid360.yaml");
+  Json expected = to_json(sensor);
+  set_field(sensor, "imu.rate_hz=100");
+  expected["imu"]["rate_hz"] = 100.0;
+  EXPECT_EQ(to_json(sensor), expected);
+}
+
+TEST(SensorConfig, ABaseIsAFileBesideTheVariantOrAShippedSensorAndMayHaveABaseItself) {
+  const TemporaryFolder folder;
+  folder.write("one.yaml", "base: ouster_os0_128\ncolumns: 2048\nmax_range_m: 40\n");
+  const auto two = folder.write("two.yaml", "base: one.yaml\nmax_range_m: 30\n");
+  const auto three = folder.write("three.yaml", "base: two\n");
+  const SensorConfig sensor = load_sensor(three, kConfigs);
+  EXPECT_EQ(sensor.name, "three");
+  EXPECT_EQ(sensor.columns, 2048);
+  EXPECT_EQ(sensor.max_range_m, 30.0);
+  EXPECT_EQ(sensor.min_range_m, 0.3);
+  EXPECT_EQ(sensor_files(three, kConfigs).size(), 4U);
+}
+
+TEST(SensorConfig, ThePatternOfABaseIsReplacedAsAWhole) {
+  const SensorConfig os0 = load_sensor(kConfigs / "ouster_os0_32.yaml");
+  const SensorConfig same = variant("base: ouster_os0_32\ncolumns: 512\n");
+  EXPECT_EQ(to_json(same)["beam_table"], to_json(os0)["beam_table"]);
+  const SensorConfig other =
+      variant("base: ouster_os0_32\nbeam_table: {beams: [{elevation_deg: 1}]}\n");
+  EXPECT_EQ(other.beam_table->beams.size(), 1U);
+  const SensorConfig exact = variant("base: ouster_os0_32\nmodel: ouster_os0_128\n");
+  EXPECT_FALSE(exact.beam_table.has_value());
+  EXPECT_EQ(make_pattern(exact)->beams_per_scan(), 128U * 1024U);
+}
+
+TEST(SensorConfig, ABaseThatIsMissingOrLeadsBackIsNamedWithItsPlace) {
+  const auto failure_of = [](const std::string& yaml) {
+    try {
+      variant(yaml);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no failure");
+  };
+  EXPECT_THAT(failure_of("rate_hz: 10\nbase: livox_mid361\n"),
+              AllOf(HasSubstr("variant.yaml:2: base"), HasSubstr("'livox_mid361'"),
+                    HasSubstr("did you mean 'livox_mid360'?")));
+  EXPECT_THAT(failure_of("base: variant.yaml\n"),
+              AllOf(HasSubstr("variant.yaml:1: base"), HasSubstr("leads back to")));
+  EXPECT_THAT(failure_of("base: [livox_mid360]\n"), HasSubstr("variant.yaml:1: base"));
+  EXPECT_THAT(failure_of("base: livox_mid360\nimu: 200\n"),
+              AllOf(HasSubstr("variant.yaml:2: imu"), HasSubstr("a map")));
+  EXPECT_THAT(failure_of("base: livox_mid360\nimu: {rate: 200}\n"),
+              AllOf(HasSubstr("variant.yaml:2"), HasSubstr("rate_hz")));
+  const TemporaryFolder folder;
+  folder.write("a.yaml", "base: b.yaml\n");
+  folder.write("b.yaml", "base: c.yaml\n");
+  folder.write("c.yaml", "base: b.yaml\n");
+  try {
+    load_sensor(folder.path() / "a.yaml");
+    FAIL() << "b and c are based on each other";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), AllOf(HasSubstr("c.yaml:1: base"), HasSubstr("b.yaml")));
+  }
+}
+
+TEST(SensorConfig, ShippedVariantsDifferFromTheirSensorInWhatTheirNameSays) {
+  const auto differences = [](const std::string& name, const std::string& other) {
+    std::vector<std::string> keys;
+    const Json a = to_json(load_sensor(kConfigs / (name + ".yaml"))).flatten();
+    const Json b = to_json(load_sensor(kConfigs / (other + ".yaml"))).flatten();
+    EXPECT_EQ(a.size(), b.size()) << name;
+    for (const auto& [key, value] : a.items()) {
+      if (key != "/name" && (!b.contains(key) || b.at(key) != value)) keys.push_back(key);
+    }
+    return keys;
+  };
+  using testing::UnorderedElementsAre;
+  EXPECT_THAT(differences("ouster_os0_128_2048", "ouster_os0_128"),
+              UnorderedElementsAre("/columns"));
+  EXPECT_THAT(differences("ouster_os0_128_512x20", "ouster_os0_128"),
+              UnorderedElementsAre("/columns", "/rate_hz"));
+  EXPECT_THAT(differences("ouster_os0_128_range_noise", "ouster_os0_128"),
+              UnorderedElementsAre("/columns", "/noise/angle_noise_deg", "/noise/dropouts",
+                                   "/noise/range_step_m", "/noise/signal/range_at_10_m",
+                                   "/noise/signal/range_at_80_m", "/noise/weak_signal_noise"));
+  EXPECT_EQ(to_json(*load_sensor(kConfigs / "ouster_os0_128_same_imu.yaml").imu)["accel_range"],
+            to_json(*load_sensor(kConfigs / "livox_mid360.yaml").imu)["accel_range"]);
+}
+
 TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
   EXPECT_THAT(failure("model: livox_mid360\nmax_rnge_m: 3\n"),
               AllOf(HasSubstr("sensor_under_test.yaml:2"), HasSubstr("max_range_m")));

@@ -167,16 +167,24 @@ TEST(ConfigFolder, NamesResolveAndAMisspeltOneIsCorrected) {
   EXPECT_THROW(ConfigFolder::find("/"), InputError);
 }
 
-TEST(ConfigFolder, AFolderThatHappensToBeCalledLikeAWorldDoesNotHideIt) {
+TEST(ConfigFolder, AFolderOrAProgramThatHappensToBeCalledLikeAWorldOrAStudyDoesNotHideIt) {
   namespace fs = std::filesystem;
   const fs::path here = fs::current_path();
   const TemporaryFolder folder;
   fs::create_directory(folder.path() / "cave");
+  folder.write("test", "#!/bin/sh\n");
+  folder.write("mine", "title: Mine\n");
   const ConfigFolder known = configs();
   fs::current_path(folder.path());
-  const fs::path found = known.resolve("worlds", "cave");
+  const fs::path world = known.resolve("worlds", "cave");
+  const fs::path study = known.resolve("studies", "test");
+  const fs::path mine = known.resolve("studies", "mine");
+  const fs::path path = known.resolve("studies", "./test");
   fs::current_path(here);
-  EXPECT_EQ(found.filename(), "cave.yaml");
+  EXPECT_EQ(world.filename(), "cave.yaml");
+  EXPECT_EQ(study.filename(), "test.yaml");
+  EXPECT_EQ(mine, "mine");
+  EXPECT_EQ(path, "./test") << "a path wins";
 }
 
 StudySpec small_spec() {
@@ -303,6 +311,21 @@ TEST(Plan, TheLongestUnitsComeFirstAndAPlanIsReadAsItWasWritten) {
   const TemporaryFolder scratch;
   write_plan(scratch.path(), plan);
   EXPECT_EQ(to_json(read_plan(scratch.path())), to_json(plan));
+}
+
+TEST(Plan, AnotherBaseOfASensorMakesAnotherFlight) {
+  const TemporaryFolder folder;
+  folder.write("base.yaml", "base: livox_mid360\nmax_range_m: 40\n");
+  StudySpec spec;
+  spec.scenes = {{.world = "house", .flight = "house", .seconds = 1.0}};
+  spec.sensors = {folder.write("variant.yaml", "base: base.yaml\nrate_hz: 20\n").string()};
+  spec.algorithms = {"kiss_icp"};
+  const StudyPlan plan =
+      make_plan(spec, configs(), ProgramCode::ask(find_program(LIDARENA_BINARY)));
+  const PlanUnit& unit = plan.units.front();
+  EXPECT_EQ(flight_key(plan, unit, configs()), unit.flight);
+  folder.write("base.yaml", "base: livox_mid360\nmax_range_m: 30\n");
+  EXPECT_NE(flight_key(plan, unit, configs()), unit.flight);
 }
 
 TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
