@@ -74,13 +74,22 @@ ImuSample make_imu(const Recording& recording, std::size_t index) {
     return Eigen::Vector3d(density / std::sqrt(kImuSeconds) *
                            Eigen::Vector3d(normals[0], normals[1], more[0]));
   };
+  // Each axis has a phase of its own.
+  const auto shaken = [&](double amplitude, double phase) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (int axis = 0; recording.vibrating && axis < 3; ++axis) {
+      for (const double tone_hz : {126.3, 252.6})
+        sum[axis] += amplitude * std::sin(2.0 * std::numbers::pi * tone_hz * t + phase + axis);
+    }
+    return sum;
+  };
   constexpr std::uint32_t kGyroStream = 1'000'000;  // the streams of scans are their indices
   constexpr std::uint32_t kAccelStream = 2'000'000;
   return {recording.epoch + from_seconds(t),
           so3::log(before.linear().transpose() * after.linear()) / (2.0 * h) +
-              noise(recording.gyro_noise_density, kGyroStream),
+              noise(recording.gyro_noise_density, kGyroStream) + shaken(0.025, 0.5),
           now.linear().transpose() * (acceleration - kGravity) +
-              noise(recording.accel_noise_density, kAccelStream)};
+              noise(recording.accel_noise_density, kAccelStream) + shaken(2.5, 0.0)};
 }
 
 }  // namespace

@@ -35,6 +35,9 @@ struct Recording {
   std::uint64_t seed = 17;  ///< of the noise
   double gyro_noise_density = 0.0;   ///< rad/s/sqrt(Hz)
   double accel_noise_density = 0.0;  ///< m/s^2/sqrt(Hz)
+  /// Rotors shake the IMU: tones of 126.3 Hz and twice that, 2.5 m/s^2 and 0.025 rad/s each on each
+  /// axis.
+  bool vibrating = false;
 };
 
 /// A spinning LiDAR of 64 rings, +-35 deg, 10 Hz, named "lidar"; an IMU at 200 Hz, named "imu", at
