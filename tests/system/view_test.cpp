@@ -85,11 +85,11 @@ class ViewInBrowser : public Cli {
     const std::string command =
         "cd " + folder_.path().string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
         " --enable-unsafe-swiftshader --ignore-gpu-blocklist --hide-scrollbars --window-size=" +
-        std::to_string(kWidth) + "," + std::to_string(kHeight) +
+        window_ +
         " --no-first-run --disable-background-networking --disable-component-update"
-        " --disable-default-apps --disable-sync --virtual-time-budget=20000"
-        " --enable-logging=stderr " +
-        task + " 'file://" + address + "' >browser_out 2>browser_err";
+        " --disable-default-apps --disable-sync --virtual-time-budget=" +
+        std::to_string(budget_ms_) + " --enable-logging=stderr " + task + " 'file://" + address +
+        "' >browser_out 2>browser_err";
     return std::system(command.c_str());
   }
   /// Opens the page with the URL fragment `state` ("#..."); returns chromium's output.
@@ -124,6 +124,8 @@ class ViewInBrowser : public Cli {
   }
 
   std::string floor_;
+  int budget_ms_ = 20'000;  ///< virtual time that a page gets
+  std::string window_ = std::to_string(kWidth) + "," + std::to_string(kHeight);
 };
 
 TEST_F(ViewInBrowser, PixelsHaveTheColorsOfTheirDistancesAndTheConsoleStaysSilent) {
@@ -207,6 +209,8 @@ void write_study(const fs::path& folder) {
   const fs::path run = folder / "runs" / "livox_mid360-kiss_icp-1";
   fs::create_directories(folder / "datasets" / "flight");
   std::ofstream(run / "scored.ply") << floor_ply();
+  std::ofstream(run / "events.csv")
+      << "t_sensor_s,duration_s,kind,value\n0.5,1,fast_turn,90\n1.2,0,loop,1\n1.9,0,loop,2\n";
   for (const fs::path& file :
        {run / "trajectory.tum", folder / "datasets" / "flight" / "truth.tum"}) {
     std::ofstream(file) << "0 1 1 1 0 0 0 1\n1 2 1 1 0 0 0 1\n2 3 1 1 0 0 0 1\n";
@@ -390,13 +394,13 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
                "return [location.hash, document.querySelectorAll('#run .chart').length, "
                "document.querySelector('#run .command').textContent.includes('lidarena run "
                "kiss_icp')]");
-  EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 0, true})) << "charts come later";
+  EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 4, true}));
   const nlohmann::json later = evaluate(
       "await until(() => document.documentElement.dataset.view); return "
       "[document.documentElement.dataset.view, document.querySelectorAll('#run "
       ".chart').length, document.querySelectorAll('#run canvas').length]",
       "#run=livox_mid360-kiss_icp-1");
-  EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 3, 1}));
+  EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 4, 1}));
   const nlohmann::json without_gl = evaluate(
       "await until(() => document.documentElement.dataset.picture); return "
       "[document.documentElement.dataset.picture, document.querySelectorAll('#run .map "
@@ -410,15 +414,39 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
 }
 
 TEST_F(ReportInBrowser, TheTimeLineOfTheMapMovesAMarkThroughTheCharts) {
+  budget_ms_ = 80'000;  // every chart is waited for
   const nlohmann::json marks = evaluate(
       "const marks = () => [...document.querySelectorAll('#run .charts svg path')].filter(p => "
-      "p.getAttribute('stroke') === '#f97316').length; document.querySelectorAll('#run .chart')"
-      ".forEach(c => c.scrollIntoView()); await until(() => document.documentElement.dataset.view "
-      "&& document.querySelectorAll('#run .chart svg').length === 3); const time = "
+      "p.getAttribute('stroke') === '#f97316').length; for (const chart of "
+      "document.querySelectorAll('#run .chart')) { chart.scrollIntoView(); await until(() => "
+      "chart.querySelector('svg')); } await until(() => document.documentElement.dataset.view); "
+      "const time = "
       "document.querySelector('#run .timebar input'); time.value = 1; time.oninput(); "
-      "await until(() => marks() === 3); return [time.value, marks()];",
+      "await until(() => marks() === 4); return [time.value, marks()];",
       "#run=livox_mid360-kiss_icp-1");
-  EXPECT_EQ(marks, nlohmann::json({"1", 3}));
+  EXPECT_EQ(marks, nlohmann::json({"1", 4}));
+}
+
+TEST_F(ReportInBrowser, EventsOfARunAreBarsWithALegendAndFastTurnsShadeTheError) {
+  const nlohmann::json seen = evaluate(
+      "const strip = document.querySelector('#run-events .chart'); "
+      "strip.scrollIntoView(); await until(() => strip.querySelector('svg')); "
+      "const bars = color => [...strip.querySelectorAll('svg path')].filter(p => "
+      "p.getAttribute('fill') === color && p.getBBox().height < 11).map(p => "
+      "Math.round(p.getBBox().width)); return [strip.textContent, bars('#d9a441').length, "
+      "bars('#0f766e').length, bars('#d9a441')[0] > 10 * bars('#0f766e')[0], "
+      "document.querySelector('#run-error').textContent];",
+      "#run=livox_mid360-kiss_icp-1");
+  ASSERT_TRUE(seen.is_array());
+  EXPECT_THAT(seen.at(0).get<std::string>(), AllOf(HasSubstr("fast turn"), HasSubstr("loop closed"),
+                                                   Not(HasSubstr("degenerate"))));
+  EXPECT_GE(seen.at(1), 1) << seen;
+  EXPECT_GE(seen.at(2), 2) << seen;
+  EXPECT_EQ(seen.at(3), true) << "a second against an instant";
+  EXPECT_THAT(seen.at(4).get<std::string>(), HasSubstr("shaded: fast turns"));
+  const nlohmann::json unknown = evaluate("return document.querySelectorAll('#run-events').length",
+                                          "#run=livox_mid360-kiss_icp-2");
+  EXPECT_EQ(unknown, 0) << "a run without the file";
 }
 
 /// Runs the program as a server in the background until the object is destroyed.
