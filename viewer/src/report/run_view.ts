@@ -73,13 +73,14 @@ export class RunView {
     );
     choose.onchange = () => page.change({ run: choose.value });
     const close = button("Close", "close this run (Escape)", () => page.change({ run: "" }));
-    this.root.addEventListener("keydown", (event) => event.key === "Escape" && page.change({ run: "" }));
     return element(
       "div",
       { className: "head" },
       element("h2", {}, `${run.sensor} with ${label(run)}`),
       choose,
       this.comparison(),
+      button("‹", "previous run (Page up)", () => this.step(-1)),
+      button("›", "next run (Page down)", () => this.step(1)),
       close,
       element(
         "p",
@@ -94,6 +95,13 @@ export class RunView {
       ),
       element("p", { className: "figures-of-run" }, this.mainFigures()),
     );
+  }
+
+  /** Opens the run `by` places further in the list of those that pass the filters, if there is one. */
+  step(by: number) {
+    const { runs, change } = this.page;
+    const next = runs[runs.indexOf(this.run) + by];
+    if (next) change({ run: next.name });
   }
 
   private mainFigures(): string {
