@@ -81,7 +81,8 @@ void write_run(const fs::path& folder, const RunFiles& run) {
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot be created: " + error.message());
   // files of an earlier run must not be taken for files of this one while it is being written
-  for (const char* stale : {"manifest.json", "metrics.json", "resources.json", "motion.tum"})
+  for (const char* stale :
+       {"manifest.json", "metrics.json", "resources.json", "motion.tum", "events.csv"})
     fs::remove(folder / stale, error);
   write_tum(folder / "trajectory.tum", run.trajectory, std::string(kFinalHeader));
   write_tum(folder / "live.tum", run.live, std::string(kLiveHeader));
@@ -89,6 +90,7 @@ void write_run(const fs::path& folder, const RunFiles& run) {
   write_ply(folder / "map.ply", run.map);
   write_ply(folder / "reprojected.ply", run.reprojected);
   write_text_file(folder / "resources.csv", resource_rows(run.resources));
+  if (run.events) write_events(folder / "events.csv", *run.events);
   write_json(folder / "manifest.json", run.manifest);
 }
 
@@ -110,6 +112,7 @@ RunFiles read_run(const fs::path& folder) {
   run.map = read_cloud(folder / "map.ply");
   run.reprojected = read_cloud(folder / "reprojected.ply");
   run.resources = read_resources(folder / "resources.csv");
+  if (fs::exists(folder / "events.csv")) run.events = read_events(folder / "events.csv");
   return run;
 }
 

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/dataset/run_events.hpp"
 
 namespace lidarena::dataset {
 
@@ -26,7 +28,7 @@ struct ResourceRow {
 };
 
 /// A RUN folder: trajectory.tum (final), live.tum, motion.tum (if the method tells it), map.ply,
-/// reprojected.ply, resources.csv, manifest.json (and, after evaluation, metrics.json).
+/// reprojected.ply, resources.csv, events.csv, manifest.json (and, after evaluation, metrics.json).
 struct RunFiles {
   Trajectory trajectory;  ///< after finish()
   Trajectory live;        ///< pose at each scan as estimated at that time
@@ -34,6 +36,7 @@ struct RunFiles {
   Cloud map;              ///< the map that the program publishes
   Cloud reprojected;      ///< scored returns placed by the estimated motion, first per 2 cm voxel
   std::vector<ResourceRow> resources;
+  std::optional<std::vector<RunEvent>> events{};  ///< empty: not known
   Json manifest;
 };
 

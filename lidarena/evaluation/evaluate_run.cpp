@@ -119,10 +119,17 @@ results::RpeByLength rpe_by_length(const Trajectory& estimate, const Trajectory&
   return rpe;
 }
 
+/// Whether a method that does not revise its past gave both.
+bool are_same(const Trajectory& a, const Trajectory& b) {
+  return std::ranges::equal(a.poses(), b.poses(), [](const StampedPose& p, const StampedPose& q) {
+    return p.stamp == q.stamp && p.world_from_body.matrix() == q.world_from_body.matrix();
+  });
+}
+
 /// Scores of both maps, as far as the run has them.
 results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World& world, const Parallel& parallel,
-                                 const Observe& observe) {
+                                 const Observe& observe, ScoredPoints* scored) {
   results::MapsOfRun maps;
   std::optional<SeenSurface> seen;
   if (observe) {
@@ -138,7 +145,7 @@ results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory&
   if (!run.reprojected.points.empty()) {
     maps.reprojected =
         evaluate_map(run.reprojected.points, run.trajectory, truth, reference, parallel,
-                     reference.seen ? &reference.seen->identified : nullptr);
+                     reference.seen ? &reference.seen->identified : nullptr, scored);
   }
   return maps;
 }
@@ -188,7 +195,7 @@ results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
 
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const Observe& observe) {
+                                 const Observe& observe, ScoredPoints* scored) {
   const Status status = status_of(run, truth);
   results::RunMetrics metrics;
   metrics.status = status.name;
@@ -206,9 +213,10 @@ results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory&
     }
   }
   for (const std::string& warning : metrics.warnings) log.warn(warning);
-  metrics.live = evaluate_trajectory(run.live, truth);
   metrics.final = evaluate_trajectory(run.trajectory, truth);
-  if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, observe);
+  metrics.live =
+      are_same(run.live, run.trajectory) ? metrics.final : evaluate_trajectory(run.live, truth);
+  if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, observe, scored);
   return metrics;
 }
 

@@ -23,10 +23,10 @@ using Observe = std::function<std::optional<RayTruth>()>;
 /// run that diverged (its manifest says "status": "diverged", or its poses diverge, see
 /// divergence_of()) has a status and a reason, and no errors. `observe`, if given, is called once
 /// when maps are scored; without it, or if it returns nothing, completeness, signed distance and
-/// identity error are empty.
+/// identity error are empty. `scored`, if given, gets the distances of the re-projected map.
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const Observe& observe = {});
+                                 const Observe& observe = {}, ScoredPoints* scored = nullptr);
 
 /// Scores one trajectory: association, RPE for each piece length, ATE in each gauge, errors over
 /// time.

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lidarena/map/point_map.hpp"
+#include "lidarena/odometry/event_record.hpp"
 #include "lidarena/odometry/motion_record.hpp"
 #include "lidarena/odometry/pacer.hpp"
 #include "lidarena/odometry/process_memory.hpp"
@@ -65,6 +66,7 @@ class Recorder {
   double cpu_s_ = 0.0;  // of the calls since the scan before
   std::vector<StampedPose> live_;
   MotionRecord motion_;
+  EventRecord events_;
   map::PointMap map_;
   RunResult result_;
 };
@@ -85,13 +87,17 @@ double Recorder::feed(const dataset::Event& event) {
   };
   const auto* scan = std::get_if<Scan>(&event.data);
   if (scan == nullptr) {
-    odometry_.register_imu(std::get<ImuSample>(event.data));
+    const auto& sample = std::get<ImuSample>(event.data);
+    odometry_.register_imu(sample);
     cpu_s_ += cpu_seconds() - cpu_start_s;
-    return seconds();
+    const double taken = seconds();
+    events_.add(sample);
+    return taken;
   }
   const ScanResult result = odometry_.register_scan(*scan);
   const double latency = seconds();
   cpu_s_ += cpu_seconds() - cpu_start_s;
+  events_.add(*scan, result);
   keep_result(result);
   keep_resources(*scan, latency);
   log_.progress("run", static_cast<double>(summary().scans),
@@ -157,6 +163,7 @@ RunResult Recorder::finish() {
     files.trajectory = odometry_.trajectory();
   }
   files.motion = motion_.along(files.trajectory);
+  files.events = events_.events(first_stamp_.value_or(Time{0}));
   files.map.points = odometry_.traits().publishes_scans ? map_.take() : odometry_.map();
   return std::move(result_);
 }

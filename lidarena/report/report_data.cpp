@@ -7,7 +7,9 @@
 #include <map>
 #include <set>
 
+#include "lidarena/dataset/run_events.hpp"
 #include "lidarena/report/decision.hpp"
+#include "lidarena/report/run_command.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/results/claims.hpp"
 #include "lidarena/results/lost.hpp"
@@ -62,6 +64,34 @@ Json curve(const Columns& columns, std::size_t rows) {
   return json;
 }
 
+/// At most `rows` events of a run in the order of their times, all instants before the longest of
+/// the others: [index of the kind, begin and duration in s, value]. Null if none are known.
+Json events_json(const fs::path& file, std::size_t rows) {
+  if (rows < kMinRows || !fs::exists(file)) return nullptr;
+  std::vector<dataset::RunEvent> events = dataset::read_events(file);
+  if (events.size() > rows) {
+    std::ranges::stable_sort(events, {}, [](const dataset::RunEvent& event) {
+      return event.duration_s > 0.0 ? 1.0 / event.duration_s : 0.0;
+    });
+    events.resize(rows);
+    std::ranges::stable_sort(events, {}, &dataset::RunEvent::t_sensor_s);
+  }
+  Json list = Json::array();
+  for (const dataset::RunEvent& event : events) {
+    list.push_back({static_cast<int>(event.kind), rounded(event.t_sensor_s),
+                    rounded(event.duration_s), rounded(event.value)});
+  }
+  return list;
+}
+
+/// The kinds of events in the order of their indices.
+Json event_kinds_json() {
+  Json list = Json::array();
+  for (const dataset::RunEventInfo& info : dataset::kRunEvents)
+    list.push_back({{"name", info.name}, {"label", info.label}, {"value", info.value}});
+  return list;
+}
+
 Json histogram(const std::optional<results::MapMetrics>& map) {
   const results::MapInGauge* scores = results::scores_of(map);
   return scores == nullptr ? Json(nullptr) : to_json(scores->histogram);
@@ -88,6 +118,7 @@ Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
            {"command", command_of(row)},
            {"statuses", nullptr},
            {"coverage_percent", nullptr},
+           {"events", events_json(row.folder / "events.csv", rows)},
            {"values", Json::array()}};
   for (const results::Figure& figure : results::figures()) {
     run["values"].push_back(rounded(results::value_of(row, figure)));
@@ -224,11 +255,17 @@ std::set<std::string> made_on(const results::StudyResults& results) {
 
 Json report_data(const results::StudyResults& results, const std::vector<results::Table>& tables,
                  const fs::path& out) {
-  Json data{{"title", results.title},           {"version", LIDARENA_VERSION},
-            {"made_on", made_on(results)},      {"figures", figures_json()},
-            {"sensors", sensors_json(results)}, {"decision", decision_json(results)},
-            {"claims", claims_json(results)},   {"reference", value_to_json(results.reference)},
-            {"tables", Json::array()},          {"runs", Json::array()}};
+  Json data{{"title", results.title},
+            {"version", LIDARENA_VERSION},
+            {"made_on", made_on(results)},
+            {"figures", figures_json()},
+            {"sensors", sensors_json(results)},
+            {"decision", decision_json(results)},
+            {"claims", claims_json(results)},
+            {"reference", value_to_json(results.reference)},
+            {"event_kinds", event_kinds_json()},
+            {"tables", Json::array()},
+            {"runs", Json::array()}};
   for (const results::Table& table : tables) data["tables"].push_back(results::table_json(table));
   const std::size_t rows =
       std::min(kMaxRows, kRowsOfAllCurves / std::max<std::size_t>(results.rows.size(), 1));

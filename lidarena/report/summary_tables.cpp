@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <array>
 
-#include "lidarena/base/shell_word.hpp"
+#include "lidarena/report/run_command.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/lost.hpp"
 
@@ -33,30 +33,7 @@ TableCell figure_cell(const results::RunRecord& run, const results::Figure& figu
   return cell;
 }
 
-std::string simulate_command(const results::RunRecord& row) {
-  const Json& made = row.simulation;
-  if (!made.is_object()) return "(the dataset was not simulated by lidarena)";
-  std::string command =
-      fmt::format("lidarena simulate --world {} --flight {}", shell_word(row.world),
-                  shell_word(row.flight.empty() ? made.value("flight_source", "") : row.flight));
-  for (const Json& sensor : made.value("sensors", Json::array())) {
-    command += " --sensor " + shell_word(sensor.value("name", ""));
-  }
-  if (made.contains("seed")) command += fmt::format(" --seed {}", made.at("seed").dump());
-  if (made.contains("seconds")) command += fmt::format(" --seconds {}", made.at("seconds").dump());
-  if (!row.mode.empty()) command += " --mode " + shell_word(row.mode);
-  if (!made.value("noise", true)) command += " --noise off";
-  return command + " --no-data --out data";
-}
-
 }  // namespace
-
-std::string command_of(const results::RunRecord& row) {
-  const std::string preset = row.preset.empty() ? "" : " --preset " + shell_word(row.preset);
-  return fmt::format("{} && lidarena run {} data{} --sensor {} --out run && lidarena evaluate run",
-                     simulate_command(row), shell_word(row.algorithm), preset,
-                     shell_word(row.sensor));
-}
 
 Json facts_of(const results::RunRecord& row) {
   if (!row.simulation.is_object()) return nullptr;

@@ -8,8 +8,6 @@
 
 namespace lidarena::report {
 
-/// The commands that make a run anew, including its dataset.
-std::string command_of(const results::RunRecord& row);
 /// What the file of the run's sensor says of the device: weight, power, price; null if nothing.
 Json facts_of(const results::RunRecord& row);
 

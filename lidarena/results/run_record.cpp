@@ -15,6 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The name in configs/ if the file is a YAML file.
+std::string name_of(const std::string& file) {
+  return fs::path(file).extension() == ".yaml" ? fs::path(file).stem().string() : file;
+}
+
+/// From what the manifest of a dataset says; it has the names of the files without their folders.
+Sources sources_of(const Json& simulation) {
+  Sources sources;
+  sources.world = name_of(simulation.value("world", ""));
+  sources.flight = name_of(simulation.value("flight_source", ""));
+  for (const Json& file : simulation.value("sensor_sources", Json::array()))
+    sources.sensors.push_back(name_of(file.get<std::string>()));
+  return sources;
+}
+
 /// Reads the description of the LiDAR and of the simulation from the manifest of the row's dataset.
 void read_dataset_manifest(RunRecord& row) {
   const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
@@ -83,6 +98,7 @@ StudyResults read_results(const fs::path& folder) {
     const std::string place = (folder / "plan.json").string();
     value_from_json(study.at("spec").value("expect", Json::array()), results.expect, place);
     value_from_json(study.value("reference", Json::array()), results.reference, place);
+    const std::vector<std::string> names;
     for (const Json& run : study.at("runs")) {
       RunRecord row;
       row.name = run.at("name").get<std::string>();
@@ -94,6 +110,8 @@ StudyResults read_results(const fs::path& folder) {
       row.preset = run.at("preset").get<std::string>();
       row.seed = run.at("seed").get<std::uint64_t>();
       if (run.contains("mode") && run.at("mode").is_string()) row.mode = run.at("mode");
+      row.sources = {run.at("world").get<std::string>(), run.at("flight").get<std::string>(),
+                     study.at("spec").value("sensors", names)};
       read_row(row);
       results.rows.push_back(std::move(row));
     }
@@ -104,6 +122,7 @@ StudyResults read_results(const fs::path& folder) {
     row.folder = folder;
     read_row(row);
     row.world = fs::path(row.manifest.value("dataset", "")).filename().string();
+    if (row.simulation.is_object()) row.sources = sources_of(row.simulation);
     results.title = row.name;
     results.rows.push_back(std::move(row));
   } else {

@@ -13,6 +13,13 @@
 
 namespace lidarena::results {
 
+/// What a run's dataset was simulated from, as `lidarena simulate` takes it: names in configs/, or
+/// files.
+struct Sources {
+  std::string world, flight;
+  std::vector<std::string> sensors;
+};
+
 /// One run in the report.
 struct RunRecord {
   std::string name;  ///< name of the run's folder
@@ -26,6 +33,7 @@ struct RunRecord {
   Json manifest;                      ///< manifest.json, null if there is none
   Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
   Json simulation;  ///< how its dataset was simulated, null if it was not
+  Sources sources;
 };
 
 /// Runs are compared only within one reading: the preset, or "PRESET-MODE" if the study sets timing

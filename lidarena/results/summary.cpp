@@ -7,15 +7,27 @@
 
 namespace lidarena::results {
 
-double quantile(std::span<double> values, double p) {
+namespace {
+
+/// As quantile(), where the first `ordered` values are no larger than the others and the quantile
+/// lies among these. Afterwards `ordered` says the same for any larger quantile.
+double quantile_beyond(std::span<double> values, double p, std::size_t& ordered) {
   const double rank = p * static_cast<double>(values.size() - 1);
-  const auto below = static_cast<std::ptrdiff_t>(rank);
-  const auto at = values.begin() + below;
-  std::nth_element(values.begin(), at, values.end());
+  const auto below = static_cast<std::size_t>(rank);
+  const auto at = values.begin() + static_cast<std::ptrdiff_t>(below);
+  std::nth_element(values.begin() + static_cast<std::ptrdiff_t>(ordered), at, values.end());
+  ordered = below;
   const double low = *at, part = rank - static_cast<double>(below);
   if (part == 0.0 || std::isinf(low)) return low;  // between infinite values nothing is linear
   const double high = *std::min_element(at + 1, values.end());
   return low + part * (high - low);
+}
+
+}  // namespace
+
+double quantile(std::span<double> values, double p) {
+  std::size_t ordered = 0;
+  return quantile_beyond(values, p, ordered);
 }
 
 Summary summarize(std::span<const double> values) {
@@ -32,10 +44,12 @@ Summary summarize(std::span<const double> values) {
   summary.mean = sum / n;
   summary.rmse = std::sqrt(sum_of_squares / n);
   std::vector<double> reordered(values.begin(), values.end());
-  summary.median = quantile(reordered, 0.5);
-  summary.p95 = quantile(reordered, 0.95);
-  summary.p99 = quantile(reordered, 0.99);
-  summary.max = *std::max_element(reordered.begin(), reordered.end());
+  std::size_t ordered = 0;
+  summary.median = quantile_beyond(reordered, 0.5, ordered);
+  summary.p95 = quantile_beyond(reordered, 0.95, ordered);
+  summary.p99 = quantile_beyond(reordered, 0.99, ordered);
+  summary.max =
+      *std::max_element(reordered.begin() + static_cast<std::ptrdiff_t>(ordered), reordered.end());
   return summary;
 }
 

@@ -99,6 +99,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
       {"reason", result.summary.reason},
       {"made_on", made_on()},
       {"summary", summary_json(result.summary)}};
+  if (!chosen.config_file.empty()) result.files.manifest["config_file"] = chosen.config_file;
+  if (!chosen.overrides.empty()) result.files.manifest["overrides"] = chosen.overrides;
   dataset::write_run(out, result.files);
   return result.summary;
 }

@@ -8,6 +8,7 @@
 #include "lidarena/base/shell_word.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
+#include "lidarena/odometry/event_record.hpp"
 #include "lidarena/study/process.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
@@ -22,6 +23,8 @@ struct Recording {
   std::size_t scans = 0;
   double seconds = 0.0;
   fs::path path;
+  odometry::EventRecord events;  ///< of the IMU
+  std::optional<Time> first_scan;
 };
 
 Rig rig_of_one(const Rig& rig, const std::string& lidar_id) {
@@ -44,9 +47,12 @@ Recording record(const ExternalProgram& program, const RunRequest& request, cons
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       if (event->sensor_id != recording.rig.lidars[0].id) continue;
       ++recording.scans;
+      if (!recording.first_scan) recording.first_scan = scan->stamp;
       recording.seconds = to_seconds(scan->stamp);
     } else if (recording.rig.imus.empty() || event->sensor_id != recording.rig.imus[0].id) {
       continue;
+    } else {
+      recording.events.add(std::get<ImuSample>(event->data));
     }
     writer.write(*event);
   }
@@ -139,6 +145,7 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
                                    sensor_from_body(program.pose_of, recording.rig));
   }
   files.map = map_of(output);
+  files.events = recording.events.events(recording.first_scan.value_or(Time{0}));
   const LidarInfo& lidar = recording.rig.lidars[0];
   dataset::Dataset again = open_scored_returns(request.dataset, request.read, parallel);
   files.reprojected = evaluation::reproject(*again.events, lidar.id, lidar.body_from_lidar,

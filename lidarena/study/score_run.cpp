@@ -16,15 +16,23 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kScoredPoints = 400'000;  // enough for a picture 2,000 pixels wide
 
-/// At most kScoredPoints of the re-projected map, in the mesh's frame, each with its distance.
+/// At most kScoredPoints of the re-projected map, in the mesh's frame, each with its distance:
+/// those of `scored` where it has them all.
 dataset::Cloud scored_cloud(const dataset::RunFiles& run, const Pose& mesh_from_map,
-                            const world::World& world, const Parallel& parallel) {
+                            const evaluation::ScoredPoints& scored, const world::World& world,
+                            const Parallel& parallel) {
   const std::vector<Eigen::Vector3f>& all = run.reprojected.points;
   const std::size_t stride =
       std::max<std::size_t>(1, (all.size() + kScoredPoints - 1) / kScoredPoints);
   dataset::Cloud cloud;
   for (std::size_t i = 0; i < all.size(); i += stride) cloud.points.push_back(all[i]);
-  evaluation::map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
+  if (scored.stride > 0 && stride % scored.stride == 0 &&
+      scored.mesh_from_map.matrix() == mesh_from_map.matrix()) {
+    for (std::size_t i = 0; i < all.size(); i += stride)
+      cloud.distance.push_back(scored.distances[i / scored.stride]);
+  } else {
+    evaluation::map_error(cloud.points, mesh_from_map, world, parallel, &cloud.distance);
+  }
   cloud.points = transformed(mesh_from_map, cloud.points);
   return cloud;
 }
@@ -118,11 +126,13 @@ results::RunMetrics score_run(const fs::path& folder, const Parallel& parallel, 
       return std::nullopt;
     }
   };
+  evaluation::ScoredPoints scored;
   const results::RunMetrics metrics =
-      evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe);
+      evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe, &scored);
   const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
   if (world && mesh_from_map && !run.reprojected.points.empty()) {
-    dataset::write_ply(folder / "scored.ply", scored_cloud(run, *mesh_from_map, *world, parallel));
+    dataset::write_ply(folder / "scored.ply",
+                       scored_cloud(run, *mesh_from_map, scored, *world, parallel));
   }
   results::write_metrics(folder, metrics);
   return metrics;

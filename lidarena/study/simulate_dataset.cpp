@@ -79,7 +79,8 @@ std::string pattern_name(std::size_t sensor) { return fmt::format("pattern_{}.cs
 Json manifest_of(const SimulateRequest& request, const Scene& scene) {
   Json routes = Json::array();
   for (const auto& route : scene.model.routes) routes.push_back(value_to_json(route));
-  Json sensors = Json::array();
+  Json sensors = Json::array(), sensor_sources = Json::array();
+  for (const fs::path& file : request.sensors) sensor_sources.push_back(file.filename().string());
   for (sensor::SensorConfig sensor : scene.sensors) {
     if (!sensor.pattern_file.empty()) sensor.pattern_file = pattern_name(sensors.size());
     sensors.push_back(to_json(sensor));
@@ -94,6 +95,9 @@ Json manifest_of(const SimulateRequest& request, const Scene& scene) {
             {"new_scene", request.new_scene},
             {"seconds", to_seconds(scene.duration())},
             {"noise", request.noise},
+            {"mode", value_to_json(request.mode)},
+            {"allow_missing", request.allow_missing},
+            {"sensor_sources", sensor_sources},
             {"sensors", sensors},
             {"routes", routes}}}};
 }

@@ -9,6 +9,7 @@
 namespace lidarena::dataset {
 namespace {
 
+using testing::AllOf;
 using testing::HasSubstr;
 
 RunFiles small_run() {
@@ -25,6 +26,7 @@ RunFiles small_run() {
   run.reprojected.intensity = {0.5F};
   run.resources = {{0.1, 0.012345678, 0.03, 1'000'000'000'000, 2, 3, 4, 5},
                    {0.2, 0.01, 0.01, 1, 2, 3, 4, 5}};
+  run.events = {{-0.005, 0.25, RunEventKind::kFastTurn, 83.25}, {0.1, 0.0, RunEventKind::kLoop, 1}};
   run.manifest = {{"algorithm", "kiss_icp"}, {"seed", 7}};
   return run;
 }
@@ -56,6 +58,13 @@ TEST_F(Run, ComesBackAsItWasWritten) {
   EXPECT_EQ(back.resources[0].latency_s, 0.012345678);
   EXPECT_EQ(back.resources[0].rss_bytes, 1'000'000'000'000U);
   EXPECT_EQ(back.resources[1].backlog_bytes, 5U);
+  ASSERT_TRUE(back.events.has_value());
+  ASSERT_EQ(back.events->size(), 2U);
+  EXPECT_EQ(back.events->at(0).t_sensor_s, -0.005);
+  EXPECT_EQ(back.events->at(0).duration_s, 0.25);
+  EXPECT_EQ(back.events->at(0).kind, RunEventKind::kFastTurn);
+  EXPECT_EQ(back.events->at(0).value, 83.25);
+  EXPECT_EQ(back.events->at(1).kind, RunEventKind::kLoop);
 }
 
 TEST_F(Run, TrajectoriesNameTheirFramesAndInstant) {
@@ -66,11 +75,20 @@ TEST_F(Run, TrajectoriesNameTheirFramesAndInstant) {
               testing::StartsWith("t_sensor_s,latency_s,cpu_s,rss_bytes"));
 }
 
-TEST_F(Run, AMotionOfAnEarlierRunDoesNotStay) {
+TEST_F(Run, AMotionAndEventsOfAnEarlierRunDoNotStay) {
   RunFiles run = small_run();
   run.motion = {};
+  run.events = {};
   write_run(path(), run);
   EXPECT_TRUE(read_run(path()).motion.empty());
+  EXPECT_FALSE(read_run(path()).events.has_value());
+}
+
+TEST(RunEvents, EveryKindHasANameOfItsOwnAtItsPlace) {
+  for (std::size_t i = 0; i < kRunEvents.size(); ++i) {
+    EXPECT_EQ(static_cast<std::size_t>(kRunEvents[i].kind), i);
+    for (std::size_t j = 0; j < i; ++j) EXPECT_STRNE(kRunEvents[i].name, kRunEvents[j].name);
+  }
 }
 
 TEST_F(Run, ThatGaveNoPoseIsStillARun) {
@@ -117,6 +135,14 @@ TEST_F(Run, BrokenFilesAreNamed) {
   EXPECT_THAT(error_with("resources.csv", header + "1,2\n"), HasSubstr("resources.csv:2: holds 2"));
   EXPECT_THAT(error_with("resources.csv", header + "1,2,3,-3,4,5,6,7\n"),
               HasSubstr("resources.csv:2: '-3' is not a number of bytes"));
+  EXPECT_THAT(error_with("events.csv", "stamp,kind\n"), HasSubstr("events.csv:1: is not the"));
+  const std::string events = "t_sensor_s,duration_s,kind,value\n";
+  EXPECT_THAT(error_with("events.csv", events + "1,0,loop\n"), HasSubstr("events.csv:2: holds 3"));
+  EXPECT_THAT(error_with("events.csv", events + "1,0,lop,1\n"),
+              AllOf(HasSubstr("events.csv:2: 'lop' is not a kind"), HasSubstr("few_points")));
+  EXPECT_THAT(error_with("events.csv", events + "1,-1,loop,1\n"),
+              HasSubstr("events.csv:2: '-1' is a negative"));
+  EXPECT_THAT(error_with("events.csv", events + "nan,0,loop,1\n"), HasSubstr("events.csv:2: "));
   EXPECT_THAT(error_with("trajectory.tum", "1 2 3\n"), HasSubstr("trajectory.tum:1: holds 3"));
   EXPECT_THAT(error_with("map.ply", "ply\n"), HasSubstr("map.ply: ends after line 1"));
   EXPECT_THAT(error_with("manifest.json", "{\"a\": "), HasSubstr("manifest.json: byte"));

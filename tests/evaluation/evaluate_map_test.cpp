@@ -11,6 +11,7 @@
 
 #include "flights.hpp"
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
 
 namespace lidarena::evaluation {
@@ -115,6 +116,22 @@ TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
   EXPECT_NEAR(m["robust"]["alignment"]["turned_from_first_pose_rad"], 0.0175, 1e-4);
   EXPECT_TRUE(m["se3"]["signed"].is_null());  // no ground truth of the rays
   EXPECT_TRUE(m["se3"]["completeness"].is_null());
+}
+
+TEST(EvaluateMap, TellsTheDistancesThatItScored) {
+  const Room room;
+  std::vector<Vector3f> map = room.map(0.03, flights::level({0.1, 0, 0}));
+  map[7].x() = std::numeric_limits<float>::quiet_NaN();
+  ScoredPoints scored;
+  evaluate_map(map, room.truth, room.truth, room.unseen, kTwoThreads, nullptr, &scored);
+  ASSERT_EQ(scored.stride, 1U);
+  ASSERT_EQ(scored.distances.size(), map.size());
+  EXPECT_TRUE(std::isnan(scored.distances[7]));
+  std::vector<float> direct;  // of a part, which is searched in another order
+  const std::vector<Vector3f> part(map.begin(), map.begin() + 1000);
+  map_error(part, scored.mesh_from_map, room.world, kTwoThreads, &direct);
+  direct[7] = scored.distances[7] = 0.0F;
+  for (std::size_t i = 0; i < part.size(); ++i) EXPECT_EQ(scored.distances[i], direct[i]);
 }
 
 TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {

@@ -163,6 +163,11 @@ TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
     EXPECT_EQ(result.files.resources.size(), 4U);
     EXPECT_EQ(result.files.map.points.size(), 6U);
     EXPECT_EQ(sink.warnings.size(), 1U);
+    ASSERT_TRUE(result.files.events && result.files.events->size() == 1U);
+    const dataset::RunEvent& event = result.files.events->front();
+    EXPECT_EQ(event.kind, dataset::RunEventKind::kDiverged);
+    EXPECT_DOUBLE_EQ(event.t_sensor_s, 0.39) << "the end of scan 3, as in resources.csv";
+    EXPECT_EQ(event.value, 3.0);
   }
 }
 

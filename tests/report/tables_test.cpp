@@ -6,9 +6,11 @@
 #include <fstream>
 #include <set>
 
+#include "lidarena/dataset/run_events.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/figure_tables.hpp"
 #include "lidarena/report/report_data.hpp"
+#include "lidarena/report/run_command.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/web_page.hpp"
@@ -199,8 +201,8 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   results.rows[2].reason = "estimate left the world";
   results.rows[2].metrics->resources.scans = 1;
   results.rows[2].metrics->resources.own.peak_bytes = 12.5e6;
-  results.rows[0].simulation = Json::parse(
-      R"({"seed":7,"seconds":20.0,"sensors":[{"name":"livox_mid360"},{"name":"ouster_os0_128"}]})");
+  results.rows[0].simulation = Json::parse(R"({"seed":7,"new_scene":true,"seconds":20.0})");
+  results.rows[0].sources = {"/my worlds/cave.ply", "cave", {"livox_mid360", "ouster_os0_128"}};
   const results::Table failures = failures_table(results);
   ASSERT_EQ(failures.rows.size(), 2U) << "and one of which the paper's map lies mostly elsewhere";
   EXPECT_EQ(failures.rows[0][2].text, "estimate left the world");
@@ -209,11 +211,24 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   ASSERT_EQ(runs.rows.at(2).size(), runs.head.size());
   EXPECT_EQ(runs.rows[2][1].text, "diverged: estimate left the world");
   EXPECT_EQ(runs.rows[2].back().value, 12.5);
-  EXPECT_THAT(
-      commands_table(results).rows.at(0).at(1).text,
-      HasSubstr("lidarena simulate --world cave --flight cave --sensor livox_mid360 --sensor "
-                "ouster_os0_128 --seed 7 --seconds 20.0 --no-data --out data && lidarena run "
-                "ct_icp data --preset indoor --sensor livox_mid360"));
+  EXPECT_THAT(commands_table(results).rows.at(0).at(1).text,
+              HasSubstr("lidarena simulate --world '/my worlds/cave.ply' --flight cave --sensor "
+                        "livox_mid360 --sensor ouster_os0_128 --seed 7 --new-scene --seconds 20.0 "
+                        "--no-data --out data && lidarena run ct_icp data --preset indoor --sensor "
+                        "livox_mid360_paper --out run && lidarena evaluate run"));
+}
+
+TEST(SummaryTables, ACommandHasAllSettingsOfItsRunAndRecordedDataStayWhereTheyAre) {
+  results::RunRecord run = row("cave", "lidar", "fast_lio2", 1.0, 0.0);
+  run.folder = "study/runs/one";
+  run.manifest = Json::parse(R"({"dataset":"../../my data.bag","config":{"a":1},"paced":true,
+      "config_file":"mine.yaml","overrides":["map_voxel_size_m=0.3"]})");
+  EXPECT_EQ(command_of(run),
+            "lidarena run fast_lio2 'study/my data.bag' --preset indoor --config mine.yaml --set "
+            "map_voxel_size_m=0.3 --paced --sensor lidar --out run && lidarena evaluate run");
+  run.preset = "external";
+  run.manifest = Json::parse(R"({"dataset":"../../my data.bag","config":{"command":"true"}})");
+  EXPECT_THAT(command_of(run), HasSubstr(" --external fast_lio2.yaml --sensor lidar"));
 }
 
 /// A run with a map RMSE and a CPU time, in % of one core.
@@ -339,6 +354,7 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
               ::testing::ElementsAre("indoor-rolling", "indoor-official"));
   const results::StudyCells cells(results, "indoor-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
+  results.rows[1].simulation = Json::object();
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
 }
 
@@ -419,6 +435,30 @@ TEST(ReportData, ACurveKeepsItsPeakAndALongStudyHasNone) {
   EXPECT_EQ(*std::max_element(values.begin(), values.end()), 7.5);
   results.rows.resize(6000, results.rows[0]);
   EXPECT_TRUE(report_data(results, {}, ".").at("runs").at(0).at("error").is_null());
+}
+
+TEST(ReportData, EventsAreThoseOfTheirFileInstantsAndTheLongestFirst) {
+  const TemporaryFolder folder;
+  results::StudyResults results = results_of_the_paper();
+  results.rows.resize(1);
+  results.rows[0].folder = folder.path();
+  const auto events = [&] { return report_data(results, {}, ".").at("runs").at(0).at("events"); };
+  EXPECT_TRUE(events().is_null()) << "not known";
+  using dataset::RunEventKind;
+  dataset::write_events(folder.path() / "events.csv", {{0.5, 0.25, RunEventKind::kFastTurn, 80.0}});
+  EXPECT_EQ(events(), Json::parse("[[0, 0.5, 0.25, 80.0]]"));
+  std::vector<dataset::RunEvent> many;
+  for (int i = 0; i < 1000; ++i)
+    many.push_back(
+        {1.0 * i, i % 2 == 0 ? 0.001 * (i + 1) : 0.0001, RunEventKind::kDegenerate, 1.0});
+  many.push_back({2000.0, 0.0, RunEventKind::kLoop, 1.0});
+  dataset::write_events(folder.path() / "events.csv", many);
+  const Json kept = events();
+  ASSERT_EQ(kept.size(), 400U);
+  EXPECT_EQ(kept.front().at(1), 202.0) << "the 399 longest";
+  EXPECT_EQ(kept.back(), Json::parse("[4, 2000.0, 0.0, 1.0]"));
+  std::ofstream(folder.path() / "events.csv") << "broken";
+  EXPECT_THROW(events(), InputError);
 }
 
 TEST(WebPage, NeedsNoNetworkAndTheDataCannotBreakOutOfIt) {

@@ -26,7 +26,7 @@ ALLOWED = {
 # depend on files, and an estimator must not be able to read the truth of a dataset.
 ONLY = {
     ("sensor", "dataset"): {"event.hpp", "point_truth.hpp"},
-    ("odometry", "dataset"): {"event.hpp", "run_files.hpp", "points/cloud.hpp"},
+    ("odometry", "dataset"): {"event.hpp", "run_files.hpp", "run_events.hpp", "points/cloud.hpp"},
 }
 # Third-party libraries that may be included only in .cpp files of these modules. World uses oneTBB
 # to make Embree build its tree on one thread, so that the tree is always the same.

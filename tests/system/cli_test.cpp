@@ -279,7 +279,8 @@ TEST_F(Cli, ADivergedRunIsWrittenWholeWithExitCode1) {
   EXPECT_THAT(ran.err, HasSubstr("the run diverged"));
   const auto manifest = nlohmann::json::parse(content(path("run") + "/manifest.json"));
   EXPECT_EQ(manifest.at("status"), "diverged");
-  for (const char* file : {"trajectory.tum", "live.tum", "map.ply", "resources.csv"}) {
+  for (const char* file :
+       {"trajectory.tum", "live.tum", "map.ply", "resources.csv", "events.csv"}) {
     EXPECT_TRUE(fs::exists(fs::path(path("run")) / file)) << file;
   }
 }
@@ -296,6 +297,7 @@ TEST_F(Cli, AManifestAloneIsFlownWithTheSamePoints) {
   ASSERT_EQ(call("run kiss_icp " + path("bare") + " --threads 2 --out " + path("b")).exit_code, 0);
   EXPECT_TRUE(same(path("a") + "/trajectory.tum", path("b") + "/trajectory.tum"));
   EXPECT_TRUE(same(path("a") + "/map.ply", path("b") + "/map.ply"));
+  EXPECT_TRUE(same(path("a") + "/events.csv", path("b") + "/events.csv"));
   EXPECT_TRUE(same(path("full") + "/truth.tum", path("bare") + "/truth.tum"));
 }
 
@@ -387,6 +389,44 @@ TEST_F(Cli, AStudyIsResumedAndAFailedRunIsARow) {
   EXPECT_EQ(nlohmann::json::parse(second.out).at("reused"), 1);
   EXPECT_EQ(content(path("study_out") + "/results.csv"), csv)
       << "the reused run must not be measured again";
+}
+
+TEST_F(Cli, TheCommandsThatAReportShowsMakeDatasetAndRunAgain) {
+  const std::string study =
+      write("study.yaml",
+            "scenes: [{world: house, flight: house_aggressive, seconds: 1}]\nnew_scenes: true\n"
+            "seeds: [5]\nmodes: [frozen]\nsensors: [ouster_os0_32, livox_mid360_paper]\n"
+            "algorithms: [arena_lo, 'fast_lio2:published']\n");
+  const Outcome made = call("study " + study + " --out study");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  const auto report = nlohmann::json::parse(content(path("study") + "/report.json"));
+  const auto& run = report.at("runs").back();
+  std::string command = run.at("command");
+  EXPECT_THAT(command, HasSubstr("--sensor livox_mid360_paper --seed 5 --new-scene"));
+  for (std::size_t at = 0; (at = command.find("lidarena ", at)) != std::string::npos;) {
+    command.replace(at, 9, std::string(LIDARENA_BINARY) + " ");
+    at += std::string(LIDARENA_BINARY).size();
+  }
+  ASSERT_EQ(
+      std::system(("cd " + folder_.path().string() + " && " + command + " >out 2>err").c_str()), 0)
+      << command << "\n"
+      << content(path("err"));
+  const std::string dataset = path("study") + "/datasets/" + run.at("dataset").get<std::string>();
+  for (const char* file : {"world.ply", "truth.tum", "flight.yaml"})
+    EXPECT_TRUE(same(path("data") + "/" + file, dataset + "/" + file)) << file;
+  const auto manifest = [](const std::string& folder) {
+    return nlohmann::json::parse(content(folder + "/manifest.json"));
+  };
+  for (const char* key : {"rig", "simulation"})  // the study's also counts its measurements
+    EXPECT_EQ(manifest(path("data")).at(key), manifest(dataset).at(key)) << key;
+  const std::string folder = path("study") + "/" + run.at("folder").get<std::string>();
+  for (const char* file : {"trajectory.tum", "map.ply", "events.csv", "metrics.json"})
+    EXPECT_TRUE(same(path("run") + "/" + file, folder + "/" + file)) << file;
+
+  const Outcome alone = call("report run");
+  ASSERT_EQ(alone.exit_code, 0) << alone.err;
+  const auto again = nlohmann::json::parse(content(path("run") + "/report.json"));
+  EXPECT_EQ(again.at("runs").at(0).at("command"), run.at("command"));
 }
 
 /// A study of two short flights, each with two algorithms; returns its name.

@@ -85,11 +85,11 @@ class ViewInBrowser : public Cli {
     const std::string command =
         "cd " + folder_.path().string() + " && timeout 120 chromium --headless --no-sandbox " + gl +
         " --enable-unsafe-swiftshader --ignore-gpu-blocklist --hide-scrollbars --window-size=" +
-        std::to_string(kWidth) + "," + std::to_string(kHeight) +
+        window_ +
         " --no-first-run --disable-background-networking --disable-component-update"
-        " --disable-default-apps --disable-sync --virtual-time-budget=20000"
-        " --enable-logging=stderr " +
-        task + " 'file://" + address + "' >browser_out 2>browser_err";
+        " --disable-default-apps --disable-sync --virtual-time-budget=" +
+        std::to_string(budget_ms_) + " --enable-logging=stderr " + task + " 'file://" + address +
+        "' >browser_out 2>browser_err";
     return std::system(command.c_str());
   }
   /// Opens the page with the URL fragment `state` ("#..."); returns chromium's output.
@@ -124,6 +124,8 @@ class ViewInBrowser : public Cli {
   }
 
   std::string floor_;
+  int budget_ms_ = 20'000;  ///< virtual time that a page gets
+  std::string window_ = std::to_string(kWidth) + "," + std::to_string(kHeight);
 };
 
 TEST_F(ViewInBrowser, PixelsHaveTheColorsOfTheirDistancesAndTheConsoleStaysSilent) {
@@ -207,10 +209,50 @@ void write_study(const fs::path& folder) {
   const fs::path run = folder / "runs" / "livox_mid360-kiss_icp-1";
   fs::create_directories(folder / "datasets" / "flight");
   std::ofstream(run / "scored.ply") << floor_ply();
+  std::ofstream(run / "events.csv")
+      << "t_sensor_s,duration_s,kind,value\n0.5,1,fast_turn,90\n1.2,0,loop,1\n1.9,0,loop,2\n";
   for (const fs::path& file :
        {run / "trajectory.tum", folder / "datasets" / "flight" / "truth.tum"}) {
     std::ofstream(file) << "0 1 1 1 0 0 0 1\n1 2 1 1 0 0 0 1\n2 3 1 1 0 0 0 1\n";
   }
+}
+
+/// The size of the quick study: two worlds, two sensors, eight methods, a map of every run. In the
+/// world `two` the map of the last run is the worst.
+void write_quick_study(const fs::path& folder) {
+  nlohmann::json study{{"kind", "study"}, {"spec", {{"title", "Quick"}}}, {"runs", {}}};
+  int count = 0;
+  for (const std::string world : {"one", "two"}) {
+    for (const std::string sensor : {"livox_mid360", "ouster_os0_128"}) {
+      for (int method = 0; method < 8; ++method, ++count) {
+        const std::string name =
+            world + "-" + sensor + "-a_long_name_" + std::to_string(method) + "-indoor";
+        study["runs"].push_back({{"name", name},
+                                 {"world", world},
+                                 {"flight", "round"},
+                                 {"sensor", sensor},
+                                 {"algorithm", "a_long_name_" + std::to_string(method)},
+                                 {"preset", "indoor"},
+                                 {"seed", 1}});
+        const fs::path run = folder / "runs" / name;
+        fs::create_directories(run);
+        std::ofstream(run / "manifest.json") << nlohmann::json{{"kind", "run"}};
+        const nlohmann::json rmse{{"count", 9}, {"rmse_m", 0.01 + 0.001 * count}};
+        const nlohmann::json map{{"points", 9}, {"distance", rmse}};
+        std::ofstream(run / "metrics.json")
+            << nlohmann::json{{"schema_version", 3},
+                              {"status", "ok"},
+                              {"final", {{"rpe", {{"1m_at_poses", {{"translation", rmse}}}}}}},
+                              {"maps", {{"reprojected", {{"se3", map}}}}}};
+        // the more methods, the cheaper: four of eight are on the front with either sensor
+        std::ofstream(run / "resources.json") << nlohmann::json{
+            {"scans", 30}, {"cpu_load_percent", method < 4 ? 50.0 - method : 90.0}};
+        std::ofstream(run / "scored.ply") << floor_ply();
+        std::ofstream(run / "trajectory.tum") << "0 1 1 1 0 0 0 1\n1 2 1 1 0 0 0 1\n";
+      }
+    }
+  }
+  std::ofstream(folder / "plan.json") << study;
 }
 
 class ReportInBrowser : public ViewInBrowser {
@@ -390,13 +432,13 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
                "return [location.hash, document.querySelectorAll('#run .chart').length, "
                "document.querySelector('#run .command').textContent.includes('lidarena run "
                "kiss_icp')]");
-  EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 0, true})) << "charts come later";
+  EXPECT_EQ(run, nlohmann::json({"#run=livox_mid360-kiss_icp-1", 4, true}));
   const nlohmann::json later = evaluate(
       "await until(() => document.documentElement.dataset.view); return "
       "[document.documentElement.dataset.view, document.querySelectorAll('#run "
       ".chart').length, document.querySelectorAll('#run canvas').length]",
       "#run=livox_mid360-kiss_icp-1");
-  EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 3, 1}));
+  EXPECT_EQ(later, nlohmann::json({"livox_mid360-kiss_icp-1", 4, 1}));
   const nlohmann::json without_gl = evaluate(
       "await until(() => document.documentElement.dataset.picture); return "
       "[document.documentElement.dataset.picture, document.querySelectorAll('#run .map "
@@ -410,15 +452,107 @@ TEST_F(ReportInBrowser, ACellOpensItsRunWithItsMapChartsAndCommand) {
 }
 
 TEST_F(ReportInBrowser, TheTimeLineOfTheMapMovesAMarkThroughTheCharts) {
+  budget_ms_ = 80'000;  // every chart is waited for
   const nlohmann::json marks = evaluate(
       "const marks = () => [...document.querySelectorAll('#run .charts svg path')].filter(p => "
-      "p.getAttribute('stroke') === '#f97316').length; document.querySelectorAll('#run .chart')"
-      ".forEach(c => c.scrollIntoView()); await until(() => document.documentElement.dataset.view "
-      "&& document.querySelectorAll('#run .chart svg').length === 3); const time = "
+      "p.getAttribute('stroke') === '#f97316').length; for (const chart of "
+      "document.querySelectorAll('#run .chart')) { chart.scrollIntoView(); await until(() => "
+      "chart.querySelector('svg')); } await until(() => document.documentElement.dataset.view); "
+      "const time = "
       "document.querySelector('#run .timebar input'); time.value = 1; time.oninput(); "
-      "await until(() => marks() === 3); return [time.value, marks()];",
+      "await until(() => marks() === 4); return [time.value, marks()];",
       "#run=livox_mid360-kiss_icp-1");
-  EXPECT_EQ(marks, nlohmann::json({"1", 3}));
+  EXPECT_EQ(marks, nlohmann::json({"1", 4}));
+}
+
+TEST_F(ReportInBrowser, EventsOfARunAreBarsWithALegendAndFastTurnsShadeTheError) {
+  const nlohmann::json seen = evaluate(
+      "const strip = document.querySelector('#run-events .chart'); "
+      "strip.scrollIntoView(); await until(() => strip.querySelector('svg')); "
+      "const bars = color => [...strip.querySelectorAll('svg path')].filter(p => "
+      "p.getAttribute('fill') === color && p.getBBox().height < 11).map(p => "
+      "Math.round(p.getBBox().width)); return [strip.textContent, bars('#d9a441').length, "
+      "bars('#0f766e').length, bars('#d9a441')[0] > 10 * bars('#0f766e')[0], "
+      "document.querySelector('#run-error').textContent];",
+      "#run=livox_mid360-kiss_icp-1");
+  ASSERT_TRUE(seen.is_array());
+  EXPECT_THAT(seen.at(0).get<std::string>(), AllOf(HasSubstr("fast turn"), HasSubstr("loop closed"),
+                                                   Not(HasSubstr("degenerate"))));
+  EXPECT_GE(seen.at(1), 1) << seen;
+  EXPECT_GE(seen.at(2), 2) << seen;
+  EXPECT_EQ(seen.at(3), true) << "a second against an instant";
+  EXPECT_THAT(seen.at(4).get<std::string>(), HasSubstr("shaded: fast turns"));
+  const nlohmann::json unknown = evaluate("return document.querySelectorAll('#run-events').length",
+                                          "#run=livox_mid360-kiss_icp-2");
+  EXPECT_EQ(unknown, 0) << "a run without the file";
+}
+
+TEST_F(ReportInBrowser, TheFirstScreenOfTheQuickStudyFits1280x800AndTheAddressChoosesItsPicture) {
+  write_quick_study(path("quick"));
+  const Outcome made = call("report quick");
+  ASSERT_EQ(made.exit_code, 0) << made.err;
+  page_ = content(path("quick") + "/report.html");
+  window_ = "1280,800";
+  const std::string look =
+      "await until(() => document.documentElement.dataset.seen); const end = s => "
+      "Math.round(document.querySelector(s).getBoundingClientRect().bottom); return "
+      "{ends: ['header .compared', '#decision', '.seen', '#matrix table'].map(end), inner: "
+      "[innerWidth, innerHeight], wide: document.documentElement.scrollWidth, hidden: (v => "
+      "v.scrollHeight - v.clientHeight)(document.querySelector('.verdicts')), front: "
+      "document.querySelectorAll('.front tbody tr:not(.world)').length, picture: "
+      "document.querySelector('.seen').textContent, options: "
+      "[...document.querySelectorAll('select[name=front] option')].map(o => o.value)};";
+  const nlohmann::json seen = evaluate(look);
+  ASSERT_TRUE(seen.is_object());
+  for (const nlohmann::json& end : seen.at("ends")) EXPECT_LE(end, 800) << seen;
+  EXPECT_EQ(seen.at("wide"), 1280) << "no scrolling sideways";
+  EXPECT_EQ(seen.at("front"), 8) << seen;
+  EXPECT_LE(seen.at("hidden"), 1) << "all of the answer is in sight: " << seen;
+  EXPECT_THAT(seen.at("picture").get<std::string>(), HasSubstr("highest: ouster_os0_128"));
+  EXPECT_EQ(seen.at("options"), nlohmann::json({"one", "two"}));
+
+  const nlohmann::json linked = evaluate(look, "#front=two");
+  EXPECT_THAT(linked.at("picture").get<std::string>(), HasSubstr(": 4.1 cm")) << "the last run";
+  const nlohmann::json chosen = evaluate(
+      "await until(() => document.documentElement.dataset.seen); const select = () => "
+      "document.querySelector('select[name=front]'); select().focus(); select().value = 'two'; "
+      "select().onchange(); await until(() => document.querySelector('.seen').textContent.includes("
+      "': 4.1 cm')); return [location.hash, select().value, document.activeElement === select()];");
+  EXPECT_EQ(chosen, nlohmann::json({"#front=two", "two", true}));
+}
+
+TEST_F(ReportInBrowser, TheKeyboardMovesThroughCellsAndRunsAndTheFocusStays) {
+  const std::string keys =
+      "const press = key => document.activeElement.dispatchEvent(new KeyboardEvent('keydown', "
+      "{key, "
+      "bubbles: true, cancelable: true})); const cell = () => "
+      "document.activeElement.closest('td')?.dataset.cell ?? ''; const run = () => "
+      "decodeURIComponent(location.hash); document.querySelector('#matrix td button').focus(); ";
+  const nlohmann::json cells = evaluate(
+      keys +
+      "return ['Home', 'ArrowRight', 'ArrowRight', 'ArrowDown', 'ArrowLeft', 'ArrowUp', 'End']"
+      ".map(key => { press(key); return cell(); });");
+  const std::string mid = "livox_mid360|", os0 = "ouster_os0_128|", kiss = "kiss_icp (indoor)",
+                    fast = "fast_lio2 (indoor)";
+  EXPECT_EQ(cells, nlohmann::json({mid + kiss, mid + fast, mid + fast, os0 + fast, os0 + kiss,
+                                   mid + kiss, mid + fast}));
+  const nlohmann::json runs = evaluate(
+      keys +
+      "document.activeElement.click(); const out = [run(), document.activeElement.id]; "
+      "for (const key of ['PageDown', 'PageDown', 'PageUp']) { press(key); out.push(run(), "
+      "document.activeElement.id); } document.querySelector('#run [title^=next]').focus(); "
+      "document.activeElement.click(); out.push(run(), document.activeElement.title); "
+      "press('Escape'); out.push(run(), cell(), document.querySelectorAll('#run').length); "
+      "return out;");
+  const std::string first = "#run=livox_mid360-kiss_icp-";
+  EXPECT_EQ(runs,
+            nlohmann::json({first + "1", "run", first + "2", "run", first + "3", "run", first + "2",
+                            "run", first + "3", "next run (Page down)", "", mid + kiss, 0}));
+  const nlohmann::json kept = evaluate(
+      "const figure = document.querySelector('[data-figure=cpu_load]'); figure.focus(); "
+      "figure.click(); const now = document.activeElement; "
+      "return [now.dataset.figure, now !== figure, now.matches(':focus')];");
+  EXPECT_EQ(kept, nlohmann::json({"cpu_load", true, true}));
 }
 
 /// Runs the program as a server in the background until the object is destroyed.

@@ -23,10 +23,14 @@ namespace {
 constexpr std::size_t kMaxPoints = 2'000'000;       // of a map, scored in the gauge of its figures
 constexpr std::size_t kMaxPointsOfOther = 250'000;  // in the other gauges
 
+std::size_t stride_of(std::size_t points, std::size_t max_points) {
+  return std::max<std::size_t>(1, (points + max_points - 1) / max_points);
+}
+
 /// No more than `max_points` points of the map: every k-th point.
 std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
                                        std::size_t max_points) {
-  const std::size_t stride = std::max<std::size_t>(1, (map.size() + max_points - 1) / max_points);
+  const std::size_t stride = stride_of(map.size(), max_points);
   std::vector<Eigen::Vector3f> sample;
   sample.reserve(map.size() / stride + 1);
   for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
@@ -74,9 +78,10 @@ std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map)
 
 /// `scores`: those of the map moved by `mesh_from_map`.
 results::MapInGauge measure(const Subject& subject, std::span<const PointScore> scores,
-                            const Pose& mesh_from_map) {
+                            const Pose& mesh_from_map, std::vector<float>* distances = nullptr) {
   results::MapInGauge measured;
-  static_cast<MapError&>(measured) = map_error(subject.order, scores, subject.map.size());
+  static_cast<MapError&>(measured) =
+      map_error(subject.order, scores, subject.map.size(), distances);
   measured.map_points = subject.map_points;
   measured.mesh_from_map = mesh_from_map;
   measured.per_voxel = voxel_error(subject.order, scores);
@@ -104,11 +109,17 @@ results::MapInGauge measure_in(const Alignment& gauge, const Subject& subject) {
 }
 
 /// As measure_in(), with the distance to vertices.
-results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject& subject) {
+results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject& subject,
+                                          ScoredPoints* scored) {
   if (!gauge.determined()) return refused(gauge.refusal);
   const Pose& moved = gauge.truth_from_estimate;
   const std::vector<PointScore> scores = score(subject, moved);
-  results::MapInGauge measured = measure(subject, scores, moved);
+  if (scored != nullptr) {
+    scored->mesh_from_map = moved;
+    scored->stride = stride_of(subject.map_points, std::max<std::size_t>(1, subject.map.size()));
+  }
+  results::MapInGauge measured =
+      measure(subject, scores, moved, scored == nullptr ? nullptr : &scored->distances);
   // The distance to vertices only serves comparison with those who measure it: a sample will do.
   const std::size_t stride = scores.size() / kMaxPointsOfOther + 1;
   MortonOrder order;
@@ -172,7 +183,8 @@ SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const P
 
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                                  const Trajectory& truth, const MapReference& reference,
-                                 const Parallel& parallel, const IdentifiedMap* identified) {
+                                 const Parallel& parallel, const IdentifiedMap* identified,
+                                 ScoredPoints* scored) {
   const Alignment se3 = align(estimate, truth, Gauge::kSe3);
   const Alignment first_pose = align(estimate, truth, Gauge::kFirstPose);
   const std::size_t max_points =
@@ -185,7 +197,7 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
   const Subject all = part_of_map(max_points);
   const Subject some = part_of_map(std::min(max_points, kMaxPointsOfOther));
   results::MapMetrics metrics;
-  metrics.se3 = measure_with_vertices(se3, all);
+  metrics.se3 = measure_with_vertices(se3, all, scored);
   metrics.first_pose = measure_in(first_pose, se3.determined() ? some : all);
   const Alignment& start = se3.determined() ? se3 : first_pose;
   metrics.robust =

@@ -44,17 +44,26 @@ struct MapReference {
       : world(mesh), subdivided(mesh), seen(std::move(surface)) {}
 };
 
+/// Distances to the mesh, of every `stride`-th point of a map.
+struct ScoredPoints {
+  Pose mesh_from_map = Pose::Identity();
+  std::size_t stride = 0;        ///< 0: none were scored
+  std::vector<float> distances;  ///< m, NaN of points that are not finite
+};
+
 /// Scores one map (in the estimate's world frame) against the mesh in each gauge: "first_pose",
 /// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Maps of
 /// more than 2 million points (200,000 if more than 95 % of the points are beyond 20 cm) are evenly
 /// sampled to at most that number in the gauge whose figures tables show ("se3", else
 /// "first_pose"), to at most 250,000 in the others and for the distance to vertices; completeness
 /// uses all points. `identified`, if given, is the same map with its true hits, for the identity
-/// error. A gauge that is not determined has a reason.
+/// error. A gauge that is not determined has a reason. `scored`, if given, gets the distances in
+/// the gauge "se3".
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                                  const Trajectory& truth, const MapReference& reference,
                                  const Parallel& parallel,
-                                 const IdentifiedMap* identified = nullptr);
+                                 const IdentifiedMap* identified = nullptr,
+                                 ScoredPoints* scored = nullptr);
 
 /// Errors of `interpolated` (see RayTruth) where it lies; empty without points.
 results::InterpolationFloor interpolation_floor(std::span<const Eigen::Vector3f> interpolated,

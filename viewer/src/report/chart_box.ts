@@ -18,7 +18,7 @@ function rowsOf(figure: Figure): (string | number | null)[][] {
       return [name ?? "", ...(Array.isArray(values) ? values : [i, values])] as (string | number | null)[];
     }),
   );
-  return [["series", "x", "y"], ...rows];
+  return [figure.columns ?? ["series", "x", "y"], ...rows];
 }
 
 export class ChartBox {

@@ -9,6 +9,15 @@ export interface FigureInfo {
   more_is_better: boolean;
 }
 
+/** A kind of what can happen during a run, lidarena/dataset/run_events.hpp. */
+export interface EventKind {
+  name: string;
+  label: string;
+  value: string; // what the value of an event is, with its unit
+}
+/** [index of its kind, begin since the first scan and duration (0: an instant) in s, value] */
+export type RunEvent = [number, number, number, number];
+
 export interface Run {
   name: string;
   folder: string;
@@ -25,6 +34,7 @@ export interface Run {
   command: string;
   statuses: Record<string, number> | null; // how many scans had which
   coverage_percent: number | null;
+  events: RunEvent[] | null; // in the order of their begins; null: not known
   values: (number | null)[]; // of ReportData.figures, as measured
   zero_bounds?: Record<string, number>; // upper bound (%) of a share of which 0 of N points were found, by its figure
   sampled?: Record<string, [number, number]>; // scored points of how many, where a map was sampled
@@ -98,6 +108,7 @@ export interface ReportData {
   decision: { criteria: Criterion[]; candidates: Candidate[] };
   claims: Claims;
   reference: { world: string; sensor: string; algorithm: string; figure: string; value: number }[];
+  event_kinds: EventKind[];
   tables: Table[];
   runs: Run[];
 }

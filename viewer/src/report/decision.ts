@@ -31,35 +31,20 @@ function cellElement({ text, spread }: Cell): HTMLElement {
   return element("td", {}, text || "–", spread ? element("span", { className: "range" }, spread) : "");
 }
 
-function frontTable({ data }: Page, front: Candidate[]): HTMLElement {
-  const { criteria } = data.decision;
-  const heads = criteria.map(({ label: text, unit }) => (unit ? `${text}, ${unit}` : text));
-  const row = (candidate: Candidate) =>
-    element(
-      "tr",
-      {},
-      element("th", { scope: "row" }, name(candidate), element("span", { className: "range" }, candidate.verdict)),
-      ...candidate.cells.slice(0, 2).map(cellElement),
-      cellElement(candidate.own_map),
-      ...candidate.cells.slice(2).map(cellElement),
-    );
+/** The columns of the table: the names, the criteria, and the own map among them. */
+function columns({ data }: Page): string[] {
+  const heads = data.decision.criteria.map(({ label: text, unit }) => (unit ? `${text}, ${unit}` : text));
+  return ["", ...heads.slice(0, 2), "own map RMSE, cm", ...heads.slice(2)];
+}
+
+function row(candidate: Candidate): HTMLElement {
   return element(
-    "div",
-    { className: "scroll" },
-    element(
-      "table",
-      { className: "front" },
-      element(
-        "thead",
-        {},
-        element(
-          "tr",
-          {},
-          ...["", ...heads.slice(0, 2), "own map RMSE, cm", ...heads.slice(2)].map((text) => element("th", { scope: "col" }, text)),
-        ),
-      ),
-      element("tbody", {}, ...front.map(row)),
-    ),
+    "tr",
+    {},
+    element("th", { scope: "row" }, name(candidate), element("span", { className: "range" }, candidate.verdict)),
+    ...candidate.cells.slice(0, 2).map(cellElement),
+    cellElement(candidate.own_map),
+    ...candidate.cells.slice(2).map(cellElement),
   );
 }
 
@@ -85,13 +70,13 @@ function ofWorld(page: Page, world: string): HTMLElement {
   const lost = tried.filter((candidate) => candidate.kept < candidate.runs);
   const words =
     front.length === 0
-      ? "no combination that keeps tracking in every run is in sight."
-      : `${front.length} of ${count(tried.length, "combination")} on the Pareto front, in the order of your weights.`;
-  return element(
-    "div",
-    { className: "verdict" },
-    element("p", {}, element("b", {}, `${world}: `), words),
-    front.length > 0 ? frontTable(page, front) : "",
+      ? "no combination that keeps tracking in every run is in sight"
+      : `${front.length} of ${count(tried.length, "combination")} on the Pareto front`;
+  const head = element(
+    "th",
+    { scope: "rowgroup", colSpan: columns(page).length },
+    element("b", {}, `${world}: `),
+    words,
     list(
       `Dominated: ${dominated.length}`,
       dominated.map((candidate) => `${name(candidate)}, by ${candidate.dominated_by}`),
@@ -101,6 +86,7 @@ function ofWorld(page: Page, world: string): HTMLElement {
       lost.map((candidate) => `${name(candidate)}: ${candidate.verdict}`),
     ),
   );
+  return element("tbody", { className: "verdict" }, element("tr", { className: "world" }, head), ...front.map(row));
 }
 
 /** One number for each criterion, kept in the address. */
@@ -111,7 +97,6 @@ function weightsForm(page: Page): HTMLElement {
     input.title = `weight of ${text}, ${weight} by default`;
     input.onchange = () => {
       page.change({ weights: { ...page.settings.weights, [key]: Math.max(0, Number(input.value) || 0) } });
-      document.querySelector<HTMLElement>(`input[name=weight-${key}]`)?.focus();
     };
     return element("label", {}, text, input);
   });
@@ -128,12 +113,26 @@ export function decision(page: Page): HTMLElement {
     { className: "answer", id: "decision" },
     element("h2", {}, "Which LiDAR, which SLAM"),
     weightsForm(page),
-    element("div", { className: "verdicts" }, ...worlds.map((world) => ofWorld(page, world))),
     element(
-      "p",
+      "div",
+      { className: "verdicts", tabIndex: 0 },
+      element(
+        "table",
+        { className: "front" },
+        element("thead", {}, element("tr", {}, ...columns(page).map((text) => element("th", { scope: "col" }, text)))),
+        ...worlds.map((world) => ofWorld(page, world)),
+      ),
+    ),
+    element(
+      "details",
       { className: "note" },
+      element(
+        "summary",
+        {},
+        `Medians, their range, and the runs that kept tracking; a test of the drift: ${page.data.claims.words[DRIFT]}.`,
+      ),
       `On the front is what keeps tracking in every run and is not dominated: no other is as good in all of ${criteria.map(({ label: text }) => text).join(", ")} ` +
-        `and better in one, in the medians; what a test says of them (here of the drift: ${page.data.claims.words[DRIFT]}) stands with what is dominated. Medians over flights and seeds, below them the range and the runs that kept tracking; map: of all returns. ` +
+        "and better in one, in the medians over flights and seeds; what a test says of them stands with what is dominated. Map: of all returns. " +
         `The weights order the front by the mean logarithm of the ratios to the best (default ${criteria.map(({ label: text, weight }) => `${text} ${weight}`).join(", ")}); that order is a taste, not a test. ` +
         "A price counts by the number in it. Real time: at most 5 % of the scans take more CPU time than their period on one core (in paced runs: more time by the clock)." +
         all,

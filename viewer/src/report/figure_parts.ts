@@ -10,6 +10,7 @@ export interface Figure {
   world: string; // empty: of all worlds
   width: number;
   height: number;
+  columns?: string[]; // of the data saved as CSV
   option: Record<string, unknown>; // ECharts
 }
 

@@ -8,6 +8,7 @@ import { ChartBox } from "./chart_box";
 import { cellOf, distinct, label, type ReportData, type Run, type Table } from "./data";
 import { decision } from "./decision";
 import { figuresOf } from "./figures_of";
+import { keepFocus } from "./keyboard";
 import { bestAndWorst, colorKey, compared, matrix, type Page } from "./overview";
 import { RunView } from "./run_view";
 import { drawn } from "./save";
@@ -44,6 +45,7 @@ class Report implements Page {
   settings = readSettings(location.hash, this.data);
   runs: Run[] = [];
   private opened: RunView | null = null;
+  private pictures = 0; // asked for so far
   private boxes: ChartBox[] = [];
   private head = element("header");
   private overview = element("section", { id: "overview" });
@@ -71,7 +73,11 @@ class Report implements Page {
       this.settings = readSettings(location.hash, this.data);
       this.show();
     });
-    window.addEventListener("beforeprint", () => this.boxes.forEach((box) => box.draw()));
+    window.addEventListener("keydown", (event) => this.onKey(event));
+    window.addEventListener("beforeprint", () => {
+      this.boxes.forEach((box) => box.draw());
+      this.overview.querySelectorAll<HTMLDetailsElement>("details.note").forEach((note) => (note.open = true));
+    });
     marks.ready = "1";
     marks.drawnMs = String(Math.round(performance.now()));
   }
@@ -79,11 +85,22 @@ class Report implements Page {
   change = (some: Partial<Settings>) => {
     this.settings = { ...this.settings, ...some };
     history.replaceState(null, "", `#${writeSettings(this.settings)}`);
-    this.show(Object.keys(some));
+    keepFocus(() => this.show(Object.keys(some)));
   };
 
+  /** Escape closes the opened run, PageUp and PageDown step through the runs that pass the filters. */
+  private onKey(event: KeyboardEvent) {
+    const inField = (event.target as Element).closest?.("input, select, textarea");
+    if (!this.opened || event.ctrlKey || event.altKey || event.metaKey || event.defaultPrevented) return;
+    if (event.key === "Escape") this.change({ run: "" });
+    if ((event.key === "PageUp" || event.key === "PageDown") && !inField) {
+      event.preventDefault();
+      this.opened.step(event.key === "PageDown" ? 1 : -1);
+    }
+  }
+
   /** Draws what depends on the settings, or only on those called `changed`. */
-  private show(changed = ["filters", "figure", "run"]) {
+  private show(changed = ["filters", "figure", "front", "run"]) {
     this.runs = this.data.runs.filter((run) => passes(run, this.settings));
     if (changed.includes("filters")) {
       this.showOverview();
@@ -94,6 +111,7 @@ class Report implements Page {
       this.lists.replaceChildren(...this.listsOfRuns());
     } else {
       if (changed.includes("figure")) document.getElementById("matrix")!.replaceWith(matrix(this));
+      if (changed.includes("front")) this.showPicture();
       if (changed.includes("weights")) document.getElementById("decision")!.replaceWith(decision(this));
     }
     if (changed.includes("run")) this.showRun();
@@ -106,13 +124,17 @@ class Report implements Page {
       this.filters(),
       this.navigation(),
     );
-    const seen = element("div", { className: "seen" });
-    this.overview.replaceChildren(decision(this), seen, matrix(this));
-    bestAndWorst(this).then((picture) => {
-      if (picture) seen.replaceWith(picture);
-      else seen.remove();
-      marks.seen = picture ? "1" : "0";
-    });
+    this.overview.replaceChildren(decision(this), element("div", { className: "seen" }), matrix(this));
+    this.showPicture();
+  }
+
+  private async showPicture() {
+    const turn = ++this.pictures;
+    const picture = await bestAndWorst(this);
+    if (turn !== this.pictures) return; // another one was asked for
+    const seen = this.overview.querySelector(".seen");
+    keepFocus(() => (picture ? seen?.replaceWith(picture) : seen?.remove()));
+    marks.seen = picture ? "1" : "0";
   }
 
   private filters(): HTMLElement {
@@ -129,7 +151,6 @@ class Report implements Page {
         const filters = { ...this.settings.filters, [name]: select.value || undefined };
         if (!select.value) delete filters[name];
         this.change({ filters });
-        document.querySelector<HTMLElement>(`select[name=${name}]`)?.focus();
       };
       bar.append(element("label", {}, name, select));
     }
@@ -165,6 +186,7 @@ class Report implements Page {
 
   private showRun() {
     const closed = this.opened?.run;
+    const { scrollY } = window;
     this.opened?.dispose();
     this.opened?.root.remove();
     this.opened = null;
@@ -175,6 +197,7 @@ class Report implements Page {
     }
     this.opened = new RunView(this, run);
     this.overview.after(this.opened.root);
+    if (closed) return window.scrollTo({ top: scrollY });
     this.opened.root.focus({ preventScroll: true });
     this.opened.root.scrollIntoView();
   }

@@ -24,6 +24,7 @@ import {
   type ReportData,
   type Run,
 } from "./data";
+import { moveByArrows } from "./keyboard";
 import { drawn, saveCsv } from "./save";
 import { commonBox, mapPicture, pictureSvg, sceneOf, type WorldScene } from "./scenes";
 import type { Settings } from "./settings";
@@ -139,8 +140,8 @@ function matrixCell(page: Page, { runs, spread }: MatrixCell, values: number[], 
   return cell;
 }
 
-/** What the reader must know of the figures in sight: the marks, which maps are means or samples. */
-function matrixNote({ data, runs, settings }: Page, best: string | null): string {
+/** What the reader must know of the figures in sight: the marks, which maps are means or samples; all but the first words on demand. */
+function matrixNote({ data, runs, settings }: Page, best: string | null): HTMLElement {
   const { info } = figureOf(data, settings.figure);
   const means = settings.figure.startsWith("own_map")
     ? distinct(
@@ -151,16 +152,19 @@ function matrixNote({ data, runs, settings }: Page, best: string | null): string
   const sampled = runs.flatMap((run) => (run.sampled?.[info.key] ? [run.sampled[info.key]] : []));
   const rest = data.claims.words[settings.figure] ?? "not tested";
   const most = sampled.sort((a, b) => b[1] - a[1])[0];
-  return (
-    `${info.label}${info.unit ? `, ${info.unit}` : ""}: median, range from the best run to the worst, and how many runs kept tracking; a lost run is the ` +
-    `worst of its cell. ${info.more_is_better ? "Large" : "Small"} is good: blue is the best median, orange the worst; hatched: runs are lost. ` +
+  const summary =
+    `${info.label}${info.unit ? `, ${info.unit}` : ""}: median, range, runs that kept tracking. Blue is the best median, orange the worst, hatched: ` +
+    `runs are lost. ${best ? "Framed: better than every other one" : "None is framed"} (${rest}).`;
+  const more =
+    "The range is from the best run to the worst; a lost run is the worst of its cell. " +
+    `${info.more_is_better ? "Large" : "Small"} is good. ` +
     (best
-      ? `Framed: better than every other one by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction (${rest}). `
-      : `None is framed: no combination is shown by the test (at least 16 pairs of runs, 5 %) to be better than every other one in sight (${rest}). `) +
+      ? "The frame is by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction. "
+      : "No combination is shown by the test (at least 16 pairs of runs, 5 %) to be better than every other one in sight. ") +
     (means.length > 0 ? `The points of the own maps of ${means.join(", ")} are means of several returns, which removes noise. ` : "") +
     (most ? `Of large maps a sample is scored (${most[0]} of ${most[1]} points). ` : "") +
-    "A click opens a run."
-  );
+    "A click opens a run; arrow keys move between the cells.";
+  return element("details", { className: "note" }, element("summary", {}, summary), more);
 }
 
 export function matrix(page: Page): HTMLElement {
@@ -191,6 +195,7 @@ export function matrix(page: Page): HTMLElement {
       ),
     ),
   );
+  moveByArrows(table);
   const csv = () =>
     saveCsv(`matrix-${info.key}`, [
       ["sensor", "method", `median, ${info.unit}`, "best", "worst", "kept", "runs"],
@@ -207,7 +212,7 @@ export function matrix(page: Page): HTMLElement {
     { className: "matrix", id: "matrix" },
     figureSwitch(page, csv),
     element("div", { className: "scroll" }, table),
-    element("p", { className: "note" }, matrixNote(page, best)),
+    matrixNote(page, best),
   );
 }
 
@@ -237,14 +242,30 @@ function figureSwitch({ data, settings, change }: Page, csv: () => void): HTMLEl
 
 // --- the picture
 
-/** The maps with the lowest and the highest RMSE of the first world that has two; lost runs have the highest. */
+/** The heading of the picture, with a choice of the world where several have maps. */
+function pictureHead(page: Page, world: string, worlds: string[]): HTMLElement {
+  const choose = element(
+    "select",
+    { name: "front" },
+    ...worlds.map((value) => element("option", { value, selected: value === world }, value)),
+  );
+  choose.onchange = () => page.change({ front: choose.value });
+  return element("h2", {}, "The same place, ", worlds.length > 1 ? choose : world, ": lowest and highest map RMSE");
+}
+
+/** The maps with the lowest and the highest RMSE of the chosen world, else of the first that has two; lost runs have the highest. */
 export async function bestAndWorst(page: Page): Promise<HTMLElement | null> {
   const map = figureOf(page.data, MAP_RMSE).of;
-  for (const world of distinct(page.runs, (run) => run.world)) {
-    const known = page.runs.filter((run) => run.world === world && map(run) !== null && sceneOf(page.scenes, run));
-    if (known.length < 2) continue;
+  const mapped = grouped(
+    page.runs.filter((run) => map(run) !== null && sceneOf(page.scenes, run)),
+    (run) => run.world,
+  );
+  const worlds = [...mapped.keys()].filter((world) => mapped.get(world)!.length > 1);
+  const world = worlds.includes(page.settings.front) ? page.settings.front : worlds[0];
+  if (world !== undefined) {
+    const known = mapped.get(world)!;
     const rank = (run: Run) => map(run)! + (run.lost ? 1e9 : 0);
-    const sorted = [...known].sort((a, b) => rank(a) - rank(b));
+    const sorted = known.sort((a, b) => rank(a) - rank(b));
     const scene = sceneOf(page.scenes, sorted[0])!;
     const [best, worst] = [sorted[0], sorted[sorted.length - 1]];
     const full_m = Math.min(0.2, Math.ceil(2 * map(worst)!) / 100);
@@ -259,7 +280,7 @@ export async function bestAndWorst(page: Page): Promise<HTMLElement | null> {
     return element(
       "div",
       { className: "seen" },
-      element("h2", {}, `The same place, ${world}: the runs with the lowest and the highest map RMSE`),
+      pictureHead(page, world, worlds),
       element("div", { className: "pair" }, ...figures),
       colorKey(full_m),
     );

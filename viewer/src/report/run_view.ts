@@ -2,7 +2,6 @@
 // One opened run: its map and paths in 3D, its charts over time with the same time cursor, its figures, files and command.
 import { button, element } from "../view/elements";
 import { Panel } from "../view/panel";
-import { pathOf } from "../view/points";
 import { initialState } from "../view/state";
 import { View } from "../view/view";
 import { ChartBox, type Chart } from "./chart_box";
@@ -23,7 +22,7 @@ import {
   type Run,
 } from "./data";
 import type { Page } from "./overview";
-import { fastTurns, runCharts } from "./run_charts";
+import { runCharts } from "./run_charts";
 import { headerOfRuns, mapPicture, pictureSvg, sceneOf } from "./scenes";
 import { number, tableElement, word } from "./tables";
 
@@ -36,6 +35,7 @@ const FILES = [
   "map.ply",
   "reprojected.ply",
   "resources.csv",
+  "events.csv",
 ];
 
 const MAIN_FIGURES = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE, OWN_OUTLIERS, OUTLIERS, CPU, MEMORY];
@@ -73,13 +73,14 @@ export class RunView {
     );
     choose.onchange = () => page.change({ run: choose.value });
     const close = button("Close", "close this run (Escape)", () => page.change({ run: "" }));
-    this.root.addEventListener("keydown", (event) => event.key === "Escape" && page.change({ run: "" }));
     return element(
       "div",
       { className: "head" },
       element("h2", {}, `${run.sensor} with ${label(run)}`),
       choose,
       this.comparison(),
+      button("‹", "previous run (Page up)", () => this.step(-1)),
+      button("›", "next run (Page down)", () => this.step(1)),
       close,
       element(
         "p",
@@ -94,6 +95,13 @@ export class RunView {
       ),
       element("p", { className: "figures-of-run" }, this.mainFigures()),
     );
+  }
+
+  /** Opens the run `by` places further in the list of those that pass the filters, if there is one. */
+  step(by: number) {
+    const { runs, change } = this.page;
+    const next = runs[runs.indexOf(this.run) + by];
+    if (next) change({ run: next.name });
   }
 
   private mainFigures(): string {
@@ -130,7 +138,7 @@ export class RunView {
     const scene = sceneOf(page.scenes, run);
     this.panel?.view.dispose();
     this.panel = null;
-    if (this.boxes.length === 0) await this.drawCharts();
+    if (this.boxes.length === 0) this.drawCharts();
     if (!scene) {
       this.stage.replaceChildren(
         element("p", { className: "note" }, `The page holds no points of this run; lidarena view ${run.folder} shows them.`),
@@ -158,13 +166,10 @@ export class RunView {
     }
   }
 
-  private async drawCharts() {
+  private drawCharts() {
     const { run, page } = this;
-    const scene = sceneOf(page.scenes, run);
-    const truth = scene && headerOfRuns(scene, [run]).paths.find(({ role }) => role === "truth");
-    const turns = truth ? fastTurns(await pathOf(truth, scene.source)) : [];
     const sensor = page.data.sensors.find(({ name }) => name === run.sensor);
-    this.boxes = runCharts(run, sensor, turns).map((figure) => new ChartBox(figure, (chart) => this.followMouse(chart)));
+    this.boxes = runCharts(run, sensor, page.data.event_kinds).map((figure) => new ChartBox(figure, (chart) => this.followMouse(chart)));
     this.charts.replaceChildren(...this.boxes.map((box) => box.root));
     if (this.boxes.length === 0)
       this.charts.replaceChildren(element("p", { className: "note" }, "There are no curves of this run in the page."));

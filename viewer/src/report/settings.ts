@@ -18,6 +18,7 @@ export interface Settings {
   filters: Partial<Record<FilterName, string>>; // a name that is missing: all
   figure: string; // key, of the matrix
   run: string; // name of the opened run, or ""
+  front: string; // world of which the first screen shows maps; "": the first
   weights: Record<string, number>; // of the criteria of the decision; one that is missing: the default
 }
 
@@ -34,12 +35,14 @@ export function readSettings(hash: string, data: ReportData): Settings {
     const value = Number(given.get(`weight-${key}`) ?? NaN);
     if (value >= 0) weights[key] = value;
   }
-  return { filters, figure, weights, run: data.runs.find((run) => run.name === given.get("run"))?.name ?? "" };
+  const front = data.runs.find((run) => run.world === given.get("front"))?.world ?? "";
+  return { filters, figure, weights, front, run: data.runs.find((run) => run.name === given.get("run"))?.name ?? "" };
 }
 
-export function writeSettings({ filters, figure, run, weights }: Settings): string {
+export function writeSettings({ filters, figure, run, front, weights }: Settings): string {
   const out = new URLSearchParams(filters as Record<string, string>);
   if (figure !== DRIFT) out.set("figure", figure);
+  if (front) out.set("front", front);
   if (run) out.set("run", run);
   for (const [key, weight] of Object.entries(weights)) out.set(`weight-${key}`, String(weight));
   return out.toString();
