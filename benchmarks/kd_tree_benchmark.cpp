@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The incremental k-d tree under the load of an odometry: scans of a room from a moving sensor,
 // averaged in voxels of 0.2 m. For comparison: a static tree that is rebuilt for each scan
-// (nanoflann, if it was found) and our voxel map.
+// (nanoflann, if it was found), our voxel map and our map of planes.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -13,6 +13,7 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/map/kd_tree.hpp"
+#include "lidarena/map/plane_map.hpp"
 #include "lidarena/map/voxel_filter.hpp"
 #include "lidarena/map/voxel_hash_map.hpp"
 
@@ -157,6 +158,32 @@ void voxel_map_nearest(benchmark::State& state) {
                           static_cast<std::int64_t>(scans(length).back().size()));
 }
 
+void plane_map_insertion(benchmark::State& state) {
+  const std::vector<Points>& walk = scans(static_cast<int>(state.range(0)));
+  std::int64_t points = 0;
+  for (auto _ : state) {
+    map::PlaneMap map({});
+    for (const Points& scan : walk) {
+      map.insert(scan);
+      points += static_cast<std::int64_t>(scan.size());
+    }
+    state.counters["cells"] = static_cast<double>(map.size());
+    state.counters["bytes"] = static_cast<double>(map.memory_bytes());
+  }
+  state.SetItemsProcessed(points);
+}
+
+void plane_map_lookup(benchmark::State& state) {
+  const std::vector<Points>& walk = scans(static_cast<int>(state.range(0)));
+  map::PlaneMap map({});
+  for (const Points& scan : walk) map.insert(scan);
+  for (auto _ : state) {
+    for (const Eigen::Vector3f& point : walk.back())
+      benchmark::DoNotOptimize(map.plane_at(point));
+  }
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(walk.back().size()));
+}
+
 #ifdef LIDARENA_HAVE_NANOFLANN
 /// The interface that nanoflann requires of a point set.
 struct Cloud {
@@ -213,6 +240,8 @@ BENCHMARK(kd_tree_nearest)
 BENCHMARK(kd_tree_rebuild)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(voxel_map_insertion)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 BENCHMARK(voxel_map_nearest)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(plane_map_insertion)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(plane_map_lookup)->Arg(20)->Arg(100)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace lidarena

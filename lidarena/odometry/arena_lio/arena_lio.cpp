@@ -92,9 +92,8 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   if (started_) {
     predict(intervals);
   } else if (!start(samples, intervals)) {
-    const bool empty = scan.points.empty();
-    return finish_scan(scan.stamp, end,
-                       empty ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing, {});
+    using enum ScanStatus;
+    return finish_scan(scan.stamp, end, scan.points.empty() ? kTooFewPoints : kInitializing, {});
   }
 
   const State predicted = estimate_.state;
@@ -102,18 +101,14 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const std::vector<Eigen::Vector3f> reduced =
       evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
              config_.max_scan_points);
-  const double prior_sigma = position_sigma(estimate_);
-  PlaneResiduals residuals(reduced, map_, prior_sigma, config_, parallel_);
+  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_), config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
       {config_.max_iterations, kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
   const Agreement agreement = residuals.agreement(estimate_.state);
-  const ScanStatus status = status_of(update, agreement, prior_sigma);
-  const bool still = still_.observe(estimation::statistics(samples), predicted,
-                                    estimate_.state.position(), accel_scale_);
-  if (still) stand();
-  if (!still) has_moved_ = true;
+  const ScanStatus status = status_of(update, agreement);
+  const bool still = stands(samples, predicted);
   if (status == ScanStatus::kTracked && !still) calibrate(before, predicted);
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
   const std::vector<Eigen::Vector3f> points = deskewed(usable);
@@ -167,11 +162,16 @@ bool ArenaLio::start(const std::vector<ImuSample>& samples,
   return true;
 }
 
-void ArenaLio::stand() {
-  estimate_ = estimation::zero_velocity_update(estimate_, kStillSpeedSigma);
-  if (has_moved_) return;
-  estimate_ =
-      estimation::pose_update(estimate_, first_pose_, kStillTranslationSigma, kStillRotationSigma);
+bool ArenaLio::stands(const std::vector<ImuSample>& samples, const State& predicted) {
+  const bool still = still_.observe(estimation::statistics(samples), predicted,
+                                    estimate_.state.position(), accel_scale_);
+  has_moved_ = has_moved_ || !still;
+  if (still) estimate_ = estimation::zero_velocity_update(estimate_, kStillSpeedSigma);
+  if (!has_moved_) {
+    estimate_ = estimation::pose_update(estimate_, first_pose_, kStillTranslationSigma,
+                                        kStillRotationSigma);
+  }
+  return still;
 }
 
 void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
@@ -222,8 +222,8 @@ void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   map_.follow(world_from_lidar.translation().cast<float>());
 }
 
-ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update, const Agreement& agreement,
-                               double prior_sigma) {
+ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
+                               const Agreement& agreement) {
   if (!estimation::is_plausible(estimate_.state)) {
     contradicting_scans_ = kLostScans + 1;
     return ScanStatus::kDiverged;
@@ -231,14 +231,12 @@ ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update, const A
   if (agreement.points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
-  // Where the prior did not know the place, points that lie in no known cell speak against it.
-  const double share = prior_sigma < config_.kernel_scale_m ? agreement.on_planes_of_near()
-                                                            : agreement.on_planes_of_all();
+  if (agreement.near_planes == 0) return ScanStatus::kTooFewPoints;
+  const double share = agreement.share;
   const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   usual_share_ = usual_share_.value_or(share) * (1.0 - kShareMemory) + kShareMemory * share;
-  if (update.points.count == 0) return ScanStatus::kTooFewPoints;
   // The block of the position is the weighted sum of n n^T over all normals n.
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
       update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);

@@ -47,8 +47,8 @@ class ArenaLio : public Odometry {
   /// ends the intervals is de-skewed by its rotation alone if the sensor moves.
   bool start(const std::vector<ImuSample>& samples,
              const std::vector<estimation::ImuInterval>& intervals);
-  /// Updates the filter with the knowledge that the sensor stands still.
-  void stand();
+  /// Whether the sensor stands still; if so, updates the filter with this knowledge.
+  bool stands(const std::vector<ImuSample>& samples, const State& predicted);
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<estimation::ImuInterval>& intervals);
   /// Learns the gyro's calibration from what the update has changed in the rotation of a scan.
@@ -58,8 +58,7 @@ class ArenaLio : public Odometry {
   /// Adds a scan to the map, unless it contradicts the map or adds nothing to it.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement,
-                       double prior_sigma);
+  ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement);
   ScanResult refused_scan();
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);

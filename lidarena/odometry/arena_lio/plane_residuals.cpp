@@ -56,6 +56,7 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Lo
       map_(map),
       config_(config),
       parallel_(parallel),
+      knew_the_place_(prior_sigma < config.kernel_scale_m),
       scale_(std::max(prior_sigma, config.kernel_scale_m)),
       in_map_(points.size()),
       planes_(points.size()) {}
@@ -98,6 +99,9 @@ Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
     if (is_near && std::abs(distance(*planes_[i], in_map_[i])) < config_.kernel_scale_m)
       ++agreement.on_planes;
   }
+  const std::size_t whole = knew_the_place_ ? agreement.near_planes : agreement.points;
+  if (whole > 0)
+    agreement.share = static_cast<double>(agreement.on_planes) / static_cast<double>(whole);
   return agreement;
 }
 

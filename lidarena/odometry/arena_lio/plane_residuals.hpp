@@ -12,19 +12,15 @@
 
 namespace lidarena::odometry::arena_lio {
 
-/// How many of a scan's points lie in a cell with a plane, and of these on it: within the kernel's
-/// scale.
+/// How a scan lies in the map.
 struct Agreement {
   std::size_t points = 0;
-  std::size_t near_planes = 0;
-  std::size_t on_planes = 0;
-  double on_planes_of_near() const { return share_of(near_planes); }
-  double on_planes_of_all() const { return share_of(points); }
-
- private:
-  double share_of(std::size_t whole) const {
-    return whole == 0 ? 0.0 : static_cast<double>(on_planes) / static_cast<double>(whole);
-  }
+  std::size_t near_planes = 0;  ///< points in a cell with a plane
+  std::size_t on_planes = 0;    ///< of these, points on the plane, within the kernel's scale
+  /// Of the points near planes, the share that lies on them; of all points if the prior's position
+  /// was less certain than the kernel's scale: then points in unknown cells speak against the
+  /// estimate.
+  double share = 0.0;
 };
 
 /// Residuals of a scan's points (m, LiDAR frame at the scan's end) from the planes of the cells
@@ -51,7 +47,8 @@ class PlaneResiduals {
   const LocalMap& map_;
   const Config& config_;
   const Parallel& parallel_;
-  double scale_;  ///< m, of the kernel in the next evaluation
+  bool knew_the_place_;  ///< the prior was more certain than the kernel's scale
+  double scale_;         ///< m, of the kernel in the next evaluation
   std::vector<Eigen::Vector3f> in_map_;
   std::vector<const map::MapPlane*> planes_;  ///< null: none
 };
