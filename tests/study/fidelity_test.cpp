@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
@@ -42,7 +43,9 @@ class CalmFlight {
              double seconds = kSeconds)
       : world_(std::move(world)), sensor_(std::move(sensor_name)) {
     const fs::path named = temporary_.path() / (sensor + ".yaml");
-    fs::copy_file(kConfigs / "sensors" / (sensor + "_range_noise.yaml"), named);
+    std::ofstream(named) << "base: "
+                         << (kConfigs / "sensors" / (sensor + "_range_noise.yaml")).string()
+                         << "\n";
     SimulateRequest request;
     request.world = kConfigs / "worlds" / (world_ + ".yaml");
     request.flight = kConfigs / "flights" / (world_ + ".yaml");

@@ -450,7 +450,7 @@ TEST(RunStudy, ADatasetIsSimulatedOnceForItsRunsAndTheResultsAreThoseOfSimulatin
   options.scratch_bytes = 0;
   EXPECT_EQ(run_study(spec, configs(), scratch.path() / "anew", options, log).failed, 0U);
   const auto kept = results_in(scratch.path() / "kept/runs");
-  EXPECT_EQ(kept.size(), 2U * 7U);
+  EXPECT_EQ(kept.size(), 2U * 8U);
   EXPECT_EQ(kept, results_in(scratch.path() / "anew/runs"));
   const auto dataset = scratch.path() / "kept/datasets/house-house-s1";
   EXPECT_FALSE(std::filesystem::exists(dataset / "data.mcap")) << "no run needs it any more";
