@@ -76,6 +76,7 @@ export class ChartBox {
         return { markLine: { symbol: "none", silent: true, animation: false, label: { show: false }, lineStyle, data: [{ xAxis: time }] } };
       }),
     });
+    this.chart?.getZr().flush(); // at once, whether or not the browser draws frames
   }
 
   dispose() {

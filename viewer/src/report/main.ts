@@ -76,6 +76,7 @@ class Report implements Page {
     window.addEventListener("keydown", (event) => this.onKey(event));
     window.addEventListener("beforeprint", () => {
       this.boxes.forEach((box) => box.draw());
+      this.opened?.drawAll();
       this.overview.querySelectorAll<HTMLDetailsElement>("details.note").forEach((note) => (note.open = true));
     });
     marks.ready = "1";

@@ -56,6 +56,11 @@ export class RunView {
     this.show(null).catch((error) => this.stage.append(`The map could not be shown: ${error}`));
   }
 
+  /** Draws the charts that have not come into sight yet, for paper. */
+  drawAll() {
+    for (const box of this.boxes) box.draw();
+  }
+
   dispose() {
     this.panel?.view.dispose();
     for (const box of this.boxes) box.dispose();
