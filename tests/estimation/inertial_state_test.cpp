@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 
 #include "lidarena/base/random.hpp"
@@ -133,6 +134,29 @@ TEST(InertialState, FreeFallAndATurnInClosedForm) {
   }
   // The sum of v dt with v at the beginning of each step differs from the integral by g T dt / 2.
   EXPECT_NEAR(first_order.position().z(), 2.0 - 0.5 * g + 0.5 * g * dt, 1e-9);
+}
+
+TEST(InertialState, AForceThatTurnsWithTheBodyIsIntegratedToSecondOrder) {
+  // Turning at w with a force f along the body's x: the velocity is f/w (sin wt, 1 - cos wt).
+  constexpr double kRate = 5.0;   // rad/s
+  constexpr double kForce = 3.0;  // m/s^2
+  constexpr double kStep = 0.005;
+  const auto error_of = [&](Integration integration) {
+    State state;
+    state.gravity.setZero();
+    for (int i = 0; i < 100; ++i)
+      propagate(state, {0.0, 0.0, kRate}, {kForce, 0.0, 0.0}, kStep, integration);
+    const double turned = 100 * kStep * kRate;
+    const Eigen::Vector3d exact =
+        kForce / kRate * Eigen::Vector3d(std::sin(turned), 1.0 - std::cos(turned), 0.0);
+    return (state.nav.velocity - exact).norm();
+  };
+  // A midpoint rule is off by (w dt)^2 / 24 of the change of 2 f/w sin(wt / 2), a rule of the
+  // begin by w dt / 2.
+  const double change = 2.0 * kForce / kRate * std::sin(0.5 * 100 * kStep * kRate);
+  EXPECT_NEAR(error_of(Integration::kSecondOrder), std::pow(kRate * kStep, 2) / 24.0 * change,
+              1e-6);
+  EXPECT_NEAR(error_of(Integration::kFirstOrder), 0.5 * kRate * kStep * change, 1e-4);
 }
 
 TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {
