@@ -55,7 +55,7 @@ class ArenaLio : public Odometry {
   void calibrate(const State& before, const State& predicted);
   /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
   std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
-  /// Adds a scan to the map, unless it contradicts the map or adds nothing to it.
+  /// Adds a scan (m, LiDAR frame at its end) to the map, unless the sensor has long stood still.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement);
