@@ -104,7 +104,7 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   PlaneResiduals residuals(reduced, map_, position_sigma(estimate_), config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
-      {config_.max_iterations, kConvergence, config_.point_variance_m2});
+      {config_.max_iterations + residuals.narrowing(), kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
   const Agreement agreement = residuals.agreement(estimate_.state);
   const ScanStatus status = status_of(update, agreement);

@@ -30,7 +30,7 @@ State::Matrix initial_covariance(bool still) {
   set(State::kVelocity, 3, still ? 0.01 : 3.0);
   set(State::kGyroBias, 3, still ? 1e-3 : 0.05);
   set(State::kAccelBias, 3, 0.1);
-  set(State::kGravity, 2, still ? 0.02 : 0.2);
+  set(State::kGravity, 2, still ? 0.02 : 0.5);
   return covariance;
 }
 

@@ -62,15 +62,24 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Lo
       planes_(points.size()) {}
 
 void PlaneResiduals::find_planes(const Pose& world_from_lidar, bool with_coarse) {
+  // A place that is uncertain by more than a fine plane's neighborhood has fine cells of elsewhere.
+  const bool uncertain = scale_ > config_.kernel_scale_m;
+  const map::PlaneMap& first = uncertain ? map_.coarse() : map_.fine();
+  const map::PlaneMap& second = uncertain ? map_.fine() : map_.coarse();
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
     in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
-    planes_[i] = map_.fine().plane_at(in_map_[i]);
+    planes_[i] = first.plane_at(in_map_[i]);
   });
   const double needed = kMinFineShare * static_cast<double>(points_.size());
-  if (!with_coarse && weakest_direction(planes_) >= needed) return;
+  if (!uncertain && !with_coarse && weakest_direction(planes_) >= needed) return;
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
-    if (planes_[i] == nullptr) planes_[i] = map_.coarse().plane_at(in_map_[i]);
+    if (planes_[i] == nullptr) planes_[i] = second.plane_at(in_map_[i]);
   });
+}
+
+int PlaneResiduals::narrowing() const {
+  return static_cast<int>(
+      std::ceil(std::log(config_.kernel_scale_m / scale_) / std::log(kNarrowing)));
 }
 
 estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
@@ -92,6 +101,7 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
 }
 
 Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
+  scale_ = config_.kernel_scale_m;
   find_planes(state.world_from_lidar(), true);
   Agreement agreement{.points = points_.size(), .near_planes = count_planes(planes_)};
   for (std::size_t i = 0; i < planes_.size(); ++i) {

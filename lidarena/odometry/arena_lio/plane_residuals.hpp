@@ -37,7 +37,10 @@ class PlaneResiduals {
   estimation::NormalEquations<estimation::kPointDof> operator()(
       const estimation::InertialState& state, bool search);
 
-  /// How the points lie in the map at `state`, in cells of both sizes.
+  /// Number of evaluations until the kernel has its scale.
+  int narrowing() const;
+
+  /// After the update: how the points lie in the map at `state`, in cells of both sizes.
   Agreement agreement(const estimation::InertialState& state);
 
  private:

@@ -161,6 +161,20 @@ TEST(ArenaLioData, AStartInMotionIsSurvived) {
   EXPECT_LT(play(synthetic::record(moving), moving).final_error(moving), kTracked);
 }
 
+TEST(ArenaLioData, AStartAtThreeMetersPerSecondIsSurvivedToo) {
+  // The second scan is 0.3 m from the first, a cell of the map.
+  const Recording fast{
+      .motion =
+          [](double t) {
+            const Eigen::Vector3d position(3.0 * std::sin(t), 2.0 - 2.0 * std::cos(t),
+                                           0.3 * std::sin(2.0 * t));
+            return make_pose(so3::exp({0.0, 0.0, 0.6 * std::sin(1.5 * t)}), position);
+          },
+      .points_per_scan = 20480,
+      .repeating = false};
+  EXPECT_LT(play(synthetic::record(fast), fast).final_error(fast), kTracked);
+}
+
 TEST(ArenaLioData, AccelerationsInGAreRecognizedAndSaid) {
   const Outcome in_g = play(with_imu([](ImuSample& sample) {
     sample.accel /= 9.80665;
