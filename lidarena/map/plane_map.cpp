@@ -10,7 +10,7 @@ namespace lidarena::map {
 namespace {
 
 constexpr float kMaxLoad = 0.8F;  // of the hash table
-constexpr VoxelKey kNoCell = ~VoxelKey{0};
+constexpr VoxelKey kInvalidKey = ~VoxelKey{0};
 
 Voxel voxel_of_key(VoxelKey key) {
   const auto index = [key](unsigned shift) {
@@ -59,7 +59,7 @@ std::uint32_t PlaneMap::cell_for(VoxelKey key) {
 
 void PlaneMap::insert(std::span<const Eigen::Vector3f> points) {
   const auto most = static_cast<std::uint32_t>(options_.max_points);
-  VoxelKey known = kNoCell;  // neighbors in a scan often share a cell
+  VoxelKey known = kInvalidKey;  // neighbors in a scan often share a cell
   std::uint32_t index = 0;
   to_fit_.clear();
   for (const Eigen::Vector3f& point : points) {
