@@ -12,6 +12,7 @@ namespace {
 
 constexpr std::size_t kGrain = 512;     // points per task of a search
 constexpr double kNarrowing = 0.4;      // of the kernel, from one evaluation to the next
+constexpr double kMaxScale = 30.0;      // m, of the kernel, also if the prior is not finite
 constexpr double kCut = 6.0;            // scales of the kernel; points beyond have no weight
 constexpr double kMinFineShare = 0.02;  // of points that determine each direction by fine planes
 
@@ -57,7 +58,7 @@ PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const Lo
       config_(config),
       parallel_(parallel),
       knew_the_place_(prior_sigma < config.kernel_scale_m),
-      scale_(std::max(prior_sigma, config.kernel_scale_m)),
+      scale_(std::min(std::max(config.kernel_scale_m, prior_sigma), kMaxScale)),
       in_map_(points.size()),
       planes_(points.size()) {}
 
