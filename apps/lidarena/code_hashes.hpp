@@ -4,7 +4,7 @@
 namespace lidarena {
 
 /// {"simulator": HASH, "scorer": HASH, "methods": {FOLDER: HASH, "external": HASH}}: hashes of the
-/// object files that decide the result of each part; written by cmake/HashCode.cmake.
+/// source files that decide the result of each part; written by cmake/HashCode.cmake.
 extern const char* const kCodeHashes;
 
 }  // namespace lidarena

@@ -8,13 +8,13 @@
 #include <numbers>
 
 #include "apps/lidarena/cell_chart.hpp"
+#include "lidarena/base/angle.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/sensor/coverage.hpp"
 
 namespace lidarena {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kTimes[] = {0.1, 0.5, 1.0, 4.0};  // s
 
 /// Cell size in degrees: finer for narrow fields of view.

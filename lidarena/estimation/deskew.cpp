@@ -8,8 +8,7 @@
 namespace lidarena::estimation {
 
 namespace {
-constexpr double kStraight = 1e-9;    // rad/s; below counts as straight: 0.5 nm error per m and s
-constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
+constexpr double kStraight = 1e-9;  // rad/s; below counts as straight: 0.5 nm error per m and s
 }  // namespace
 
 ConstantTwist::ConstantTwist(const se3::Vector6& twist_per_second)
@@ -38,7 +37,7 @@ std::vector<Eigen::Vector3f> deskew(const Scan& scan, const se3::Vector6& twist_
   if (!scan.timed) return positions(scan);
   const ConstantTwist reference_from_instant(twist_per_second);
   std::vector<Eigen::Vector3f> moved(scan.points.size());
-  parallel.for_each(scan.points.size(), kGrain, [&](std::size_t i) {
+  parallel.for_each(scan.points.size(), kPointGrain, [&](std::size_t i) {
     const Point& point = scan.points[i];
     const double seconds = to_seconds(time_of(scan, point) - reference);
     moved[i] = (reference_from_instant.at(seconds) * point.position.cast<double>()).cast<float>();

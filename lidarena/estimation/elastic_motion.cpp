@@ -9,7 +9,7 @@
 namespace lidarena::estimation {
 
 namespace {
-constexpr double kStraight = 1e-9;  // rad; below this, a segment counts as not rotating
+constexpr double kStraightSegment = 1e-9;  // rad; below this, a segment counts as not rotating
 // Below this angle (rad) quotients of canceling terms are replaced by the first term of their
 // series; the next term is smaller by the square of the angle.
 constexpr double kSmall = 1e-4;
@@ -46,7 +46,7 @@ ElasticSegment::ElasticSegment(const Pose& from, const Pose& to)
   const Eigen::Matrix3d end = to.linear();
   const Eigen::Vector3d turn = so3::log(end * from_.transpose());
   const double angle = turn.norm();
-  if (angle < kStraight) return;
+  if (angle < kStraightSegment) return;
   axis_ = turn / angle;
   angle_ = angle;
   half_cotangent_ =

@@ -5,10 +5,6 @@
 
 namespace lidarena::estimation {
 
-namespace {
-constexpr std::size_t kGrain = 2048;  // points per task: about 0.1 ms of work
-}
-
 std::vector<TimedPoint> timed_points(const Scan& scan, const ScanTimes& times, bool rigid,
                                      const RangeGate& gate) {
   const auto begin = static_cast<double>((times.first - scan.stamp).count());
@@ -31,7 +27,7 @@ std::vector<Eigen::Vector3f> placed(const ElasticMotion& motion, std::span<const
                                     const Parallel& parallel) {
   const ElasticTrack track(motion);
   std::vector<Eigen::Vector3f> positions(points.size());
-  parallel.for_each(points.size(), kGrain, [&](std::size_t i) {
+  parallel.for_each(points.size(), kPointGrain, [&](std::size_t i) {
     const Eigen::Vector3d point = points[i].position.cast<double>();
     positions[i] = track.place(point, points[i].alpha).cast<float>();
   });

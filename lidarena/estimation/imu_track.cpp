@@ -9,8 +9,6 @@
 namespace lidarena::estimation {
 namespace {
 
-constexpr std::size_t kGrain = 2048;  // points per task
-
 Pose extrapolate(const ImuStep& step, Time t) {
   const double s = to_seconds(t - step.begin);
   return make_pose(
@@ -67,7 +65,7 @@ std::vector<Eigen::Vector3f> deskew(const Scan& scan, const ImuTrack& track,
   if (!scan.timed || track.empty()) return positions(scan);
   const Pose end_from_world = (world_from_imu_at_end * imu_from_lidar).inverse();
   std::vector<Eigen::Vector3f> moved(scan.points.size());
-  parallel.for_blocks(scan.points.size(), kGrain, [&](std::size_t begin, std::size_t stop) {
+  parallel.for_blocks(scan.points.size(), kPointGrain, [&](std::size_t begin, std::size_t stop) {
     Time known = Time::min();  // points measured at the same time share the pose
     Pose end_from_lidar = Pose::Identity();
     for (std::size_t i = begin; i < stop; ++i) {

@@ -6,7 +6,6 @@
 namespace lidarena::estimation {
 namespace {
 
-using State = NavState;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
@@ -57,9 +56,9 @@ void Preintegration::integrate(const Vector3d& gyro, const Vector3d& accel, doub
   moved = (step.by_motion * moved * step.by_motion.transpose() +
            step.by_input * input.asDiagonal() * step.by_input.transpose())
               .eval();
-  covariance_.diagonal().segment<3>(State::kGyroBias).array() +=
+  covariance_.diagonal().segment<3>(NavState::kGyroBias).array() +=
       variance(noise.gyro_bias_walk) * seconds;
-  covariance_.diagonal().segment<3>(State::kAccelBias).array() +=
+  covariance_.diagonal().segment<3>(NavState::kAccelBias).array() +=
       variance(noise.accel_bias_walk) * seconds;
   seconds_ += seconds;
 }
@@ -103,21 +102,21 @@ InertialResidual Preintegration::residual(const NavState& first, const NavState&
   r.value << turn_error, speed - measured.velocity, displacement - measured.position,
       second.bias.gyro - first.bias.gyro, second.bias.accel - first.bias.accel;
   const Matrix3d by_turn = so3::right_jacobian_inverse(turn_error);
-  r.by_first = -State::Matrix::Identity();
-  r.by_first.block<3, 3>(0, State::kRotation) = -by_turn * turned.transpose();
-  r.by_first.block<3, 3>(0, State::kGyroBias) = -by_turn * so3::exp(-turn_error) *
-                                                so3::right_jacobian(bias_turn) *
-                                                by_bias_.topLeftCorner<3, 3>();
-  r.by_first.block<3, 3>(3, State::kRotation) = so3::hat(speed);
-  r.by_first.block<3, 3>(3, State::kVelocity) = -back;
-  r.by_first.block<3, 3>(6, State::kRotation) = so3::hat(displacement);
-  r.by_first.block<3, 3>(6, State::kVelocity) = -seconds_ * back;
-  r.by_first.block<3, 3>(6, State::kPosition) = -back;
-  r.by_first.block<6, 6>(3, State::kGyroBias) = -by_bias_.bottomRows<6>();
-  r.by_second = State::Matrix::Identity();
-  r.by_second.block<3, 3>(0, State::kRotation) = by_turn;
-  r.by_second.block<3, 3>(3, State::kVelocity) = back;
-  r.by_second.block<3, 3>(6, State::kPosition) = back;
+  r.by_first = -NavState::Matrix::Identity();
+  r.by_first.block<3, 3>(0, NavState::kRotation) = -by_turn * turned.transpose();
+  r.by_first.block<3, 3>(0, NavState::kGyroBias) = -by_turn * so3::exp(-turn_error) *
+                                                   so3::right_jacobian(bias_turn) *
+                                                   by_bias_.topLeftCorner<3, 3>();
+  r.by_first.block<3, 3>(3, NavState::kRotation) = so3::hat(speed);
+  r.by_first.block<3, 3>(3, NavState::kVelocity) = -back;
+  r.by_first.block<3, 3>(6, NavState::kRotation) = so3::hat(displacement);
+  r.by_first.block<3, 3>(6, NavState::kVelocity) = -seconds_ * back;
+  r.by_first.block<3, 3>(6, NavState::kPosition) = -back;
+  r.by_first.block<6, 6>(3, NavState::kGyroBias) = -by_bias_.bottomRows<6>();
+  r.by_second = NavState::Matrix::Identity();
+  r.by_second.block<3, 3>(0, NavState::kRotation) = by_turn;
+  r.by_second.block<3, 3>(3, NavState::kVelocity) = back;
+  r.by_second.block<3, 3>(6, NavState::kPosition) = back;
   return r;
 }
 

@@ -12,8 +12,8 @@ namespace {
 
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-using Spline = PoseSplineFlight::Spline;
-using Value = Spline::Value;  // x y z of the position, x y z w of the quaternion
+using PoseSpline = PoseSplineFlight::Spline;
+using Value = PoseSpline::Value;  // x y z of the position, x y z w of the quaternion
 
 Quaterniond quaternion_of(const Value& value) {
   return Quaterniond(Eigen::Vector4d(value.tail<4>()));
@@ -29,7 +29,7 @@ Value value_of(const Pose& pose, const Value& last) {
   return value;
 }
 
-Spline fitted(const std::function<Pose(double)>& pose_at, double knot, Time duration) {
+PoseSpline fitted(const std::function<Pose(double)>& pose_at, double knot, Time duration) {
   const auto intervals = static_cast<std::size_t>(std::ceil(to_seconds(duration) / knot));
   const std::size_t count = intervals + PoseSplineFlight::kDegree + 2 * kFitReach;
   std::vector<Value> samples;
@@ -44,14 +44,14 @@ Spline fitted(const std::function<Pose(double)>& pose_at, double knot, Time dura
 }  // namespace
 
 double PoseSplineFlight::lead_s(double knot_s) {
-  return static_cast<double>(kFitReach) * knot_s - Spline::center(0, knot_s);
+  return static_cast<double>(kFitReach) * knot_s - PoseSpline::center(0, knot_s);
 }
 
 PoseSplineFlight::PoseSplineFlight(const std::function<Pose(double)>& pose_at, double knot_s,
                                    Time duration)
     : spline_(fitted(pose_at, knot_s, duration)), duration_(duration) {}
 
-Spline::Place PoseSplineFlight::find(Time t) const {
+PoseSpline::Place PoseSplineFlight::find(Time t) const {
   return spline_.find(to_seconds(std::clamp(t, Time{0}, duration_)));
 }
 
@@ -61,7 +61,7 @@ Pose PoseSplineFlight::pose_at(Time t) const {
 }
 
 Motion PoseSplineFlight::at(Time t) const {
-  const Spline::Place place = find(t);
+  const PoseSpline::Place place = find(t);
   const Value value = spline_.derivative<0>(place);
   Motion motion{.world_from_body = make_pose(quaternion_of(value), value.head<3>())};
   if (t < Time{0} || t > duration_) return motion;

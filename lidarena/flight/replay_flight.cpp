@@ -79,7 +79,7 @@ Rates vector_rates(const Vector3d& v, const Rates& body) {
   return {first, inverse * (body.second - body_acceleration(v, first, Vector3d::Zero()))};
 }
 
-struct Value {
+struct Derivatives {
   Vector3d value, first, second;
 };
 
@@ -89,7 +89,7 @@ Vector3d value_at(const Coefficients& c, double u) {
   return value;
 }
 
-Value derivatives_at(const Coefficients& c, double u, double h) {
+Derivatives derivatives_at(const Coefficients& c, double u, double h) {
   Vector3d first = 5.0 * c.col(5);
   for (int i = 4; i >= 1; --i) first = first * u + i * c.col(i);
   Vector3d second = 20.0 * c.col(5);
@@ -142,8 +142,8 @@ Motion ReplayFlight::at(Time t) const {
   if (t < Time{0} || t > duration()) return motion;
   const Piece& piece = piece_at(t);
   const double u = to_seconds(t - piece.begin) / piece.length_s;
-  const Value position = derivatives_at(piece.position, u, piece.length_s);
-  const Value rotation = derivatives_at(piece.rotation, u, piece.length_s);
+  const Derivatives position = derivatives_at(piece.position, u, piece.length_s);
+  const Derivatives rotation = derivatives_at(piece.rotation, u, piece.length_s);
   motion.velocity_world = position.first;
   motion.acceleration_world = position.second;
   motion.angular_rate_body = body_rate(rotation.value, rotation.first);

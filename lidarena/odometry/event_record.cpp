@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <numbers>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/so3.hpp"
 
 namespace lidarena::odometry {
@@ -13,7 +14,6 @@ namespace {
 using dataset::RunEventKind;
 
 constexpr Time kPause = std::chrono::milliseconds(100);
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 }  // namespace
 
@@ -31,7 +31,7 @@ void EventRecord::add_instant(RunEventKind kind, Time at, double value) {
 }
 
 void EventRecord::add_turn(Time begin, Time end, double rate_rad_s) {
-  const double rate = kDegrees * rate_rad_s;
+  const double rate = kDegreesPerRadian * rate_rad_s;
   if (rate > kFastTurnDegS) add_span(RunEventKind::kFastTurn, {begin, end, rate});
 }
 

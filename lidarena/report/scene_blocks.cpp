@@ -17,7 +17,7 @@ constexpr std::size_t kChunkPoints = 65'536;
 constexpr std::size_t kBlockPoints = 1'000'000;
 constexpr double kMaxStoredCoordinate = 65'535.0;  // largest stored value of a coordinate
 constexpr double kMaxStoredValue = 65'534.0;       // likewise of a field; 65535 means "none"
-constexpr std::uint16_t kNone = 65'535;
+constexpr std::uint16_t kNoDistance = 65'535;
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -37,7 +37,7 @@ struct Field {
 
   std::uint16_t stored(std::size_t i) const {
     const float v = (*values)[i];
-    if (!std::isfinite(v)) return kNone;
+    if (!std::isfinite(v)) return kNoDistance;
     if (!(max > min)) return 0;
     const double share = (static_cast<double>(v) - min) / (static_cast<double>(max) - min);
     return static_cast<std::uint16_t>(std::lround(share * kMaxStoredValue));

@@ -27,7 +27,7 @@ constexpr double kMinOriginDistance_m =
 constexpr double kOriginStep_m = 100.0;     // the origin is rounded to multiples of this
 constexpr double kMaxMeshDistance_m = 2.0;  // maximum distance to the mesh that is measured
 constexpr double kMinEpochTime_s = 1e6;     // larger times are times since an epoch
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
+constexpr float kNoValue = std::numeric_limits<float>::quiet_NaN();
 
 bool is_empty(const Scene& scene) {
   return scene.clouds.empty() && scene.paths.empty() && scene.meshes.empty();
@@ -213,7 +213,7 @@ class ScanCollector {
   Eigen::Vector3f place(const Eigen::Vector3d& in_lidar, Time t) const {
     if (truth_ == nullptr) return in_lidar.cast<float>();
     const auto world_from_body = truth_->at(t);
-    if (!world_from_body) return Eigen::Vector3f::Constant(kNone);
+    if (!world_from_body) return Eigen::Vector3f::Constant(kNoValue);
     return (*world_from_body * (body_from_lidar_ * in_lidar) - scene_.origin).cast<float>();
   }
 
@@ -330,7 +330,7 @@ void measure_distances(Scene& scene, const Parallel& parallel) {
       world.closest_points(points, kMaxMeshDistance_m, nearest, Parallel(1));
       for (std::size_t i = begin; i < end; ++i) {
         const world::ClosestPoint& there = nearest[i - begin];
-        cloud.distance[i] = there.valid() ? static_cast<float>(there.distance) : kNone;
+        cloud.distance[i] = there.valid() ? static_cast<float>(there.distance) : kNoValue;
       }
     });
   }

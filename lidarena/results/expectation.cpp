@@ -14,7 +14,7 @@ namespace lidarena::results {
 namespace {
 
 /// The coordinates of a cell in the order of kKinds.
-using Cell = std::array<std::string, 3>;
+using CellKey = std::array<std::string, 3>;
 constexpr std::array kKinds{"world", "sensor", "algorithm"};
 constexpr std::array kNames{&CellName::world, &CellName::sensor, &CellName::algorithm};
 constexpr std::array kLists{&CellFilter::world, &CellFilter::sensor, &CellFilter::algorithm};
@@ -31,7 +31,7 @@ std::string shown(double value) { return fmt::format("{:.3g}", value); }
 
 /// A value to judge: of a cell, or a ratio of two cells.
 struct Value {
-  Cell cell;
+  CellKey cell;
   std::string place;  ///< the cell in words, without what a ratio or a comparison runs over
   std::optional<double> value;
   std::string words;  ///< the value in words, or why there is none
@@ -63,12 +63,12 @@ class Judge {
   }
 
   /// The cells that count, in the order of the study; with a ratio those of its numerator.
-  std::vector<Cell> chosen() const {
-    std::vector<Cell> cells;
+  std::vector<CellKey> chosen() const {
+    std::vector<CellKey> cells;
     for (const std::string& world : cells_.worlds()) {
       for (const std::string& sensor : cells_.sensors()) {
         for (const std::string& algorithm : cells_.algorithms()) {
-          const Cell cell{world, sensor, algorithm};
+          const CellKey cell{world, sensor, algorithm};
           if (counts(cell) && !cells_.rows(world, sensor, algorithm).empty()) cells.push_back(cell);
         }
       }
@@ -76,7 +76,7 @@ class Judge {
     return cells;
   }
 
-  bool counts(const Cell& cell) const {
+  bool counts(const CellKey& cell) const {
     for (std::size_t kind = 0; kind < cell.size(); ++kind) {
       if (e_.ratio && kind == kind_of(e_.ratio->of)) {
         if (cell[kind] != text_of(e_.ratio->of)) return false;
@@ -89,12 +89,12 @@ class Judge {
   }
 
   /// Infinite if it is that of a lost run.
-  std::optional<double> median(const Cell& cell) const {
+  std::optional<double> median(const CellKey& cell) const {
     return cells_.spread(cell[0], cell[1], cell[2], figure_).median;
   }
 
   /// "cave, livox_mid360", without the kind `left_out`.
-  static std::string place_of(const Cell& cell, std::size_t left_out) {
+  static std::string place_of(const CellKey& cell, std::size_t left_out) {
     std::string text;
     for (std::size_t kind = 0; kind < cell.size(); ++kind) {
       if (kind != left_out) text += (text.empty() ? "" : ", ") + cell[kind];
@@ -107,20 +107,20 @@ class Judge {
   }
 
   /// Why a cell has no figure.
-  std::string state_of(const Cell& cell) const {
+  std::string state_of(const CellKey& cell) const {
     const std::string state = cells_.status_text(cell[0], cell[1], cell[2]);
     return fmt::format("{} {}", cell[2], state.empty() ? "not measured" : state);
   }
 
   /// The value in words, with the runs that are lost.
-  std::string words_of(const Cell& cell, double value) const {
+  std::string words_of(const CellKey& cell, double value) const {
     const std::string state = cells_.status_text(cell[0], cell[1], cell[2]);
     return with_unit(value) + (state.empty() ? "" : " (" + state + ")");
   }
 
-  Value ratio_at(const Cell& cell) const {
+  Value ratio_at(const CellKey& cell) const {
     const std::size_t kind = kind_of(e_.ratio->of);
-    Cell other = cell;
+    CellKey other = cell;
     other[kind] = text_of(e_.ratio->to);
     Value value{cell, place_of(cell, kind), {}, {}};
     const auto own = median(cell);
@@ -141,7 +141,7 @@ class Judge {
 
   std::vector<Value> values() const {
     std::vector<Value> found;
-    for (const Cell& cell : chosen()) {
+    for (const CellKey& cell : chosen()) {
       if (e_.ratio) {
         found.push_back(ratio_at(cell));
         continue;
@@ -171,7 +171,7 @@ class Judge {
       if (own.cell[kind] != text_of(best) || !own.value) continue;
       const Value* rival = nullptr;
       for (const Value& other : all) {
-        Cell same = other.cell;
+        CellKey same = other.cell;
         same[kind] = own.cell[kind];
         if (!other.value || other.cell == own.cell || same != own.cell) continue;
         if (rival == nullptr || better(other, *rival)) rival = &other;

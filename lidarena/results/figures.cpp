@@ -9,13 +9,13 @@
 #include <string_view>
 #include <vector>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::results {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr double kNear_m = 0.05;  ///< distance within which completeness is a main figure
 
 using Trajectory = std::optional<TrajectoryMetrics> RunMetrics::*;
@@ -204,12 +204,12 @@ constexpr auto kMapTable = FigureTable::kMap;
 constexpr std::array kFigures{
     Figure{"rpe_1m_at_poses_translation", "RPE cm/m", 100, "cm", "RPE per meter, pose to pose",
            kOfPath, rpe<kFinal, kAtPoses, translation>, kMain},
-    Figure{"rpe_1m_at_poses_rotation", "RPE deg/m", kDegrees, "deg",
+    Figure{"rpe_1m_at_poses_rotation", "RPE deg/m", kDegreesPerRadian, "deg",
            "RPE per meter, pose to pose, rotation", kOfPath, rpe<kFinal, kAtPoses, rotation>,
            kMain},
     Figure{"rpe_1m_translation", nullptr, 100, "cm", "RPE per meter, ends interpolated", kOfPath,
            rpe<kFinal, kLength<0>, translation>},
-    Figure{"rpe_1m_rotation", nullptr, kDegrees, "deg",
+    Figure{"rpe_1m_rotation", nullptr, kDegreesPerRadian, "deg",
            "RPE per meter, ends interpolated, rotation", kOfPath,
            rpe<kFinal, kLength<0>, rotation>},
     Figure{"rpe_1m_floor", nullptr, 100, "cm", "RPE per meter, interpolation (floor)", kOfPath,
@@ -222,8 +222,8 @@ constexpr std::array kFigures{
            rpe<kFinal, kLength<5>, translation>},
     Figure{"ate_se3_translation", "ATE cm", 100, "cm", "ATE, SE(3) gauge", kOfPath,
            ate<kFinal, &AteByGauge::se3, translation>, kMain},
-    Figure{"ate_se3_rotation", nullptr, kDegrees, "deg", "ATE, SE(3) gauge, rotation", kOfPath,
-           ate<kFinal, &AteByGauge::se3, rotation>},
+    Figure{"ate_se3_rotation", nullptr, kDegreesPerRadian, "deg", "ATE, SE(3) gauge, rotation",
+           kOfPath, ate<kFinal, &AteByGauge::se3, rotation>},
     Figure{"ate_posyaw_translation", nullptr, 100, "cm", "ATE, position and heading", kOfPath,
            ate<kFinal, &AteByGauge::posyaw, translation>},
     Figure{"ate_first_pose_translation", nullptr, 100, "cm", "ATE, first-pose gauge", kOfPath,

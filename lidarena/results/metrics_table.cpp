@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/results/figures.hpp"
 #include "lidarena/results/lost.hpp"
@@ -16,8 +17,6 @@
 
 namespace lidarena::results {
 namespace {
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 
 bool has_coverage(const Figure& figure) { return figure.subject != Subject::kResources; }
 
@@ -36,7 +35,8 @@ std::string list_text(const Numbers& numbers, double factor = 1.0) {
 std::string lever_text(const std::optional<LeverArmMetrics>& arm) {
   if (!arm) return "not observable from this motion";
   return fmt::format("at{} m, rotated by{} deg (a diagnostic, not applied)",
-                     list_text(arm->position_m), list_text(arm->rotation_vector_rad, kDegrees));
+                     list_text(arm->position_m),
+                     list_text(arm->rotation_vector_rad, kDegreesPerRadian));
 }
 
 std::string gauge_text(const AteMetrics& se3) {
@@ -92,8 +92,6 @@ std::string figure_text(const RunMetrics& metrics, const Figure& figure, const R
 }
 
 // --- tables
-
-using Cell = std::optional<double>;
 
 /// The columns of a table; in the map table only those that some run has.
 std::vector<const Figure*> table_figures(std::span<const ScoredRun> runs, FigureTable table) {
@@ -175,7 +173,8 @@ std::string metrics_csv(std::span<const ScoredRun> runs) {
       const Reading reading = figure.read(run.metrics);
       if (!reading.value) continue;
       any = true;
-      const auto coverage = has_coverage(figure) ? coverage_of(run.metrics, figure) : Cell();
+      const auto coverage =
+          has_coverage(figure) ? coverage_of(run.metrics, figure) : std::optional<double>();
       const auto count = [](const std::optional<std::size_t>& n) {
         return n ? std::to_string(*n) : std::string();
       };

@@ -10,7 +10,7 @@
 namespace lidarena::scenes {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kPointSpacing = 0.5;  // m, small compared with the wavelengths of the winding
 constexpr double kRouteSpacing = 1.5;  // m
 constexpr double kMaxHeading = 0.35;   // rad; neighboring cells differ by at most twice this
@@ -35,7 +35,7 @@ std::vector<Eigen::Vector3d> ladder_junctions(const CaveConfig& config, Sequenti
   for (int i = 0; i <= config.loops; ++i) {
     const double before = heading[static_cast<std::size_t>(std::max(i - 1, 0))];
     const double after = heading[static_cast<std::size_t>(std::min(i, config.loops - 1))];
-    const double across = 0.5 * (before + after) + 0.5 * kPi;
+    const double across = 0.5 * (before + after) + 0.5 * pi;
     const Eigen::Vector3d half =
         0.5 * config.cell_width_m * Eigen::Vector3d(std::cos(across), std::sin(across), 0);
     for (const double sign : {1.0, -1.0}) {
@@ -52,10 +52,10 @@ std::vector<Eigen::Vector3d> ladder_junctions(const CaveConfig& config, Sequenti
 class Swing {
  public:
   explicit Swing(SequentialRandom& random)
-      : long_(2 * kPi / random.uniform(14, 22)),
-        short_(2 * kPi / random.uniform(9, 12)),
-        long_phase_(random.uniform(0, 2 * kPi)),
-        short_phase_(random.uniform(0, 2 * kPi)) {}
+      : long_(2 * pi / random.uniform(14, 22)),
+        short_(2 * pi / random.uniform(9, 12)),
+        long_phase_(random.uniform(0, 2 * pi)),
+        short_phase_(random.uniform(0, 2 * pi)) {}
 
   double at(double s) const {
     return 0.8 * std::sin(long_ * s + long_phase_) + 0.2 * std::sin(short_ * s + short_phase_);
@@ -85,7 +85,7 @@ Tunnel winding_tunnel(const CaveConfig& config, const std::vector<Eigen::Vector3
   for (int i = 0; i <= steps; ++i) {
     const double u = static_cast<double>(i) / steps;
     const double s = u * chord.norm();
-    const double inner = std::sin(kPi * u);  // fades to 0 at the junctions
+    const double inner = std::sin(pi * u);  // fades to 0 at the junctions
     const Eigen::Vector3d swing = config.winding_m * lateral.at(s) * side +
                                   0.4 * config.relief_m * vertical.at(s) * Eigen::Vector3d::UnitZ();
     tunnel.points.emplace_back(junctions[from] + u * chord + inner * swing);

@@ -12,7 +12,7 @@ using shape::box;
 using shape::scaled;
 using shape::translated;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kRail = 0.95;  // m, height of a handrail
 
 /// A handrail on posts `spacing` meters apart; `a` and `b` are the points on the floor below its
@@ -34,7 +34,7 @@ Piece bathtub(Craft& craft) {
   const int n = craft.fine(72);
   std::vector<Eigen::Vector2d> profile{
       {0, 0.0}, {0.30, 0.0}, {0.34, 0.1}, {0.37, 0.52}, {0.40, 0.56}};
-  for (const Eigen::Vector2d& p : shape::arc({0.385, 0.56}, 0.015, 0, kPi, 6)) profile.push_back(p);
+  for (const Eigen::Vector2d& p : shape::arc({0.385, 0.56}, 0.015, 0, pi, 6)) profile.push_back(p);
   for (const Eigen::Vector2d& p : std::vector<Eigen::Vector2d>{
            {0.35, 0.5}, {0.32, 0.25}, {0.27, 0.15}, {0.15, 0.12}, {0, 0.12}}) {
     profile.push_back(p);
@@ -74,7 +74,7 @@ Piece basin(Craft& craft) {
 Piece towel_rail(Craft& craft) {
   world::TriangleMesh mesh = shape::bar(
       {{-0.3, 0, 0.3}, {-0.3, 0.06, 0.3}, {0.3, 0.06, 0.3}, {0.3, 0, 0.3}}, 0.009, craft.fine(12));
-  const double phase = craft.random.uniform(0, 2 * kPi);
+  const double phase = craft.random.uniform(0, 2 * pi);
   mesh.append(shape::grid(craft.fine(40), craft.fine(30), [&](double u, double v) {
     const double ripple = 0.008 * std::sin(18 * u + phase) * v;
     return Vector3d(-0.22 + 0.44 * u, 0.075 + ripple, 0.31 - 0.45 * v);

@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 using shape::translated;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Four round legs, inset from the corners of a width x depth footprint.
 world::TriangleMesh legs(Craft& craft, double width, double depth, double height, double radius) {
@@ -34,7 +34,7 @@ world::TriangleMesh pad(Craft& craft, const Vector3d& size, double x, double y, 
 
 /// A quilt over a mattress: hangs down at both sides and the foot end, with folds.
 world::TriangleMesh quilt(Craft& craft, double width, double length, double height) {
-  const double phase = craft.random.uniform(0, 2 * kPi);
+  const double phase = craft.random.uniform(0, 2 * pi);
   const int n = craft.fine(90);
   return shape::grid(n, n, [&](double u, double v) {
     const double across = 2 * u - 1;
@@ -82,8 +82,8 @@ Piece chair(Craft& craft) {
   for (const double z : {0.62, 0.74, 0.86}) {  // bent slats of the back
     mesh.append(translated(shape::grid(craft.fine(20), craft.fine(10),
                                        [&](double u, double v) {
-                                         const double bend = 0.03 * std::sin(kPi * u);
-                                         const double round = 2 * kPi * v;
+                                         const double bend = 0.03 * std::sin(pi * u);
+                                         const double round = 2 * pi * v;
                                          return Vector3d(0.36 * (u - 0.5),
                                                          0.03 - bend + 0.008 * std::cos(round),
                                                          z + 0.03 * std::sin(round));
@@ -98,7 +98,7 @@ Piece stool(Craft& craft) {
   world::TriangleMesh mesh =
       translated(shape::cylinder(0.17, 0.04, craft.fine(36), 3), {0, 0.2, height - 0.04});
   for (int i = 0; i < 3; ++i) {
-    const double angle = 2 * kPi * i / 3 + 0.5;
+    const double angle = 2 * pi * i / 3 + 0.5;
     const Vector3d out(std::cos(angle), std::sin(angle), 0);
     mesh.append(
         shape::bar({Vector3d(0, 0.2, 0) + 0.19 * out, Vector3d(0, 0.2, height - 0.02) + 0.11 * out},
@@ -108,11 +108,11 @@ Piece stool(Craft& craft) {
 }
 
 Piece beanbag(Craft& craft) {
-  const double phase = craft.random.uniform(0, 2 * kPi);
+  const double phase = craft.random.uniform(0, 2 * pi);
   const int n = craft.fine(48);
   world::TriangleMesh mesh = shape::grid(2 * n, n, [&](double u, double v) {
-    const double round = 2 * kPi * u;
-    const double tilt = kPi * (v - 0.5);
+    const double round = 2 * pi * u;
+    const double tilt = pi * (v - 0.5);
     const double wrinkle = 1 + 0.03 * std::sin(5 * round + phase) * std::cos(tilt) +
                            0.02 * std::sin(11 * round - 3 * tilt);
     const double flat = v < 0.5 ? 0.55 : 1.0;  // flattened where it lies on the floor

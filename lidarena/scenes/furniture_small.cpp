@@ -11,13 +11,13 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using shape::translated;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// An open cone of cloth from radius r0 at z0 to r1 at z1, pleated.
 world::TriangleMesh shade(Craft& craft, double r0, double z0, double r1, double z1) {
   const int pleats = craft.random.integer(14, 26);
   return shape::grid(craft.fine(120), craft.fine(10), [&](double u, double v) {
-    const double angle = 2 * kPi * u;
+    const double angle = 2 * pi * u;
     const double r = (r0 + (r1 - r0) * v) * (1 + 0.025 * std::cos(pleats * angle));
     return Vector3d(r * std::cos(angle), r * std::sin(angle), z0 + (z1 - z0) * v);
   });
@@ -50,7 +50,7 @@ world::TriangleMesh leaf(Craft& craft, double length, double width, double headi
   const Vector3d out(std::cos(heading), std::sin(heading), 0);
   const Vector3d side(-out.y(), out.x(), 0);
   return shape::grid(craft.fine(10), 4, [&](double u, double v) -> Vector3d {
-    const double across = (v - 0.5) * width * std::sin(kPi * std::pow(u, 0.7));
+    const double across = (v - 0.5) * width * std::sin(pi * std::pow(u, 0.7));
     const double height = length * (u * std::sin(rise) - 0.55 * u * u);
     const double keel = 0.4 * std::abs(across);  // folded along its center line
     return length * u * std::cos(0.6 * rise) * out + across * side +
@@ -102,7 +102,7 @@ Piece plant(Craft& craft, double height) {
                                           craft.fine(40));
   const int stems = craft.random.integer(3, 5);
   for (int i = 0; i < stems; ++i) {
-    const double lean = craft.random.uniform(0, 2 * kPi);
+    const double lean = craft.random.uniform(0, 2 * pi);
     const double stem = (height - pot_height) * craft.random.uniform(0.55, 0.85);
     const Vector3d foot(0.25 * r * std::cos(lean), 0.25 * r * std::sin(lean), 0.8 * pot_height);
     const Vector3d tip = foot + Vector3d(0.5 * r * std::cos(lean), 0.5 * r * std::sin(lean), stem);
@@ -110,7 +110,7 @@ Piece plant(Craft& craft, double height) {
     for (int k = 0; k < 14; ++k) {
       const double share = 0.25 + 0.75 * k / 13;
       const double length = height * craft.random.uniform(0.14, 0.22);
-      mesh.append(translated(leaf(craft, length, 0.4 * length, craft.random.uniform(0, 2 * kPi),
+      mesh.append(translated(leaf(craft, length, 0.4 * length, craft.random.uniform(0, 2 * pi),
                                   craft.random.uniform(0.3, 1.1)),
                              foot + share * (tip - foot)));
     }
@@ -139,7 +139,7 @@ Piece bowl(Craft& craft) {
       smooth({{0, 0}, {0.5 * r, 0.01}, {r, 0.09}, {0.9 * r, 0.09}, {0.4 * r, 0.025}, {0, 0.02}}, 6),
       craft.fine(44));
   for (int i = 0; i < 4; ++i) {  // fruit
-    const double angle = kPi * i / 2 + 0.3;
+    const double angle = pi * i / 2 + 0.3;
     mesh.append(translated(shape::ball(0.035, craft.fine(20)),
                            {0.4 * r * std::cos(angle), 0.4 * r * std::sin(angle), 0.065}));
   }
@@ -187,9 +187,9 @@ Piece basket(Craft& craft, const std::string& kind, double radius, double height
   const int rows = craft.fine(24);
   const auto weave = [&](double r0, double r1, double z0, double z1) {
     return shape::grid(n, rows, [=](double u, double v) {
-      const double angle = 2 * kPi * u;
+      const double angle = 2 * pi * u;
       const double r =
-          r0 + (r1 - r0) * v + 0.006 * std::cos(24 * angle) * std::cos(12 * kPi * v);  // wickerwork
+          r0 + (r1 - r0) * v + 0.006 * std::cos(24 * angle) * std::cos(12 * pi * v);  // wickerwork
       return Vector3d(r * std::cos(angle), r * std::sin(angle), z0 + (z1 - z0) * v);
     });
   };
@@ -205,7 +205,7 @@ Piece toy_ball(Craft& craft) {
 }
 
 Piece rug(Craft& craft, double width, double depth) {
-  const double phase = craft.random.uniform(0, 2 * kPi);
+  const double phase = craft.random.uniform(0, 2 * pi);
   world::TriangleMesh mesh = shape::grid(craft.fine(70), craft.fine(50), [&](double u, double v) {
     const double edge = std::min({u, 1 - u, v, 1 - v}) * 40;  // the edge is flush with the floor
     const double pile = 0.012 + 0.003 * std::sin(31 * u + phase) * std::sin(27 * v + phase);
@@ -222,11 +222,11 @@ Piece curtain(Craft& craft, double width, double height) {
       shape::bar({{-x, 0, height}, {-x, 0.07, height}, {x, 0.07, height}, {x, 0, height}}, 0.012,
                  craft.fine(12));
   for (const double side : {-1.0, 1.0}) {
-    const double phase = craft.random.uniform(0, 2 * kPi);
+    const double phase = craft.random.uniform(0, 2 * pi);
     const double stray = craft.random.uniform(0.5, 1.5);
     mesh.append(shape::grid(
         craft.fine(static_cast<int>(14 * folds)), craft.fine(16), [&](double u, double v) {
-          const double fold = std::sin(2 * kPi * folds * u + stray * std::sin(3 * v + phase));
+          const double fold = std::sin(2 * pi * folds * u + stray * std::sin(3 * v + phase));
           const double across = (u - 0.5) * panel * (0.9 + 0.1 * std::cos(4 * v));
           return Vector3d(side * (x - 0.5 * panel) + across, 0.07 + (0.04 - 0.015 * v) * fold,
                           v * height);
@@ -264,9 +264,9 @@ Piece coat_rack(Craft& craft) {
   world::TriangleMesh mesh = shape::cylinder(0.2, 0.03, craft.fine(36));
   mesh.append(shape::bar({{0, 0, 0.02}, {0, 0, 1.75}}, 0.018, craft.fine(16)));
   mesh.append(translated(shape::ball(0.03, craft.fine(18)), {0, 0, 1.76}));
-  const double phase = craft.random.uniform(0, kPi);
+  const double phase = craft.random.uniform(0, pi);
   for (int i = 0; i < 5; ++i) {
-    const double angle = 2 * kPi * i / 5 + phase;
+    const double angle = 2 * pi * i / 5 + phase;
     const Vector3d out(std::cos(angle), std::sin(angle), 0);
     mesh.append(shape::bar(
         {Vector3d(0, 0, 1.6), Vector3d(0, 0, 1.58) + 0.1 * out, Vector3d(0, 0, 1.66) + 0.16 * out},
@@ -275,7 +275,7 @@ Piece coat_rack(Craft& craft) {
   // A coat that hangs in folds from one hook.
   const Vector3d hook(0.14 * std::cos(phase), 0.14 * std::sin(phase), 0);
   mesh.append(shape::grid(craft.fine(64), craft.fine(30), [&](double u, double v) -> Vector3d {
-    const double angle = 2 * kPi * u;
+    const double angle = 2 * pi * u;
     const double r = (0.03 + 0.12 * std::sqrt(v)) * (1 + 0.12 * v * std::sin(7 * angle));
     return hook + Vector3d(r * std::cos(angle), 0.7 * r * std::sin(angle), 1.62 - 0.95 * v);
   }));

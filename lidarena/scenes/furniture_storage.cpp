@@ -11,7 +11,7 @@ using Eigen::Vector3d;
 using shape::box;
 using shape::translated;
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 constexpr double kBoard = 0.02;  // m
 
 /// A row of books of random sizes on a board, from x0 towards x1; it may end before x1.
@@ -34,7 +34,7 @@ world::TriangleMesh ring(Craft& craft, double radius, double thickness) {
   std::vector<Vector3d> path;
   const int n = craft.fine(48);
   for (int i = 0; i <= n; ++i) {
-    const double angle = 2 * kPi * i / n;
+    const double angle = 2 * pi * i / n;
     path.emplace_back(radius * std::cos(angle), 0, radius * std::sin(angle));
   }
   return shape::bar(path, thickness, craft.fine(14));
@@ -106,7 +106,7 @@ Piece sink(Craft& craft) {
       translated(shape::scaled(shape::lathe(profile, craft.fine(48)), {1.25, 1, 1}), {0, 0.31, 0});
   std::vector<Vector3d> tap{{0, 0.05, 0}, {0, 0.05, 0.2}};
   for (int i = 1; i <= 12; ++i) {
-    const double angle = kPi * i / 12;
+    const double angle = pi * i / 12;
     tap.emplace_back(0, 0.13 - 0.08 * std::cos(angle), 0.2 + 0.08 * std::sin(angle));
   }
   mesh.append(shape::bar(tap, 0.012, craft.fine(14)));
@@ -123,7 +123,7 @@ Piece stove(Craft& craft) {
   }
   for (int i = 0; i < 4; ++i) {
     piece.mesh.append(translated(
-        shape::rotated(shape::cylinder(0.02, 0.025, craft.fine(16)), -kPi / 2, Vector3d::UnitX()),
+        shape::rotated(shape::cylinder(0.02, 0.025, craft.fine(16)), -pi / 2, Vector3d::UnitX()),
         {-0.21 + 0.14 * i, 0.6, 0.82}));
   }
   piece.mesh.append(handle(craft, {-0.22, 0.6, 0.7}, {0.22, 0.6, 0.7}));

@@ -8,7 +8,7 @@
 namespace lidarena::scenes::shape {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
+using std::numbers::pi;
 
 /// Adds a triangle unless two of its corners coincide (at the poles of a lathe).
 void add_triangle(world::TriangleMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint32_t c) {
@@ -75,8 +75,8 @@ world::TriangleMesh rounded_box(const Eigen::Vector3d& size, double radius, int 
       mesh.append(grid(cells, cells, [&](double u, double v) -> Eigen::Vector3d {
         Eigen::Vector3d q;  // on the sharp-edged box; grid lines are denser near its edges
         q[axis] = sign * half[axis];
-        q[a] = std::sin(kPi * (u - 0.5)) * half[a];
-        q[b] = std::sin(kPi * (v - 0.5)) * half[b];
+        q[a] = std::sin(pi * (u - 0.5)) * half[a];
+        q[b] = std::sin(pi * (v - 0.5)) * half[b];
         const Eigen::Vector3d nearest = q.cwiseMax(-core).cwiseMin(core);
         Eigen::Vector3d p = nearest + r * (q - nearest).normalized();
         p[axis] +=
@@ -92,7 +92,7 @@ world::TriangleMesh lathe(const std::vector<Eigen::Vector2d>& profile, int segme
   world::TriangleMesh mesh;
   for (const Eigen::Vector2d& point : profile) {
     for (int s = 0; s < segments; ++s) {
-      const double angle = 2 * kPi * s / segments;
+      const double angle = 2 * pi * s / segments;
       // A zero radius must give identical points, without a difference in the sign of zero.
       const double r = point.x();
       mesh.vertices.emplace_back(r == 0 ? 0 : r * std::cos(angle), r == 0 ? 0 : r * std::sin(angle),
@@ -112,7 +112,7 @@ world::TriangleMesh cylinder(double radius, double height, int segments, int rin
 }
 
 world::TriangleMesh ball(double radius, int segments) {
-  std::vector<Eigen::Vector2d> profile = arc({0, 0}, radius, -kPi / 2, kPi / 2, segments / 2);
+  std::vector<Eigen::Vector2d> profile = arc({0, 0}, radius, -pi / 2, pi / 2, segments / 2);
   profile.front().x() = profile.back().x() = 0;
   return lathe(profile, segments);
 }
@@ -129,7 +129,7 @@ world::TriangleMesh bar(const std::vector<Eigen::Vector3d>& path, double radius,
     const bool last = i + 1 == path.size();
     const auto ring = [&](double r) {
       for (int s = 0; s < segments; ++s) {
-        const double angle = 2 * kPi * s / segments;
+        const double angle = 2 * pi * s / segments;
         mesh.vertices.push_back(path[i] + r * (std::cos(angle) * side + std::sin(angle) * other));
       }
     };

@@ -5,10 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "lidarena/base/angle.hpp"
+
 namespace lidarena::sensor {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 /// Single-precision directions have errors of 4e-6 deg. This offset puts a ring that lies on a
 /// border between cells entirely on one side of it.
 constexpr double kNudgeDeg = 1e-5;

@@ -10,7 +10,7 @@ namespace {
 
 /// What random numbers are used for. Each purpose takes two counters, see normals(); constants of a
 /// unit are drawn with sample 0 only.
-enum Draw : std::uint32_t {
+enum ImuDraw : std::uint32_t {
   kGyroNoise,
   kAccelNoise,
   kGyroBias,

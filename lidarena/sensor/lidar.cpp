@@ -8,6 +8,7 @@
 #include <span>
 #include <utility>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/normal_pairs.hpp"
 
@@ -22,12 +23,11 @@ constexpr std::size_t kShotsPerBlock = 1024;
 constexpr std::size_t kPartsPerScan =
     32;  // number of parts that a scan is split into for the threads
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 /// Purposes of a ray's random numbers; each further echo uses the next kDraws values.
-enum Draw : std::uint32_t { kRange, kDetection, kAngle, kSpin, kDraws };
+enum LidarDraw : std::uint32_t { kRange, kDetection, kAngle, kSpin, kDraws };
 
-std::uint32_t draw_of(Draw draw, std::size_t echo) {
+std::uint32_t draw_of(LidarDraw draw, std::size_t echo) {
   return draw + kDraws * static_cast<std::uint32_t>(echo);
 }
 
@@ -97,10 +97,10 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       random_(seed, stream_of((id + "/range").c_str())),
       signal_(config.noise.signal),
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
-      beam_sigma_(kRadians * kSigmaOfFwhm *
+      beam_sigma_(kDegree * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
       energy_of_ray_(1.0 / static_cast<double>(sub_rays_.size())),
-      angle_sigma_(static_cast<float>(kRadians * config_.noise.angle_noise_deg)),
+      angle_sigma_(static_cast<float>(kDegree * config_.noise.angle_noise_deg)),
       table_(*pattern_),
       order_(first_beams(*pattern_)) {
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);

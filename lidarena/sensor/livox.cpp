@@ -7,20 +7,20 @@
 #include <numeric>
 #include <utility>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::sensor {
 namespace {
 
-constexpr double kRadians = std::numbers::pi / 180.0;
 constexpr std::size_t kMaxRotors = 3;
 
 using Phases = std::array<Eigen::Vector2d, kMaxRotors>;  // (cos, sin)
 
 double angle_of(const Rotor& rotor, double group) {
-  double angle = kRadians * (rotor.phase_deg + rotor.step_deg * (group + rotor.sample_offset));
+  double angle = kDegree * (rotor.phase_deg + rotor.step_deg * (group + rotor.sample_offset));
   if (rotor.modulation_rad != 0.0) {
-    const double step = kRadians * rotor.modulation_step_deg;
+    const double step = kDegree * rotor.modulation_step_deg;
     const double wave = std::sin(2.0 * step * (group + 0.5)) * step / std::sin(step);
     angle += rotor.modulation_rad * (wave + step);
   }

@@ -10,14 +10,13 @@
 #include <string_view>
 #include <utility>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/number.hpp"
 #include "lidarena/sensor/livox.hpp"
 
 namespace lidarena::sensor {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 using Row = std::array<double, 3>;
 

@@ -7,12 +7,12 @@
 #include <numbers>
 #include <numeric>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::sensor {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr int kMaxColumns = 100'000;  // fifty times any sensor's; limits memory if mistyped
 
 void check(const SpinningHead& table, int columns, double column_us, double revolution_us,

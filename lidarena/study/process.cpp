@@ -26,7 +26,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPollPeriod = std::chrono::milliseconds(20);
 constexpr auto kUsagePeriod = std::chrono::milliseconds(250);  // reads all of /proc, hence rarely
 
 /// Opens `file` for appending; an empty path stands for /dev/null.

@@ -9,6 +9,9 @@
 
 namespace lidarena::study {
 
+/// How often the state of programs that run is looked at.
+inline constexpr auto kPollPeriod = std::chrono::milliseconds(20);
+
 /// A program to start.
 struct Command {
   std::vector<std::string> arguments;  ///< its path first

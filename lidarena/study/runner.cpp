@@ -25,7 +25,6 @@ namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* kLog = "lidarena.log";  ///< in the folder of each stage
-constexpr auto kPollPeriod = std::chrono::milliseconds(20);
 constexpr int kWorkFailed =
     1;  ///< exit code of a program whose results may be written, e.g. diverged
 

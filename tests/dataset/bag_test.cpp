@@ -14,6 +14,7 @@
 #include "lidarena/dataset/ros1/bag_writer.hpp"
 #include "tests/dataset/event_matching.hpp"
 #include "tests/dataset/file_helpers.hpp"
+#include "tests/dataset/messages.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -24,21 +25,17 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 
 /// A message as a value.
-struct Copy {
+struct BagMessage {
   std::string topic;
   std::string type;
   Time time{0};
   std::string data;
-  bool operator==(const Copy&) const = default;
+  bool operator==(const BagMessage&) const = default;
 };
 
-std::string text_of(Bytes bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// 60 strings of random (seeded) length and content on two topics.
-std::vector<Copy> sample_messages() {
-  std::vector<Copy> messages;
+std::vector<BagMessage> sample_bag_messages() {
+  std::vector<BagMessage> messages;
   SequentialRandom random(1);
   MessageWriter message(Encoding::kRos1);
   for (int i = 0; i < 60; ++i) {
@@ -57,7 +54,7 @@ void write_sample(const fs::path& file, BagCompression compression,
   const std::uint16_t a = out.add_topic("/a", ros::kString, true);
   const std::uint16_t b = out.add_topic("/b", ros::kString);
   out.add_topic("/silent", ros::kImu);
-  for (const Copy& message : sample_messages()) {
+  for (const BagMessage& message : sample_bag_messages()) {
     out.write(message.topic == "/a" ? a : b, message.time, message.time,
               std::as_bytes(std::span(message.data)));
   }
@@ -65,13 +62,13 @@ void write_sample(const fs::path& file, BagCompression compression,
 }
 
 /// The messages that can be read, and the error that ended the reading, if any.
-struct Reading {
-  std::vector<Copy> messages;
+struct BagReading {
+  std::vector<BagMessage> messages;
   std::string error;
 };
 
-Reading read_all(const fs::path& file) {
-  Reading reading;
+BagReading read_all(const fs::path& file) {
+  BagReading reading;
   try {
     BagReader in(file);
     while (const auto message = in.next()) {
@@ -84,14 +81,10 @@ Reading read_all(const fs::path& file) {
   return reading;
 }
 
-bool is_beginning_of(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
-  return part.size() <= whole.size() && std::equal(part.begin(), part.end(), whole.begin());
-}
-
 /// Whether all of `part` is in `whole`, in its order.
-bool is_part_of(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
+bool is_part_of(const std::vector<BagMessage>& part, const std::vector<BagMessage>& whole) {
   auto next = whole.begin();
-  for (const Copy& message : part) {
+  for (const BagMessage& message : part) {
     next = std::find(next, whole.end(), message);
     if (next == whole.end()) return false;
     ++next;
@@ -107,9 +100,9 @@ class BagFiles : public testing::TestWithParam<BagCompression> {
 
 TEST_P(BagFiles, MessagesComeBackInOrder) {
   write_sample(file_, GetParam());
-  const Reading reading = read_all(file_);
+  const BagReading reading = read_all(file_);
   EXPECT_EQ(reading.error, "");
-  EXPECT_EQ(reading.messages, sample_messages());
+  EXPECT_EQ(reading.messages, sample_bag_messages());
 }
 
 TEST_P(BagFiles, TheIndexTellsWhatAReadingFinds) {
@@ -120,8 +113,8 @@ TEST_P(BagFiles, TheIndexTellsWhatAReadingFinds) {
   EXPECT_EQ(info.count_of("/a"), 20U);
   EXPECT_EQ(info.count_of("/b"), 40U);
   EXPECT_GT(info.chunk_count, 3U);
-  EXPECT_EQ(info.start, sample_messages().front().time);
-  EXPECT_EQ(info.end, sample_messages().back().time);
+  EXPECT_EQ(info.start, sample_bag_messages().front().time);
+  EXPECT_EQ(info.end, sample_bag_messages().back().time);
   BagReader reader(file_);
   while (reader.next()) {
   }
@@ -150,22 +143,22 @@ TEST_P(BagFiles, StartsAsTheFormatSays) {
 TEST_P(BagFiles, WithoutCloseTheMessagesCanBeHadAndTheMissingIndexIsNamed) {
   write_sample(file_, GetParam(), [](BagWriter&) {});
   EXPECT_FALSE(fs::exists(file_));
-  const Reading reading = read_all(file_.string() + ".part");
+  const BagReading reading = read_all(file_.string() + ".part");
   EXPECT_THAT(reading.error, HasSubstr("was never closed"));
   EXPECT_GT(reading.messages.size(), 30U);
-  EXPECT_TRUE(is_beginning_of(reading.messages, sample_messages()));
+  EXPECT_TRUE(is_beginning_of(reading.messages, sample_bag_messages()));
   EXPECT_THAT(read_bag_info(file_.string() + ".part").damage, HasSubstr("was never closed"));
 }
 
 TEST_P(BagFiles, ACutAnywhereIsNoticedAndWhatComesBeforeIsGivenOut) {
   write_sample(file_, GetParam());
   const std::string bytes = file_text(file_);
-  const std::vector<Copy> whole = sample_messages();
+  const std::vector<BagMessage> whole = sample_bag_messages();
   std::size_t longest = 0;
   for (std::size_t size = 0; size < bytes.size(); size += size < 4100 ? 101 : 3) {
     fs::remove(file_);
     write_file(file_, std::string_view(bytes).substr(0, size));
-    const Reading reading = read_all(file_);
+    const BagReading reading = read_all(file_);
     ASSERT_NE(reading.error, "") << "cut to " << size;
     ASSERT_TRUE(is_beginning_of(reading.messages, whole)) << "cut to " << size;
     ASSERT_GE(reading.messages.size(), longest);
@@ -178,7 +171,7 @@ TEST_P(BagFiles, ACutAnywhereIsNoticedAndWhatComesBeforeIsGivenOut) {
 TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
   write_sample(file_, GetParam());
   const std::string bytes = file_text(file_);
-  const std::vector<Copy> whole = sample_messages();
+  const std::vector<BagMessage> whole = sample_bag_messages();
   SequentialRandom random(7);
   int detected = 0;
   int info_errors = 0;
@@ -190,7 +183,7 @@ TEST_P(BagFiles, DamageNeverCrashesAndLz4ChunksAreGivenOutUnchangedOrNotAtAll) {
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (i % 8)));
     fs::remove(file_);
     write_file(file_, damaged);
-    const Reading reading = read_all(file_);
+    const BagReading reading = read_all(file_);
     detected += reading.error.empty() ? 0 : 1;
     if (GetParam() == BagCompression::kLz4) {
       ASSERT_TRUE(is_part_of(reading.messages, whole)) << "trial " << i;

@@ -10,6 +10,7 @@
 #include "lidarena/dataset/mcap/mcap_reader.hpp"
 #include "lidarena/dataset/mcap/mcap_writer.hpp"
 #include "tests/dataset/file_helpers.hpp"
+#include "tests/dataset/messages.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::dataset {
@@ -25,22 +26,18 @@ void rewrite(const std::filesystem::path& file, std::string_view bytes) {
 }
 
 /// A message as a value.
-struct Copy {
+struct McapMessage {
   std::string topic;
   std::uint32_t sequence = 0;
   Time log_time{0};
   Time publish_time{0};
   std::string data;
-  bool operator==(const Copy&) const = default;
+  bool operator==(const McapMessage&) const = default;
 };
 
-std::string text_of(Bytes bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 /// 24 messages of random (seeded) content on two topics.
-std::vector<Copy> sample_messages() {
-  std::vector<Copy> messages;
+std::vector<McapMessage> sample_mcap_messages() {
+  std::vector<McapMessage> messages;
   SequentialRandom random(1);
   std::map<std::string, std::uint32_t> sequences;
   for (int i = 0; i < 24; ++i) {
@@ -60,7 +57,7 @@ void write_sample(const std::filesystem::path& file, int zstd_level,
   const std::uint16_t b = out.add_channel("/b", schema, "raw");
   out.add_channel("/silent", 0, "raw");
   out.add_metadata("about", {{"x", "1"}, {"y", "2"}});
-  for (const Copy& message : sample_messages()) {
+  for (const McapMessage& message : sample_mcap_messages()) {
     out.write(message.topic == "/a" ? a : b, message.log_time, message.publish_time,
               std::as_bytes(std::span(message.data)));
   }
@@ -68,13 +65,13 @@ void write_sample(const std::filesystem::path& file, int zstd_level,
 }
 
 /// The messages that can be read, and the error that ended the reading, if any.
-struct Reading {
-  std::vector<Copy> messages;
+struct McapReading {
+  std::vector<McapMessage> messages;
   std::string error;
 };
 
-Reading read_sample(const std::filesystem::path& file) {
-  Reading reading;
+McapReading read_sample(const std::filesystem::path& file) {
+  McapReading reading;
   try {
     McapReader in(file);
     while (const auto message = in.next()) {
@@ -88,10 +85,11 @@ Reading read_sample(const std::filesystem::path& file) {
 }
 
 /// Number of messages of `part` that are not in `whole`, or not in its order.
-std::size_t count_unexpected(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
+std::size_t count_unexpected(const std::vector<McapMessage>& part,
+                             const std::vector<McapMessage>& whole) {
   std::size_t count = 0;
   auto next = whole.begin();
-  for (const Copy& message : part) {
+  for (const McapMessage& message : part) {
     const auto found = std::find(next, whole.end(), message);
     if (found == whole.end()) {
       ++count;
@@ -102,10 +100,6 @@ std::size_t count_unexpected(const std::vector<Copy>& part, const std::vector<Co
   return count;
 }
 
-bool is_beginning_of(const std::vector<Copy>& part, const std::vector<Copy>& whole) {
-  return part.size() <= whole.size() && std::equal(part.begin(), part.end(), whole.begin());
-}
-
 class McapFiles : public testing::TestWithParam<int> {
  protected:
   TemporaryFolder folder_;
@@ -114,9 +108,9 @@ class McapFiles : public testing::TestWithParam<int> {
 
 TEST_P(McapFiles, MessagesComeBackInOrderWithAllTheyCarry) {
   write_sample(file_, GetParam());
-  const Reading reading = read_sample(file_);
+  const McapReading reading = read_sample(file_);
   EXPECT_EQ(reading.error, "");
-  EXPECT_EQ(reading.messages, sample_messages());
+  EXPECT_EQ(reading.messages, sample_mcap_messages());
 }
 
 TEST_P(McapFiles, TheSameMessagesGiveTheSameBytes) {
@@ -128,11 +122,11 @@ TEST_P(McapFiles, TheSameMessagesGiveTheSameBytes) {
 TEST_P(McapFiles, AFileCutAnywhereIsReadUpToTheCutAndSaysSo) {
   write_sample(file_, GetParam());
   const std::string whole = file_text(file_);
-  const std::vector<Copy> expected = sample_messages();
+  const std::vector<McapMessage> expected = sample_mcap_messages();
   std::size_t max_messages = 0;
   for (std::size_t size = 0; size < whole.size(); ++size) {
     rewrite(file_, std::string_view(whole).substr(0, size));
-    const Reading reading = read_sample(file_);
+    const McapReading reading = read_sample(file_);
     ASSERT_NE(reading.error, "") << "cut after " << size;
     EXPECT_THAT(reading.error, HasSubstr(file_.string()));
     if (size > 40) {  // after the header
@@ -155,12 +149,12 @@ TEST_P(McapFiles, AFileCutAnywhereIsReadUpToTheCutAndSaysSo) {
 TEST_P(McapFiles, AFlippedBitAnywhereIsNoticed) {
   write_sample(file_, GetParam());
   const std::string whole = file_text(file_);
-  const std::vector<Copy> expected = sample_messages();
+  const std::vector<McapMessage> expected = sample_mcap_messages();
   for (std::size_t at = 0; at < whole.size(); ++at) {
     std::string damaged = whole;
     damaged[at] = static_cast<char>(damaged[at] ^ (1 << (at % 8)));
     rewrite(file_, damaged);
-    const Reading reading = read_sample(file_);
+    const McapReading reading = read_sample(file_);
     EXPECT_NE(reading.error, "") << "byte " << at << " of " << whole.size();
     const std::size_t unexpected = count_unexpected(reading.messages, expected);
     EXPECT_LE(unexpected, 1U) << "byte " << at;
@@ -182,9 +176,9 @@ TEST_P(McapFiles, SeededDamageOfSeveralBytesNeverCrashesTheReader) {
       damaged[at] = static_cast<char>(random.uniform(0.0, 255.0));
     }
     rewrite(file_, damaged);
-    const Reading reading = read_sample(file_);
+    const McapReading reading = read_sample(file_);
     EXPECT_NE(reading.error, "") << seed;
-    EXPECT_LE(count_unexpected(reading.messages, sample_messages()), 8U) << seed;
+    EXPECT_LE(count_unexpected(reading.messages, sample_mcap_messages()), 8U) << seed;
     try {
       read_mcap_info(file_);
     } catch (const InputError&) {
@@ -229,9 +223,9 @@ TEST_P(McapFiles, WithoutASummaryInfoComesFromReadingAll) {
 TEST_P(McapFiles, WithoutCloseThePartIsThereAndTheFileIsNot) {
   write_sample(file_, GetParam(), [](McapWriter&) {});
   EXPECT_FALSE(exists(file_));
-  const Reading reading = read_sample(folder_.path() / "a.mcap.part");
+  const McapReading reading = read_sample(folder_.path() / "a.mcap.part");
   EXPECT_THAT(reading.error, HasSubstr("is cut off after"));
-  EXPECT_TRUE(is_beginning_of(reading.messages, sample_messages()));
+  EXPECT_TRUE(is_beginning_of(reading.messages, sample_mcap_messages()));
 }
 
 INSTANTIATE_TEST_SUITE_P(StoredAndZstd, McapFiles, testing::Values(0, 1),
@@ -274,7 +268,7 @@ TEST(Mcap, AnEmptyFileIsWhole) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "a.mcap";
   McapWriter(file).close();
-  const Reading reading = read_sample(file);
+  const McapReading reading = read_sample(file);
   EXPECT_EQ(reading.error, "");
   EXPECT_TRUE(reading.messages.empty());
   EXPECT_EQ(read_mcap_info(file).message_count, 0U);
@@ -309,9 +303,9 @@ TEST(Mcap, ReadsMessagesOutsideChunks) {
   append(out, mcap::Footer{});
   out.put(mcap::magic());
   write_file(file, text_of(out.bytes()));
-  const Reading reading = read_sample(file);
+  const McapReading reading = read_sample(file);
   EXPECT_EQ(reading.error, "");
-  EXPECT_EQ(reading.messages, (std::vector<Copy>{{"/t", 9, Time{12}, Time{13}, "hello"}}));
+  EXPECT_EQ(reading.messages, (std::vector<McapMessage>{{"/t", 9, Time{12}, Time{13}, "hello"}}));
   EXPECT_FALSE(read_mcap_info(file).from_summary);
 }
 
@@ -361,7 +355,7 @@ TEST(Mcap, ReadsLz4Frames) {
   frame.put(records.bytes());
   frame.put(std::uint32_t{0});
   write_one_chunk(file, "lz4", frame.bytes(), records.size());
-  const Reading reading = read_sample(file);
+  const McapReading reading = read_sample(file);
   EXPECT_EQ(reading.error, "");
   ASSERT_EQ(reading.messages.size(), 1U);
   EXPECT_EQ(reading.messages[0].data, "hello");
@@ -377,18 +371,18 @@ TEST(Mcap, TheCheckSumIsCrc32OfIeee) {
 
 TEST_P(McapFiles, AMessageLargerThanAChunkSharesOneWithThoseBeforeIt) {
   const std::string large(300'000, 'x');
-  const std::vector<Copy> messages{{"/a", 0, Time{1}, Time{1}, "small"},
-                                   {"/a", 1, Time{2}, Time{2}, large},
-                                   {"/a", 2, Time{3}, Time{3}, large},
-                                   {"/a", 3, Time{4}, Time{4}, "small"}};
+  const std::vector<McapMessage> messages{{"/a", 0, Time{1}, Time{1}, "small"},
+                                          {"/a", 1, Time{2}, Time{2}, large},
+                                          {"/a", 2, Time{3}, Time{3}, large},
+                                          {"/a", 3, Time{4}, Time{4}, "small"}};
   McapWriter out(file_, {.zstd_level = GetParam(), .chunk_bytes = 100'000});
   const std::uint16_t channel = out.add_channel("/a", 0, "raw");
-  for (const Copy& message : messages) {
+  for (const McapMessage& message : messages) {
     out.write(channel, message.log_time, message.publish_time,
               std::as_bytes(std::span(message.data)));
   }
   out.close();
-  const Reading reading = read_sample(file_);
+  const McapReading reading = read_sample(file_);
   EXPECT_EQ(reading.error, "");
   EXPECT_EQ(reading.messages, messages);
   EXPECT_EQ(out.statistics().chunk_count, 3U);

@@ -10,15 +10,12 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
 #include "tests/estimation/elastic_oracle.hpp"
+#include "tests/estimation/pose_of.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 const Parallel kOne(1);
-
-Pose pose_of(double x, double y, double z, double rx, double ry, double rz) {
-  return make_pose(so3::exp({rx, ry, rz}), {x, y, z});
-}
 
 /// Points in all directions at random times of a true motion, each with a plane through its true
 /// position.

@@ -4,18 +4,15 @@
 #include <gtest/gtest.h>
 
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/pose_of.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 
-Pose pose_of(double x, double y, double z, double rx, double ry, double rz) {
-  return make_pose(so3::exp({rx, ry, rz}), {x, y, z});
-}
-
 /// Left increments (translation, rotation about the knot's own position) of two knots.
-ElasticSegment moved(const Pose& from, const Pose& to, const Vector12& d) {
+ElasticSegment moved_segment(const Pose& from, const Pose& to, const Vector12& d) {
   const auto apply = [](const Pose& pose, const Eigen::Matrix<double, 6, 1>& step) {
     return make_pose(Eigen::Matrix3d(so3::exp(step.tail<3>()) * pose.linear()),
                      Eigen::Vector3d(pose.translation() + step.head<3>()));
@@ -63,7 +60,7 @@ TEST(ElasticMotion, DerivativeIsTheNumericOneAtAnyTurn) {
       constexpr double h = 1e-5;
       for (int k = 0; k < 12; ++k) {
         const auto at = [&](double s) {
-          return direction.dot(moved(from, to, s * Vector12::Unit(k)).place(point, a));
+          return direction.dot(moved_segment(from, to, s * Vector12::Unit(k)).place(point, a));
         };
         const double slope = (at(h) - at(-h)) / (2.0 * h);
         // h^2 / 6 times a third derivative of about 8 m, and rounding of 8 m by 1e-16, over h

@@ -8,17 +8,12 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
-
-Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Vector3d(x, y, random.normal());
-}
 
 TEST(FeatureResiduals, JacobiansAreTheNumericOnes) {
   SequentialRandom random(1, 1);

@@ -5,15 +5,10 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
-
-Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Eigen::Vector3d(x, y, random.normal());
-}
 
 /// Scans of 0.1 s at constant rates of up to some rad/s, of which a gyro sees M times the truth.
 GyroCalibration calibrated_with(const Eigen::Matrix3d& m, double rotation_sigma, int scans) {

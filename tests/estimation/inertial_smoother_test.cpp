@@ -9,25 +9,18 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
-using State = NavState;
-
 const Vector3d kGravity(0.0, 0.0, -9.8);
 constexpr ImuNoise kNoise{1e-3, 1e-2, 1e-4, 1e-3};
 constexpr double kDt = 0.005;
 constexpr int kSteps = 20;  // IMU samples from one pose to the next
 constexpr double kTurnSigma = 2e-3;
 constexpr double kPlaceSigma = 5e-3;
-
-Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Vector3d(x, y, random.normal());
-}
 
 PoseMeasurement::Information usual_information() {
   PoseMeasurement::Information information = PoseMeasurement::Information::Zero();
@@ -38,7 +31,7 @@ PoseMeasurement::Information usual_information() {
 
 /// A flight: its true states, the samples of its IMU, and the measured poses.
 struct Flight {
-  std::vector<State> truth;
+  std::vector<NavState> truth;
   std::vector<std::vector<std::pair<Vector3d, Vector3d>>> imu;  ///< by measurement
   std::vector<PoseMeasurement> measured;
 };
@@ -48,7 +41,7 @@ struct Flight {
 Flight fly(int measurements, const ImuBias& bias, double noise, std::uint64_t seed) {
   SequentialRandom random(seed, 1);
   Flight flight;
-  State state;
+  NavState state;
   state.bias = bias;
   state.velocity = {1.0, 0.0, 0.0};
   flight.truth.push_back(state);
@@ -77,12 +70,12 @@ Flight fly(int measurements, const ImuBias& bias, double noise, std::uint64_t se
   return flight;
 }
 
-InertialStart start_at(const State& state) {
+InertialStart start_at(const NavState& state) {
   InertialStart start;
   start.state = state;
   start.state.bias = {};
   start.gravity = kGravity;
-  State::Vector sigma;
+  NavState::Vector sigma;
   sigma << Vector3d::Constant(1e-3), Vector3d::Constant(0.1), Vector3d::Constant(1e-3),
       Vector3d::Constant(0.02), Vector3d::Constant(0.2);
   start.covariance = sigma.cwiseAbs2().asDiagonal();
@@ -105,13 +98,13 @@ TEST(InertialSmoother, FindsBiasesAndVelocityOfAPerfectFlight) {
   start.state.velocity += Vector3d(0.1, -0.1, 0.05);
   smoother.start(start);
   play(flight, smoother);
-  const State::Vector error = minus(smoother.latest(), flight.truth.back());
+  const NavState::Vector error = minus(smoother.latest(), flight.truth.back());
   // The bounds are the largest standard deviations in the covariance of the smoother, from the
   // random walk of the biases and the initial sigmas.
-  EXPECT_LT(error.segment<3>(State::kGyroBias).norm(), 1e-4);
-  EXPECT_LT(error.segment<3>(State::kAccelBias).norm(), 5e-3);
-  EXPECT_LT(error.segment<3>(State::kVelocity).norm(), 1e-3);
-  EXPECT_LT(error.segment<3>(State::kPosition).norm(), 1e-4);
+  EXPECT_LT(error.segment<3>(NavState::kGyroBias).norm(), 1e-4);
+  EXPECT_LT(error.segment<3>(NavState::kAccelBias).norm(), 5e-3);
+  EXPECT_LT(error.segment<3>(NavState::kVelocity).norm(), 1e-3);
+  EXPECT_LT(error.segment<3>(NavState::kPosition).norm(), 1e-4);
 }
 
 TEST(InertialSmoother, AShortLagGivesWhatAllMeasurementsAtOnceGive) {
@@ -125,12 +118,12 @@ TEST(InertialSmoother, AShortLagGivesWhatAllMeasurementsAtOnceGive) {
   play(flight, some);
   EXPECT_EQ(all.size(), 31U);
   EXPECT_EQ(some.size(), 6U);
-  const State::Vector apart = minus(some.latest(), all.latest());
-  const State::Vector sigma = all.covariance().diagonal().cwiseSqrt();
+  const NavState::Vector apart = minus(some.latest(), all.latest());
+  const NavState::Vector sigma = all.covariance().diagonal().cwiseSqrt();
   // Marginalization keeps the Jacobians computed at that time: the difference is of second order in
   // errors that are small compared to one radian, hence small compared to one sigma.
   EXPECT_LT(apart.cwiseQuotient(sigma).cwiseAbs().maxCoeff(), 0.1);
-  const State::Vector ratio = some.covariance().diagonal().cwiseQuotient(sigma.cwiseAbs2());
+  const NavState::Vector ratio = some.covariance().diagonal().cwiseQuotient(sigma.cwiseAbs2());
   EXPECT_LT((ratio.array() - 1.0).abs().maxCoeff(), 0.05);
 }
 
@@ -143,14 +136,14 @@ TEST(InertialSmoother, ItsCovarianceIsHonest) {
     const ImuBias bias{random_vector(random, 0.02), random_vector(random, 0.2)};
     const Flight flight = fly(20, bias, 1.0, static_cast<std::uint64_t>(seed));
     InertialStart start = start_at(flight.truth.front());
-    State::Vector off;  // initial position and attitude are nearly known
+    NavState::Vector off;  // initial position and attitude are nearly known
     off << random_vector(random, 1e-3), random_vector(random, 0.1), random_vector(random, 1e-3),
         Vector3d::Zero(), Vector3d::Zero();
     start.state = plus(start.state, off);
     InertialSmoother smoother;
     smoother.start(start);
     play(flight, smoother);
-    const State::Vector error = minus(smoother.latest(), flight.truth.back());
+    const NavState::Vector error = minus(smoother.latest(), flight.truth.back());
     sum += error.dot(smoother.covariance().ldlt().solve(error)) / kFlights;
   }
   // The true biases are constant and the smoother assumes random walks, so the value is a little

@@ -8,20 +8,13 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
-using State = InertialState;
-
-Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Eigen::Vector3d(x, y, random.normal());
-}
-
-State random_state(SequentialRandom& random) {
-  State state;
+InertialState random_state(SequentialRandom& random) {
+  InertialState state;
   state.position() = random_vector(random, 5.0);
   state.rotation() = so3::exp(random_vector(random, 1.0));
   state.imu_from_lidar.linear() = so3::exp(random_vector(random, 1.0));
@@ -33,19 +26,20 @@ State random_state(SequentialRandom& random) {
   return state;
 }
 
-State::Vector random_tangent(SequentialRandom& random, double sigma) {
-  State::Vector v;
+InertialState::Vector random_tangent(SequentialRandom& random, double sigma) {
+  InertialState::Vector v;
   for (Eigen::Index i = 0; i < v.size(); ++i) v[i] = sigma * random.normal();
   return v;
 }
 
 /// Central differences of minus(f(e), f(0)) at e = 0.
-State::Matrix numeric_jacobian(const std::function<State(const State::Vector&)>& f) {
+InertialState::Matrix numeric_jacobian(
+    const std::function<InertialState(const InertialState::Vector&)>& f) {
   constexpr double kStep = 1e-6;
-  const State at_zero = f(State::Vector::Zero());
-  State::Matrix jacobian;
-  for (Eigen::Index i = 0; i < State::kDof; ++i) {
-    const State::Vector e = kStep * State::Vector::Unit(i);
+  const InertialState at_zero = f(InertialState::Vector::Zero());
+  InertialState::Matrix jacobian;
+  for (Eigen::Index i = 0; i < InertialState::kDof; ++i) {
+    const InertialState::Vector e = kStep * InertialState::Vector::Unit(i);
     jacobian.col(i) = (minus(f(e), at_zero) - minus(f(-e), at_zero)) / (2.0 * kStep);
   }
   return jacobian;
@@ -54,19 +48,19 @@ State::Matrix numeric_jacobian(const std::function<State(const State::Vector&)>&
 TEST(InertialState, MinusUndoesPlus) {
   SequentialRandom random(1, 1);
   for (int i = 0; i < 100; ++i) {
-    const State a = random_state(random);
-    const State::Vector delta = random_tangent(random, 0.5);
+    const InertialState a = random_state(random);
+    const InertialState::Vector delta = random_tangent(random, 0.5);
     EXPECT_LT((minus(plus(a, delta), a) - delta).norm(), 1e-9);
     EXPECT_NEAR(plus(a, delta).gravity.norm(), a.gravity.norm(), 1e-12);
-    const State b = random_state(random);
+    const InertialState b = random_state(random);
     EXPECT_LT(minus(plus(a, minus(b, a)), b).norm(), 1e-9);
   }
 }
 
 TEST(InertialState, GravityAcrossTheSphere) {
-  State up;
+  InertialState up;
   up.gravity = -up.gravity;
-  const State down;
+  const InertialState down;
   EXPECT_NEAR(minus(up, down).norm(), M_PI, 1e-12) << "the opposite direction is half a turn away";
   EXPECT_LT((plus(down, minus(up, down)).gravity - up.gravity).norm(), 1e-9);
   EXPECT_EQ(minus(up, up).norm(), 0.0);
@@ -85,10 +79,10 @@ TEST(InertialState, TheTangentBasisIsOrthonormalAndAcross) {
 TEST(InertialState, TransportIsTheNumericJacobian) {
   SequentialRandom random(3, 1);
   for (int i = 0; i < 20; ++i) {
-    const State from = random_state(random);
-    const State::Vector delta = random_tangent(random, 0.4);
-    const State::Matrix numeric =
-        numeric_jacobian([&](const State::Vector& e) { return plus(from, delta + e); });
+    const InertialState from = random_state(random);
+    const InertialState::Vector delta = random_tangent(random, 0.4);
+    const InertialState::Matrix numeric =
+        numeric_jacobian([&](const InertialState::Vector& e) { return plus(from, delta + e); });
     EXPECT_LT((transport(from, delta) - numeric).cwiseAbs().maxCoeff(), 1e-7);
   }
 }
@@ -97,24 +91,24 @@ TEST(InertialState, PropagationsJacobianIsTheNumericOne) {
   SequentialRandom random(4, 1);
   for (const Integration order : {Integration::kFirstOrder, Integration::kSecondOrder}) {
     for (int i = 0; i < 20; ++i) {
-      const State state = random_state(random);
+      const InertialState state = random_state(random);
       const Eigen::Vector3d gyro = random_vector(random, 2.0);
       const Eigen::Vector3d accel = random_vector(random, 10.0);
       constexpr double kSeconds = 0.05;
-      const auto stepped = [&](const State::Vector& e) {
-        State moved = plus(state, e);
+      const auto stepped = [&](const InertialState::Vector& e) {
+        InertialState moved = plus(state, e);
         propagate(moved, gyro, accel, kSeconds, order);
         return moved;
       };
-      State moved = state;
-      const State::Matrix f = propagate(moved, gyro, accel, kSeconds, order);
+      InertialState moved = state;
+      const InertialState::Matrix f = propagate(moved, gyro, accel, kSeconds, order);
       EXPECT_LT((f - numeric_jacobian(stepped)).cwiseAbs().maxCoeff(), 1e-7);
     }
   }
 }
 
 TEST(InertialState, FreeFallAndATurnInClosedForm) {
-  State state;
+  InertialState state;
   state.nav.velocity = {1.0, 0.0, 2.0};
   state.nav.bias.gyro = {0.0, 0.0, 0.1};
   const double dt = 0.005;
@@ -126,7 +120,7 @@ TEST(InertialState, FreeFallAndATurnInClosedForm) {
   EXPECT_LT((state.nav.velocity - Eigen::Vector3d(1.0, 0.0, 2.0 - g)).norm(), 1e-9);
   EXPECT_LT((state.rotation() - so3::exp({0.0, 0.0, 0.5})).norm(), 1e-9);
 
-  State first_order;
+  InertialState first_order;
   first_order.nav.velocity = {1.0, 0.0, 2.0};
   for (int i = 0; i < 200; ++i) {
     propagate(first_order, Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), dt,
@@ -142,7 +136,7 @@ TEST(InertialState, AForceThatTurnsWithTheBodyIsIntegratedToSecondOrder) {
   constexpr double kForce = 3.0;  // m/s^2
   constexpr double kStep = 0.005;
   const auto error_of = [&](Integration integration) {
-    State state;
+    InertialState state;
     state.gravity.setZero();
     for (int i = 0; i < 100; ++i)
       propagate(state, {0.0, 0.0, kRate}, {kForce, 0.0, 0.0}, kStep, integration);
@@ -161,12 +155,13 @@ TEST(InertialState, AForceThatTurnsWithTheBodyIsIntegratedToSecondOrder) {
 
 TEST(InertialState, NoiseOfManyStepsIsThatOfTheirSum) {
   const ImuNoise noise{1e-3, 1e-2, 1e-5, 1e-4};
-  State::Matrix sum = State::Matrix::Zero();
+  InertialState::Matrix sum = InertialState::Matrix::Zero();
   for (int i = 0; i < 200; ++i) sum += step_noise(noise, 0.005);
-  EXPECT_NEAR(sum(State::kRotation, State::kRotation), 1e-6, 1e-15);  // density^2 * 1 s
-  EXPECT_NEAR(sum(State::kVelocity + 2, State::kVelocity + 2), 1e-4, 1e-13);
-  EXPECT_NEAR(sum(State::kGyroBias, State::kGyroBias), 1e-10, 1e-19);
-  EXPECT_NEAR(sum(State::kAccelBias, State::kAccelBias), 1e-8, 1e-17);
+  EXPECT_NEAR(sum(InertialState::kRotation, InertialState::kRotation), 1e-6,
+              1e-15);  // density^2 * 1 s
+  EXPECT_NEAR(sum(InertialState::kVelocity + 2, InertialState::kVelocity + 2), 1e-4, 1e-13);
+  EXPECT_NEAR(sum(InertialState::kGyroBias, InertialState::kGyroBias), 1e-10, 1e-19);
+  EXPECT_NEAR(sum(InertialState::kAccelBias, InertialState::kAccelBias), 1e-8, 1e-17);
   EXPECT_NEAR(sum.trace(), 3.0 * (1e-6 + 1e-4 + 1e-10 + 1e-8), 1e-12) << "all others are zero";
 }
 

@@ -12,11 +12,10 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
-
-using State = InertialState;
 
 /// A LiDAR point that lies on the plane normal . x = offset in the world.
 struct PlanePoint {
@@ -25,14 +24,8 @@ struct PlanePoint {
   double offset = 0.0;
 };
 
-Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Eigen::Vector3d(x, y, random.normal());
-}
-
 /// Points in all directions from a LiDAR at `truth`, each with `sigma` m of noise across its plane.
-std::vector<PlanePoint> simulate_points(const State& truth, SequentialRandom& random,
+std::vector<PlanePoint> simulate_points(const InertialState& truth, SequentialRandom& random,
                                         double sigma) {
   std::vector<PlanePoint> seen;
   for (int i = 0; i < 60; ++i) {
@@ -45,7 +38,8 @@ std::vector<PlanePoint> simulate_points(const State& truth, SequentialRandom& ra
   return seen;
 }
 
-NormalEquations<kPointDof> equations(const std::vector<PlanePoint>& seen, const State& state) {
+NormalEquations<kPointDof> equations(const std::vector<PlanePoint>& seen,
+                                     const InertialState& state) {
   NormalEquations<kPointDof> sum;
   for (const PlanePoint& one : seen) {
     const Eigen::Vector3d in_imu = state.imu_from_lidar * one.point;
@@ -59,25 +53,26 @@ NormalEquations<kPointDof> equations(const std::vector<PlanePoint>& seen, const 
   return sum;
 }
 
-State some_state(SequentialRandom& random) {
-  State state;
+InertialState some_inertial_state(SequentialRandom& random) {
+  InertialState state;
   state.position() = random_vector(random, 2.0);
   state.rotation() = so3::exp(random_vector(random, 1.0));
   state.imu_from_lidar.translation() = Eigen::Vector3d(0.01, 0.02, -0.04);
   return state;
 }
 
-State::Matrix some_covariance(SequentialRandom& random, double sigma) {
-  State::Matrix root;
+InertialState::Matrix some_covariance(SequentialRandom& random, double sigma) {
+  InertialState::Matrix root;
   for (Eigen::Index i = 0; i < root.size(); ++i) root.data()[i] = random.normal();
   return sigma * sigma *
-         (State::Matrix::Identity() + 0.3 * root * root.transpose() / double{State::kDof});
+         (InertialState::Matrix::Identity() +
+          0.3 * root * root.transpose() / double{InertialState::kDof});
 }
 
 /// -log of the posterior, up to a constant.
 double cost(const StateEstimate& prior, const std::vector<PlanePoint>& seen, double variance,
-            const State& x) {
-  const State::Vector moved = minus(x, prior.state);
+            const InertialState& x) {
+  const InertialState::Vector moved = minus(x, prior.state);
   double sum = 0.5 * moved.dot(prior.covariance.ldlt().solve(moved));
   for (const PlanePoint& one : seen) {
     const double r = one.normal.dot(x.world_from_lidar() * one.point) - one.offset;
@@ -90,23 +85,25 @@ TEST(IteratedUpdate, EndsWhereThePosteriorIsLargest) {
   SequentialRandom random(5, 1);
   for (int round = 0; round < 10; ++round) {
     constexpr double kVariance = 1e-4;
-    const State truth = some_state(random);
+    const InertialState truth = some_inertial_state(random);
     StateEstimate prior;
     prior.covariance = some_covariance(random, 0.1);
-    State::Vector error;
+    InertialState::Vector error;
     for (Eigen::Index i = 0; i < error.size(); ++i) error[i] = 0.1 * random.normal();
     prior.state = plus(truth, error);
     const auto seen = simulate_points(truth, random, 0.01);
     const auto updated =
-        iterated_update(prior, [&](const State& x, bool) { return equations(seen, x); },
+        iterated_update(prior, [&](const InertialState& x, bool) { return equations(seen, x); },
                         {.max_iterations = 20, .tolerance = 1e-12, .variance = kVariance});
     EXPECT_EQ(updated.points.count, seen.size());
-    const State& x = updated.estimate.state;
+    const InertialState& x = updated.estimate.state;
     const double best = cost(prior, seen, kVariance, x);
-    for (Eigen::Index i = 0; i < State::kDof; ++i) {
+    for (Eigen::Index i = 0; i < InertialState::kDof; ++i) {
       constexpr double kStep = 1e-4;
-      const double up = cost(prior, seen, kVariance, plus(x, kStep * State::Vector::Unit(i)));
-      const double down = cost(prior, seen, kVariance, plus(x, -kStep * State::Vector::Unit(i)));
+      const double up =
+          cost(prior, seen, kVariance, plus(x, kStep * InertialState::Vector::Unit(i)));
+      const double down =
+          cost(prior, seen, kVariance, plus(x, -kStep * InertialState::Vector::Unit(i)));
       const double slope = (up - down) / (2.0 * kStep);
       const double curvature = (up + down - 2.0 * best) / (kStep * kStep);
       EXPECT_GT(curvature, 0.0);
@@ -124,7 +121,7 @@ TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
   constexpr double kVariance = 0.01;
   const auto updated = iterated_update(
       prior,
-      [&](const State& x, bool) {
+      [&](const InertialState& x, bool) {
         NormalEquations<kPointDof> sum;
         for (Eigen::Index i = 0; i < 3; ++i) {
           Eigen::Matrix<double, 1, kPointDof> row = Eigen::Matrix<double, 1, kPointDof>::Zero();
@@ -134,23 +131,23 @@ TEST(IteratedUpdate, ForALinearCaseIsTheKalmanUpdate) {
         return sum;
       },
       {.max_iterations = 0, .variance = kVariance});
-  const Eigen::Matrix<double, State::kDof, 3> cross = prior.covariance.leftCols<3>();
+  const Eigen::Matrix<double, InertialState::kDof, 3> cross = prior.covariance.leftCols<3>();
   const Eigen::Matrix3d innovation =
       prior.covariance.topLeftCorner<3, 3>() + kVariance * Eigen::Matrix3d::Identity();
-  const Eigen::Matrix<double, State::kDof, 3> gain = cross * innovation.inverse();
-  const State::Vector step = gain * measured;
+  const Eigen::Matrix<double, InertialState::kDof, 3> gain = cross * innovation.inverse();
+  const InertialState::Vector step = gain * measured;
   EXPECT_LT(minus(updated.estimate.state, plus(prior.state, step)).norm(), 1e-12);
-  const State::Matrix covariance = prior.covariance - gain * cross.transpose();
-  const State::Matrix a = transport(prior.state, step);
+  const InertialState::Matrix covariance = prior.covariance - gain * cross.transpose();
+  const InertialState::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.estimate.covariance - a * covariance * a.transpose()).norm(), 1e-12);
 }
 
 TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
   SequentialRandom random(7, 1);
-  const State truth = some_state(random);
+  const InertialState truth = some_inertial_state(random);
   const auto seen = simulate_points(truth, random, 0.0);
   std::vector<bool> searched;
-  const auto residuals = [&](const State& x, bool search) {
+  const auto residuals = [&](const InertialState& x, bool search) {
     searched.push_back(search);
     return equations(seen, x);
   };
@@ -160,7 +157,7 @@ TEST(IteratedUpdate, SearchesAtTheStartAndAfterConverging) {
   EXPECT_EQ(searched, (std::vector<bool>{true, true}));
 
   searched.clear();
-  const auto restless = [&](const State& x, bool search) {
+  const auto restless = [&](const InertialState& x, bool search) {
     searched.push_back(search);
     auto sum = equations(seen, x);
     sum.gradient[0] += 10.0 * static_cast<double>(searched.size() % 2);
@@ -175,8 +172,8 @@ TEST(IteratedUpdate, WithoutResidualsThePriorStays) {
   StateEstimate prior;
   prior.state.position() = Eigen::Vector3d(1.0, 2.0, 3.0);
   prior.covariance *= 0.1;
-  const auto updated =
-      iterated_update(prior, [](const State&, bool) { return NormalEquations<kPointDof>{}; }, {});
+  const auto updated = iterated_update(
+      prior, [](const InertialState&, bool) { return NormalEquations<kPointDof>{}; }, {});
   EXPECT_EQ(updated.points.count, 0U);
   EXPECT_EQ(updated.estimate.state.position(), prior.state.position());
   EXPECT_EQ(updated.estimate.covariance, prior.covariance);
@@ -192,9 +189,9 @@ std::pair<double, double> normalized_errors(std::uint64_t seed) {
   SequentialRandom random(seed, 9);
   StateEstimate estimate;
   estimate.covariance = some_covariance(random, 0.03);
-  State::Vector drawn;
+  InertialState::Vector drawn;
   for (Eigen::Index i = 0; i < drawn.size(); ++i) drawn[i] = random.normal();
-  State truth = plus(estimate.state, estimate.covariance.llt().matrixL() * drawn);
+  InertialState truth = plus(estimate.state, estimate.covariance.llt().matrixL() * drawn);
   for (int i = 1; i <= 200; ++i) {
     const double t = kStep * i;
     const Eigen::Vector3d rate(0.5 * std::sin(5.0 * t), 0.3, std::cos(4.0 * t));
@@ -205,17 +202,17 @@ std::pair<double, double> normalized_errors(std::uint64_t seed) {
     propagate(truth, rate, force, kStep, Integration::kSecondOrder);
     truth.nav.bias.gyro += random_vector(random, noise.gyro_bias_walk * std::sqrt(kStep));
     truth.nav.bias.accel += random_vector(random, noise.accel_bias_walk * std::sqrt(kStep));
-    const State::Matrix f =
+    const InertialState::Matrix f =
         propagate(estimate.state, gyro, accel, kStep, Integration::kSecondOrder);
     estimate.covariance = f * estimate.covariance * f.transpose() + step_noise(noise, kStep);
     if (i % 20 != 0) continue;
     const auto seen = simulate_points(truth, random, kSigma);
     estimate =
-        iterated_update(estimate, [&](const State& x, bool) { return equations(seen, x); },
+        iterated_update(estimate, [&](const InertialState& x, bool) { return equations(seen, x); },
                         {.max_iterations = 5, .tolerance = 1e-9, .variance = kSigma * kSigma})
             .estimate;
   }
-  const State::Vector error = minus(truth, estimate.state);
+  const InertialState::Vector error = minus(truth, estimate.state);
   const Eigen::Matrix<double, 6, 6> pose = estimate.covariance.topLeftCorner<6, 6>();
   return {error.head<6>().dot(pose.ldlt().solve(error.head<6>())),
           error.dot(estimate.covariance.ldlt().solve(error))};
@@ -245,17 +242,18 @@ TEST(ZeroVelocityUpdate, IsTheProductOfTheTwoGaussians) {
   prior.covariance = some_covariance(random, 0.2);
   prior.state.nav.velocity = {0.1, -0.2, 0.05};
   constexpr double kSigma = 0.03;
-  State::Matrix information = prior.covariance.inverse();
+  InertialState::Matrix information = prior.covariance.inverse();
   for (Eigen::Index i = 0; i < 3; ++i) {
-    information(State::kVelocity + i, State::kVelocity + i) += 1.0 / (kSigma * kSigma);
+    information(InertialState::kVelocity + i, InertialState::kVelocity + i) +=
+        1.0 / (kSigma * kSigma);
   }
-  State::Vector gradient = State::Vector::Zero();
-  gradient.segment<3>(State::kVelocity) = prior.state.nav.velocity / (kSigma * kSigma);
-  const State::Vector step = -information.inverse() * gradient;
+  InertialState::Vector gradient = InertialState::Vector::Zero();
+  gradient.segment<3>(InertialState::kVelocity) = prior.state.nav.velocity / (kSigma * kSigma);
+  const InertialState::Vector step = -information.inverse() * gradient;
 
   const StateEstimate updated = zero_velocity_update(prior, kSigma);
   EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
-  const State::Matrix a = transport(prior.state, step);
+  const InertialState::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
   EXPECT_LT(updated.state.nav.velocity.norm(), prior.state.nav.velocity.norm());
 }
@@ -267,18 +265,19 @@ TEST(PoseUpdate, IsTheProductOfTheTwoGaussians) {
   prior.state.position() = Eigen::Vector3d(1.0, 2.0, 3.0);
   prior.state.rotation() = so3::exp({0.1, -0.2, 0.7});
   constexpr double kShift = 0.03, kTurn = 0.01;
-  State::Vector off = State::Vector::Zero();
+  InertialState::Vector off = InertialState::Vector::Zero();
   off.head<6>() << 0.02, -0.01, 0.03, 0.004, -0.002, 0.003;
-  State::Vector weight = State::Vector::Zero();
+  InertialState::Vector weight = InertialState::Vector::Zero();
   weight.head<3>().setConstant(1.0 / (kShift * kShift));
   weight.segment<3>(3).setConstant(1.0 / (kTurn * kTurn));
-  const State::Matrix information = prior.covariance.inverse() + State::Matrix(weight.asDiagonal());
-  const State::Vector step = information.inverse() * weight.cwiseProduct(off);
+  const InertialState::Matrix information =
+      prior.covariance.inverse() + InertialState::Matrix(weight.asDiagonal());
+  const InertialState::Vector step = information.inverse() * weight.cwiseProduct(off);
 
   const Pose measured = plus(prior.state, off).world_from_imu();
   const StateEstimate updated = pose_update(prior, measured, kShift, kTurn);
   EXPECT_LT(minus(updated.state, plus(prior.state, step)).norm(), 1e-9);
-  const State::Matrix a = transport(prior.state, step);
+  const InertialState::Matrix a = transport(prior.state, step);
   EXPECT_LT((updated.covariance - a * information.inverse() * a.transpose()).norm(), 1e-9);
 }
 

@@ -7,15 +7,10 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
-
-Eigen::Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Eigen::Vector3d(x, y, random.normal());
-}
 
 TEST(PointToPlane, TheJacobianIsTheNumericOne) {
   SequentialRandom random(6, 1);

@@ -11,6 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
@@ -19,12 +20,6 @@ using Covariance = PoseGraph::Covariance;
 using Eigen::Vector3d;
 
 constexpr double kExact = 1e-6;  // accuracy of the solver
-
-Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Vector3d(x, y, random.normal());
-}
 
 Pose random_pose(SequentialRandom& random, double meters, double radians) {
   const Vector3d turn = random_vector(random, radians);

@@ -9,20 +9,15 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "tests/estimation/random_vector.hpp"
 
 namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kGravity(0.3, -0.2, -9.8);  // any direction
-constexpr ImuNoise kNoise{1e-3, 1e-2, 1e-4, 1e-3};
-
-Vector3d random_vector(SequentialRandom& random, double sigma) {
-  const double x = random.normal();
-  const double y = random.normal();
-  return sigma * Vector3d(x, y, random.normal());
-}
+const Vector3d kTiltedGravity(0.3, -0.2, -9.8);  // any direction
+constexpr ImuNoise kImuNoise{1e-3, 1e-2, 1e-4, 1e-3};
 
 NavState some_state(SequentialRandom& random) {
   NavState state;
@@ -42,7 +37,7 @@ Vector3d force_at(double t) {
 
 /// The motion over `seconds` in `steps` steps, each with the rate and force at its middle.
 Preintegration summed(const ImuBias& true_bias, const ImuBias& assumed, double seconds, int steps) {
-  Preintegration sum(assumed, kNoise);
+  Preintegration sum(assumed, kImuNoise);
   const double dt = seconds / steps;
   for (int i = 0; i < steps; ++i) {
     const double t = (i + 0.5) * dt;
@@ -64,7 +59,8 @@ NavState integrated(const NavState& first, double seconds) {
   constexpr int kSteps = 2000;
   const double h = seconds / kSteps;
   const auto rates = [](const Eigen::Matrix3d& rotation, const Vector3d& velocity, double t) {
-    return Rates{rotation * so3::hat(rate_at(t)), rotation * force_at(t) + kGravity, velocity};
+    return Rates{rotation * so3::hat(rate_at(t)), rotation * force_at(t) + kTiltedGravity,
+                 velocity};
   };
   for (int i = 0; i < kSteps; ++i) {
     const double t = i * h;
@@ -88,7 +84,8 @@ TEST(Preintegration, PredictsWhatRungeKuttaFindsToSecondOrder) {
   const NavState last = integrated(first, 0.5);
   double before = 0.0;
   for (const int steps : {50, 100, 200}) {
-    const NavState found = summed(first.bias, first.bias, 0.5, steps).predict(first, kGravity);
+    const NavState found =
+        summed(first.bias, first.bias, 0.5, steps).predict(first, kTiltedGravity);
     const double error = minus(found, last).norm();
     if (before > 0.0) {
       EXPECT_NEAR(before / error, 4.0, 0.2) << "half the step, a quarter of the error";
@@ -101,8 +98,8 @@ TEST(Preintegration, PredictsWhatRungeKuttaFindsToSecondOrder) {
 }
 
 TEST(Preintegration, IsExactForConstantTurningWithoutForceAndForForceWithoutTurning) {
-  Preintegration turning({}, kNoise);
-  Preintegration pushed({}, kNoise);
+  Preintegration turning({}, kImuNoise);
+  Preintegration pushed({}, kImuNoise);
   for (int i = 0; i < 20; ++i) {
     turning.integrate({0.1, 0.2, 0.9}, Vector3d::Zero(), 0.01);
     pushed.integrate(Vector3d::Zero(), {1.0, 2.0, 3.0}, 0.01);
@@ -134,7 +131,8 @@ TEST(Preintegration, TheResidualIsZeroWhereItPredicts) {
   SequentialRandom random(3, 1);
   const NavState first = some_state(random);
   const Preintegration sum = summed(first.bias, {}, 0.2, 40);
-  EXPECT_LT(sum.residual(first, sum.predict(first, kGravity), kGravity).value.norm(), 1e-13);
+  EXPECT_LT(sum.residual(first, sum.predict(first, kTiltedGravity), kTiltedGravity).value.norm(),
+            1e-13);
 }
 
 TEST(Preintegration, TheJacobiansAreTheNumericOnes) {
@@ -144,17 +142,19 @@ TEST(Preintegration, TheJacobiansAreTheNumericOnes) {
     const Preintegration sum = summed(first.bias, {}, 0.2, 40);
     NavState::Vector off;
     for (double& x : off) x = 0.1 * random.normal();
-    const NavState second = plus(sum.predict(first, kGravity), off);
-    const InertialResidual r = sum.residual(first, second, kGravity);
+    const NavState second = plus(sum.predict(first, kTiltedGravity), off);
+    const InertialResidual r = sum.residual(first, second, kTiltedGravity);
     const auto slope = [](const std::function<NavState::Vector(double)>& f) {
       return NavState::Vector((f(1e-6) - f(-1e-6)) / 2e-6);
     };
     for (Eigen::Index k = 0; k < NavState::kDof; ++k) {
       const NavState::Vector unit = NavState::Vector::Unit(k);
-      const auto by_first = slope(
-          [&](double h) { return sum.residual(plus(first, h * unit), second, kGravity).value; });
-      const auto by_second = slope(
-          [&](double h) { return sum.residual(first, plus(second, h * unit), kGravity).value; });
+      const auto by_first = slope([&](double h) {
+        return sum.residual(plus(first, h * unit), second, kTiltedGravity).value;
+      });
+      const auto by_second = slope([&](double h) {
+        return sum.residual(first, plus(second, h * unit), kTiltedGravity).value;
+      });
       EXPECT_LT((r.by_first.col(k) - by_first).norm(), 1e-7) << k;
       EXPECT_LT((r.by_second.col(k) - by_second).norm(), 1e-7) << k;
     }
@@ -168,17 +168,17 @@ TEST(Preintegration, TheCovarianceIsThatOfManyNoisyRuns) {
   SequentialRandom random(5, 1);
   const NavState first{};
   const Preintegration clean = summed({}, {}, kSteps * kDt, kSteps);
-  const NavState second = clean.predict(first, kGravity);
+  const NavState second = clean.predict(first, kTiltedGravity);
   Eigen::Matrix<double, 9, 9> spread = Eigen::Matrix<double, 9, 9>::Zero();
   for (int run = 0; run < kRuns; ++run) {
-    Preintegration noisy({}, kNoise);
+    Preintegration noisy({}, kImuNoise);
     for (int i = 0; i < kSteps; ++i) {
       const double t = (i + 0.5) * kDt;
-      noisy.integrate(rate_at(t) + random_vector(random, kNoise.gyro_density / std::sqrt(kDt)),
-                      force_at(t) + random_vector(random, kNoise.accel_density / std::sqrt(kDt)),
+      noisy.integrate(rate_at(t) + random_vector(random, kImuNoise.gyro_density / std::sqrt(kDt)),
+                      force_at(t) + random_vector(random, kImuNoise.accel_density / std::sqrt(kDt)),
                       kDt);
     }
-    const NavState::Vector all = noisy.residual(first, second, kGravity).value;
+    const NavState::Vector all = noisy.residual(first, second, kTiltedGravity).value;
     const Eigen::Matrix<double, 9, 1> r = all.head<9>();
     spread += r * r.transpose() / kRuns;
   }
@@ -191,7 +191,7 @@ TEST(Preintegration, TheCovarianceIsThatOfManyNoisyRuns) {
   const double five_sigma = 5.0 * std::sqrt(2.0 / kRuns);
   EXPECT_LT((whitened - Eigen::Matrix<double, 9, 9>::Identity()).cwiseAbs().maxCoeff(), five_sigma);
   EXPECT_NEAR(clean.covariance()(NavState::kGyroBias, NavState::kGyroBias),
-              kNoise.gyro_bias_walk * kNoise.gyro_bias_walk * kSteps * kDt, 1e-18);
+              kImuNoise.gyro_bias_walk * kImuNoise.gyro_bias_walk * kSteps * kDt, 1e-18);
 }
 
 }  // namespace

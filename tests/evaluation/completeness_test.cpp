@@ -4,6 +4,7 @@
 #include "tests/evaluation/listed_sources.hpp"
 
 #include <gtest/gtest.h>
+#include "tests/evaluation/two_threads.hpp"
 
 #include <cmath>
 #include <deque>
@@ -18,8 +19,6 @@ using namespace std::chrono_literals;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using listed::Truths;
-
-const Parallel kTwoThreads(2);
 
 /// Hits on the floor z = 0 for x in [0, length], |y| < 1, one per centimeter, from above.
 Truths hits_on_floor(double length) {

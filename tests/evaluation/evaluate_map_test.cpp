@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include "tests/evaluation/two_threads.hpp"
 
 #include <cmath>
 #include <deque>
@@ -25,7 +26,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-const Parallel kTwoThreads(2);
 const Vector3d kHalf(1.6, 1.2, 0.8);
 
 /// Hits on all walls of the room except within 5 cm of the corners, from inside.

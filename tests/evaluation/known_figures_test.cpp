@@ -7,6 +7,7 @@
 #include <fstream>
 
 #include "flights.hpp"
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
@@ -20,8 +21,6 @@ namespace lidarena::evaluation {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr double kDegree = M_PI / 180.0;
 
 using tum_text::shared;
 using tum_text::test_data;

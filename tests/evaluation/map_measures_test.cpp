@@ -11,14 +11,13 @@
 #include "lidarena/evaluation/map/signed_distance.hpp"
 #include "lidarena/evaluation/map/voxel_error.hpp"
 #include "meshes.hpp"
+#include "tests/evaluation/two_threads.hpp"
 
 namespace lidarena::evaluation {
 namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-
-const Parallel kTwoThreads(2);
 
 struct Scored {
   std::vector<Vector3f> map;

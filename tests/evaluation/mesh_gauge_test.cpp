@@ -8,8 +8,10 @@
 #include <numbers>
 
 #include "flights.hpp"
+#include "lidarena/base/angle.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "meshes.hpp"
+#include "tests/evaluation/two_threads.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -19,9 +21,6 @@ using Eigen::Vector3f;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-const Parallel kTwoThreads(2);
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 /// A furnished room of 8 x 6 x 3 m.
 world::TriangleMesh room() {

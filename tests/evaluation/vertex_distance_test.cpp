@@ -11,6 +11,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/random.hpp"
 #include "meshes.hpp"
+#include "tests/evaluation/two_threads.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -18,8 +19,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using ::testing::HasSubstr;
-
-const Parallel kTwoThreads(2);
 
 VertexDistance distance_of(const std::vector<Vector3f>& map, const world::World& world,
                            const Pose& mesh_from_map, double edge) {

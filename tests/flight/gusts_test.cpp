@@ -10,15 +10,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-GustConfig gusty(std::uint64_t seed = 1) {
+GustConfig gusts_of_seed(std::uint64_t seed = 1) {
   return {.wind = {1.0, -0.5, 0.0}, .gust_speed = 0.6, .correlation_time_s = 0.8, .seed = seed};
 }
 
 TEST(Gusts, AreOffByDefaultAndBeforeTheFlight) {
   EXPECT_TRUE(Gusts(GustConfig{}).still());
   EXPECT_EQ(Gusts(GustConfig{}).at(5.0).norm(), 0.0);
-  EXPECT_EQ(Gusts(gusty()).at(0.0).norm(), 0.0);
-  EXPECT_GT(Gusts(gusty()).at(5.0).norm(), 0.0);
+  EXPECT_EQ(Gusts(gusts_of_seed()).at(0.0).norm(), 0.0);
+  EXPECT_GT(Gusts(gusts_of_seed()).at(5.0).norm(), 0.0);
 }
 
 TEST(Gusts, HaveTheMeanTheDeviationAndTheCorrelationOfTheirSpectrum) {
@@ -30,7 +30,7 @@ TEST(Gusts, HaveTheMeanTheDeviationAndTheCorrelationOfTheirSpectrum) {
   double variance = 0.0, product = 0.0;
   int count = 0;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-    const Gusts gusts(gusty(seed));
+    const Gusts gusts(gusts_of_seed(seed));
     for (double t = 2.0; t < kSpan; t += kStep, ++count) {
       const Vector3d now = gusts.at(t);
       mean += now;
@@ -49,7 +49,7 @@ TEST(Gusts, HaveTheMeanTheDeviationAndTheCorrelationOfTheirSpectrum) {
 }
 
 TEST(Gusts, DependOnTheSeedAlone) {
-  const Gusts a(gusty(3)), b(gusty(3)), other(gusty(4));
+  const Gusts a(gusts_of_seed(3)), b(gusts_of_seed(3)), other(gusts_of_seed(4));
   for (double t = 0.1; t < 20.0; t += 0.7) {
     EXPECT_EQ(a.at(t), b.at(t));
     EXPECT_NE(a.at(t), other.at(t));

@@ -9,6 +9,7 @@
 #include <cstdlib>
 
 #include "lidarena/base/random.hpp"
+#include "tests/map/sorted.hpp"
 
 namespace lidarena::map {
 namespace {
@@ -73,13 +74,6 @@ std::vector<float> squared(const KdTree& tree, const Eigen::Vector3f& query, std
     distances.push_back(found[i].squared_distance);
   }
   return distances;
-}
-
-std::vector<Eigen::Vector3f> sorted(std::vector<Eigen::Vector3f> points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-  return points;
 }
 
 /// Maximum depth of a tree in which no child has more than 0.7 of its parent's points, down to

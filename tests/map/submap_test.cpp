@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "lidarena/base/random.hpp"
+#include "tests/map/sorted.hpp"
 
 namespace lidarena::map {
 namespace {
@@ -19,13 +20,6 @@ TEST(Submap, TakesTheNearTheOldestOfEachCellAndTheRecent) {
   for (const auto& [t, x] : time_and_x) keyframes.push_back({from_seconds(t), {x, 0, 0}});
   EXPECT_EQ(surrounding(keyframes, {3.5, 0, 0}, from_seconds(100.0), extent),
             (std::vector<std::uint32_t>{0, 2, 4, 5}));
-}
-
-std::vector<Eigen::Vector3f> sorted(std::vector<Eigen::Vector3f> points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-  return points;
 }
 
 TEST(Submap, FollowsAsIfMadeAnew) {

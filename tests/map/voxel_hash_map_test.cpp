@@ -11,6 +11,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
+#include "tests/map/sorted.hpp"
 
 namespace lidarena::map {
 namespace {
@@ -72,13 +73,6 @@ struct SlowMap {
     return all;
   }
 };
-
-Points sorted(Points points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-  return points;
-}
 
 void compare_with_the_slow_map(const VoxelHashMap::Options& options) {
   VoxelHashMap map(options);

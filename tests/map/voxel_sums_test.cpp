@@ -9,13 +9,14 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/map/voxel_filter.hpp"
+#include "tests/map/sorted.hpp"
 
 namespace lidarena::map {
 namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-Points random_points(std::size_t count, std::uint64_t seed) {
+Points seeded_points(std::size_t count, std::uint64_t seed) {
   SequentialRandom random(seed);
   Points points;
   for (std::size_t i = 0; i < count; ++i) {
@@ -26,15 +27,8 @@ Points random_points(std::size_t count, std::uint64_t seed) {
   return points;
 }
 
-Points sorted(Points points) {
-  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-  return points;
-}
-
 TEST(VoxelSums, MeansAreThoseOfAllPointsAtOnce) {
-  const Points points = random_points(5000, 1);
+  const Points points = seeded_points(5000, 1);
   VoxelSums sums(0.25);
   sums.add(points);
   const Points means = sorted(sums.means());
@@ -48,7 +42,7 @@ TEST(VoxelSums, MeansAreThoseOfAllPointsAtOnce) {
 
 TEST(VoxelSums, WhatComesAndGoesLeavesNothingBehind) {
   std::vector<Points> parts;
-  for (std::uint64_t seed = 0; seed < 12; ++seed) parts.push_back(random_points(700, seed));
+  for (std::uint64_t seed = 0; seed < 12; ++seed) parts.push_back(seeded_points(700, seed));
   VoxelSums sums(0.2);
   std::size_t oldest = 0;
   for (std::size_t newest = 0; newest < parts.size(); ++newest) {

@@ -66,7 +66,7 @@ TEST(RunMetrics, AreReadBackAsTheyWereWritten) {
   const RunMetrics metrics = full_metrics();
   write_metrics(folder.path(), metrics);
   const RunMetrics again = read_metrics(folder.path());
-  EXPECT_EQ(to_json(again), to_json(metrics));
+  EXPECT_EQ(lidarena::to_json(again), lidarena::to_json(metrics));
   EXPECT_EQ(again.maps.reprojected->robust.alignment->eigenvalues[5],
             metrics.maps.reprojected->robust.alignment->eigenvalues[5]);
   EXPECT_FALSE(dataset::read_json(folder.path() / "metrics.json").contains("resources"))

@@ -15,6 +15,7 @@
 #include "lidarena/scenes/house.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "tests/sensor/flights.hpp"
+#include "tests/sensor/shipped.hpp"
 #include "tests/sensor/worlds.hpp"
 
 namespace lidarena::sensor {
@@ -24,7 +25,6 @@ using Eigen::Vector3d;
 using namespace testing;
 
 constexpr double kTolerance = 1e-4;  // m: single precision leaves 1e-5 m at 40 m
-const Parallel kOneThread(1);
 
 /// A vertical cylinder of `facets` around the z axis, 200 m high.
 world::TriangleMesh cylinder_mesh(double radius, int facets) {

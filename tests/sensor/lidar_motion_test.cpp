@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 using namespace testing;
 
 constexpr std::int32_t kScan = 99'995'000;  // ns, last shot of a Mid-360's scan
-const Pose kMount = tilted_pose({0.1, 0.05, 0.1}, 0.2, -0.1, 0.4);
+const Pose kTiltedMount = tilted_pose({0.1, 0.05, 0.1}, 0.2, -0.1, 0.4);
 
 struct Worst {
   double position = 0.0;  ///< m
@@ -29,10 +29,10 @@ Worst worst_error(const flight::Flight& flight, int scans) {
   Worst worst;
   for (int scan = 0; scan < scans; ++scan) {
     const Time stamp = scan * std::chrono::milliseconds(100);
-    const LidarMotion motion(flight, kMount, stamp, kScan, true);
+    const LidarMotion motion(flight, kTiltedMount, stamp, kScan, true);
     for (int i = 0; i <= 776; ++i) {
       const std::int32_t dt = kScan / 776 * i;
-      const Pose exact = flight.pose_at(stamp + Time{dt}) * kMount;
+      const Pose exact = flight.pose_at(stamp + Time{dt}) * kTiltedMount;
       const Pose cubic = motion.at(dt);
       const double position = (cubic.translation() - exact.translation()).norm();
       const double rotation = (cubic.linear() - exact.linear()).norm();
@@ -64,7 +64,7 @@ TEST(LidarMotion, FollowsASmoothFlightWithoutAskingItForEveryShot) {
   const Worst worst = worst_error(flight, 20);
   EXPECT_LT(worst.position, 1e-9);
   EXPECT_LT(worst.at_100_m, 1e-7);
-  EXPECT_EQ(LidarMotion(flight, kMount, Time{0}, kScan, true).exact_share(), 0.0);
+  EXPECT_EQ(LidarMotion(flight, kTiltedMount, Time{0}, kScan, true).exact_share(), 0.0);
 }
 
 TEST(LidarMotion, FollowsAFastQuadrotor) {
@@ -83,7 +83,8 @@ TEST(LidarMotion, AsksTheFlightItselfWhereItJolts) {
     const JoltedFlight flight(start);
     EXPECT_LT(worst_error(flight, 3).at_100_m, 1e-6) << start;
     const auto scan = static_cast<int>(start * 10.0);
-    const LidarMotion motion(flight, kMount, scan * std::chrono::milliseconds(100), kScan, true);
+    const LidarMotion motion(flight, kTiltedMount, scan * std::chrono::milliseconds(100), kScan,
+                             true);
     EXPECT_GT(motion.exact_share(), 0.0) << start;
     EXPECT_LT(motion.exact_share(), 0.1) << start;
   }
@@ -91,16 +92,16 @@ TEST(LidarMotion, AsksTheFlightItselfWhereItJolts) {
 
 TEST(LidarMotion, AShotAfterTheLastOneAnnouncedHasItsPose) {
   const SwingingFlight flight(10.0);
-  const LidarMotion motion(flight, kMount, Time{0}, 1000, true);
+  const LidarMotion motion(flight, kTiltedMount, Time{0}, 1000, true);
   const std::int32_t late = 50'000'000;
-  EXPECT_EQ(motion.at(late).matrix(), (flight.pose_at(Time{late}) * kMount).matrix());
+  EXPECT_EQ(motion.at(late).matrix(), (flight.pose_at(Time{late}) * kTiltedMount).matrix());
 }
 
 TEST(LidarMotion, AFrozenScanStaysWhereItBegan) {
   const SwingingFlight flight(10.0);
   const Time stamp = std::chrono::milliseconds(700);
-  const LidarMotion motion(flight, kMount, stamp, kScan, false);
-  const Pose expected = flight.pose_at(stamp) * kMount;
+  const LidarMotion motion(flight, kTiltedMount, stamp, kScan, false);
+  const Pose expected = flight.pose_at(stamp) * kTiltedMount;
   EXPECT_EQ(motion.at(0).matrix(), expected.matrix());
   EXPECT_EQ(motion.at(kScan).matrix(), expected.matrix());
 }

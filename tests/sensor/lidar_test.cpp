@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "tests/sensor/flights.hpp"
+#include "tests/sensor/shipped.hpp"
 #include "tests/sensor/worlds.hpp"
 
 namespace lidarena::sensor {
@@ -17,8 +18,7 @@ using namespace testing;
 using namespace world::testing;
 
 // Single precision leaves 1e-5 m at 40 m; the pattern, the poses and the geometry are double.
-constexpr double kTolerance = 1e-4;
-const Parallel kOneThread(1);
+constexpr double kPlaceTolerance = 1e-4;
 
 /// The shots that returned the points of `scan`, for sensors whose shots are identified by (dt,
 /// ring).
@@ -68,7 +68,7 @@ TEST(Lidar, ATiltedSensorMeasuresAWallWherePlaneGeometryPutsIt) {
     const double worst = worst_range_error(
         lidar, scan, flight, config.body_from_lidar, 4,
         [](const Vector3d& o, const Vector3d& d) { return (30.0 - o.x()) / d.x(); });
-    EXPECT_LT(worst, kTolerance) << config.name;
+    EXPECT_LT(worst, kPlaceTolerance) << config.name;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Lidar, InABoxEveryShotReturnsAndEveryRangeIsRight) {
     const double worst = worst_range_error(
         lidar, scan, flight, config.body_from_lidar, 11,
         [&](const Vector3d& o, const Vector3d& d) { return range_in_box(low, high, o, d); });
-    EXPECT_LT(worst, kTolerance) << config.name;
+    EXPECT_LT(worst, kPlaceTolerance) << config.name;
   }
 }
 
@@ -100,7 +100,7 @@ TEST(Lidar, AWorldFarFromTheOriginLosesNothing) {
       lidar, scan, flight, mid360().body_from_lidar, 0,
       [&](const Vector3d& o, const Vector3d& d) { return range_in_box(low, high, o, d); });
   EXPECT_EQ(scan.points.size(), 20'000U);
-  EXPECT_LT(worst, kTolerance);
+  EXPECT_LT(worst, kPlaceTolerance);
 }
 
 TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
@@ -115,7 +115,7 @@ TEST(Lidar, ASphereOfFacetsIsMeasuredAsItsFacets) {
   const double worst = worst_range_error(
       lidar, scan, flight, config.body_from_lidar, 3,
       [&](const Vector3d& o, const Vector3d& d) { return brute_force_cast(mesh, o, d); });
-  EXPECT_LT(worst, kTolerance);
+  EXPECT_LT(worst, kPlaceTolerance);
 }
 
 struct Offsets {
@@ -148,7 +148,7 @@ Offsets offsets_in_box(const SensorConfig& config) {
 TEST(Lidar, ARollingScanInMotionLiesOnTheMeshOnlyWithThePoseOfEachInstant) {
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const Offsets offsets = offsets_in_box(config);
-    EXPECT_LT(offsets.worst_at_own_instant, kTolerance) << config.name;
+    EXPECT_LT(offsets.worst_at_own_instant, kPlaceTolerance) << config.name;
     EXPECT_GT(offsets.worst_at_stamp, 0.1) << config.name;  // it moves by about 2 m/s and 1 rad/s
   }
 }
@@ -157,13 +157,13 @@ TEST(Lidar, AFrozenScanLiesOnTheMeshOnlyWithThePoseAtTheStamp) {
   SensorConfig config = mid360();
   config.mode = ScanMode::kFrozen;
   const Offsets frozen = offsets_in_box(config);
-  EXPECT_LT(frozen.worst_at_stamp, kTolerance);
+  EXPECT_LT(frozen.worst_at_stamp, kPlaceTolerance);
   EXPECT_GT(frozen.worst_at_own_instant, 0.1);
 
   config.mode = ScanMode::kFrozenUnstamped;
   const Offsets unstamped = offsets_in_box(config);
-  EXPECT_LT(unstamped.worst_at_stamp, kTolerance);
-  EXPECT_LT(unstamped.worst_at_own_instant, kTolerance);
+  EXPECT_LT(unstamped.worst_at_stamp, kPlaceTolerance);
+  EXPECT_LT(unstamped.worst_at_own_instant, kPlaceTolerance);
 }
 
 TEST(Lidar, OnlyRollingAndFrozenScansCarryTimes) {
@@ -198,7 +198,7 @@ TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
     const double towards_wall = std::cos(yaw) * u.x() - std::sin(yaw) * u.y();
     EXPECT_NEAR(
         range_of(scan.points[i], shots[i]), distance / towards_wall,
-        kTolerance * std::max(1.0, 0.1 / towards_wall));  // error grows at grazing incidence
+        kPlaceTolerance * std::max(1.0, 0.1 / towards_wall));  // error grows at grazing incidence
   }
 }
 
@@ -252,7 +252,8 @@ TEST(Lidar, TheOfficialFaultShortensEveryRangeByTheMinimumRange) {
   const Scan wrong = make_lidar(config).measure(world, flight, 0, kOneThread);
   ASSERT_EQ(right.points.size(), wrong.points.size());
   for (std::size_t i = 0; i < right.points.size(); ++i) {
-    EXPECT_NEAR(right.points[i].position.norm() - wrong.points[i].position.norm(), 0.1, kTolerance);
+    EXPECT_NEAR(right.points[i].position.norm() - wrong.points[i].position.norm(), 0.1,
+                kPlaceTolerance);
   }
 }
 
@@ -272,14 +273,14 @@ TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
       worst = std::max(worst, (pose * scan.points[i].position.cast<double>() - position).norm());
       const world::Triangle& corners = world.mesh().triangles[truth[i].triangle];
       const Vector3d normal = world.mesh().cross(truth[i].triangle).normalized();
-      ASSERT_NEAR(normal.dot(position - world.mesh().vertices[corners[0]]), 0.0, kTolerance);
+      ASSERT_NEAR(normal.dot(position - world.mesh().vertices[corners[0]]), 0.0, kPlaceTolerance);
       ASSERT_NEAR(std::abs(normal.dot(truth[i].normal.cast<double>())), 1.0, 1e-6);
       ASSERT_GT(truth[i].normal.cast<double>().dot(pose.translation() - position), 0.0);
       ASSERT_NEAR(truth[i].range,
                   shots[i].origin.norm() + (scan.points[i].position - shots[i].origin).norm(),
-                  kTolerance);
+                  kPlaceTolerance);
     }
-    EXPECT_LT(worst, kTolerance) << config.name;
+    EXPECT_LT(worst, kPlaceTolerance) << config.name;
   }
 }
 

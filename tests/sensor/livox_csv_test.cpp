@@ -85,7 +85,7 @@ TEST(LivoxCsv, BeginsAnewWhenItEnds) {
   EXPECT_EQ(table.repeats_after(), 3U);
 }
 
-std::string failure(const std::string& csv) {
+std::string csv_failure(const std::string& csv) {
   try {
     read_livox_csv(written(csv));
   } catch (const InputError& error) {
@@ -95,22 +95,22 @@ std::string failure(const std::string& csv) {
 }
 
 TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
-  EXPECT_EQ(failure("0, 1.5,\t88\n\n"), "no failure");
+  EXPECT_EQ(csv_failure("0, 1.5,\t88\n\n"), "no failure");
   const std::string good = "time,azimuth,zenith\n0,1,2\n";
-  EXPECT_THAT(failure(good + "1,nan,2\n"), HasSubstr("pattern_under_test.csv:3: an angle"));
-  EXPECT_THAT(failure(good + "1,inf,2\n"), HasSubstr("csv:3: an angle"));
-  EXPECT_THAT(failure(good + "1,361,2\n"), HasSubstr("csv:3: an angle"));
-  EXPECT_THAT(failure(good + "1,1,-0.1\n"), HasSubstr("csv:3: an angle"));
-  EXPECT_THAT(failure(good + "1,1,180.1\n"), HasSubstr("csv:3: an angle"));
-  EXPECT_THAT(failure(good + "1,1\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(failure(good + "1,1,2,3\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(failure(good + "1,1,2x\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(failure(good + "1,,2\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(failure(good + "a,b,c\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(failure("0;1;2\n"), HasSubstr("has no rows"));  // one line that may be a header
-  EXPECT_THAT(failure("1,2\n"), HasSubstr("csv:1: is not a row of three"));
-  EXPECT_THAT(failure("time,azimuth,zenith\n"), HasSubstr("has no rows"));
-  EXPECT_THAT(failure(""), HasSubstr("has no rows"));
+  EXPECT_THAT(csv_failure(good + "1,nan,2\n"), HasSubstr("pattern_under_test.csv:3: an angle"));
+  EXPECT_THAT(csv_failure(good + "1,inf,2\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(csv_failure(good + "1,361,2\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(csv_failure(good + "1,1,-0.1\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(csv_failure(good + "1,1,180.1\n"), HasSubstr("csv:3: an angle"));
+  EXPECT_THAT(csv_failure(good + "1,1\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(csv_failure(good + "1,1,2,3\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(csv_failure(good + "1,1,2x\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(csv_failure(good + "1,,2\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(csv_failure(good + "a,b,c\n"), HasSubstr("csv:3: is not a row of three"));
+  EXPECT_THAT(csv_failure("0;1;2\n"), HasSubstr("has no rows"));  // one line that may be a header
+  EXPECT_THAT(csv_failure("1,2\n"), HasSubstr("csv:1: is not a row of three"));
+  EXPECT_THAT(csv_failure("time,azimuth,zenith\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(csv_failure(""), HasSubstr("has no rows"));
   EXPECT_THROW(read_livox_csv("no_such.csv"), InputError);
 }
 

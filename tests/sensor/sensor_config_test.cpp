@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
+#include "tests/sensor/shipped.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::sensor {
@@ -16,8 +17,6 @@ namespace {
 using ::testing::HasSubstr;
 
 namespace fs = std::filesystem;
-
-const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
 
 /// The error message when loading `yaml`.
 std::string failure(const std::string& yaml) {
@@ -186,7 +185,7 @@ TEST(SensorConfig, ShippedVariantsDifferFromTheirSensorInWhatTheirNameSays) {
     }
     return keys;
   };
-  using testing::UnorderedElementsAre;
+  using ::testing::UnorderedElementsAre;
   EXPECT_THAT(differences("ouster_os0_128_2048", "ouster_os0_128"),
               UnorderedElementsAre("/columns"));
   EXPECT_THAT(differences("ouster_os0_128_512x20", "ouster_os0_128"),

@@ -9,6 +9,7 @@
 
 #include "lidarena/sensor/ouster.hpp"
 #include "tests/sensor/flights.hpp"
+#include "tests/sensor/shipped.hpp"
 #include "tests/sensor/worlds.hpp"
 
 namespace lidarena::sensor {
@@ -18,9 +19,6 @@ using namespace testing;
 using Eigen::Vector3d;
 
 namespace fs = std::filesystem;
-
-const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
-const Parallel kOneThread(1);
 
 std::vector<std::string> shipped() {
   std::vector<std::string> names;

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 
 SignalConfig mid360_sheet() { return {.range_at_10_m = 40.0, .range_at_80_m = 70.0}; }
 
-std::string failure(const NoiseConfig& noise, const ReturnConfig& returns = {}) {
+std::string returns_failure(const NoiseConfig& noise, const ReturnConfig& returns = {}) {
   try {
     check_returns(noise, returns, "sheet.yaml");
   } catch (const InputError& error) {
@@ -99,27 +99,27 @@ TEST(RangeSigma, IsTheSheetsNearMiddleAndFar) {
 }
 
 TEST(ReturnConfig, PartsThatDoNotFitTogetherAreRefusedWithTheRemedy) {
-  EXPECT_EQ(failure({}), "no failure");
+  EXPECT_EQ(returns_failure({}), "no failure");
   NoiseConfig noise;
   noise.dropouts = true;
-  EXPECT_THAT(failure(noise), AllOf(HasSubstr("sheet.yaml"), HasSubstr("range_at_10_m")));
+  EXPECT_THAT(returns_failure(noise), AllOf(HasSubstr("sheet.yaml"), HasSubstr("range_at_10_m")));
   noise.signal = {.range_at_10_m = 40.0, .range_at_80_m = 40.0};
-  EXPECT_THAT(failure(noise), HasSubstr("not above range_at_10_m"));
+  EXPECT_THAT(returns_failure(noise), HasSubstr("not above range_at_10_m"));
   noise.signal.range_at_80_m = 241.0;
-  EXPECT_THAT(failure(noise), HasSubstr("six times"));
+  EXPECT_THAT(returns_failure(noise), HasSubstr("six times"));
   noise.signal = {
       .range_at_10_m = 40.0, .range_at_80_m = 70.0, .detection = 0.05, .false_alarms = 0.1};
-  EXPECT_THAT(failure(noise), HasSubstr("false_alarms"));
+  EXPECT_THAT(returns_failure(noise), HasSubstr("false_alarms"));
   noise = {};
   noise.near_range_noise_m = 0.03;
   noise.near_until_m = 0.1;
-  EXPECT_THAT(failure(noise), HasSubstr("near_until_m"));
+  EXPECT_THAT(returns_failure(noise), HasSubstr("near_until_m"));
   noise = {};
   noise.beam.sub_rays = 7;
-  EXPECT_THAT(failure(noise), HasSubstr("width_deg"));
+  EXPECT_THAT(returns_failure(noise), HasSubstr("width_deg"));
   ReturnConfig two;
   two.count = 2;
-  EXPECT_THAT(failure({}, two), HasSubstr("sub_rays"));
+  EXPECT_THAT(returns_failure({}, two), HasSubstr("sub_rays"));
 }
 
 }  // namespace

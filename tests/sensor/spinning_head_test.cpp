@@ -11,6 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "tests/sensor/flights.hpp"
+#include "tests/sensor/shipped.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::sensor {
@@ -21,8 +22,6 @@ using ::testing::HasSubstr;
 using testing::radians;
 
 namespace fs = std::filesystem;
-
-const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs/sensors";
 
 std::vector<Beam> scan_of(const std::string& sensor) {
   std::vector<Beam> beams;
@@ -99,7 +98,7 @@ TEST(SpinningHead, TurnsEitherWayFromWhereItStarts) {
 }
 
 /// The error message when loading a sensor with this table and these further lines.
-std::string failure(const std::string& table, const std::string& sensor = "columns: 100\n") {
+std::string table_failure(const std::string& table, const std::string& sensor = "columns: 100\n") {
   const TemporaryFolder folder;
   folder.write("table_under_test.yaml", table);
   try {
@@ -113,25 +112,28 @@ std::string failure(const std::string& table, const std::string& sensor = "colum
 
 TEST(SpinningHead, ErrorsNameTheFileAndTheLine) {
   const std::string good = "beams:\n  - {elevation_deg: 1}\n";
-  EXPECT_EQ(failure(good), "no failure");
-  EXPECT_THAT(failure(good + "  - {elevation_deg: .nan}\n"),
+  EXPECT_EQ(table_failure(good), "no failure");
+  EXPECT_THAT(table_failure(good + "  - {elevation_deg: .nan}\n"),
               AllOf(HasSubstr("table_under_test.yaml:3"), HasSubstr("finite")));
-  EXPECT_THAT(failure(good + "  - {elevation_deg: 91}\n"),
+  EXPECT_THAT(table_failure(good + "  - {elevation_deg: 91}\n"),
               AllOf(HasSubstr("table_under_test.yaml:3"), HasSubstr("90")));
-  EXPECT_THAT(failure(good + "  - {elevation_dg: 1}\n"),
+  EXPECT_THAT(table_failure(good + "  - {elevation_dg: 1}\n"),
               AllOf(HasSubstr("table_under_test.yaml:3"), HasSubstr("elevation_deg")));
-  EXPECT_THAT(failure(good + "  - {dt_us: 1}\n"),
+  EXPECT_THAT(table_failure(good + "  - {dt_us: 1}\n"),
               AllOf(HasSubstr("table_under_test.yaml:3"), HasSubstr("elevation_deg")));
-  EXPECT_THAT(failure(good + "  - 7\n"), HasSubstr("table_under_test.yaml:3"));
-  EXPECT_THAT(failure("clockwise: true\n"),
+  EXPECT_THAT(table_failure(good + "  - 7\n"), HasSubstr("table_under_test.yaml:3"));
+  EXPECT_THAT(table_failure("clockwise: true\n"),
               AllOf(HasSubstr("table_under_test.yaml"), HasSubstr("no beams")));
-  EXPECT_THAT(failure(""), HasSubstr("no beams"));
-  EXPECT_THAT(failure("beams: [\n"), HasSubstr("table_under_test.yaml"));
-  EXPECT_THAT(failure("beams:\n  - {elevation_deg: 1, dt_us: 1000}\n"), HasSubstr("column ends"));
-  EXPECT_THAT(failure("column_period_us: 1001\n" + good), HasSubstr("longer than a revolution"));
-  EXPECT_THAT(failure(good, ""), HasSubstr("set columns"));
-  EXPECT_THAT(failure(good, "columns: 2000000000\n"), HasSubstr("too many columns"));
-  EXPECT_THAT(failure(good, "columns: 100\nrow_rate_hz: 5\n"), HasSubstr("remove row_rate_hz"));
+  EXPECT_THAT(table_failure(""), HasSubstr("no beams"));
+  EXPECT_THAT(table_failure("beams: [\n"), HasSubstr("table_under_test.yaml"));
+  EXPECT_THAT(table_failure("beams:\n  - {elevation_deg: 1, dt_us: 1000}\n"),
+              HasSubstr("column ends"));
+  EXPECT_THAT(table_failure("column_period_us: 1001\n" + good),
+              HasSubstr("longer than a revolution"));
+  EXPECT_THAT(table_failure(good, ""), HasSubstr("set columns"));
+  EXPECT_THAT(table_failure(good, "columns: 2000000000\n"), HasSubstr("too many columns"));
+  EXPECT_THAT(table_failure(good, "columns: 100\nrow_rate_hz: 5\n"),
+              HasSubstr("remove row_rate_hz"));
 }
 
 TEST(SpinningHead, TravelsWithTheSensorsConfiguration) {

@@ -16,6 +16,7 @@
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
+#include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::study {
@@ -23,7 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs";
 const fs::path kOriginals = LIDARENA_SOURCE_DIR "/tests/data/originals";
 constexpr double kSeconds = 20.0;
 constexpr double kSameDrift = 0.15;  // largest relative difference of the RPE

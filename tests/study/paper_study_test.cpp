@@ -7,14 +7,13 @@
 
 #include "lidarena/study/study_spec.hpp"
 #include "tests/results/made_up_runs.hpp"
+#include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::study {
 namespace {
 
 using ::testing::HasSubstr;
-
-ConfigFolder configs() { return ConfigFolder(std::string(LIDARENA_SOURCE_DIR) + "/configs"); }
 
 StudySpec paper() { return load_study(configs().resolve("studies", "paper")); }
 

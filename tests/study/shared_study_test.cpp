@@ -20,6 +20,7 @@
 #include "lidarena/study/status.hpp"
 #include "lidarena/study/study.hpp"
 #include "lidarena/study/workplace.hpp"
+#include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::study {
@@ -29,8 +30,6 @@ namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-ConfigFolder configs() { return ConfigFolder(std::string(LIDARENA_SOURCE_DIR) + "/configs"); }
 
 /// A room of 12 x 8 x 4 m.
 constexpr const char* kRoom =
@@ -91,7 +90,7 @@ class SharedStudy : public ::testing::Test {
 };
 
 /// The files of a study that do not tell times.
-std::map<std::string, std::string> results_in(const fs::path& study) {
+std::map<std::string, std::string> study_results_in(const fs::path& study) {
   const std::set<std::string> timed{"resources.csv", "resources.json", "manifest.json",
                                     "lidarena.log",  "request.json",   "program.log"};
   std::map<std::string, std::string> files;
@@ -113,7 +112,7 @@ TEST_F(SharedStudy, TwoWorkersShareItAndLeaveTheFilesOfALocalRun) {
   waitpid(other, nullptr, 0);
   EXPECT_EQ(status().done, 6U);
   EXPECT_LE(mine.runs, 6U);
-  EXPECT_EQ(results_in(out()), results_in(scratch_.path() / "local"));
+  EXPECT_EQ(study_results_in(out()), study_results_in(scratch_.path() / "local"));
   for (const char* folder : {"scratch", "scratch_of_other", "study/work"})
     EXPECT_TRUE(fs::is_empty(scratch_.path() / folder)) << folder;
   EXPECT_EQ(status().workers.size(), 0U);

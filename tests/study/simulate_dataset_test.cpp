@@ -6,14 +6,13 @@
 #include <fstream>
 
 #include "lidarena/dataset/json_file.hpp"
+#include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::study {
 namespace {
 
 namespace fs = std::filesystem;
-
-const fs::path kConfigs = LIDARENA_SOURCE_DIR "/configs";
 
 TEST(SimulateDataset, TakesASensorsOwnTableAlongSoThatItCanBeFlownElsewhere) {
   const TemporaryFolder temporary;

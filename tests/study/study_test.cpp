@@ -29,6 +29,7 @@
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/score_run.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
+#include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::study {
@@ -36,8 +37,6 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
-
-ConfigFolder configs() { return ConfigFolder(std::string(LIDARENA_SOURCE_DIR) + "/configs"); }
 
 /// Runs a line of shell script as a process.
 ProcessEnd run_shell(const std::string& line, const ProcessLimits& limits = {},

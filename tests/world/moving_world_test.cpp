@@ -19,7 +19,7 @@ using Eigen::Vector3d;
 using testing::random_direction;
 using testing::random_point;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 Pose random_pose(SequentialRandom& random, double half_size) {
   const Vector3d axis = random_direction(random);
@@ -53,7 +53,7 @@ SlowShape slow_plane() {
 SlowShape slow_mesh(TriangleMesh mesh) {
   clean_mesh(mesh, "test");
   return {make_mesh(mesh), [mesh](const Vector3d& p) {
-            double nearest = kInfinity;
+            double nearest = kNoLimit;
             for (const auto& [a, b, c] : mesh.triangles) {
               const Vector3d q = closest_point_on_triangle(p, mesh.vertices[a], mesh.vertices[b],
                                                            mesh.vertices[c]);
@@ -64,7 +64,7 @@ SlowShape slow_mesh(TriangleMesh mesh) {
 }
 
 struct SlowHit {
-  double range = kInfinity;
+  double range = kNoLimit;
   std::uint32_t shape = Hit::kNone;
   bool is_sure = true;  ///< false when the ray grazes a surface, so that rounding decides
 };
@@ -75,11 +75,11 @@ SlowHit march(const std::vector<SlowShape>& shapes, const std::vector<Pose>& pos
               double max_range) {
   constexpr double kThere = 1e-9, kGrazing = 1e-4;
   SlowHit hit;
-  double range = 0.0, before = kInfinity;
+  double range = 0.0, before = kNoLimit;
   const Vector3d direction = ray.direction.cast<double>();
   for (int i = 0; i < 4000 && range <= max_range; ++i) {
     const Vector3d point = ray.origin + range * direction;
-    double nearest = kInfinity;
+    double nearest = kNoLimit;
     std::uint32_t which = Hit::kNone;
     for (std::uint32_t k = 0; k < shapes.size(); ++k) {
       const double distance = shapes[k].distance(poses[k].inverse() * point);

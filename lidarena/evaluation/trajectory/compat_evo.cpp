@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/so3.hpp"
 #include "lidarena/results/summary.hpp"
 
@@ -15,7 +16,6 @@ namespace lidarena::evaluation {
 namespace {
 
 constexpr const char* kPlace = "evo";
-constexpr double kDegree = std::numbers::pi / 180.0;
 using IndexPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// Stamps as evo stores them: the double nearest to the decimal seconds.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/ct_icp/quality.hpp"
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/so3.hpp"
 
 namespace lidarena::odometry::ct_icp {
@@ -8,7 +9,6 @@ namespace lidarena::odometry::ct_icp {
 namespace {
 
 // Limits of the published program, none of which its configuration files set.
-constexpr double kDegree = 3.14159265358979 / 180.0;
 constexpr double kMaxTranslation = 5.0;              // m
 constexpr double kMaxRotation = 30.0 * kDegree;      // rad
 constexpr double kInsertedRotation = 3.0 * kDegree;  // rad, from begin to end

@@ -13,7 +13,7 @@ namespace {
 using synthetic::Outcome;
 using synthetic::Recording;
 
-Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
+Outcome play_standing(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
   ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(),
                     Parallel(1));
@@ -23,7 +23,7 @@ Outcome play(const std::vector<dataset::Event>& events, const Recording& recordi
 TEST(ArenaLioStanding, BeforeItFirstMovesTheBodyIsWhereItBegan) {
   const Recording standing{.motion = [](double) { return Pose::Identity(); }};
   double farthest = 0.0;
-  for (const ScanResult& r : play(synthetic::record(standing), standing).results)
+  for (const ScanResult& r : play_standing(synthetic::record(standing), standing).results)
     farthest = std::max(farthest, r.estimate.world_from_body.translation().norm());
   EXPECT_LT(farthest, 1e-3);
 }
@@ -38,7 +38,7 @@ Pose slow_start(double t) {
 
 TEST(ArenaLioStanding, TheFirstMotionIsFollowed) {
   const Recording starting{.motion = slow_start, .seconds = 6.0, .repeating = false};
-  const Outcome outcome = play(synthetic::record(starting), starting);
+  const Outcome outcome = play_standing(synthetic::record(starting), starting);
   EXPECT_LT(outcome.final_error(starting), 0.02) << "of 47.5 cm";
 }
 
@@ -46,10 +46,12 @@ TEST(ArenaLioStanding, BeamsThatHitTheSamePlacesDoNotHoldTheStart) {
   // With 160 columns the neighbors of a point lie on one line. A plane through them may be
   // perpendicular to the wall and then moves with the sensor.
   const Recording sparse{.motion = slow_start, .seconds = 6.0};
-  EXPECT_LT(play(synthetic::record(sparse), sparse).final_error(sparse), 0.05) << "of 47.5 cm";
+  EXPECT_LT(play_standing(synthetic::record(sparse), sparse).final_error(sparse), 0.05)
+      << "of 47.5 cm";
   // 512 columns, as the usual sensor with the fewest
   const Recording usual{.motion = slow_start, .seconds = 3.0, .points_per_scan = 32768};
-  EXPECT_LT(play(synthetic::record(usual), usual).final_error(usual), 0.005) << "of 17.5 cm";
+  EXPECT_LT(play_standing(synthetic::record(usual), usual).final_error(usual), 0.005)
+      << "of 17.5 cm";
 }
 
 TEST(ArenaLioStanding, ACreepingStartIsFollowedToo) {
@@ -61,7 +63,7 @@ TEST(ArenaLioStanding, ACreepingStartIsFollowedToo) {
     return pose;
   };
   const Recording creeping{.motion = creep, .seconds = 6.0, .repeating = false};
-  const Outcome outcome = play(synthetic::record(creeping), creeping);
+  const Outcome outcome = play_standing(synthetic::record(creeping), creeping);
   EXPECT_LT(outcome.final_error(creeping), 0.02) << "of 19 cm";
 }
 

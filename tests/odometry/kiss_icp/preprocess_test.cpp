@@ -17,7 +17,7 @@ namespace {
 using se3::Vector6;
 using Cell = std::array<int, 3>;
 
-constexpr std::array kReleases{Release::kV0_2, Release::kHead};
+constexpr std::array kBothReleases{Release::kV0_2, Release::kHead};
 
 Scan scan_of(std::initializer_list<std::int32_t> times_ns) {
   Scan scan;
@@ -95,7 +95,7 @@ Points in_table_order(const Points& points, double size, Release release) {
 }
 
 TEST(Preprocess, ThinnedPointsAreThoseOfTheProgramsTableInItsOrder) {
-  for (const Release release : kReleases) {
+  for (const Release release : kBothReleases) {
     for (const std::size_t count : {4096U, 5000U}) {  // a power of two has the smallest table
       // 0.5 m is a power of two, so float and double agree on the edges of all cells
       const Points points = random_points(count, 3.0);
@@ -112,7 +112,7 @@ TEST(Preprocess, ThinnedPointsThatWantOneSlotAreMovedOnAsInTheProgramsTable) {
   for (int i = 0; i < 32; ++i)
     points.emplace_back(64.0F * static_cast<float>(i / 2) + (i % 2 == 0 ? 0.5F : 11.5F), 0.5F,
                         0.5F);
-  for (const Release release : kReleases) {
+  for (const Release release : kBothReleases) {
     const Points thinned = thin(points, 1.0, release);
     EXPECT_EQ(thinned, in_table_order(points, 1.0, release));
     ASSERT_EQ(thinned.size(), 32U);

@@ -15,14 +15,15 @@ map::Keyframe keyframe_at(double seconds, const Pose& pose) {
   return {from_seconds(seconds), pose, {}, 0};
 }
 
-Pose at(double x) { return make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}); }
+Pose pose_at(double x) { return make_pose(Eigen::Matrix3d::Identity(), {x, 0, 0}); }
 
 TEST(LioSamLoops, TheCandidateIsTheNearestThatIsOldEnough) {
   const LoopRule rule;  // 15 m, 30 s
-  std::vector<map::Keyframe> keyframes{keyframe_at(0.0, at(0.0)), keyframe_at(10.0, at(5.0)),
-                                       keyframe_at(25.0, at(6.5)), keyframe_at(50.0, at(7.0))};
+  std::vector<map::Keyframe> keyframes{
+      keyframe_at(0.0, pose_at(0.0)), keyframe_at(10.0, pose_at(5.0)),
+      keyframe_at(25.0, pose_at(6.5)), keyframe_at(50.0, pose_at(7.0))};
   EXPECT_EQ(find_candidate(keyframes, rule), 1U) << "the third is nearer, but 25 s old";
-  keyframes.push_back(keyframe_at(90.0, at(22.5)));
+  keyframes.push_back(keyframe_at(90.0, pose_at(22.5)));
   EXPECT_EQ(find_candidate(keyframes, rule), std::nullopt) << "all old ones are beyond 15 m";
 }
 
@@ -76,7 +77,7 @@ TEST(LioSamLoops, AFewPointsAreNoPlace) {
   LoopSearch loops(config, Parallel(1));
   std::vector<map::Keyframe> keyframes;
   for (int i = 0; i < 40; ++i) {
-    keyframes.push_back(keyframe_at(i, at(0.0)));
+    keyframes.push_back(keyframe_at(i, pose_at(0.0)));
     keyframes.back().features.surfaces.assign(20, {1.0F, 2.0F, 3.0F});
     EXPECT_FALSE(loops.close(keyframes, Pose::Identity()));
   }

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: BSD-3-Clause
+"""The hashes of the code that decides results change with what matters to each part, and with nothing else.
+
+usage: code_hashes.py CMAKE SOURCE_FOLDER
+"""
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+
+
+def hashes(cmake, source, library):
+    out = library.parent / "code_hashes.cpp"
+    subprocess.run([cmake, f"-DSOURCES={library}", "-DCOMPILER=any", f"-DOUT={out}", "-P", source / "cmake/HashCode.cmake"],
+                   check=True)
+    return json.loads(re.search(r'R"\((.*)\)"', out.read_text(), re.DOTALL).group(1))
+
+
+def parts(code):
+    return {"simulator": code["simulator"], "scorer": code["scorer"], **code["methods"]}
+
+
+def main(cmake, source):
+    with tempfile.TemporaryDirectory() as folder:
+        library = pathlib.Path(folder) / "lidarena"
+        shutil.copytree(source / "lidarena", library)
+        before = parts(hashes(cmake, source, library))
+        methods = {p.name for p in (library / "odometry").iterdir() if p.is_dir()} | {"external"}
+        assert set(before) == methods | {"simulator", "scorer"}, before
+        assert len(set(before.values())) == len(before), "each part has code of its own"
+        for file, text, changed in [("odometry/kiss_icp/kiss_icp.cpp", "int x = 1;", {"kiss_icp"}),
+                                    ("odometry/kiss_icp/config.hpp", "int x = 1;", {"kiss_icp"}),
+                                    ("odometry/kiss_icp/kiss_icp.cpp", "  // a comment", set()),
+                                    ("odometry/run.cpp", "int x = 1;", methods),
+                                    ("evaluation/map/ghosting.cpp", "int x = 1;", {"scorer"}),
+                                    ("evaluation/map/reproject.hpp", "int x = 1;", methods | {"scorer"}),
+                                    ("sensor/lidar.cpp", "int x = 1;", {"simulator"}),
+                                    ("report/decision.cpp", "int x = 1;", set()),
+                                    ("base/so3.cpp", "int x = 1;", set(before))]:
+            path = library / file
+            kept = path.read_text()
+            path.write_text(f"{kept}{text}\n")
+            now = parts(hashes(cmake, source, library))
+            path.write_text(kept)
+            found = {part for part in before if now[part] != before[part]}
+            assert found == changed, f"{file}: {found}, expected {changed}"
+
+
+main(sys.argv[1], pathlib.Path(sys.argv[2]).resolve())

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <filesystem>
+
+#include "lidarena/study/config_folder.hpp"
+
+namespace lidarena::study {
+
+inline const std::filesystem::path kConfigs = LIDARENA_SOURCE_DIR "/configs";
+inline ConfigFolder configs() { return ConfigFolder(kConfigs); }
+
+}  // namespace lidarena::study
