@@ -17,6 +17,12 @@ HouseConfig drawn_house(HouseConfig config, std::uint64_t seed) {
   config.variation_m = 0.3;
   config.high_rooms = random.uniform() < 0.6;
   config.furnishing = std::min(1.0, random.uniform(0.0, 1.5));  // all of it in a third of the cases
+  config.symmetric = random.uniform() < 0.25;
+  if (config.symmetric) {  // low and bare as well: rooms that only their doors tell apart
+    config.story_height_m = random.uniform(2.5, 2.6);
+    config.high_rooms = false;
+    config.furnishing = std::max(0.0, random.uniform(-0.1, 0.1));
+  }
   return config;
 }
 

@@ -10,8 +10,8 @@
 
 namespace lidarena::scenes {
 
-/// The house with sizes, heights, doors and furniture drawn from `seed`: from low, bare rooms to
-/// high, crowded ones.
+/// The house with sizes, heights, doors and furniture drawn from `seed`: from low, bare rooms,
+/// symmetric in a quarter of the cases, to high, crowded ones.
 HouseConfig drawn_house(HouseConfig config, std::uint64_t seed);
 
 /// The cave with its number of loops, lengths, widths, relief and roughness drawn from `seed`.

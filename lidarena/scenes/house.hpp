@@ -22,6 +22,7 @@ struct HouseConfig {
   double furnishing = 1;
   bool panes = true;
   double variation_m = 0.25;
+  bool symmetric = false;
   double detail = 1;
 
   /// Former names, for the message that names the new one.
@@ -43,6 +44,10 @@ struct HouseConfig {
       "close the windows with glass panes; otherwise rays leave the house through them");
     v("variation_m", self.variation_m, "m", "maximum random displacement of inner walls and doors",
       between(0, 0.3));
+    v("symmetric", self.symmetric, "",
+      "rooms and doors of the western half are the mirror image of those of the eastern one, but "
+      "for "
+      "the door from the living room to the hall; variation_m has no effect");
     v("detail", self.detail, "", "factor on the number of facets around each curved part",
       between(0.2, 3));
   }

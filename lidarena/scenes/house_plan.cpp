@@ -19,6 +19,12 @@ struct InnerWalls {
   double child_hall, hall_bath, bath_main;
 };
 
+/// Rooms of equal size: three south of y, four north of it.
+InnerWalls symmetric_walls(const HouseConfig& c) {
+  return {0.5 * c.depth_m,  c.width_m / 3.0, c.width_m / 1.5,
+          0.25 * c.width_m, 0.5 * c.width_m, 0.75 * c.width_m};
+}
+
 InnerWalls draw_walls(const HouseConfig& c, SequentialRandom& random) {
   const auto vary = [&] { return random.uniform(-c.variation_m, c.variation_m); };
   InnerWalls walls{};
@@ -61,10 +67,21 @@ enum Door : std::size_t {
 std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
                                 SequentialRandom& random) {
   const double north = c.depth_m - w.y;
+  const double variation = c.symmetric ? 0.0 : c.variation_m;
   const auto door = [&](int axis, double line, double center) {
-    center += random.uniform(-c.variation_m, c.variation_m);
+    center += random.uniform(-variation, variation);
     return Opening{axis, line, center, c.door_width_m, 0, c.door_height_m};
   };
+  if (c.symmetric) {
+    return {door(1, w.living_dining, 0.32 * c.depth_m),
+            door(1, w.dining_kitchen, 0.32 * c.depth_m),
+            door(0, w.y, 0.86 * c.width_m),
+            door(1, w.bath_main, w.y + 0.5 * north),
+            door(1, w.hall_bath, w.y + 0.5 * north),
+            door(0, w.y, 0.5 * (w.child_hall + w.living_dining)),
+            door(0, w.y, 0.14 * c.width_m),
+            door(1, w.child_hall, w.y + 0.5 * north)};
+  }
   return {door(1, w.living_dining, 0.32 * c.depth_m),
           door(1, w.dining_kitchen, 0.36 * c.depth_m),
           door(0, w.y, 0.85 * c.width_m),
@@ -186,7 +203,7 @@ Eigen::Vector3d Opening::point(double ahead, double z) const {
 
 HousePlan plan_house(const HouseConfig& config, std::uint64_t seed) {
   SequentialRandom random(seed, stream_of("house plan"));
-  const InnerWalls walls = draw_walls(config, random);
+  const InnerWalls walls = config.symmetric ? symmetric_walls(config) : draw_walls(config, random);
   HousePlan plan;
   plan.rooms = make_rooms(config, walls);
   plan.doors = make_doors(config, walls, random);

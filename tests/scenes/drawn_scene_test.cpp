@@ -17,16 +17,17 @@ constexpr std::uint64_t kSeeds = 12;
 
 TEST(DrawnScene, SeedsGiveDifferentHousesWithinTheirLimits) {
   std::set<double> widths;
-  bool has_low = false, has_high = false;
+  bool has_low = false, has_high = false, has_symmetric = false, has_other = false;
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     const HouseConfig house = drawn_house({}, seed);
     EXPECT_EQ(house.width_m, drawn_house({}, seed).width_m);
     EXPECT_NO_THROW(make_house(house, seed)) << seed;
     widths.insert(house.width_m);
     (house.high_rooms ? has_high : has_low) = true;
+    (house.symmetric ? has_symmetric : has_other) = true;
   }
   EXPECT_EQ(widths.size(), kSeeds);
-  EXPECT_TRUE(has_low && has_high);
+  EXPECT_TRUE(has_low && has_high && has_symmetric && has_other);
 }
 
 TEST(DrawnScene, AHouseWithoutHighRoomsHasOneStoryAndNoGallery) {

@@ -46,6 +46,16 @@ std::vector<HouseConfig> extreme_houses() {
   return houses;
 }
 
+/// The two with mirrored rooms.
+std::vector<HouseConfig> symmetric_houses() {
+  std::vector<HouseConfig> houses = extreme_houses();
+  for (HouseConfig& config : houses) {
+    config.symmetric = true;
+    config.high_rooms = false;
+  }
+  return houses;
+}
+
 /// Points every 5 cm along a route.
 std::vector<Vector3d> along(const std::vector<Vector3d>& route) {
   std::vector<Vector3d> points;
@@ -228,6 +238,34 @@ TEST(House, RouteKeepsClearOfEverySurface) {
 TEST(House, RouteKeepsClearInTheSmallestAndTheLargestHouse) {
   for (const HouseConfig& config : extreme_houses()) {
     for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_clear_route(config, seed);
+  }
+}
+
+TEST(House, RouteKeepsClearInSymmetricHouses) {
+  for (const HouseConfig& config : symmetric_houses()) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_clear_route(config, seed);
+  }
+}
+
+TEST(House, RoomsAndAllDoorsButOneOfASymmetricHouseAreMirrored) {
+  for (const HouseConfig& config : symmetric_houses()) {
+    const HousePlan plan = plan_house(config, 4);
+    for (const Room& room : plan.rooms) {
+      const double mirrored = config.width_m - room.floor.max().x();
+      EXPECT_TRUE(std::ranges::any_of(plan.rooms, [&](const Room& other) {
+        return (other.floor.min() - Vector2d(mirrored, room.floor.min().y())).norm() < 1e-9 &&
+               (other.floor.sizes() - room.floor.sizes()).norm() < 1e-9;
+      }));
+    }
+    const auto has_mirror_image = [&](const Opening& door) {
+      const Vector3d place = door.point(0.0, 0.0);
+      return std::ranges::any_of(plan.doors, [&](const Opening& other) {
+        const Vector3d there = other.point(0.0, 0.0);
+        return other.axis == door.axis && std::abs(there.y() - place.y()) < 1e-9 &&
+               std::abs(there.x() + place.x() - config.width_m) < 1e-9;
+      });
+    };
+    EXPECT_EQ(std::ranges::count_if(plan.doors, has_mirror_image), 7);
   }
 }
 
