@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: BSD-3-Clause
 """Times `plan`, `status` and `report` on a made-up store of many runs, and measures their memory.
 
-usage: report_of_many_runs.py PROGRAM CONFIGS FOLDER [CELLS]      10,000 cells by default; FOLDER must not exist
+usage: report_of_many_runs.py PROGRAM CONFIGS FOLDER [CELLS] [--clouds]      10,000 cells by default; FOLDER must not exist
 
 One real study of a small room gives a run of each algorithm. The store has copies of them with other figures, curves as
-long as those of a flight of a minute, and no clouds (`keep_maps: false`); three runs are left out, and the report has to
-name them.
+long as those of a flight of a minute, and no clouds (`keep_maps: false`) unless --clouds asks for them; three runs are left
+out, and the report has to name them.
 """
 import json
 import os
@@ -33,10 +33,10 @@ def measured(*command):
     return os.waitstatus_to_exitcode(status), time.monotonic() - begin, usage.ru_maxrss / 1e3
 
 
-def study_text(here, seeds, worlds):
-    scenes = ", ".join(f"{{world: {here}/{world}.obj, flight: {here}/flight.yaml, seconds: 1}}" for world in worlds)
+def study_text(here, seeds, worlds, clouds):
+    scenes = ", ".join(f"{{world: {here}/{world}.obj, flight: {here}/flight.yaml, seconds: {8 if clouds else 1}}}" for world in worlds)
     return (f"title: Many runs\nscenes: [{scenes}]\nseeds: {list(range(1, seeds + 1))}\nsensors: [{', '.join(SENSORS)}]\n"
-            f"algorithms: [{', '.join(ALGORITHMS)}]\nkeep_maps: false\n")
+            f"algorithms: [{', '.join(ALGORITHMS)}]\nkeep_maps: {str(clouds).lower()}\n")
 
 
 def stretched(value, dice):
@@ -78,23 +78,26 @@ def fill(study, template):
         manifest = json.loads((source / "manifest.json").read_text())
         manifest["dataset"] = f"../../datasets/{run['dataset']}"
         (folder / "manifest.json").write_text(json.dumps(manifest))
-        for file in ("resources.json", "trajectory.tum", "live.tum"):
-            (folder / file).write_bytes((source / file).read_bytes())
+        for file in source.iterdir():
+            if file.suffix in (".tum", ".ply") or file.name in ("resources.json", "events.csv"):
+                os.link(file, folder / file.name)
         head, *rows = (source / "resources.csv").read_text().splitlines()
         (folder / "resources.csv").write_text("\n".join([head, *(rows * SCANS)[:SCANS]]) + "\n")
         (folder / "metrics.json").write_text(json.dumps(stretched(json.loads((source / "metrics.json").read_text()), dice)))
 
 
 def main():
-    program, configs, folder = sys.argv[1], sys.argv[2], pathlib.Path(sys.argv[3]).absolute()
-    cells = int(sys.argv[4]) if len(sys.argv) > 4 else 10_000
+    words = [word for word in sys.argv[1:] if word != "--clouds"]
+    clouds = "--clouds" in sys.argv
+    program, configs, folder = words[0], words[1], pathlib.Path(words[2]).absolute()
+    cells = int(words[3]) if len(words) > 3 else 10_000
     folder.mkdir(parents=True)
     for world in ("room", "hall"):
         (folder / f"{world}.obj").write_text(ROOM)
     (folder / "flight.yaml").write_text(FLIGHT)
-    (folder / "small.yaml").write_text(study_text(folder, 1, ["room"]))
+    (folder / "small.yaml").write_text(study_text(folder, 1, ["room"], clouds))
     seeds = cells // (2 * len(SENSORS) * len(ALGORITHMS))
-    (folder / "many.yaml").write_text(study_text(folder, seeds, ["room", "hall"]))
+    (folder / "many.yaml").write_text(study_text(folder, seeds, ["room", "hall"], clouds))
     common = ["--configs", configs, "--quiet"]
     subprocess.run([program, "study", folder / "small.yaml", "--out", folder / "small", *common], check=True,
                    stdout=subprocess.DEVNULL)
@@ -109,6 +112,7 @@ def main():
     assert figures["report"][0] == 1, "the report has to exit with 1, since runs are missing"
     for what, (_, seconds, megabytes) in figures.items():
         print(f"{planned} runs: {what}: {seconds:.1f} s, {megabytes:.0f} MB")
+    print(f"page: {(study / 'report.html').stat().st_size / 1e6:.1f} MB")
 
 
 if __name__ == "__main__":

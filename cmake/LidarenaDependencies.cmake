@@ -51,6 +51,13 @@ endif()
 # HTTP server of `lidarena view`; without it the view is written to a file.
 pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
 
+# Live topics for ROS 2 nodes.
+set(LIDARENA_HAVE_DDS OFF)
+if(LIDARENA_WITH_DDS)
+  find_package(CycloneDDS 0.10 QUIET)
+  set(LIDARENA_HAVE_DDS ${CycloneDDS_FOUND})
+endif()
+
 if(LIDARENA_EMBREE_MAJOR)
   set(LIDARENA_RAY_CASTER "Embree ${LIDARENA_EMBREE_MAJOR}")
 else()
@@ -65,6 +72,7 @@ function(lidarena_print_summary)
   message(STATUS "  viewer         ${LIDARENA_HAVE_VIEWER} (LIDARENA_WITH_VIEWER; needs Node.js 18 and npm ci "
                  "--prefix viewer)")
   message(STATUS "  view server    ${httplib_FOUND} (needs cpp-httplib)")
+  message(STATUS "  live topics    ${LIDARENA_HAVE_DDS} (LIDARENA_WITH_DDS; needs Cyclone DDS 0.10)")
   message(STATUS "  Python module  ${LIDARENA_HAVE_PYTHON} (LIDARENA_WITH_PYTHON; needs pybind11 and NumPy)")
   message(STATUS "  tests          ${LIDARENA_BUILD_TESTS} (LIDARENA_BUILD_TESTS)")
   message(STATUS "  benchmarks     ${LIDARENA_BUILD_BENCHMARKS} (LIDARENA_BUILD_BENCHMARKS)")

@@ -130,6 +130,10 @@ int parse_and_do(int argc, char** argv) {
   add_report(app, common, exit_code);
   add_convert(app, common, exit_code);
   add_view(app, common, exit_code);
+#ifdef LIDARENA_HAVE_DDS
+  add_play(app, common, exit_code);
+  add_record(app, common, exit_code);
+#endif
   add_schema(app, common, exit_code);
   add_text(app, "completion", "Print a completion script for bash: source <(lidarena completion)",
            bash_completion);

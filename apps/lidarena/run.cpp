@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/run_live.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/run_algorithm.hpp"
@@ -27,6 +28,7 @@ Pose parse_extrinsics(const std::string& text) {
 struct RunOptions {
   study::RunRequest request;
   std::string dataset, extrinsics, external, out;
+  LiveRun live;
 };
 
 /// Checks first what is given, then whether all is given.
@@ -37,7 +39,7 @@ void check_options(const RunOptions& o) {
                      "see lidarena list algorithms; for example: lidarena run arena_lio my.bag");
   }
   if (o.external.empty()) odometry::check_algorithm(o.request.odometry);
-  if (o.dataset.empty()) {
+  if (o.dataset.empty() && !o.live.asked) {
     throw InputError("run " + algorithm, "needs a dataset",
                      "give a dataset folder, .mcap, .bag or folder of sweeps");
   }
@@ -45,7 +47,8 @@ void check_options(const RunOptions& o) {
 
 /// DATASET-ALGORITHM[-PRESET], in the working folder.
 std::string default_output(const study::RunRequest& request) {
-  const fs::path dataset = fs::weakly_canonical(request.dataset);
+  const fs::path dataset =
+      request.dataset.empty() ? fs::path("live") : fs::weakly_canonical(request.dataset);
   const fs::path name = fs::is_directory(dataset) ? dataset.filename() : dataset.stem();
   const odometry::OdometryRequest& odometry = request.odometry;
   return free_name(fmt::format("{}-{}{}{}", name.string(), odometry.algorithm,
@@ -82,10 +85,14 @@ int run_verb(const Common& common, const RunOptions& o) {
   Console console(common.quiet);
   if (o.out.empty()) console.info("writes to " + out);
   const Parallel parallel(common.threads);
-  const odometry::RunSummary s =
-      o.external.empty() ? study::run_algorithm(request, out, parallel, console)
-                         : study::run_external(load_config<study::ExternalProgram>(o.external),
-                                               request, out, parallel, console);
+  const auto run = [&] {
+    if (o.live.asked)
+      return run_live(o.live, request, common.config_folder(), out, parallel, console);
+    if (o.external.empty()) return study::run_algorithm(request, out, parallel, console);
+    return study::run_external(load_config<study::ExternalProgram>(o.external), request, out,
+                               parallel, console);
+  };
+  const odometry::RunSummary s = run();
   print_summary(common, s, request.paced, out);
   if (s.diverged) {
     console.warn("the run diverged: " + s.reason);
@@ -124,6 +131,7 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--rate", r.read.rate_hz, "Sweeps per second, for a folder without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  add_live_run(*verb, o->live);
   set_verb(
       *verb, common, [&common, o] { return run_verb(common, *o); }, exit_code);
 }

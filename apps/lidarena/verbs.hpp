@@ -48,6 +48,8 @@ void add_convert(CLI::App& app, Common& common, int& exit_code);
 void add_view(CLI::App& app, Common& common, int& exit_code);
 void add_schema(CLI::App& app, Common& common, int& exit_code);
 void add_report(CLI::App& app, Common& common, int& exit_code);
+void add_play(CLI::App& app, Common& common, int& exit_code);
+void add_record(CLI::App& app, Common& common, int& exit_code);
 
 /// Prints one JSON document on standard output.
 void print_json(const Json& json);

@@ -14,12 +14,12 @@ namespace {
 
 class RecordedEvents final : public EventSource {
  public:
-  RecordedEvents(const std::filesystem::path& file, const RecordedSensors& sensors,
-                 const RecordingInfo& info)
-      : file_(file.string()),
-        reader_(open_recording(file)),
-        sensors_(sensors),
-        merge_(file_, imus_with_samples(sensors, info)) {}
+  RecordedEvents(std::unique_ptr<RecordingReader> reader, std::string place,
+                 RecordedSensors sensors, const std::vector<std::string>& imus)
+      : place_(std::move(place)),
+        reader_(std::move(reader)),
+        sensors_(std::move(sensors)),
+        merge_(place_, imus) {}
 
   std::optional<Event> next() override {
     while (true) {
@@ -31,16 +31,8 @@ class RecordedEvents final : public EventSource {
   }
 
  private:
-  static std::vector<std::string> imus_with_samples(const RecordedSensors& sensors,
-                                                    const RecordingInfo& info) {
-    std::vector<std::string> ids;
-    for (const auto& [topic, id] : sensors.imus) {
-      if (info.count_of(topic) > 0) ids.push_back(id);
-    }
-    return ids;
-  }
-
-  /// Reads one message. At the end of the file, or where it is damaged, releases the waiting scans.
+  /// Reads one message. At the end of the recording, or where it is damaged, releases the waiting
+  /// scans.
   void read_next() {
     if (const auto message = next_message()) return deliver(*message);
     finished_ = true;
@@ -72,9 +64,9 @@ class RecordedEvents final : public EventSource {
                                        : ros::decode_scan(message.data, place, message.encoding);
   }
 
-  std::string place_of(const std::string& topic) const { return file_ + ": " + topic; }
+  std::string place_of(const std::string& topic) const { return place_ + ": " + topic; }
 
-  std::string file_;
+  std::string place_;
   std::unique_ptr<RecordingReader> reader_;
   RecordedSensors sensors_;
   StreamMerge merge_;
@@ -95,7 +87,18 @@ bool is_imu_type(const RecordedTopic& topic) {
 std::unique_ptr<EventSource> open_recorded_events(const std::filesystem::path& file,
                                                   const RecordedSensors& sensors,
                                                   const RecordingInfo& info) {
-  return std::make_unique<RecordedEvents>(file, sensors, info);
+  std::vector<std::string> imus;
+  for (const auto& [topic, id] : sensors.imus) {
+    if (info.count_of(topic) > 0) imus.push_back(id);
+  }
+  return recorded_events(open_recording(file), file.string(), sensors, imus);
+}
+
+std::unique_ptr<EventSource> recorded_events(std::unique_ptr<RecordingReader> reader,
+                                             const std::string& place,
+                                             const RecordedSensors& sensors,
+                                             const std::vector<std::string>& imus) {
+  return std::make_unique<RecordedEvents>(std::move(reader), place, sensors, imus);
 }
 
 bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic) {

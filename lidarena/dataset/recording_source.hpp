@@ -31,6 +31,13 @@ std::unique_ptr<EventSource> open_recorded_events(const std::filesystem::path& f
                                                   const RecordedSensors& sensors,
                                                   const RecordingInfo& info);
 
+/// The measurements in the messages that `reader` gives, likewise. `imus` are the ids of the IMUs
+/// that a scan waits for; `place` names the reader in messages.
+std::unique_ptr<EventSource> recorded_events(std::unique_ptr<RecordingReader> reader,
+                                             const std::string& place,
+                                             const RecordedSensors& sensors,
+                                             const std::vector<std::string>& imus);
+
 /// Whether the accelerations on `imu_topic` are in g: the mean magnitude of the first samples,
 /// dominated by gravity, lies between 0.5 and 2.
 bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic);

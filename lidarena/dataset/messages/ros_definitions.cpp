@@ -71,6 +71,8 @@ constexpr std::array kDefinitions{
     Definition{"livox_ros_driver2/CustomMsg",
                "std_msgs/Header header\nuint64 timebase\nuint32 point_num\nuint8 lidar_id\n"
                "uint8[3] rsvd\nlivox_ros_driver2/CustomPoint[] points\n"},
+    Definition{"nav_msgs/Path", "std_msgs/Header header\ngeometry_msgs/PoseStamped[] poses\n"},
+    Definition{"rosgraph_msgs/Clock", "builtin_interfaces/Time clock\n", "time clock\n"},
     Definition{"tf2_msgs/TFMessage", "geometry_msgs/TransformStamped[] transforms\n"},
 };
 
@@ -132,6 +134,8 @@ std::string ros2_name(std::string_view type) {
   if (slash != name.npos && name.find('/', slash + 1) == name.npos) name.insert(slash, "/msg");
   return name;
 }
+
+bool has_definition(std::string_view type) { return find_definition(ros1_name(type)) != nullptr; }
 
 std::string definition_of(std::string_view type, Encoding encoding) {
   const Definition& definition = definition_named(ros1_name(type));

@@ -43,16 +43,20 @@ Pose get_pose(MessageReader& in) {
 
 }  // namespace
 
-void put_header(Time stamp, std::string_view frame_id, MessageWriter& out) {
-  const auto seconds = std::chrono::floor<std::chrono::seconds>(stamp);
+void put_time(Time time, std::string_view place, MessageWriter& out) {
+  const auto seconds = std::chrono::floor<std::chrono::seconds>(time);
   const bool is_ros1 = out.encoding() == Encoding::kRos1;  // has unsigned seconds
   const std::int64_t min_seconds = is_ros1 ? 0 : std::numeric_limits<std::int32_t>::min();
   if (seconds.count() > std::numeric_limits<std::int32_t>::max() || seconds.count() < min_seconds) {
-    throw InputError(frame_id, "a time does not fit into the 32-bit seconds of ROS messages");
+    throw InputError(place, "a time does not fit into the 32-bit seconds of ROS messages");
   }
-  if (is_ros1) out.put(std::uint32_t{0});  // seq
   out.put(static_cast<std::int32_t>(seconds.count()));
-  out.put(static_cast<std::uint32_t>((stamp - seconds).count()));
+  out.put(static_cast<std::uint32_t>((time - seconds).count()));
+}
+
+void put_header(Time stamp, std::string_view frame_id, MessageWriter& out) {
+  if (out.encoding() == Encoding::kRos1) out.put(std::uint32_t{0});  // seq
+  put_time(stamp, frame_id, out);
   out.put(frame_id);
 }
 
@@ -155,6 +159,11 @@ std::vector<StampedTransform> decode_transforms(Bytes message, std::string_view 
     transform.parent_from_child = get_pose(in);
   }
   return transforms;
+}
+
+void encode_clock(Time time, MessageWriter& out) {
+  out.clear();
+  put_time(time, "/clock", out);
 }
 
 void encode_string(std::string_view text, MessageWriter& out) {

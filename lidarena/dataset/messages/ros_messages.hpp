@@ -24,6 +24,8 @@ inline constexpr std::string_view kPointCloud2 = "sensor_msgs/msg/PointCloud2";
 inline constexpr std::string_view kImu = "sensor_msgs/msg/Imu";
 inline constexpr std::string_view kOdometry = "nav_msgs/msg/Odometry";
 inline constexpr std::string_view kTfMessage = "tf2_msgs/msg/TFMessage";
+inline constexpr std::string_view kPath = "nav_msgs/msg/Path";
+inline constexpr std::string_view kClock = "rosgraph_msgs/msg/Clock";
 
 inline constexpr std::string_view kString = "std_msgs/msg/String";
 
@@ -31,6 +33,8 @@ inline constexpr std::string_view kString = "std_msgs/msg/String";
 std::string ros1_name(std::string_view type);
 std::string ros2_name(std::string_view type);
 
+/// Whether messages of this type can be written to a recording.
+bool has_definition(std::string_view type);
 /// The definition of `type` (one of those that can be written) and of all types it uses, in the
 /// "ros2msg" or "ros1msg" form: each used type follows a line of 80 '=' and a line "MSG: NAME".
 std::string definition_of(std::string_view type, Encoding encoding = Encoding::kCdr);
@@ -80,10 +84,14 @@ void encode_transforms(std::span<const StampedTransform> transforms, MessageWrit
 std::vector<StampedTransform> decode_transforms(Bytes message, std::string_view place,
                                                 Encoding encoding = Encoding::kCdr);
 
+void encode_clock(Time time, MessageWriter& out);
+
 void encode_string(std::string_view text, MessageWriter& out);
 std::string decode_string(Bytes message, std::string_view place,
                           Encoding encoding = Encoding::kCdr);
 
+/// builtin_interfaces/msg/Time. Throws InputError (place `place`) when it does not fit.
+void put_time(Time time, std::string_view place, MessageWriter& out);
 /// std_msgs/msg/Header. In ROS 1 a sequence number precedes it, written as 0 and ignored when read.
 struct MessageHeader {
   Time stamp{0};

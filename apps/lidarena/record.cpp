@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include <fmt/format.h>
+
+#include <map>
+
+#include "adapters/dds/live_reader.hpp"
+#include "apps/lidarena/console.hpp"
+#include "apps/lidarena/live.hpp"
+#include "apps/lidarena/verbs.hpp"
+#include "lidarena/base/error.hpp"
+#include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/recording.hpp"
+
+namespace lidarena {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct RecordRequest {
+  std::string out;
+  std::vector<std::string> topics;
+  double idle_s = 2.0;
+  bool compress = false;
+  dds::LiveOptions live;
+};
+
+/// Writes live messages into a file as they come, with the times at which they were sent.
+class Recorder {
+ public:
+  Recorder(const fs::path& file, bool compress, LogSink& log)
+      : out_(dataset::create_recording(file, {.format = dataset::RecordingFormat::kMcap,
+                                              .compress = compress,
+                                              .name = {},
+                                              .description = {}})),
+        log_(log) {}
+
+  void add(const dataset::RecordedMessage& message) {
+    const std::string name(message.topic);
+    const auto [entry, is_new] = topics_.try_emplace(name);
+    if (is_new) {
+      if (dataset::ros::has_definition(message.type)) {
+        entry->second = out_->add_topic(name, message.type, false);
+        log_.info(fmt::format("{} [{}]", name, message.type));
+      } else {
+        log_.warn(
+            fmt::format("{} is left out: messages of {} cannot be written", name, message.type));
+      }
+    }
+    if (entry->second)
+      out_->write(*entry->second, message.log_time, message.log_time, message.data);
+  }
+
+  dataset::RecordingInfo finish() {
+    dataset::RecordingInfo info = out_->info();
+    out_->close();
+    return info;
+  }
+
+ private:
+  std::unique_ptr<dataset::RecordingWriter> out_;
+  LogSink& log_;
+  std::map<std::string, std::optional<std::uint16_t>> topics_;
+};
+
+int record(const Common& common, const RecordRequest& request) {
+  Console log(common.quiet || common.json);
+  dds::LiveReaderOptions reading;
+  reading.topics = {request.topics.begin(), request.topics.end()};
+  reading.idle = std::chrono::milliseconds(static_cast<int>(1e3 * request.idle_s));
+  reading.stopped = end_on_interrupt();
+  dds::LiveReader live(request.live, reading);
+  Recorder recorder(request.out, request.compress, log);
+  while (const auto message = live.next()) recorder.add(*message);
+  const dataset::RecordingInfo info = recorder.finish();
+  if (common.json) {
+    Json topics = Json::object();
+    for (const auto& topic : info.topics) topics[topic.topic] = topic.message_count;
+    print_json({{"messages", info.message_count}, {"lost", live.lost()}, {"topics", topics}});
+  } else {
+    fmt::print("recorded {} messages on {} topics, {} lost: {}\n", info.message_count,
+               info.topics.size(), live.lost(), request.out);
+  }
+  return info.message_count > 0 ? kDone : kWorkFailed;
+}
+
+}  // namespace
+
+void add_record(CLI::App& app, Common& common, int& exit_code) {
+  auto* verb = app.add_subcommand("record", "Write live topics of ROS 2 nodes into an MCAP file");
+  auto request = std::make_shared<RecordRequest>();
+  verb->add_option("--out", request->out, "MCAP file to write")->required();
+  verb->add_option("--topic", request->topics, "Topics to record; default: all");
+  verb->add_option("--idle", request->idle_s,
+                   "Ends when nothing came for so many seconds after the first message; 0: only by "
+                   "Ctrl-C")
+      ->check(CLI::NonNegativeNumber);
+  verb->add_flag("--compress", request->compress, "Compress the file (zstd)");
+  add_live_options(*verb, request->live);
+  set_verb(
+      *verb, common, [&common, request] { return record(common, *request); }, exit_code);
+}
+
+}  // namespace lidarena

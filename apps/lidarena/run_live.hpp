@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <string>
+
+#include "lidarena/study/config_folder.hpp"
+#include "lidarena/study/run_algorithm.hpp"
+
+namespace lidarena {
+
+/// Options of `run --live`.
+struct LiveRun {
+  bool asked = false;
+  std::string points_topic, imu_topic;  ///< empty: /SENSOR/points, /SENSOR/imu
+  double idle_s = 2.0;
+  int domain = -1;
+  bool network = false;
+};
+
+/// Adds them to `run`, if this build has live topics.
+void add_live_run(CLI::App& verb, LiveRun& run);
+
+/// Runs the algorithm on live topics of the sensor `request.read.sensor` (of the configurations)
+/// until nothing comes any more or Ctrl-C, publishes its poses, and writes the RUN folder `out`.
+/// The dataset of the request, if there is one, is what the run is scored against.
+odometry::RunSummary run_live(const LiveRun& run, const study::RunRequest& request,
+                              const study::ConfigFolder& configs, const std::filesystem::path& out,
+                              const Parallel& parallel, LogSink& log);
+
+}  // namespace lidarena
