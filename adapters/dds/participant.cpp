@@ -14,11 +14,13 @@ constexpr int kMaxDomain = 232;  // the ports of later ones do not exist
 constexpr std::string_view kTopicPrefix = "rt/";
 constexpr std::string_view kTypeInfix = "::dds_::";
 
-/// One interface, no multicast, fragments as large as a datagram may be.
+/// One interface, no multicast, fragments as large as a datagram may be. A cloud of 3 MB overflows
+/// the usual buffers of a socket; what is missing is asked for at once (default: after 100 ms).
 constexpr const char* kLoopback = R"(<CycloneDDS><Domain id="any">
 <General><Interfaces><NetworkInterface name="lo" multicast="false"/></Interfaces>
 <AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize>
 <FragmentSize>60000B</FragmentSize></General>
+<Internal><SocketReceiveBufferSize max="32MB"/><NackDelay>2ms</NackDelay></Internal>
 <Discovery><ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>50</MaxAutoParticipantIndex>
 <Peers><Peer address="127.0.0.1"/></Peers></Discovery>
 </Domain></CycloneDDS>)";

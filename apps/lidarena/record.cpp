@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include <chrono>
 #include <map>
 
 #include "adapters/dds/live_reader.hpp"
@@ -10,6 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/recording.hpp"
+#include "lidarena/results/summary.hpp"
 
 namespace lidarena {
 namespace {
@@ -36,6 +38,8 @@ class Recorder {
 
   void add(const dataset::RecordedMessage& message) {
     const std::string name(message.topic);
+    const Time now = std::chrono::system_clock::now().time_since_epoch();
+    delays_[name].push_back(to_seconds(now - message.log_time));
     const auto [entry, is_new] = topics_.try_emplace(name);
     if (is_new) {
       if (dataset::ros::has_definition(message.type)) {
@@ -50,6 +54,17 @@ class Recorder {
       out_->write(*entry->second, message.log_time, message.log_time, message.data);
   }
 
+  /// {topic: {messages, delay_median_s, delay_p99_s}}: of the time from sending to receipt.
+  Json topics() {
+    Json topics = Json::object();
+    for (auto& [name, delays] : delays_) {
+      topics[name] = {{"messages", delays.size()},
+                      {"delay_median_s", results::quantile(delays, 0.5)},
+                      {"delay_p99_s", results::quantile(delays, 0.99)}};
+    }
+    return topics;
+  }
+
   dataset::RecordingInfo finish() {
     dataset::RecordingInfo info = out_->info();
     out_->close();
@@ -60,6 +75,7 @@ class Recorder {
   std::unique_ptr<dataset::RecordingWriter> out_;
   LogSink& log_;
   std::map<std::string, std::optional<std::uint16_t>> topics_;
+  std::map<std::string, std::vector<double>> delays_;  ///< s, of all messages of a topic
 };
 
 int record(const Common& common, const RecordRequest& request) {
@@ -73,9 +89,8 @@ int record(const Common& common, const RecordRequest& request) {
   while (const auto message = live.next()) recorder.add(*message);
   const dataset::RecordingInfo info = recorder.finish();
   if (common.json) {
-    Json topics = Json::object();
-    for (const auto& topic : info.topics) topics[topic.topic] = topic.message_count;
-    print_json({{"messages", info.message_count}, {"lost", live.lost()}, {"topics", topics}});
+    print_json(
+        {{"messages", info.message_count}, {"lost", live.lost()}, {"topics", recorder.topics()}});
   } else {
     fmt::print("recorded {} messages on {} topics, {} lost: {}\n", info.message_count,
                info.topics.size(), live.lost(), request.out);
