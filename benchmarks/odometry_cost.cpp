@@ -2,16 +2,19 @@
 // Cost of an odometry: CPU time of its calls (of all threads of the process; reading happens
 // between the calls and is not counted), memory by part, statuses. Usage:
 //   odometry_cost ALGORITHM[:PRESET] DATASET [--out FILE.tum] [--sensor ID] [--threads N]
-//                 [KEY=VALUE ...]
+//                 [KEY=VALUE ...] [faults: see faults.hpp]
+// The estimate's stamps are those of the recording, also with a fault of the scans' clock.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <ctime>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "benchmarks/faults.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/odometry/factory.hpp"
@@ -25,6 +28,7 @@ struct Arguments {
   odometry::OdometryRequest odometry;
   std::string dataset, out, sensor;
   int threads = 1;
+  Faults faults;
 };
 
 Arguments parsed(const std::vector<std::string>& words) {
@@ -38,6 +42,8 @@ Arguments parsed(const std::vector<std::string>& words) {
       a.sensor = value();
     } else if (words[i] == "--threads") {
       a.threads = std::stoi(value());
+    } else if (i + 1 < words.size() && read_fault(words[i], words[i + 1], a.faults)) {
+      ++i;
     } else if (words[i].find('=') != std::string::npos) {
       a.odometry.overrides.push_back(words[i]);
     } else {
@@ -86,8 +92,11 @@ int measure(const Arguments& a) {
   if (lidar == nullptr) throw InputError(a.dataset, "has several LiDARs", "choose with --sensor");
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
   const auto odometry =
-      odometry::make_odometry(a.odometry, dataset.rig, lidar->id, parallel).odometry;
+      odometry::make_odometry(a.odometry, with_faults(dataset.rig, a.faults), lidar->id, parallel)
+          .odometry;
   std::vector<double> scan_ms;
+  std::optional<Time> first;
+  odometry::ScanCounters last;
   double between = 0.0;  // CPU time of the IMU calls before the next scan, s
   std::map<std::string, std::size_t> statuses;
   std::map<std::string, double> sums;
@@ -95,17 +104,22 @@ int measure(const Arguments& a) {
   while (const auto event = dataset.events->next()) {
     const auto* scan = std::get_if<Scan>(&event->data);
     if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
+    if (scan != nullptr && !first) first = scan->stamp;
+    const Scan faulty =
+        scan == nullptr ? Scan{}
+                        : with_faults(*scan, to_seconds(scan->stamp - *first), a.faults);
     const double start = cpu_seconds();
     if (scan == nullptr) {
       odometry->register_imu(std::get<ImuSample>(event->data));
       between += cpu_seconds() - start;
       continue;
     }
-    const odometry::ScanResult result = odometry->register_scan(*scan);
+    const odometry::ScanResult result = odometry->register_scan(faulty);
     scan_ms.push_back(1e3 * (between + cpu_seconds() - start));
     between = 0.0;
     ++statuses[odometry::to_string(result.status)];
     const odometry::ScanCounters& counters = result.counters;
+    last = counters;
     odometry::ScanCounters::visit(counters, [&](const char* name, const auto& value) {
       if (value) sums[name] += static_cast<double>(*value);
     });
@@ -127,7 +141,15 @@ int measure(const Arguments& a) {
   fmt::print("statuses: {}\nmeans:", statuses);
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
   fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", min_inlier_share);
-  if (!a.out.empty()) dataset::write_tum(a.out, odometry->trajectory(), "");
+  fmt::print("last scan:");
+  odometry::ScanCounters::visit(last, [](const char* name, const auto& value) {
+    if (value) fmt::print(" {} {}", name, *value);
+  });
+  fmt::print("\n");
+  const Trajectory estimated = odometry->trajectory();
+  std::vector<StampedPose> poses(estimated.poses().begin(), estimated.poses().end());
+  for (StampedPose& pose : poses) pose.stamp -= a.faults.clock;
+  if (!a.out.empty()) dataset::write_tum(a.out, Trajectory(std::move(poses), a.out), "");
   return 0;
 }
 

@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/estimation/gyro_calibration.hpp"
 
+#include <Eigen/Cholesky>
+#include <algorithm>
+
 namespace lidarena::estimation {
 
-void GyroCalibration::observe(const Eigen::Vector3d& turned, const Eigen::Vector3d& missed) {
-  const Eigen::Vector3d seen = covariance_ * turned;
-  const Eigen::Vector3d gain = seen / (kRotationSigma * kRotationSigma + turned.dot(seen));
-  a_ += missed * gain.transpose();
+GyroCalibration::Matrix GyroCalibration::prior() {
+  Vector sigma = Vector::Constant(kPriorSigma);
+  sigma[9] = kPriorDelaySigma;
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+void GyroCalibration::observe(const Eigen::Vector3d& turned, const Eigen::Vector3d& change,
+                              const Eigen::Vector3d& missed) {
+  Eigen::Matrix<double, 3, 10> by_estimate;
+  by_estimate << turned.x() * Eigen::Matrix3d::Identity(), turned.y() * Eigen::Matrix3d::Identity(),
+      turned.z() * Eigen::Matrix3d::Identity(), change;
+  const Eigen::Matrix<double, 10, 3> seen = covariance_ * by_estimate.transpose();
+  Eigen::Matrix3d innovation = by_estimate * seen;
+  innovation.diagonal().array() += kRotationSigma * kRotationSigma;
+  const Eigen::Matrix<double, 10, 3> gain = innovation.ldlt().solve(seen.transpose()).transpose();
+  estimate_ += gain * missed;
   covariance_ -= gain * seen.transpose();
 }
+
+double GyroCalibration::delay_s() const { return std::clamp(estimate_[9], -kMaxDelay, kMaxDelay); }
 
 }  // namespace lidarena::estimation

@@ -47,6 +47,7 @@ struct ScanCounters {
   std::optional<bool> standing{};  ///< the sensor stands still
   std::optional<double> threshold_m{};  ///< scale of the prediction's error
   std::optional<double> imu_gap_s{};    ///< longest time without samples in this scan
+  std::optional<double> imu_delay_s{};  ///< by how much the IMU's stamps are late, by the LiDAR's
   std::optional<double> accel_scale{};  ///< factor from the IMU's accelerations to m/s^2
 
   /// Calls v(name, field) for each field.
@@ -72,6 +73,7 @@ struct ScanCounters {
     v("standing", self.standing);
     v("threshold_m", self.threshold_m);
     v("imu_gap_s", self.imu_gap_s);
+    v("imu_delay_s", self.imu_delay_s);
     v("accel_scale", self.accel_scale);
   }
 };
@@ -115,6 +117,9 @@ class Odometry {
   /// The last scan as the method publishes it: de-skewed, world frame, m. Valid until the next
   /// call.
   virtual std::span<const Eigen::Vector3f> registered_scan() const { return {}; }
+  /// From the body's frame at the start to the world frame of the last result. It changes while the
+  /// method learns where up is; trajectory(), map() and registered_scan() are in the last world.
+  virtual Pose world_from_start() const { return Pose::Identity(); }
   /// Bytes held by part: "map", "scan_buffer", "backlog", "other".
   virtual std::map<std::string, std::uint64_t> memory() const = 0;
 };

@@ -126,7 +126,10 @@ void Recorder::keep_result(const ScanResult& result) {
     return log_.warn("skipped an estimate that is not later than the one before it");
   live_.push_back(estimate);
   motion_.add(result);
-  if (odometry_.traits().publishes_scans) map_.insert(odometry_.registered_scan());
+  if (odometry_.traits().publishes_scans) {
+    map_.insert(
+        transformed(odometry_.world_from_start().inverse(), odometry_.registered_scan()));
+  }
 }
 
 void Recorder::keep_resources(const Scan& scan, double latency_s) {
@@ -164,7 +167,9 @@ RunResult Recorder::finish() {
   }
   files.motion = motion_.along(files.trajectory);
   files.events = events_.events(first_stamp_.value_or(Time{0}));
-  files.map.points = odometry_.traits().publishes_scans ? map_.take() : odometry_.map();
+  files.map.points = odometry_.traits().publishes_scans
+                         ? transformed(odometry_.world_from_start(), map_.take())
+                         : odometry_.map();
   return std::move(result_);
 }
 

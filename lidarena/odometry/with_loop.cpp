@@ -17,15 +17,17 @@ ScanResult WithLoop::register_scan(const Scan& scan) {
   ScanResult result = odometry_->register_scan(scan);
   if (result.status == ScanStatus::kDiverged) return result;
   const Time stamp = result.estimate.stamp;
-  const Pose odom_from_body = result.estimate.world_from_body;
+  const Pose upright = odometry_->world_from_start();
+  const Pose odom_from_body = upright.inverse() * result.estimate.world_from_body;
   const bool usable =
       result.status != ScanStatus::kTooFewPoints && !odometry_->registered_scan().empty();
   if (usable && is_keyframe(odom_from_body)) keep(stamp, odom_from_body);
   poses_.add(stamp,
              clouds_.empty() ? odom_from_body : odom_from_keyframe_.inverse() * odom_from_body);
-  result.estimate.world_from_body = orthonormalized(world_from_odom_ * odom_from_body);
+  const Pose corrected = upright * world_from_odom_ * upright.inverse();
+  result.estimate.world_from_body = orthonormalized(corrected * result.estimate.world_from_body);
   for (StampedPose& pose : result.motion)
-    pose.world_from_body = orthonormalized(world_from_odom_ * pose.world_from_body);
+    pose.world_from_body = orthonormalized(corrected * pose.world_from_body);
   result.counters.keyframes = clouds_.size();
   result.counters.loops = closer_.accepted();
   result.counters.loops_tried = closer_.records().size();
@@ -40,9 +42,9 @@ bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
 }
 
 void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
-  const Eigen::Isometry3f body_from_odom = odom_from_body.inverse().cast<float>();
-  std::vector<Eigen::Vector3f> cloud;
-  for (const Eigen::Vector3f& p : odometry_->registered_scan()) cloud.push_back(body_from_odom * p);
+  const Pose body_from_world = (odometry_->world_from_start() * odom_from_body).inverse();
+  const std::vector<Eigen::Vector3f> cloud =
+      transformed(body_from_world, odometry_->registered_scan());
   const Pose previous_from_this =
       clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
   clouds_.push_back(map::voxel_means(cloud, config_.cloud_voxel_size_m));
@@ -55,13 +57,16 @@ void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
 }
 
 Trajectory WithLoop::trajectory() const {
-  return Trajectory(poses_.placed(closer_.poses()), "with_loop");
+  std::vector<StampedPose> poses = poses_.placed(closer_.poses());
+  for (StampedPose& pose : poses)
+    pose.world_from_body = odometry_->world_from_start() * pose.world_from_body;
+  return Trajectory(std::move(poses), "with_loop");
 }
 
 std::vector<Eigen::Vector3f> WithLoop::map() const {
   std::vector<Eigen::Vector3f> points;
   for (std::size_t i = 0; i < clouds_.size(); ++i)
-    append_transformed(closer_.poses()[i], clouds_[i], points);
+    append_transformed(odometry_->world_from_start() * closer_.poses()[i], clouds_[i], points);
   return points;
 }
 

@@ -53,6 +53,7 @@ class WithLoop : public Odometry {
   Trajectory trajectory() const override;
   /// Points of the keyframes at their corrected poses, m, world frame.
   std::vector<Eigen::Vector3f> map() const override;
+  Pose world_from_start() const override { return odometry_->world_from_start(); }
   std::map<std::string, std::uint64_t> memory() const override;
 
   const loop::LoopCloser& loops() const { return closer_; }
@@ -64,6 +65,7 @@ class WithLoop : public Odometry {
   std::unique_ptr<Odometry> odometry_;
   WithLoopConfig config_;
   loop::LoopCloser closer_;
+  // The odometry's frame at the start is `odom` here.
   Pose world_from_odom_ = Pose::Identity();
   Pose odom_from_keyframe_ = Pose::Identity();  ///< of the last keyframe
   std::vector<std::vector<Eigen::Vector3f>> clouds_;

@@ -74,8 +74,8 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
     : config_(config),
       imu_from_body_(imu.body_from_imu.inverse()),
       map_from_start_(map::grid_from_points(kGrid)),
-      world_from_map_(imu.body_from_imu * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
-                                                    Eigen::Vector3d::Zero())),
+      world_(imu.body_from_imu *
+             make_pose(Eigen::Matrix3d(map_from_start_.transpose()), Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
       noise_(noise_for(imu, config)),
       parallel_(std::move(parallel)),
@@ -89,6 +89,7 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
   const State before = estimate_.state;
+  const bool integrated_before = started_;
   if (started_) {
     predict(intervals);
   } else if (!start(samples, intervals)) {
@@ -109,11 +110,15 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const Agreement agreement = residuals.agreement(estimate_.state);
   const ScanStatus status = status_of(update, agreement);
   const bool still = stands(samples, predicted);
-  if (status == ScanStatus::kTracked && !still) calibrate(before, predicted);
+  if (!intervals.empty() && integrated_before) {
+    calibrate(before, predicted, to_seconds(intervals.back().end - intervals.front().begin),
+              status == ScanStatus::kTracked && !still);
+  }
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
   const std::vector<Eigen::Vector3f> points = deskewed(usable);
   if (contradicting_scans_ == 0) grow_map(points);
-  registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
+  world_.level(estimate_.state.gravity);
+  registered_scan_ = transformed(world_.world_from_map() * estimate_.state.world_from_lidar(), points);
   return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
                       .keypoints = reduced.size(),
@@ -136,9 +141,14 @@ std::vector<ImuSample> ArenaLio::new_samples(Time end) const {
 std::vector<estimation::ImuInterval> ArenaLio::intervals_until(Time end) {
   const bool silent = imu_.empty() || (!integrated_until_ && imu_.first_stamp() > end);
   const Time begin = silent ? end : integrated_until_.value_or(imu_.first_stamp());
-  std::vector<estimation::ImuInterval> intervals = imu_.between(begin, end);
+  const Time late = from_seconds(gyro_.delay_s());
+  std::vector<estimation::ImuInterval> intervals = imu_.between(begin + late, end + late);
+  for (estimation::ImuInterval& interval : intervals) {
+    interval.begin -= late;
+    interval.end -= late;
+  }
   if (!silent) integrated_until_ = end;
-  imu_.remove_before(end);
+  imu_.remove_before(end - 2 * from_seconds(estimation::GyroCalibration::kMaxDelay));
   longest_gap_s_ = estimation::longest_gap_s(intervals);
   saturated_ = estimation::count_saturated(intervals);
   return intervals;
@@ -199,9 +209,14 @@ void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
 }
 
-void ArenaLio::calibrate(const State& before, const State& predicted) {
-  if (!config_.calibrate_gyro || longest_gap_s_ > 0.0 || saturated_ > 0) return;
-  gyro_.observe(so3::log(before.rotation().transpose() * predicted.rotation()),
+void ArenaLio::calibrate(const State& before, const State& predicted, double seconds,
+                         bool believed) {
+  const Eigen::Vector3d turned = so3::log(before.rotation().transpose() * predicted.rotation());
+  const Eigen::Vector3d mean_rate = predicted.rotation() * turned / seconds;
+  const Eigen::Vector3d change = mean_rate - mean_rate_.value_or(mean_rate);
+  mean_rate_ = mean_rate;
+  if (!config_.calibrate_gyro || !believed || longest_gap_s_ > 0.0 || saturated_ > 0) return;
+  gyro_.observe(turned, predicted.rotation().transpose() * change,
                 so3::log(predicted.rotation().transpose() * estimate_.state.rotation()));
 }
 
@@ -253,13 +268,13 @@ ScanResult ArenaLio::refused_scan() {
 
 ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
                                  const ScanCounters& counters) {
-  const Pose world_from_imu = world_from_map_ * estimate_.state.world_from_imu();
+  const Pose world_from_imu = world_.world_from_map() * estimate_.state.world_from_imu();
   ScanResult result;
   result.estimate = {end, world_from_imu * imu_from_body_};
   result.status = status;
   if (started_)
     result.covariance =
-        estimation::body_covariance(estimate_, world_from_map_.linear(), imu_from_body_);
+        estimation::body_covariance(estimate_, world_.world_from_map().linear(), imu_from_body_);
   result.motion = estimation::motion_along(track_, begin, end, end, world_from_imu, imu_from_body_);
   result.counters = counters;
   result.counters.imu_gap_s = longest_gap_s_;
@@ -267,12 +282,30 @@ ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
   result.counters.imu_refused = imu_.refused();
   result.counters.scans_refused = scans_refused_;
   result.counters.accel_scale = accel_scale_;
-  if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);
+  result.counters.imu_delay_s = gyro_.delay_s();
+  if (poses_.empty() || end > poses_.back().stamp) {
+    poses_.push_back(
+        {end, world_.start_from_map() * estimate_.state.world_from_imu() * imu_from_body_});
+  }
   return result;
 }
 
+void ArenaLio::finish() {
+  if (!started_) return;
+  const Pose start_from_world = world_.world_from_start().inverse();
+  world_.level(estimate_.state.gravity, 0.0);
+  registered_scan_ = transformed(world_.world_from_start() * start_from_world, registered_scan_);
+}
+
+Trajectory ArenaLio::trajectory() const {
+  std::vector<StampedPose> poses = poses_;
+  for (StampedPose& pose : poses)
+    pose.world_from_body = world_.world_from_start() * pose.world_from_body;
+  return Trajectory(std::move(poses), "arena_lio");
+}
+
 std::vector<Eigen::Vector3f> ArenaLio::map() const {
-  return transformed(world_from_map_, map_.fine().centers());
+  return transformed(world_.world_from_map(), map_.fine().centers());
 }
 
 std::map<std::string, std::uint64_t> ArenaLio::memory() const {

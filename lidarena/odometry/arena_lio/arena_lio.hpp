@@ -14,6 +14,7 @@
 #include "lidarena/odometry/arena_lio/initialization.hpp"
 #include "lidarena/odometry/arena_lio/local_map.hpp"
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
+#include "lidarena/odometry/arena_lio/upright_world.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::arena_lio {
@@ -26,12 +27,14 @@ class ArenaLio : public Odometry {
  public:
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
-  OdometryTraits traits() const override { return {.needs_imu = true}; }
+  OdometryTraits traits() const override { return {.needs_imu = true, .gravity_aligned = true}; }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;
-  Trajectory trajectory() const override { return Trajectory(poses_, "arena_lio"); }
+  void finish() override;
+  Trajectory trajectory() const override;
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
+  Pose world_from_start() const override { return world_.world_from_start(); }
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
@@ -51,8 +54,9 @@ class ArenaLio : public Odometry {
   bool stands(const std::vector<ImuSample>& samples, const State& predicted);
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<estimation::ImuInterval>& intervals);
-  /// Learns the gyro's calibration from what the update has changed in the rotation of a scan.
-  void calibrate(const State& before, const State& predicted);
+  /// Learns the gyro's calibration and its clock from what the update has changed in the rotation
+  /// of a scan, if that is to be believed.
+  void calibrate(const State& before, const State& predicted, double seconds, bool believed);
   /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
   std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
   /// Adds a scan (m, LiDAR frame at its end) to the map, unless the sensor has long stood still.
@@ -66,13 +70,13 @@ class ArenaLio : public Odometry {
   Config config_;
   Pose imu_from_body_;
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
-  Pose world_from_map_;
+  UprightWorld world_;
   Pose imu_from_lidar_;
   estimation::ImuNoise noise_;
   Parallel parallel_;
 
   estimation::ImuBuffer imu_;
-  std::optional<Time> integrated_until_;  ///< none until there are samples
+  std::optional<Time> integrated_until_;  ///< by the LiDAR's clock; none until there are samples
   double longest_gap_s_ = 0.0;            ///< of the IMU, in the last scan
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
@@ -84,6 +88,7 @@ class ArenaLio : public Odometry {
       estimate_;  ///< state and covariance at the end of the last scan, in the map's frame
   estimation::ImuTrack track_;
   estimation::GyroCalibration gyro_;
+  std::optional<Eigen::Vector3d> mean_rate_;  ///< rad/s, of the last scan, in the map's axes
   std::optional<double> usual_share_;  ///< of a scan's points that lie on their planes
   int contradicting_scans_ = 0;
   std::size_t scans_refused_ = 0;
@@ -93,7 +98,7 @@ class ArenaLio : public Odometry {
   LocalMap map_;
 
   Time scan_duration_;  ///< duration of the last scan that had points
-  std::vector<StampedPose> poses_;
+  std::vector<StampedPose> poses_;  ///< of the body, in its frame at the start
   std::vector<Eigen::Vector3f> registered_scan_;
 };
 
