@@ -72,10 +72,16 @@ double percentile(std::vector<double> values, double share) {
   return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
 }
 
-/// Prints the memory by part after `scans` scans.
-void print_state(std::size_t scans, const odometry::Odometry& odometry) {
-  fmt::print("scan {}: rss {:.1f} MB", scans,
-             1e-6 * static_cast<double>(odometry::resident_bytes()));
+constexpr std::size_t kStateEvery = 600;  // scans
+
+/// Prints the CPU time of the last scans, and the memory by part.
+void print_state(const std::vector<double>& scan_ms, const odometry::Odometry& odometry) {
+  const std::size_t count = std::min(scan_ms.size(), kStateEvery);
+  const std::vector<double> last(scan_ms.end() - static_cast<std::ptrdiff_t>(count), scan_ms.end());
+  if (last.empty()) return;
+  fmt::print("scan {}: CPU ms of the last {}: median {:.2f}, P99 {:.2f}, max {:.2f}; rss {:.1f} MB",
+             scan_ms.size(), count, percentile(last, 0.5), percentile(last, 0.99),
+             percentile(last, 1.0), 1e-6 * static_cast<double>(odometry::resident_bytes()));
   for (const auto& [part, bytes] : odometry.memory()) {
     fmt::print(", {} {:.3f}", part, 1e-6 * static_cast<double>(bytes));
   }
@@ -128,10 +134,10 @@ int measure(const Arguments& a) {
           std::min(min_inlier_share, static_cast<double>(counters.matches.value_or(0)) /
                                          static_cast<double>(*counters.near_planes));
     }
-    if (scan_ms.size() % 600 == 0) print_state(scan_ms.size(), *odometry);
+    if (scan_ms.size() % kStateEvery == 0) print_state(scan_ms, *odometry);
   }
   odometry->finish();
-  print_state(scan_ms.size(), *odometry);
+  print_state(scan_ms, *odometry);
   double total = 0.0;
   for (const double ms : scan_ms) total += ms;
   const auto count = static_cast<double>(scan_ms.size());

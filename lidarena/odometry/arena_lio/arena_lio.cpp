@@ -81,7 +81,9 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       map_(config),
-      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
+      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {
+  estimate_.state.rotation() = map_from_start_;  // of poses before the initialization
+}
 
 ScanResult ArenaLio::register_scan(const Scan& scan) {
   const Time end = scan_end(scan);
@@ -268,14 +270,15 @@ ScanResult ArenaLio::refused_scan() {
 
 ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
                                  const ScanCounters& counters) {
+  const Pose imu_from_body = imu_from_body_as_estimated();
   const Pose world_from_imu = world_.world_from_map() * estimate_.state.world_from_imu();
   ScanResult result;
-  result.estimate = {end, world_from_imu * imu_from_body_};
+  result.estimate = {end, world_from_imu * imu_from_body};
   result.status = status;
   if (started_)
     result.covariance =
-        estimation::body_covariance(estimate_, world_.world_from_map().linear(), imu_from_body_);
-  result.motion = estimation::motion_along(track_, begin, end, end, world_from_imu, imu_from_body_);
+        estimation::body_covariance(estimate_, world_.world_from_map().linear(), imu_from_body);
+  result.motion = estimation::motion_along(track_, begin, end, end, world_from_imu, imu_from_body);
   result.counters = counters;
   result.counters.imu_gap_s = longest_gap_s_;
   result.counters.imu_saturated = saturated_;
@@ -285,7 +288,7 @@ ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
   result.counters.imu_delay_s = gyro_.delay_s();
   if (poses_.empty() || end > poses_.back().stamp) {
     poses_.push_back(
-        {end, world_.start_from_map() * estimate_.state.world_from_imu() * imu_from_body_});
+        {end, world_.start_from_map() * estimate_.state.world_from_imu() * imu_from_body});
   }
   return result;
 }
@@ -302,6 +305,11 @@ Trajectory ArenaLio::trajectory() const {
   for (StampedPose& pose : poses)
     pose.world_from_body = world_.world_from_start() * pose.world_from_body;
   return Trajectory(std::move(poses), "arena_lio");
+}
+
+Pose ArenaLio::imu_from_body_as_estimated() const {
+  const Pose told_from_estimated = imu_from_lidar_ * estimate_.state.imu_from_lidar.inverse();
+  return started_ ? told_from_estimated.inverse() * imu_from_body_ : imu_from_body_;
 }
 
 std::vector<Eigen::Vector3f> ArenaLio::map() const {

@@ -64,6 +64,8 @@ class ArenaLio : public Odometry {
   /// Status of a scan; also counts the scans in a row that contradict the map.
   ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement);
   ScanResult refused_scan();
+  /// The body is where the LiDAR is told to be on it, also if the LiDAR's pose on the IMU changes.
+  Pose imu_from_body_as_estimated() const;
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
 

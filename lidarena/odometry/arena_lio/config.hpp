@@ -18,7 +18,7 @@ struct Config {
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
   double kernel_scale_m = 0.05;
   double min_inlier_share = 0.75;
-  bool estimate_extrinsics = false;
+  bool estimate_extrinsics = true;
 
   bool calibrate_gyro = true;
   double gyro_noise_factor = 10.0;
@@ -60,9 +60,11 @@ struct Config {
       "diverged",
       between(0, 1));
     v("estimate_extrinsics", self.estimate_extrinsics, "",
-      "also estimate the LiDAR's pose relative to the IMU");
+      "also estimate the LiDAR's pose relative to the IMU; the body stays where the LiDAR is told "
+      "to be on it");
     v("calibrate_gyro", self.calibrate_gyro, "",
-      "also estimate the gyro's scale factors and the misalignment of its axes");
+      "also estimate the gyro's scale factors, the misalignment of its axes and the delay of its "
+      "clock");
     v("gyro_noise_factor", self.gyro_noise_factor, "",
       "factor on the data sheet's densities of the gyro: covers vibration and what is not "
       "calibrated",
