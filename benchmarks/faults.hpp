@@ -15,10 +15,10 @@ namespace lidarena {
 
 /// Faults that a benchmark puts into a recording before an odometry sees it.
 struct Faults {
-  Time clock{0};                               ///< added to the scans' stamps
-  Pose misplaced = Pose::Identity();           ///< told from true pose of the LiDAR
-  double lost = 0.0;                           ///< share of the points that are lost,
-  double begin_s = 0.0, end_s = 0.0;           ///< between these times since the first scan
+  Time clock{0};                      ///< added to the scans' stamps
+  Pose misplaced = Pose::Identity();  ///< told from true pose of the LiDAR
+  double lost = 0.0;                  ///< share of the points that are lost,
+  double begin_s = 0.0, end_s = 0.0;  ///< between these times since the first scan
   double near_m = std::numeric_limits<double>::infinity();  ///< those left are no farther: dust
 };
 
@@ -27,8 +27,8 @@ struct Faults {
 /// return from dust at up to DUST meters). False: the option is none of these.
 inline bool read_fault(const std::string& option, const std::string& value, Faults& faults) {
   double v[6] = {};
-  const int read = std::sscanf(value.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", v, v + 1, v + 2, v + 3,
-                               v + 4, v + 5);
+  const int read =
+      std::sscanf(value.c_str(), "%lf,%lf,%lf,%lf,%lf,%lf", v, v + 1, v + 2, v + 3, v + 4, v + 5);
   if (option == "--clock" && read == 1) {
     faults.clock = from_seconds(v[0]);
   } else if (option == "--misplaced" && read == 6) {
@@ -47,7 +47,8 @@ inline bool read_fault(const std::string& option, const std::string& value, Faul
 }
 
 inline Rig with_faults(Rig rig, const Faults& faults) {
-  for (LidarInfo& lidar : rig.lidars) lidar.body_from_lidar = lidar.body_from_lidar * faults.misplaced;
+  for (LidarInfo& lidar : rig.lidars)
+    lidar.body_from_lidar = lidar.body_from_lidar * faults.misplaced;
   return rig;
 }
 

@@ -112,8 +112,7 @@ int measure(const Arguments& a) {
     if (event->sensor_id != (scan != nullptr || imu == nullptr ? lidar->id : imu->id)) continue;
     if (scan != nullptr && !first) first = scan->stamp;
     const Scan faulty =
-        scan == nullptr ? Scan{}
-                        : with_faults(*scan, to_seconds(scan->stamp - *first), a.faults);
+        scan == nullptr ? Scan{} : with_faults(*scan, to_seconds(scan->stamp - *first), a.faults);
     const double start = cpu_seconds();
     if (scan == nullptr) {
       odometry->register_imu(std::get<ImuSample>(event->data));

@@ -25,6 +25,11 @@ void GyroCalibration::observe(const Eigen::Vector3d& turned, const Eigen::Vector
   covariance_ -= gain * seen.transpose();
 }
 
+Eigen::Vector3d GyroCalibration::turned() const {
+  const Eigen::Matrix3d skew = 0.5 * (correction() - correction().transpose());
+  return {skew(2, 1), skew(0, 2), skew(1, 0)};
+}
+
 double GyroCalibration::delay_s() const { return std::clamp(estimate_[9], -kMaxDelay, kMaxDelay); }
 
 }  // namespace lidarena::estimation

@@ -5,8 +5,8 @@
 
 namespace lidarena::estimation {
 
-/// Online calibration of a gyro against the rotations that were estimated from a LiDAR, by recursive
-/// least squares:
+/// Online calibration of a gyro against the rotations that were estimated from a LiDAR, by
+/// recursive least squares:
 /// - scale factors and misalignment of the axes, which MEMS data sheets give as up to some percent:
 ///   without them a turn by 30 degrees within a scan is wrong by milliradians, whatever the bias.
 ///   The true rate is (I + A) times the measured one without bias;
@@ -17,7 +17,9 @@ class GyroCalibration {
   static constexpr double kMaxDelay = 0.1;  ///< s
 
   /// The true rate (rad/s) by what is known so far; `rate`: measured, without bias.
-  Eigen::Vector3d calibrated(const Eigen::Vector3d& rate) const { return rate + correction() * rate; }
+  Eigen::Vector3d calibrated(const Eigen::Vector3d& rate) const {
+    return rate + correction() * rate;
+  }
 
   /// `turned`: rotation vector (rad) of the calibrated rates over a scan, much less than half a
   /// turn; `change`: of the mean rate (rad/s) since the scan before; `missed`: the rotation vector
@@ -26,6 +28,9 @@ class GyroCalibration {
                const Eigen::Vector3d& missed);
 
   Eigen::Matrix3d correction() const { return estimate_.head<9>().reshaped(3, 3); }  ///< A
+  /// The rotation vector (rad) of A, its part that is no scale and no skew of the axes: by how much
+  /// the gyro is turned from where it is taken to be on the LiDAR.
+  Eigen::Vector3d turned() const;
   /// By how much the gyro's stamps are late, by the LiDAR's clock (s).
   double delay_s() const;
 

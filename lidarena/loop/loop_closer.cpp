@@ -98,8 +98,8 @@ bool LoopCloser::try_next(const KeyframeCloud& cloud) {
 }
 
 bool LoopCloser::may_close(std::size_t keyframe, const std::vector<double>& path_lengths) const {
-  return to_seconds(stamps_.back() - stamps_[keyframe]) > config_.min_time_gap_s &&
-         path_lengths[keyframe] >= config_.min_path_length_m;
+  return !retired_.contains(keyframe) && path_lengths[keyframe] >= config_.min_path_length_m &&
+         to_seconds(stamps_.back() - stamps_[keyframe]) > config_.min_time_gap_s;
 }
 
 std::vector<LoopCloser::Candidate> LoopCloser::candidates(

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,13 @@ class LoopCloser {
   /// gives the points of all keyframes so far. Returns whether earlier poses() have changed.
   bool add(Time stamp, const Pose& previous_from_this, const KeyframeCloud& cloud);
 
+  /// From now on, no loop is searched for to this keyframe, and its points are not needed any more:
+  /// another stands for its place. It must not be one of the kSourceReach last ones.
+  void retire(std::size_t keyframe) { retired_.insert(keyframe); }
+  static constexpr std::size_t kSourceReach = 12;
+  /// Keyframe of the second visit of the last loop that was accepted; 0 without any.
+  std::size_t closed_until() const { return accepted_.empty() ? 0 : accepted_.back().second; }
+
   /// world_from_keyframe.
   const std::vector<Pose>& poses() const { return graph_.nodes; }
   const std::vector<LoopRecord>& records() const { return records_; }
@@ -102,6 +110,7 @@ class LoopCloser {
   std::vector<Time> stamps_;
   std::vector<double> steps_;  ///< m, path length from the keyframe before
   std::vector<PlaceDescriptor> descriptors_;
+  std::set<std::size_t> retired_;
   estimation::PoseGraph graph_;
   std::vector<Candidate> pending_;  ///< of the last search, not verified yet
   std::vector<LoopRecord> records_;

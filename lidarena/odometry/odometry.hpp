@@ -45,10 +45,12 @@ struct ScanCounters {
   Count scans_refused{};           ///< so far, out of order
   std::optional<bool> inserted{};  ///< the scan was added to the map
   std::optional<bool> standing{};  ///< the sensor stands still
-  std::optional<double> threshold_m{};  ///< scale of the prediction's error
-  std::optional<double> imu_gap_s{};    ///< longest time without samples in this scan
-  std::optional<double> imu_delay_s{};  ///< by how much the IMU's stamps are late, by the LiDAR's
-  std::optional<double> accel_scale{};  ///< factor from the IMU's accelerations to m/s^2
+  std::optional<double> threshold_m{};    ///< scale of the prediction's error
+  std::optional<double> imu_gap_s{};      ///< longest time without samples in this scan
+  std::optional<double> imu_delay_s{};    ///< by how much the IMU's stamps are late, by the LiDAR's
+  std::optional<double> lidar_moved_m{};  ///< of the LiDAR, from where it is told to be, by the IMU
+  std::optional<double> lidar_turned_rad{};  ///< likewise
+  std::optional<double> accel_scale{};       ///< factor from the IMU's accelerations to m/s^2
 
   /// Calls v(name, field) for each field.
   template <class Self, class V>
@@ -74,6 +76,8 @@ struct ScanCounters {
     v("threshold_m", self.threshold_m);
     v("imu_gap_s", self.imu_gap_s);
     v("imu_delay_s", self.imu_delay_s);
+    v("lidar_moved_m", self.lidar_moved_m);
+    v("lidar_turned_rad", self.lidar_turned_rad);
     v("accel_scale", self.accel_scale);
   }
 };

@@ -127,8 +127,7 @@ void Recorder::keep_result(const ScanResult& result) {
   live_.push_back(estimate);
   motion_.add(result);
   if (odometry_.traits().publishes_scans) {
-    map_.insert(
-        transformed(odometry_.world_from_start().inverse(), odometry_.registered_scan()));
+    map_.insert(transformed(odometry_.world_from_start().inverse(), odometry_.registered_scan()));
   }
 }
 

@@ -5,6 +5,11 @@
 #include "lidarena/map/voxel_filter.hpp"
 
 namespace lidarena::odometry {
+namespace {
+
+constexpr std::size_t kTiedKeyframes = 40;  // that the last loop ties to those of the first visit
+
+}  // namespace
 
 OdometryTraits WithLoop::traits() const {
   OdometryTraits traits = odometry_->traits();
@@ -54,6 +59,22 @@ void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
     return std::span<const Eigen::Vector3f>(clouds_[keyframe]);
   });
   world_from_odom_ = closer_.poses().back() * odom_from_body.inverse();
+  retire_revisit();
+}
+
+void WithLoop::retire_revisit() {
+  if (clouds_.size() <= loop::LoopCloser::kSourceReach) return;
+  const std::size_t revisit = clouds_.size() - 1 - loop::LoopCloser::kSourceReach;
+  if (revisit > closer_.closed_until() + kTiedKeyframes) return;
+  const Pose keyframe_from_world = closer_.poses()[revisit].inverse();
+  for (std::size_t first = 0; first < revisit; ++first) {
+    const Pose apart = keyframe_from_world * closer_.poses()[first];
+    if (clouds_[first].empty() || apart.translation().norm() >= config_.keyframe_translation_m ||
+        so3::angle(apart.linear()) >= config_.keyframe_rotation_rad)
+      continue;
+    clouds_[revisit] = {};
+    return closer_.retire(revisit);
+  }
 }
 
 Trajectory WithLoop::trajectory() const {

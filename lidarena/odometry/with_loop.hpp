@@ -61,6 +61,9 @@ class WithLoop : public Odometry {
  private:
   bool is_keyframe(const Pose& odom_from_body) const;
   void keep(Time stamp, const Pose& odom_from_body);
+  /// Forgets the points of a keyframe at a place that an older one stands for, once loops tie the
+  /// two visits: the memory follows the places that were seen, not the time.
+  void retire_revisit();
 
   std::unique_ptr<Odometry> odometry_;
   WithLoopConfig config_;

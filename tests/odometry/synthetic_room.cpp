@@ -17,9 +17,6 @@ constexpr double kScanSeconds = 0.1;
 constexpr double kImuSeconds = 0.005;
 const Eigen::Vector3d kGravity(0.0, 0.0, -9.81);
 
-struct Box {
-  Eigen::Array3d low, high;
-};
 const Box kRoom{{-8.0, -6.0, -2.0}, {8.0, 6.0, 2.0}};
 const Box kPillars[] = {{{3.0, 3.0, -2.0}, {3.8, 4.0, 2.0}},
                         {{-5.0, 2.0, -2.0}, {-4.2, 2.8, 2.0}},
@@ -47,8 +44,12 @@ Scan make_scan(const Recording& recording, std::size_t index) {
     const Eigen::Vector3d beam(std::cos(elevation) * std::cos(azimuth),
                                std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     const Pose room_from_lidar = recording.motion(start + seconds) * recording.body_from_lidar;
-    const double range = cast(room_from_lidar.translation(), room_from_lidar.linear() * beam) +
-                         recording.range_noise_m * random.normals(i)[0];
+    const Eigen::Vector3d origin = room_from_lidar.translation();
+    const Eigen::Vector3d direction = room_from_lidar.linear() * beam;
+    const double distance = recording.scene ? recording.scene(origin, direction, start + seconds)
+                                            : cast(origin, direction);
+    if (!std::isfinite(distance)) continue;
+    const double range = distance + recording.range_noise_m * random.normals(i)[0];
     Point point;
     point.position = (range * beam).cast<float>();
     point.dt_ns = static_cast<std::int32_t>(std::lround(seconds * 1e9));
@@ -94,17 +95,18 @@ ImuSample make_imu(const Recording& recording, std::size_t index) {
 
 }  // namespace
 
+double cast(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
+  const Eigen::Array3d a = (box.low - origin.array()) / direction.array();
+  const Eigen::Array3d b = (box.high - origin.array()) / direction.array();
+  const double enter = a.min(b).maxCoeff();
+  const double leave = a.max(b).minCoeff();
+  if (enter >= leave || leave <= 0.0) return std::numeric_limits<double>::infinity();
+  return enter > 0.0 ? enter : leave;
+}
+
 double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) {
-  const auto slabs = [&](const Box& box) {
-    const Eigen::Array3d a = (box.low - origin.array()) / direction.array();
-    const Eigen::Array3d b = (box.high - origin.array()) / direction.array();
-    return std::pair{a.min(b).maxCoeff(), a.max(b).minCoeff()};
-  };
-  double range = slabs(kRoom).second;  // seen from inside: where the ray leaves the room
-  for (const Box& pillar : kPillars) {
-    const auto [enter, leave] = slabs(pillar);
-    if (enter < leave && enter > 0.0) range = std::min(range, enter);
-  }
+  double range = cast(kRoom, origin, direction);
+  for (const Box& pillar : kPillars) range = std::min(range, cast(pillar, origin, direction));
   return range;
 }
 

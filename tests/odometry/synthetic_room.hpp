@@ -21,6 +21,18 @@ using Motion = std::function<Pose(double seconds)>;
 /// 4 m about the origin, or to one of its four pillars.
 double cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
 
+/// What a beam meets: distance (m) from `origin` along the unit vector `direction` at a time (s);
+/// infinite: nothing.
+using Scene = std::function<double(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                                   double seconds)>;
+
+/// An upright box with the given corners.
+struct Box {
+  Eigen::Array3d low, high;
+};
+/// Distance to the outside of a box, or from within to its walls; infinite if it is missed.
+double cast(const Box& box, const Eigen::Vector3d& origin, const Eigen::Vector3d& direction);
+
 /// Rests at the start for 1 s, then flies a curve with up to 1 m/s and 35 deg/s for about 10 s.
 Pose flight(double seconds);
 
@@ -38,6 +50,7 @@ struct Recording {
   /// Rotors shake the IMU: tones of 126.3 Hz and twice that, 2.5 m/s^2 and 0.025 rad/s each on each
   /// axis.
   bool vibrating = false;
+  Scene scene{};  ///< if empty: the room
 };
 
 /// A spinning LiDAR of 64 rings, +-35 deg, 10 Hz, named "lidar"; an IMU at 200 Hz, named "imu", at

@@ -20,9 +20,6 @@ constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
-constexpr int kLostScans = 15;            // in a row that contradict the map: tracking is lost
-constexpr double kDegenerate = 0.01;      // minimum share of a direction; isotropic: 1/3
-constexpr double kShareMemory = 0.1;      // weight of a scan in the usual share of inliers
 
 /// The data sheet's noise, with a factor for each of the two sensors.
 estimation::ImuNoise noise_for(const ImuInfo& imu, const Config& config) {
@@ -52,27 +49,12 @@ double position_sigma(const estimation::StateEstimate& estimate) {
   return std::sqrt(std::max(0.0, directions.eigenvalues()[2]));
 }
 
-/// The rotation through the intervals by the gyro alone, which ends in the state's pose: of a
-/// sensor that moves with an unknown velocity.
-estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
-                                   const estimation::InertialState& state) {
-  estimation::ImuTrack track;
-  Pose pose = state.world_from_imu();
-  for (auto interval = intervals.rbegin(); interval != intervals.rend(); ++interval) {
-    const Eigen::Vector3d rate = interval->gyro - state.nav.bias.gyro;
-    pose.linear() = pose.linear() * so3::exp(-interval->seconds() * rate);
-    track.push_back({.begin = interval->begin, .world_from_imu = pose, .rate = rate});
-  }
-  std::ranges::reverse(track);
-  return track;
-}
-
 }  // namespace
 
 ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
                    Parallel parallel)
     : config_(config),
-      imu_from_body_(imu.body_from_imu.inverse()),
+      lidar_from_body_(lidar.body_from_lidar.inverse()),
       map_from_start_(map::grid_from_points(kGrid)),
       world_(imu.body_from_imu *
              make_pose(Eigen::Matrix3d(map_from_start_.transpose()), Eigen::Vector3d::Zero())),
@@ -80,9 +62,11 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       noise_(noise_for(imu, config)),
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
+      tracking_(config.min_inlier_share),
       map_(config),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {
   estimate_.state.rotation() = map_from_start_;  // of poses before the initialization
+  estimate_.state.imu_from_lidar = imu_from_lidar_;
 }
 
 ScanResult ArenaLio::register_scan(const Scan& scan) {
@@ -90,8 +74,6 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
-  const State before = estimate_.state;
-  const bool integrated_before = started_;
   if (started_) {
     predict(intervals);
   } else if (!start(samples, intervals)) {
@@ -104,23 +86,20 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const std::vector<Eigen::Vector3f> reduced =
       evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
              config_.max_scan_points);
-  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_), config_, parallel_);
+  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_),
+                           config_.estimate_extrinsics && has_moved_, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals),
       {config_.max_iterations + residuals.narrowing(), kConvergence, config_.point_variance_m2});
   estimate_ = update.estimate;
   const Agreement agreement = residuals.agreement(estimate_.state);
-  const ScanStatus status = status_of(update, agreement);
+  const ScanStatus status = tracking_.judge(update, agreement, map_.empty());
   const bool still = stands(samples, predicted);
-  if (!intervals.empty() && integrated_before) {
-    calibrate(before, predicted, to_seconds(intervals.back().end - intervals.front().begin),
-              status == ScanStatus::kTracked && !still);
-  }
+  if (status == ScanStatus::kTracked && !still) calibrate(predicted);
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
   const std::vector<Eigen::Vector3f> points = deskewed(usable);
-  if (contradicting_scans_ == 0) grow_map(points);
-  world_.level(estimate_.state.gravity);
-  registered_scan_ = transformed(world_.world_from_map() * estimate_.state.world_from_lidar(), points);
+  if (!tracking_.contradicts()) grow_map(points);
+  publish(points);
   return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
                       .keypoints = reduced.size(),
@@ -188,6 +167,7 @@ bool ArenaLio::stands(const std::vector<ImuSample>& samples, const State& predic
 
 void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = estimate_.state;
+  const Eigen::Matrix3d map_from_begin = state.rotation();
   track_.clear();
   for (const estimation::ImuInterval& interval : intervals) {
     constexpr auto kIntegration = estimation::Integration::kSecondOrder;
@@ -209,16 +189,17 @@ void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   }
   state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
+  if (intervals.empty()) return;
+  turned_ = so3::log(map_from_begin.transpose() * state.rotation());
+  const Eigen::Vector3d mean_rate =
+      state.rotation() * turned_ / to_seconds(intervals.back().end - intervals.front().begin);
+  rate_change_ = state.rotation().transpose() * (mean_rate - mean_rate_.value_or(mean_rate));
+  mean_rate_ = mean_rate;
 }
 
-void ArenaLio::calibrate(const State& before, const State& predicted, double seconds,
-                         bool believed) {
-  const Eigen::Vector3d turned = so3::log(before.rotation().transpose() * predicted.rotation());
-  const Eigen::Vector3d mean_rate = predicted.rotation() * turned / seconds;
-  const Eigen::Vector3d change = mean_rate - mean_rate_.value_or(mean_rate);
-  mean_rate_ = mean_rate;
-  if (!config_.calibrate_gyro || !believed || longest_gap_s_ > 0.0 || saturated_ > 0) return;
-  gyro_.observe(turned, predicted.rotation().transpose() * change,
+void ArenaLio::calibrate(const State& predicted) {
+  if (!config_.calibrate_gyro || longest_gap_s_ > 0.0 || saturated_ > 0) return;
+  gyro_.observe(turned_, rate_change_,
                 so3::log(predicted.rotation().transpose() * estimate_.state.rotation()));
 }
 
@@ -239,26 +220,11 @@ void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   map_.follow(world_from_lidar.translation().cast<float>());
 }
 
-ScanStatus ArenaLio::status_of(const estimation::IteratedUpdate& update,
-                               const Agreement& agreement) {
-  if (!estimation::is_plausible(estimate_.state)) {
-    contradicting_scans_ = kLostScans + 1;
-    return ScanStatus::kDiverged;
-  }
-  if (agreement.points == 0) return ScanStatus::kTooFewPoints;
-  if (map_.empty()) return ScanStatus::kInitializing;
-  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;  // permanently
-  if (agreement.near_planes == 0) return ScanStatus::kTooFewPoints;
-  const double share = agreement.share;
-  const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
-  contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
-  if (contradicts) return ScanStatus::kDegenerate;
-  usual_share_ = usual_share_.value_or(share) * (1.0 - kShareMemory) + kShareMemory * share;
-  // The block of the position is the weighted sum of n n^T over all normals n.
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
-      update.points.hessian.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
-  const double weakest = directions.eigenvalues()[0] / directions.eigenvalues().sum();
-  return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
+void ArenaLio::publish(const std::vector<Eigen::Vector3f>& points) {
+  const auto of_gravity = estimate_.covariance.bottomRightCorner<2, 2>();
+  world_.level(estimate_.state.gravity, std::sqrt(of_gravity.trace()));
+  registered_scan_ =
+      transformed(world_.world_from_map() * estimate_.state.world_from_lidar(), points);
 }
 
 /// A scan out of time order is counted and changes nothing else.
@@ -270,26 +236,33 @@ ScanResult ArenaLio::refused_scan() {
 
 ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
                                  const ScanCounters& counters) {
-  const Pose imu_from_body = imu_from_body_as_estimated();
-  const Pose world_from_imu = world_.world_from_map() * estimate_.state.world_from_imu();
+  const State& state = estimate_.state;
+  const Pose map_from_body = state.world_from_lidar() * lidar_from_body_;
+  const Pose world_from_map = world_.world_from_map();
   ScanResult result;
-  result.estimate = {end, world_from_imu * imu_from_body};
+  result.estimate = {end, world_from_map * map_from_body};
   result.status = status;
-  if (started_)
+  if (started_) {
     result.covariance =
-        estimation::body_covariance(estimate_, world_.world_from_map().linear(), imu_from_body);
-  result.motion = estimation::motion_along(track_, begin, end, end, world_from_imu, imu_from_body);
+        estimation::body_covariance(of_lidar(estimate_), world_from_map.linear(), lidar_from_body_);
+  }
+  result.motion =
+      estimation::motion_along(track_, begin, end, end, world_from_map * state.world_from_imu(),
+                               state.imu_from_lidar * lidar_from_body_);
   result.counters = counters;
   result.counters.imu_gap_s = longest_gap_s_;
   result.counters.imu_saturated = saturated_;
   result.counters.imu_refused = imu_.refused();
+  result.counters.imu_delay_s = gyro_.delay_s();
   result.counters.scans_refused = scans_refused_;
   result.counters.accel_scale = accel_scale_;
-  result.counters.imu_delay_s = gyro_.delay_s();
-  if (poses_.empty() || end > poses_.back().stamp) {
-    poses_.push_back(
-        {end, world_.start_from_map() * estimate_.state.world_from_imu() * imu_from_body});
-  }
+  const Pose moved = imu_from_lidar_.inverse() * state.imu_from_lidar;
+  const Eigen::Matrix3d turned =
+      imu_from_lidar_.linear().transpose() * so3::exp(-gyro_.turned()) * imu_from_lidar_.linear();
+  result.counters.lidar_moved_m = moved.translation().norm();
+  result.counters.lidar_turned_rad = so3::angle(turned * moved.linear());
+  if (poses_.empty() || end > poses_.back().stamp)
+    poses_.push_back({end, world_.start_from_map() * map_from_body});
   return result;
 }
 
@@ -305,11 +278,6 @@ Trajectory ArenaLio::trajectory() const {
   for (StampedPose& pose : poses)
     pose.world_from_body = world_.world_from_start() * pose.world_from_body;
   return Trajectory(std::move(poses), "arena_lio");
-}
-
-Pose ArenaLio::imu_from_body_as_estimated() const {
-  const Pose told_from_estimated = imu_from_lidar_ * estimate_.state.imu_from_lidar.inverse();
-  return started_ ? told_from_estimated.inverse() * imu_from_body_ : imu_from_body_;
 }
 
 std::vector<Eigen::Vector3f> ArenaLio::map() const {

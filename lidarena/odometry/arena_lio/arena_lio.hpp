@@ -14,6 +14,7 @@
 #include "lidarena/odometry/arena_lio/initialization.hpp"
 #include "lidarena/odometry/arena_lio/local_map.hpp"
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
+#include "lidarena/odometry/arena_lio/tracking.hpp"
 #include "lidarena/odometry/arena_lio/upright_world.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
@@ -54,23 +55,21 @@ class ArenaLio : public Odometry {
   bool stands(const std::vector<ImuSample>& samples, const State& predicted);
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
   void predict(const std::vector<estimation::ImuInterval>& intervals);
-  /// Learns the gyro's calibration and its clock from what the update has changed in the rotation
-  /// of a scan, if that is to be believed.
-  void calibrate(const State& before, const State& predicted, double seconds, bool believed);
+  /// Learns the gyro's calibration and the delay of its clock from what the update has changed in
+  /// the rotation of a scan.
+  void calibrate(const State& predicted);
   /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
   std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
   /// Adds a scan (m, LiDAR frame at its end) to the map, unless the sensor has long stood still.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
-  /// Status of a scan; also counts the scans in a row that contradict the map.
-  ScanStatus status_of(const estimation::IteratedUpdate& update, const Agreement& agreement);
+  /// Places a scan (m, LiDAR frame at its end) in the world, which is leveled before.
+  void publish(const std::vector<Eigen::Vector3f>& points);
   ScanResult refused_scan();
-  /// The body is where the LiDAR is told to be on it, also if the LiDAR's pose on the IMU changes.
-  Pose imu_from_body_as_estimated() const;
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
 
   Config config_;
-  Pose imu_from_body_;
+  Pose lidar_from_body_;            ///< as told: the body stays where the LiDAR is told to be on it
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
   UprightWorld world_;
   Pose imu_from_lidar_;
@@ -90,16 +89,17 @@ class ArenaLio : public Odometry {
       estimate_;  ///< state and covariance at the end of the last scan, in the map's frame
   estimation::ImuTrack track_;
   estimation::GyroCalibration gyro_;
-  std::optional<Eigen::Vector3d> mean_rate_;  ///< rad/s, of the last scan, in the map's axes
-  std::optional<double> usual_share_;  ///< of a scan's points that lie on their planes
-  int contradicting_scans_ = 0;
+  Eigen::Vector3d turned_ = Eigen::Vector3d::Zero();  ///< rad, over the last scan, in its end's
+  Eigen::Vector3d rate_change_ = Eigen::Vector3d::Zero();  ///< rad/s, from scan to scan, likewise
+  std::optional<Eigen::Vector3d> mean_rate_;               ///< rad/s, of the last scan, map's axes
+  Tracking tracking_;
   std::size_t scans_refused_ = 0;
   StillDetector still_;
   Pose first_pose_ = Pose::Identity();  ///< of the IMU
   bool has_moved_ = false;
   LocalMap map_;
 
-  Time scan_duration_;  ///< duration of the last scan that had points
+  Time scan_duration_;              ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;  ///< of the body, in its frame at the start
   std::vector<Eigen::Vector3f> registered_scan_;
 };

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/initialization.hpp"
 
+#include <algorithm>
 #include <cmath>
+
+#include "lidarena/base/so3.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
@@ -51,6 +54,19 @@ std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pos
   state.imu_from_lidar = imu_from_lidar;
   start.estimate.covariance = initial_covariance(start.still);
   return start;
+}
+
+estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
+                                   const estimation::InertialState& state) {
+  estimation::ImuTrack track;
+  Pose pose = state.world_from_imu();
+  for (auto interval = intervals.rbegin(); interval != intervals.rend(); ++interval) {
+    const Eigen::Vector3d rate = interval->gyro - state.nav.bias.gyro;
+    pose.linear() = pose.linear() * so3::exp(-interval->seconds() * rate);
+    track.push_back({.begin = interval->begin, .world_from_imu = pose, .rate = rate});
+  }
+  std::ranges::reverse(track);
+  return track;
 }
 
 bool StillDetector::observe(const estimation::ImuStatistics& imu,

@@ -6,6 +6,8 @@
 
 #include "lidarena/base/imu_sample.hpp"
 #include "lidarena/estimation/imu_at_rest.hpp"
+#include "lidarena/estimation/imu_buffer.hpp"
+#include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
 
 namespace lidarena::odometry::arena_lio {
@@ -22,6 +24,11 @@ struct Start {
 /// force. Velocity and biases of a moving sensor are unknown, and their covariance is large. The
 /// world is the IMU's frame. Nothing if there are too few samples or they show no acceleration.
 std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar);
+
+/// The rotation through the intervals by the gyro alone, which ends in the state's pose: of a
+/// sensor that moves with an unknown velocity.
+estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
+                                   const estimation::InertialState& state);
 
 /// Decides at each scan whether the sensor stands still. Slow motion is detected by the distance
 /// from the place where the standstill began.

@@ -52,11 +52,13 @@ std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
 }  // namespace
 
 PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map,
-                               double prior_sigma, const Config& config, const Parallel& parallel)
+                               double prior_sigma, bool with_extrinsics, const Config& config,
+                               const Parallel& parallel)
     : points_(points),
       map_(map),
       config_(config),
       parallel_(parallel),
+      with_extrinsics_(with_extrinsics),
       knew_the_place_(prior_sigma < config.kernel_scale_m),
       scale_(std::min(std::max(config.kernel_scale_m, prior_sigma), kMaxScale)),
       in_map_(points.size()),
@@ -92,7 +94,7 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
         const map::MapPlane* plane = planes_[i];
         if (plane == nullptr || std::abs(distance(*plane, in_map_[i])) > kCut * scale_) return;
         const estimation::PointResidual residual = estimation::point_residual(
-            points_[i].cast<double>(), as_equation(*plane), state, config_.estimate_extrinsics);
+            points_[i].cast<double>(), as_equation(*plane), state, with_extrinsics_);
         const double of_plane = variance / std::max(variance, static_cast<double>(plane->variance));
         sum.template add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance),
                             of_plane * geman_mcclure_weight(residual.distance, scale_));

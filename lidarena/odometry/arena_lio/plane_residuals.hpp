@@ -29,9 +29,10 @@ struct Agreement {
 /// kernel's scale.
 class PlaneResiduals {
  public:
-  /// `prior_sigma`: standard deviation (m) of the position before the update.
+  /// `prior_sigma`: standard deviation (m) of the position before the update; `with_extrinsics`:
+  /// whether the points also move the LiDAR on the IMU.
   PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map, double prior_sigma,
-                 const Config& config, const Parallel& parallel);
+                 bool with_extrinsics, const Config& config, const Parallel& parallel);
 
   /// The sums at `state`. Planes are always searched for: a search is one access to a table.
   estimation::NormalEquations<estimation::kPointDof> operator()(
@@ -50,6 +51,7 @@ class PlaneResiduals {
   const LocalMap& map_;
   const Config& config_;
   const Parallel& parallel_;
+  bool with_extrinsics_;
   bool knew_the_place_;  ///< the prior was more certain than the kernel's scale
   double scale_;         ///< m, of the kernel in the next evaluation
   std::vector<Eigen::Vector3f> in_map_;

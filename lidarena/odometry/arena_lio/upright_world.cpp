@@ -1,13 +1,30 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/upright_world.hpp"
 
+#include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/imu_at_rest.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
-void UprightWorld::level(const Eigen::Vector3d& gravity, double tolerance) {
-  const Eigen::Vector3d up = -(world_from_map().linear() * gravity).normalized();
-  if (up.z() > 0.0 && up.head<2>().norm() < tolerance) return;
+estimation::StateEstimate of_lidar(const estimation::StateEstimate& estimate) {
+  using State = estimation::InertialState;
+  const Pose& imu_from_lidar = estimate.state.imu_from_lidar;
+  const Eigen::Matrix3d rotation = estimate.state.rotation();
+  State::Matrix by_state = State::Matrix::Identity();
+  by_state.block<3, 3>(State::kPosition, State::kRotation) =
+      -rotation * so3::hat(imu_from_lidar.translation());
+  by_state.block<3, 3>(State::kPosition, State::kLidarPosition) = rotation;
+  by_state.block<3, 3>(State::kRotation, State::kRotation) = imu_from_lidar.linear().transpose();
+  by_state.block<3, 3>(State::kRotation, State::kLidarRotation).setIdentity();
+  estimation::StateEstimate of_lidar = estimate;
+  of_lidar.state.nav.world_from_imu = estimate.state.world_from_lidar();
+  of_lidar.covariance = by_state * estimate.covariance * by_state.transpose();
+  return of_lidar;
+}
+
+void UprightWorld::level(const Eigen::Vector3d& gravity, double sigma) {
+  if (sigma > 0.5 * sigma_) return;
+  sigma_ = sigma;
   const Eigen::Vector3d up_at_start = -(start_from_map_.linear() * gravity);
   world_from_start_.linear() = estimation::level_rotation(up_at_start);
 }

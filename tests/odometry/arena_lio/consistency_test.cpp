@@ -84,7 +84,9 @@ std::vector<Errors> errors_over(const Recording& recording) {
     const ScanResult result = odometry.register_scan(std::get<Scan>(event.data));
     if (!first) first = result.estimate.stamp;  // at rest
     if (++scans % kEvery != 0 || scans < 3 * kEvery) continue;
-    errors.push_back(errors_of(result, synthetic::truth(recording, *first, result.estimate.stamp)));
+    // The covariance is that of the pose in the map, without the lean of the published world.
+    const Pose truth = synthetic::truth(recording, *first, result.estimate.stamp);
+    errors.push_back(errors_of(result, odometry.world_from_start() * truth));
   }
   return errors;
 }

@@ -22,11 +22,19 @@ using synthetic::with_imu;
 
 constexpr double kTracked = 0.1;  // m; the map's voxels have 0.2 m, lost tracking gives meters
 
+/// The results; those that have poses in the trajectory with these, which stand in one world.
 Outcome play(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
   ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(),
                     Parallel(1));
-  return synthetic::play(events, odometry);
+  Outcome outcome = synthetic::play(events, odometry);
+  odometry.finish();
+  const Trajectory trajectory = odometry.trajectory();
+  for (ScanResult& result : outcome.results) {
+    if (const auto pose = trajectory.at(result.estimate.stamp))
+      result.estimate.world_from_body = *pose;
+  }
+  return outcome;
 }
 
 double seconds_of(const ImuSample& sample) { return to_seconds(sample.stamp - Recording{}.epoch); }

@@ -38,7 +38,7 @@ double weight(const LocalMap& map, const Eigen::Vector3f& point, double prior_si
   const Points points{point};
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(points, map, prior_sigma, config, parallel);
+  PlaneResiduals residuals(points, map, prior_sigma, true, config, parallel);
   estimation::NormalEquations<estimation::kPointDof> sums;
   for (int i = 0; i < evaluation; ++i) sums = residuals({}, true);
   return sums.hessian(2, 2);
@@ -49,7 +49,7 @@ TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
   const Points points{{0.4F, 0.7F, 0.01F}};
   const Config config;
   const Parallel parallel(1);
-  const auto sums = PlaneResiduals(points, map, 0.0, config, parallel)({}, true);
+  const auto sums = PlaneResiduals(points, map, 0.0, true, config, parallel)({}, true);
   ASSERT_EQ(sums.count, 1U);
   const double kernel = 1.0 / std::pow(1.0 + 0.01 * 0.01 / (0.05 * 0.05), 2);
   EXPECT_NEAR(sums.hessian(2, 2), kernel, 1e-3);
@@ -82,7 +82,7 @@ TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
   const LocalMap map = map_of(sparse);
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(sparse, map, 0.0, config, parallel);
+  PlaneResiduals residuals(sparse, map, 0.0, true, config, parallel);
   EXPECT_GT(residuals({}, true).count, 5U);
   const LocalMap dense = map_of(floor_points());
   EXPECT_EQ(weight(dense, {0.4F, 0.7F, 3.0F}), 0.0) << "3 m above";
@@ -93,17 +93,17 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
   const Points points{{0.4F, 0.7F, 0.01F}, {0.4F, 0.6F, -0.02F}, {0.3F, 0.6F, 9.0F}};
   const Config config;
   const Parallel parallel(1);
-  PlaneResiduals residuals(points, map, 0.0, config, parallel);
+  PlaneResiduals residuals(points, map, 0.0, true, config, parallel);
   const auto here = residuals.agreement({});
   EXPECT_EQ(here.near_planes, 2U);
   EXPECT_EQ(here.on_planes, 2U);
   EXPECT_EQ(here.share, 1.0) << "of those near planes";
-  PlaneResiduals uncertain(points, map, 1.0, config, parallel);
+  PlaneResiduals uncertain(points, map, 1.0, true, config, parallel);
   EXPECT_NEAR(uncertain.agreement({}).share, 2.0 / 3.0, 1e-12) << "of all";
   estimation::InertialState moved;
   moved.position().z() = 0.045;
   EXPECT_EQ(residuals.agreement(moved).on_planes, 1U) << "one is now 5.5 cm above";
-  EXPECT_EQ(PlaneResiduals({}, map, 0.0, config, parallel).agreement({}).share, 0.0);
+  EXPECT_EQ(PlaneResiduals({}, map, 0.0, true, config, parallel).agreement({}).share, 0.0);
 }
 
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
@@ -111,8 +111,8 @@ TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
   const Points points{{0.5F, 0.3F, 0.0F}};
   const Parallel parallel(1);
   const auto sums = [&](bool extrinsics) {
-    const Config config{.estimate_extrinsics = extrinsics};
-    return PlaneResiduals(points, map, 0.0, config, parallel)({}, true).hessian;
+    const Config config;
+    return PlaneResiduals(points, map, 0.0, extrinsics, config, parallel)({}, true).hessian;
   };
   EXPECT_EQ(sums(false).rightCols<6>().norm(), 0.0);
   EXPECT_GT(sums(true).diagonal().tail<6>().maxCoeff(), 0.1);
