@@ -91,7 +91,8 @@ void PlaneMap::fit(Cell& cell) const {
   cell.plane.center = (options_.cell_size * points_from_grid * (middle + mean)).cast<float>();
   cell.plane.normal = (points_from_grid * axes.eigenvectors().col(0)).cast<float>();
   cell.plane.variance = static_cast<float>(std::max(0.0, spread[0]));
-  cell.has_plane = spread[1] >= options_.min_width * options_.min_width;
+  cell.has_plane = spread[1] >= options_.min_width * options_.min_width &&
+                   spread[0] <= options_.max_thickness * options_.max_thickness;
   cell.next_fit = std::min(cell.count + std::max(1U, cell.count / 10),
                            static_cast<std::uint32_t>(options_.max_points));
 }

@@ -35,6 +35,8 @@ class PlaneMap {
     int min_points = 6;       ///< of a plane
     double min_width = 0.04;  ///< m, of a plane: standard deviation of its points along the
                               ///< narrower direction; a line of points fits any plane through it
+    double max_thickness = 0.06;  ///< m, of a plane: standard deviation of its points from it; what
+                                  ///< is thicker is a cloud: dust, leaves
     GridAxes axes = GridAxes::kRotated;
   };
 

@@ -72,7 +72,7 @@ void WithLoop::retire_revisit() {
     if (clouds_[first].empty() || apart.translation().norm() >= config_.keyframe_translation_m ||
         so3::angle(apart.linear()) >= config_.keyframe_rotation_rad)
       continue;
-    clouds_[revisit] = {};
+    clouds_[revisit] = std::vector<Eigen::Vector3f>();  // {} would keep the memory
     return closer_.retire(revisit);
   }
 }

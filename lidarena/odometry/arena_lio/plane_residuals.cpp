@@ -105,7 +105,7 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
 
 Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
   scale_ = config_.kernel_scale_m;
-  find_planes(state.world_from_lidar(), true);
+  find_planes(state.world_from_lidar());
   Agreement agreement{.points = points_.size(), .near_planes = count_planes(planes_)};
   for (std::size_t i = 0; i < planes_.size(); ++i) {
     const bool is_near = planes_[i] != nullptr;

@@ -55,9 +55,15 @@ Errors errors_of(const ScanResult& result, const Pose& truth) {
           attitude.squaredNorm()};
 }
 
-/// 5 s in the room: 1 s at rest, then the flight, with a Mid-360's noise: 2 cm and that of its IMU.
+/// LIDARENA_NEES_SECONDS, else 5 s.
+double seconds_of_flight() {
+  const char* given = std::getenv("LIDARENA_NEES_SECONDS");
+  return given == nullptr ? 5.0 : std::atof(given);
+}
+
+/// In the room: 1 s at rest, then the flight, with a Mid-360's noise: 2 cm and that of its IMU.
 Recording noisy_flight(int seed) {
-  Recording recording{.seconds = 5.0, .range_noise_m = 0.02, .repeating = false};
+  Recording recording{.seconds = seconds_of_flight(), .range_noise_m = 0.02, .repeating = false};
   recording.seed = static_cast<std::uint64_t>(seed);
   recording.gyro_noise_density = 2.4e-4;
   recording.accel_noise_density = 1.7e-3;
@@ -123,7 +129,7 @@ double chi_square(double dof, double z) {
 TEST(ArenaLioConsistency, TheCovarianceTellsTheErrors) {
   const int seeds = number_of_seeds();
   const std::vector<Errors> errors = mean_errors(seeds);
-  ASSERT_EQ(errors.size(), 8U);
+  ASSERT_GE(errors.size(), 8U);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     fmt::print(
         "{:.1f} s: pose {:.2f} of 6, position {:.2f} of 3, attitude {:.2f} of 3; rms {:.2f} mm, "
