@@ -276,9 +276,15 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
+  // A loop that agrees with the path to within its own accuracy ties the visits, and corrects
+  // nothing.
+  const bool corrects = std::ranges::any_of(loops, [](const LoopRecord& loop) {
+    return loop.translation_m > kLoopTranslationSigma || loop.rotation_rad > kLoopRotationSigma;
+  });
   for (const LoopRecord& loop : loops) {
-    graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
-                               covariance_of(kLoopTranslationSigma, kLoopRotationSigma), kLoss});
+    if (corrects)
+      graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
+                                 covariance_of(kLoopTranslationSigma, kLoopRotationSigma), kLoss});
     accepted_.push_back(loop);
     for (LoopRecord& record : records_) {
       if (record.first == loop.first && record.second == loop.second &&
@@ -287,7 +293,7 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
     }
   }
   waiting_.clear();
-  graph_.nodes = estimation::optimize(graph_).nodes;
+  if (corrects) graph_.nodes = estimation::optimize(graph_).nodes;
 }
 
 std::uint64_t LoopCloser::memory_bytes() const {
