@@ -33,8 +33,6 @@ constexpr double kConsistencyTranslation = 0.3;     // m, within which they agre
 constexpr double kConsistencyRotation = 0.03;       // rad
 constexpr double kOdometryTranslationSigma = 0.01;  // m, from keyframe to keyframe
 constexpr double kOdometryRotationSigma = 1e-3;     // rad
-constexpr double kLoopTranslationSigma = 0.03;      // m
-constexpr double kLoopRotationSigma = 3e-3;         // rad
 constexpr double kLoopKernelScale = 3.0;            // sigmas, of the Cauchy kernel of loops
 
 estimation::PoseGraph::Covariance covariance_of(double translation_sigma, double rotation_sigma) {
@@ -55,9 +53,8 @@ std::vector<Eigen::Vector3f> shuffled(std::vector<Eigen::Vector3f> points) {
 
 std::vector<Eigen::Vector3f> turned(std::span<const Eigen::Vector3f> points,
                                     const Eigen::Matrix3d& rotation) {
-  std::vector<Eigen::Vector3f> moved;
-  const Eigen::Matrix3f r = rotation.cast<float>();
-  for (const Eigen::Vector3f& p : points) moved.emplace_back(r * p);
+  std::vector<Eigen::Vector3f> moved(points.begin(), points.end());
+  for (Eigen::Vector3f& p : moved) p = rotation.cast<float>() * p;
   return moved;
 }
 
@@ -276,11 +273,7 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
-  // A loop that agrees with the path to within its own accuracy ties the visits, and corrects
-  // nothing.
-  const bool corrects = std::ranges::any_of(loops, [](const LoopRecord& loop) {
-    return loop.translation_m > kLoopTranslationSigma || loop.rotation_rad > kLoopRotationSigma;
-  });
+  const bool corrects = std::ranges::any_of(loops, &LoopRecord::corrects);
   for (const LoopRecord& loop : loops) {
     if (corrects)
       graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,

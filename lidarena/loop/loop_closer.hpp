@@ -31,6 +31,9 @@ enum class LoopVerdict {
 };
 const char* to_string(LoopVerdict verdict);
 
+inline constexpr double kLoopTranslationSigma = 0.03;  // m, of a loop
+inline constexpr double kLoopRotationSigma = 3e-3;     // rad
+
 /// A loop candidate that was verified, accepted or not.
 struct LoopRecord {
   std::size_t first = 0;   ///< keyframe of the first visit
@@ -44,6 +47,12 @@ struct LoopRecord {
   double translation_m = 0.0;  ///< m, translation by which the loop would correct the poses
   double rotation_rad = 0.0;   ///< rad, likewise, rotation
   double path_length = 0.0;    ///< m, path length between the two
+
+  /// False: it agrees with the path to within its own accuracy, so it ties the two visits, and
+  /// there is nothing that it could correct.
+  bool corrects() const {
+    return translation_m > kLoopTranslationSigma || rotation_rad > kLoopRotationSigma;
+  }
 };
 
 /// The points of a keyframe, in its own frame (m).

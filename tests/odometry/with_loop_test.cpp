@@ -105,5 +105,20 @@ TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
     EXPECT_LT(std::abs(p.z()), 2.6F) << "walls 4 m high";
 }
 
+TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
+  WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
+  std::uint64_t after_two_rounds = 0;
+  for (int i = 0; i < 1050; ++i) {  // 210 s, five rounds
+    Scan scan;
+    scan.stamp = from_seconds(0.2 * i);
+    scan.points.resize(1);
+    looped.register_scan(scan);
+    if (i == 420) after_two_rounds = looped.memory().at("map");
+  }
+  EXPECT_LT(static_cast<double>(looped.memory().at("map")),
+            1.3 * static_cast<double>(after_two_rounds))
+      << "it would be 2.5 times as much";
+}
+
 }  // namespace
 }  // namespace lidarena::odometry
