@@ -19,7 +19,8 @@ GyroCalibration calibrated_with(const Eigen::Matrix3d& m, double rotation_sigma,
     const Eigen::Vector3d turned = 0.1 * calibration.calibrated(m * truth);
     const Eigen::Matrix3d estimated =
         so3::exp(0.1 * truth) * so3::exp(random_vector(random, rotation_sigma));
-    calibration.observe(turned, so3::log(so3::exp(turned).transpose() * estimated));
+    calibration.observe(turned, Eigen::Vector3d::Zero(),
+                        so3::log(so3::exp(turned).transpose() * estimated));
   }
   return calibration;
 }
@@ -36,9 +37,25 @@ TEST(GyroCalibration, FindsScaleFactorsAndMisalignments) {
 
 TEST(GyroCalibration, ChangesNothingWithoutTurns) {
   GyroCalibration calibration;
-  for (int i = 0; i < 100; ++i) calibration.observe({1e-6, 0.0, 0.0}, {1e-3, 1e-3, -1e-3});
+  for (int i = 0; i < 100; ++i)
+    calibration.observe({1e-6, 0.0, 0.0}, {1e-6, 0.0, 0.0}, {1e-3, 1e-3, -1e-3});
   EXPECT_LT(calibration.correction().norm(), 1e-4);
   EXPECT_EQ(GyroCalibration().calibrated({1.0, 2.0, 3.0}), Eigen::Vector3d(1.0, 2.0, 3.0));
+}
+
+TEST(GyroCalibration, FindsTheDelayOfTheClock) {
+  SequentialRandom random(3, 1);
+  GyroCalibration calibration;
+  constexpr double kDelay = 0.02;  // s
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d turned = random_vector(random, 0.1);
+    const Eigen::Vector3d change = random_vector(random, 1.0);
+    const Eigen::Vector3d missed = (kDelay - calibration.delay_s()) * change -
+                                   calibration.correction() * turned;  // the truth has no such
+    calibration.observe(turned, change, missed + random_vector(random, 3e-4));
+  }
+  EXPECT_NEAR(calibration.delay_s(), kDelay, 2e-4);
+  EXPECT_LT(calibration.correction().cwiseAbs().maxCoeff(), 2e-3);
 }
 
 }  // namespace
