@@ -46,6 +46,7 @@ class PublishingOdometry final : public odometry::Odometry {
   std::span<const Eigen::Vector3f> registered_scan() const override {
     return odometry_.registered_scan();
   }
+  Pose world_from_start() const override { return odometry_.world_from_start(); }
   std::map<std::string, std::uint64_t> memory() const override { return odometry_.memory(); }
 
  private:

@@ -126,8 +126,12 @@ void Recorder::keep_result(const ScanResult& result) {
     return log_.warn("skipped an estimate that is not later than the one before it");
   live_.push_back(estimate);
   motion_.add(result);
-  if (odometry_.traits().publishes_scans) {
+  const OdometryTraits traits = odometry_.traits();
+  if (!traits.publishes_scans) return;
+  if (traits.gravity_aligned) {  // its world may still change
     map_.insert(transformed(odometry_.world_from_start().inverse(), odometry_.registered_scan()));
+  } else {
+    map_.insert(odometry_.registered_scan());
   }
 }
 
