@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Times of the single steps of arena_lo with its own settings, in a box of 16 x 12 x 4 m:
-// downsampling, keypoints, neighbor search and description, insertion; and of both elastic solvers:
-// one Gauss-Newton step of arena_lo, and a solution of CT-ICP.
+// Times of the single steps of arena_lo with its own settings, in a box of 16 x 12 x 4 m: slices,
+// averages, measurement, filter and smoother, whole registration, insertion; and a solution of
+// CT-ICP's elastic scan.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -9,26 +9,29 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/elastic_alignment.hpp"
 #include "lidarena/odometry/arena_lo/registration.hpp"
 
 namespace lidarena::odometry::arena_lo {
 namespace {
 
-/// Points of a scan at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
-std::vector<TimedPoint> scan_of(std::size_t count, std::uint64_t seed) {
+const Eigen::Array3d kHalf(8.0, 6.0, 2.0);  // m, of the box
+
+/// A scan of 0.1 s at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
+Scan scan_of(std::size_t count, std::uint64_t seed) {
   const CounterRandom random(seed);
-  const Eigen::Array3d half(8.0, 6.0, 2.0);
-  std::vector<TimedPoint> points;
+  Scan scan{.stamp = Time{0}, .points = {}, .timed = true};
   for (std::size_t i = 0; i < count; ++i) {
     const double z = 2.0 * random.uniform(i, 0) - 1.0;
     const double azimuth = 2.0 * M_PI * random.uniform(i, 1);
     const double radius = std::sqrt(1.0 - z * z);
     const Eigen::Vector3d beam(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
-    const double range = (half / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
-    const double alpha = static_cast<double>(i) / static_cast<double>(count);
-    points.push_back({(range * beam).cast<float>(), static_cast<float>(alpha)});
+    const double range = (kHalf / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
+    const double share = static_cast<double>(i) / static_cast<double>(count);
+    scan.points.push_back(
+        {(range * beam).cast<float>(), 0, static_cast<std::int32_t>(1e8 * share)});
   }
-  return points;
+  return scan;
 }
 
 const Config& config() {
@@ -36,105 +39,104 @@ const Config& config() {
   return made;
 }
 
-const map::VoxelHashMap& map() {
-  static const map::VoxelHashMap filled = [] {
-    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel,
-                            config().map.min_point_spacing_m});
-    for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
-    return made;
-  }();
-  return filled;
+std::vector<Slice> slices(const Scan& scan) {
+  return slices_of(scan, estimation::times_of(scan, from_seconds(0.1)), config().slice_s, config());
 }
 
-std::vector<TimedPoint> keypoints() {
-  return sample_keypoints(scan_of(20'000, 2), config().sampling);
+std::vector<Eigen::Vector3f> positions(const Scan& scan) {
+  std::vector<Eigen::Vector3f> points;
+  for (const Point& point : scan.points) points.push_back(point.position);
+  return points;
 }
 
-void thin_scan(benchmark::State& state) {
-  const auto points = scan_of(static_cast<std::size_t>(state.range(0)), 2);
-  for (auto _ : state) benchmark::DoNotOptimize(thin(points, config().sampling.scan_voxel_size_m));
-  state.SetItemsProcessed(state.iterations() * state.range(0));
-}
-BENCHMARK(thin_scan)->Arg(20'000)->Arg(262'144)->Unit(benchmark::kMillisecond);
-
-void choose_keypoints(benchmark::State& state) {
-  const auto frame = scan_of(20'000, 2);
-  for (auto _ : state) benchmark::DoNotOptimize(sample_keypoints(frame, config().sampling));
-}
-BENCHMARK(choose_keypoints)->Unit(benchmark::kMillisecond);
-
-void search_neighbors(benchmark::State& state) {
-  const auto queries = keypoints();
-  std::vector<map::Neighbor> near(20);
-  for (auto _ : state) {
-    for (const TimedPoint& query : queries)
-      benchmark::DoNotOptimize(map().nearest(query.position, 0.4F, near));
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(queries.size()));
-}
-BENCHMARK(search_neighbors)->Unit(benchmark::kMillisecond);
-
-void describe_neighbors(benchmark::State& state) {
-  std::vector<map::Neighbor> near(20);
-  near.resize(map().nearest(keypoints().front().position, 0.4F, near));
-  for (auto _ : state) benchmark::DoNotOptimize(map::describe(near));
-}
-BENCHMARK(describe_neighbors);
-
-/// Matches of a scan with the planes of the box.
-std::vector<estimation::ElasticMatch> matches() {
-  std::vector<estimation::ElasticMatch> made;
-  for (const TimedPoint& keypoint : keypoints()) {
-    estimation::ElasticMatch match;
-    match.point = keypoint.position.cast<double>();
-    match.alpha = keypoint.alpha;
-    match.anchor = match.point;
-    const Eigen::Array3d share = match.point.array().abs() / Eigen::Array3d(8.0, 6.0, 2.0);
-    Eigen::Index axis = 0;
-    share.maxCoeff(&axis);
-    match.normal = Eigen::Vector3d::Unit(axis);
-    made.push_back(match);
-  }
+map::LocalPlanes box() {
+  map::LocalPlanes made({.cell_size = config().map_cell_size_m});
+  made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
   return made;
 }
 
-estimation::ElasticMotion guess(std::int64_t segments) {
-  return estimation::ElasticMotion::still(make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01}),
-                                          static_cast<int>(segments));
+/// At rest, a little off the true pose.
+Known before() {
+  Known known{{}, Time{-1'000'000}};
+  known.estimate.state.pose = make_pose(so3::exp({0.01, 0.0, 0.02}), {0.02, 0.0, 0.01});
+  known.estimate.covariance.diagonal().setConstant(1e-3);
+  return known;
 }
 
-void gauss_newton_step(benchmark::State& state) {
-  const auto made = matches();
+void divide_into_slices(benchmark::State& state) {
+  const Scan scan = scan_of(static_cast<std::size_t>(state.range(0)), 2);
+  for (auto _ : state) benchmark::DoNotOptimize(slices(scan));
+}
+BENCHMARK(divide_into_slices)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void average_slices(benchmark::State& state) {
+  const auto parts = slices(scan_of(static_cast<std::size_t>(state.range(0)), 2));
+  const Parallel one(1);
+  const int most = config().max_scan_points / static_cast<int>(parts.size());
+  for (auto _ : state) {
+    for (const Slice& slice : parts)
+      benchmark::DoNotOptimize(averages(slice, {}, most, config(), one));
+  }
+}
+BENCHMARK(average_slices)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void measure_points(benchmark::State& state) {
+  const map::LocalPlanes map = box();
+  const auto points = positions(scan_of(static_cast<std::size_t>(config().max_scan_points), 2));
   const Parallel one(1);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        estimation::gauss_newton_step({made, {}, 0.05}, guess(state.range(0)), one));
+        measure(points, before().estimate, config().kernel_scale_m, map, config(), one));
 }
-BENCHMARK(gauss_newton_step)->Arg(1)->Arg(3)->Unit(benchmark::kMillisecond);
+BENCHMARK(measure_points)->Unit(benchmark::kMillisecond);
 
-void levenberg_marquardt(benchmark::State& state) {
-  const auto made = matches();
+void filter_and_smooth(benchmark::State& state) {
+  const auto parts = slices(scan_of(20'000, 2));
+  for (auto _ : state) {
+    Steps steps = coast(before(), parts, from_seconds(0.1), config());
+    estimation::smooth(steps);
+    benchmark::DoNotOptimize(steps);
+  }
+}
+BENCHMARK(filter_and_smooth)->Unit(benchmark::kMillisecond);
+
+void register_scan(benchmark::State& state) {
+  const map::LocalPlanes map = box();
+  const auto parts = slices(scan_of(static_cast<std::size_t>(state.range(0)), 2));
   const Parallel one(1);
   for (auto _ : state)
     benchmark::DoNotOptimize(
-        estimation::align_by_levenberg_marquardt({made, {}, 0.1}, guess(1), 20, one));
+        register_slices(before(), parts, from_seconds(0.1), map, config(), one));
 }
-BENCHMARK(levenberg_marquardt)->Unit(benchmark::kMillisecond);
+BENCHMARK(register_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
-  const auto frame = thin(scan_of(20'000, 3), config().sampling.scan_voxel_size_m);
-  map::VoxelHashMap grown = [] {
-    map::VoxelHashMap made({config().map.voxel_size_m, config().map.max_points_per_voxel,
-                            config().map.min_point_spacing_m});
-    for (const TimedPoint& point : scan_of(400'000, 1)) made.insert(point.position);
-    return made;
-  }();
-  for (auto _ : state) {
-    for (const TimedPoint& point : frame) grown.insert(point.position);
-  }
-  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(frame.size()));
+  map::LocalPlanes grown = box();
+  const auto points = positions(scan_of(static_cast<std::size_t>(state.range(0)), 3));
+  for (auto _ : state) grown.insert(points, Eigen::Vector3f(0, 0, 0));
 }
-BENCHMARK(insert_scan)->Unit(benchmark::kMillisecond);
+BENCHMARK(insert_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void levenberg_marquardt(benchmark::State& state) {
+  std::vector<estimation::ElasticMatch> matches;
+  for (const Slice& slice : slices(scan_of(2'000, 2))) {
+    for (const Slice::Point& point : slice.points) {
+      estimation::ElasticMatch& match = matches.emplace_back();
+      match.point = point.position.cast<double>();
+      match.alpha = 10.0 * (to_seconds(slice.middle) + double{point.seconds});
+      match.anchor = match.point;
+      Eigen::Index axis = 0;
+      (match.point.array().abs() / kHalf).maxCoeff(&axis);
+      match.normal = Eigen::Vector3d::Unit(axis);
+    }
+  }
+  const auto guess = estimation::ElasticMotion::still(before().estimate.state.pose, 1);
+  const Parallel one(1);
+  for (auto _ : state)
+    benchmark::DoNotOptimize(
+        estimation::align_by_levenberg_marquardt({matches, {}, 0.1}, guess, 20, one));
+}
+BENCHMARK(levenberg_marquardt)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace lidarena::odometry::arena_lo

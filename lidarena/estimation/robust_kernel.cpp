@@ -40,6 +40,11 @@ double robust_weight(RobustKernel kernel, double squared_residual, double scale)
   return 1.0;
 }
 
+double geman_mcclure_weight(double residual, double scale) {
+  const double root = scale * scale / (scale * scale + residual * residual);
+  return root * root;
+}
+
 ceres::LossFunction* make_ceres_loss(RobustKernel kernel, double scale) {
   switch (kernel) {
     case RobustKernel::kNone:

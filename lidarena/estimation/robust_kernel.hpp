@@ -31,6 +31,10 @@ constexpr auto enum_names(RobustKernel) {
 double robust_cost(RobustKernel kernel, double squared_residual, double scale);
 /// rho'(r) / r: weight of the residual in iteratively re-weighted least squares.
 double robust_weight(RobustKernel kernel, double squared_residual, double scale);
+/// Weight of the kernel of S. Geman, D. McClure, "Statistical Methods for Tomographic Image
+/// Reconstruction", 1987: r^2 / 2 for small residuals r, constant for large ones; a quarter at r =
+/// `scale`.
+double geman_mcclure_weight(double residual, double scale);
 /// The same kernel for Ceres, owned by the caller; null for kNone.
 ceres::LossFunction* make_ceres_loss(RobustKernel kernel, double scale);
 

@@ -11,6 +11,7 @@ namespace {
 
 constexpr float kMaxLoad = 0.8F;  // of the hash table
 constexpr VoxelKey kInvalidKey = ~VoxelKey{0};
+constexpr VoxelKey kOtherSide = VoxelKey{1} << 63U;  // a voxel's key has 63 bits
 
 Voxel voxel_of_key(VoxelKey key) {
   const auto index = [key](unsigned shift) {
@@ -57,7 +58,7 @@ std::uint32_t PlaneMap::cell_for(VoxelKey key) {
   return place->second;
 }
 
-void PlaneMap::insert(std::span<const Eigen::Vector3f> points) {
+void PlaneMap::insert(std::span<const Eigen::Vector3f> points, const Sensor& sensor) {
   const auto most = static_cast<std::uint32_t>(options_.max_points);
   VoxelKey known = kInvalidKey;  // neighbors in a scan often share a cell
   std::uint32_t index = 0;
@@ -67,7 +68,10 @@ void PlaneMap::insert(std::span<const Eigen::Vector3f> points) {
     const Eigen::Vector3f in_cells = cells_from_points_ * point;
     const Voxel voxel = voxel_of(in_cells, 1.0F);
     const VoxelKey key = voxel_key(voxel);
-    if (key != known) index = cell_for(key);
+    if (key != known) {
+      index = cell_for(key);
+      if (is_behind(cells_[index], sensor)) index = cell_for(key | kOtherSide);
+    }
     known = key;
     Cell& cell = cells_[index];
     if (cell.count >= most) continue;
@@ -76,10 +80,14 @@ void PlaneMap::insert(std::span<const Eigen::Vector3f> points) {
     cell.products += products_of(off);
     if (++cell.count == cell.next_fit) to_fit_.push_back(index);
   }
-  for (const std::uint32_t cell : to_fit_) fit(cells_[cell]);
+  for (const std::uint32_t cell : to_fit_) fit(cells_[cell], sensor);
 }
 
-void PlaneMap::fit(Cell& cell) const {
+bool PlaneMap::is_behind(const Cell& cell, const Sensor& sensor) {
+  return sensor && cell.has_plane && cell.plane.normal.dot(*sensor - cell.plane.center) < 0.0F;
+}
+
+void PlaneMap::fit(Cell& cell, const Sensor& sensor) const {
   const double n = cell.count;
   const Eigen::Vector3d mean = cell.sum.cast<double>() / n;
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes;
@@ -90,6 +98,8 @@ void PlaneMap::fit(Cell& cell) const {
   const Eigen::Vector3d middle = voxel_of_key(cell.key).cast<double>().array() + 0.5;
   cell.plane.center = (options_.cell_size * points_from_grid * (middle + mean)).cast<float>();
   cell.plane.normal = (points_from_grid * axes.eigenvectors().col(0)).cast<float>();
+  if (sensor && cell.plane.normal.dot(*sensor - cell.plane.center) < 0.0F)
+    cell.plane.normal = -cell.plane.normal;
   cell.plane.variance = static_cast<float>(std::max(0.0, spread[0]));
   cell.has_plane = spread[1] >= options_.min_width * options_.min_width &&
                    spread[0] <= options_.max_thickness * options_.max_thickness;
@@ -97,11 +107,15 @@ void PlaneMap::fit(Cell& cell) const {
                            static_cast<std::uint32_t>(options_.max_points));
 }
 
-const MapPlane* PlaneMap::plane_at(const Eigen::Vector3f& point) const {
+const MapPlane* PlaneMap::plane_at(const Eigen::Vector3f& point, const Sensor& sensor) const {
   if (!point.allFinite()) return nullptr;
-  const auto place = places_.find(voxel_key(voxel_of(cells_from_points_ * point, 1.0F)));
+  const VoxelKey key = voxel_key(voxel_of(cells_from_points_ * point, 1.0F));
+  auto place = places_.find(key);
+  if (place != places_.end() && is_behind(cells_[place->second], sensor))
+    place = places_.find(key | kOtherSide);
   if (place == places_.end() || !cells_[place->second].has_plane) return nullptr;
-  return &cells_[place->second].plane;
+  const Cell& cell = cells_[place->second];
+  return is_behind(cell, sensor) ? nullptr : &cell.plane;
 }
 
 void PlaneMap::clear() {

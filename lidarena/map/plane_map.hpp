@@ -5,6 +5,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -16,8 +17,9 @@ namespace lidarena::map {
 /// The plane of a cell's points.
 struct MapPlane {
   Eigen::Vector3f center = Eigen::Vector3f::Zero();  ///< m, mean of the points
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit length, of either sign
-  float variance = 0.0F;  ///< m^2, mean squared distance of the points from the plane
+  Eigen::Vector3f normal =
+      Eigen::Vector3f::Zero();  ///< unit length; towards the sensor, if it was told
+  float variance = 0.0F;        ///< m^2, mean squared distance of the points from the plane
 };
 
 /// A map of planes: a hash table of cubic cells that each keep the number, the sum and the products
@@ -26,7 +28,9 @@ struct MapPlane {
 /// Strasser, "The Normal Distributions Transform", IROS 2003). No point is kept, so the memory
 /// depends on the surface alone, and a lookup is one access to the table. A cell that has its
 /// maximum number of points does not change any more: it stays where it was seen first, and a
-/// sensor that passes again cannot displace it.
+/// sensor that passes again cannot displace it. If the sensor's place is told, a cell has two
+/// sides: what is seen from behind the plane of the first is kept apart, as the other side of a
+/// wall.
 class PlaneMap {
  public:
   struct Options {
@@ -40,16 +44,19 @@ class PlaneMap {
     GridAxes axes = GridAxes::kRotated;
   };
 
+  using Sensor = std::optional<Eigen::Vector3f>;
+
   /// Throws InputError on options that are not positive.
   explicit PlaneMap(const Options& options);
 
   /// Adds points (m, map frame) and fits the planes of their cells anew, each as often as it has a
-  /// tenth more points. Points that are not finite are left out.
-  void insert(std::span<const Eigen::Vector3f> points);
+  /// tenth more points. Points that are not finite are left out. `sensor` (m): from where they
+  /// were seen.
+  void insert(std::span<const Eigen::Vector3f> points, const Sensor& sensor = std::nullopt);
 
-  /// The plane of the cell that `point` (m) lies in; null if it has none. Valid until the map
-  /// changes.
-  const MapPlane* plane_at(const Eigen::Vector3f& point) const;
+  /// The plane of the cell that `point` (m) lies in, and of the side that is seen from `sensor`
+  /// (m); null if it has none. Valid until the map changes.
+  const MapPlane* plane_at(const Eigen::Vector3f& point, const Sensor& sensor = std::nullopt) const;
 
   void clear();
   /// Removes the cells whose points lie outside the box of half edge `radius` (m) around `center`.
@@ -76,7 +83,9 @@ class PlaneMap {
 
   /// Index of the cell with this key, which is made if there is none.
   std::uint32_t cell_for(VoxelKey key);
-  void fit(Cell& cell) const;
+  /// Whether the cell has a plane that turns its back on the sensor.
+  static bool is_behind(const Cell& cell, const Sensor& sensor);
+  void fit(Cell& cell, const Sensor& sensor) const;
 
   Options options_;
   Eigen::Matrix3f cells_from_points_;

@@ -177,5 +177,28 @@ TEST(PlaneMap, BadPointsAndOptionsAreRefused) {
   EXPECT_THROW(PlaneMap({.min_width = 0.0}), InputError);
 }
 
+TEST(PlaneMap, KeepsTheSidesOfAWallApartIfItKnowsFromWhereTheyAreSeen) {
+  const Eigen::Vector3f front = (9.0 * kNormal).cast<float>();
+  const Eigen::Vector3f back = (5.0 * kNormal).cast<float>();
+  const Points seen_from_front = wall(kNormal, 7.0, 0.002, 20'000);
+  const Points seen_from_back = wall(kNormal, 6.9, 0.002, 20'000);
+  PlaneMap map({});
+  map.insert(seen_from_front, front);
+  map.insert(seen_from_back, back);
+  int found = 0;
+  const auto expect_side = [&](const Points& points, const Eigen::Vector3f& sensor, double offset) {
+    for (const Eigen::Vector3f& point : points) {
+      const MapPlane* plane = map.plane_at(point, sensor);
+      if (plane == nullptr) continue;
+      ++found;
+      EXPECT_NEAR(kNormal.dot(plane->center.cast<double>()), offset, 0.005);
+      EXPECT_GT(plane->normal.dot(sensor - plane->center), 0.0F) << "towards the sensor";
+    }
+  };
+  expect_side(seen_from_front, front, 7.0);
+  expect_side(seen_from_back, back, 6.9);
+  EXPECT_GT(found, 34'000);
+}
+
 }  // namespace
 }  // namespace lidarena::map

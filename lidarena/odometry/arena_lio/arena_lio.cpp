@@ -63,7 +63,7 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       parallel_(std::move(parallel)),
       imu_(config.max_imu_gap_s),
       tracking_(config.min_inlier_share),
-      map_(config),
+      map_({config.map_cell_size_m, config.max_cell_points, config.map_radius_m}),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {
   estimate_.state.rotation() = map_from_start_;  // of poses before the initialization
   estimate_.state.imu_from_lidar = imu_from_lidar_;
@@ -84,8 +84,8 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const State predicted = estimate_.state;
   const Scan usable = usable_points(scan, config_.min_range_m);
   const std::vector<Eigen::Vector3f> reduced =
-      evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
-             config_.max_scan_points);
+      map::evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
+                  config_.max_scan_points);
   PlaneResiduals residuals(reduced, map_, position_sigma(estimate_),
                            config_.estimate_extrinsics && has_moved_, config_, parallel_);
   const estimation::IteratedUpdate update = estimation::iterated_update(

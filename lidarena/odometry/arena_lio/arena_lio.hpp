@@ -10,9 +10,9 @@
 #include "lidarena/estimation/imu_buffer.hpp"
 #include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
+#include "lidarena/map/local_planes.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
 #include "lidarena/odometry/arena_lio/initialization.hpp"
-#include "lidarena/odometry/arena_lio/local_map.hpp"
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
 #include "lidarena/odometry/arena_lio/tracking.hpp"
 #include "lidarena/odometry/arena_lio/upright_world.hpp"
@@ -97,7 +97,7 @@ class ArenaLio : public Odometry {
   StillDetector still_;
   Pose first_pose_ = Pose::Identity();  ///< of the IMU
   bool has_moved_ = false;
-  LocalMap map_;
+  map::LocalPlanes map_;
 
   Time scan_duration_;              ///< duration of the last scan that had points
   std::vector<StampedPose> poses_;  ///< of the body, in its frame at the start

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "lidarena/estimation/point_to_plane.hpp"
+#include "lidarena/estimation/robust_kernel.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
@@ -15,13 +16,6 @@ constexpr double kNarrowing = 0.4;      // of the kernel, from one evaluation to
 constexpr double kMaxScale = 30.0;      // m, of the kernel, also if the prior is not finite
 constexpr double kCut = 6.0;            // scales of the kernel; points beyond have no weight
 constexpr double kMinFineShare = 0.02;  // of points that determine each direction by fine planes
-
-/// rho'(r) / r of S. Geman, D. McClure, "Statistical Methods for Tomographic Image Reconstruction",
-/// 1987: r^2 / 2 for small residuals r, constant for large ones; a quarter at r = `scale`.
-double geman_mcclure_weight(double r, double scale) {
-  const double root = scale * scale / (scale * scale + r * r);
-  return root * root;
-}
 
 double distance(const map::MapPlane& plane, const Eigen::Vector3f& point) {
   return plane.normal.dot(point - plane.center);
@@ -51,7 +45,7 @@ std::size_t count_planes(const std::vector<const map::MapPlane*>& planes) {
 
 }  // namespace
 
-PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map,
+PlaneResiduals::PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::LocalPlanes& map,
                                double prior_sigma, bool with_extrinsics, const Config& config,
                                const Parallel& parallel)
     : points_(points),
@@ -97,7 +91,7 @@ estimation::NormalEquations<estimation::kPointDof> PlaneResiduals::operator()(
             points_[i].cast<double>(), as_equation(*plane), state, with_extrinsics_);
         const double of_plane = variance / std::max(variance, static_cast<double>(plane->variance));
         sum.template add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance),
-                            of_plane * geman_mcclure_weight(residual.distance, scale_));
+                            of_plane * estimation::geman_mcclure_weight(residual.distance, scale_));
       });
   scale_ = std::max(kNarrowing * scale_, config_.kernel_scale_m);
   return sums;

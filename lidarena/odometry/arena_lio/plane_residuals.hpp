@@ -7,8 +7,8 @@
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
+#include "lidarena/map/local_planes.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
-#include "lidarena/odometry/arena_lio/local_map.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
@@ -31,8 +31,9 @@ class PlaneResiduals {
  public:
   /// `prior_sigma`: standard deviation (m) of the position before the update; `with_extrinsics`:
   /// whether the points also move the LiDAR on the IMU.
-  PlaneResiduals(std::span<const Eigen::Vector3f> points, const LocalMap& map, double prior_sigma,
-                 bool with_extrinsics, const Config& config, const Parallel& parallel);
+  PlaneResiduals(std::span<const Eigen::Vector3f> points, const map::LocalPlanes& map,
+                 double prior_sigma, bool with_extrinsics, const Config& config,
+                 const Parallel& parallel);
 
   /// The sums at `state`. Planes are always searched for: a search is one access to a table.
   estimation::NormalEquations<estimation::kPointDof> operator()(
@@ -48,7 +49,7 @@ class PlaneResiduals {
   void find_planes(const Pose& world_from_lidar, bool with_coarse = false);
 
   std::span<const Eigen::Vector3f> points_;
-  const LocalMap& map_;
+  const map::LocalPlanes& map_;
   const Config& config_;
   const Parallel& parallel_;
   bool with_extrinsics_;

@@ -1,81 +1,175 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lo/arena_lo.hpp"
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <utility>
 
 namespace lidarena::odometry::arena_lo {
 
 namespace {
 
-constexpr double kDegenerate = 0.01;  // minimum share of a direction; isotropic: 1/3
+constexpr double kStartSpeed = 5.0;        // m/s, standard deviation before any motion is seen
+constexpr double kStartRate = 1.0;         // rad/s, likewise
+constexpr double kStartPose = 1e-6;        // m and rad: the first pose defines the map's frame
+constexpr std::size_t kMinMatches = 50;    // points near planes; with fewer, a scan is not used
+constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
+constexpr double kShareMemory = 0.1;       // weight of a scan in the usual share of inliers
+constexpr std::size_t kStartScans = 3;     // the map begins anew with each of them, see README.md
+constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
+constexpr double kLostMotionFactor = 0.5;  // on the velocity after each scan without registration
+
+estimation::MotionEstimate start(const Config& config) {
+  estimation::MotionVector deviation;
+  deviation << Eigen::Matrix<double, 6, 1>::Constant(kStartPose),
+      Eigen::Vector3d::Constant(kStartSpeed), Eigen::Vector3d::Constant(kStartRate),
+      Eigen::Vector3d::Constant(config.acceleration_m_s2),
+      Eigen::Vector3d::Constant(config.angular_acceleration_rad_s2);
+  return {{}, deviation.cwiseAbs2().asDiagonal()};
+}
+
+/// Share of the least observed direction in the information about the position.
+double weakest_share(const Measurement& measurement) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
+      Eigen::Matrix3d(measurement.equations.hessian.topLeftCorner<3, 3>()), Eigen::EigenvaluesOnly);
+  return directions.eigenvalues()[0] / directions.eigenvalues().sum();
+}
 
 }  // namespace
 
 ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : VoxelMapOdometry("arena_lo", lidar,
-                       {config.map.voxel_size_m, config.map.max_points_per_voxel,
-                        config.map.min_point_spacing_m},
-                       std::move(parallel)),
-      config_(config) {}
+    : config_(config),
+      body_from_lidar_(lidar.body_from_lidar),
+      parallel_(std::move(parallel)),
+      known_{start(config), Time{0}},
+      map_({config.map_cell_size_m, config.max_cell_points, config.map_radius_m}),
+      scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult ArenaLo::register_scan(const Scan& scan) {
-  const estimation::ScanTimes times = times_of(scan);
-  if (is_out_of_order(times.last)) {
-    ++scans_refused_;
-    return unchanged(ScanStatus::kTooFewPoints, {.scans_refused = scans_refused_});
-  }
-  const bool rigid = !times.timed || map_.empty();
-  const SamplingConfig& sampling = config_.sampling;
-  const auto points =
-      estimation::timed_points(scan, times, rigid, {sampling.min_range_m, sampling.max_range_m});
-  const auto frame = thin(points, sampling.scan_voxel_size_m);
-  const auto keypoints = sample_keypoints(frame, sampling);
+  const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
+  if (!poses_.empty() && times.last <= known_.instant) return refused_scan();
+  const std::vector<Slice> slices = slices_of(scan, times, slice_duration(times), config_);
 
-  const Registration found = align(keypoints, times);
-  const ScanStatus status = status_of(found, points.size());
-  const bool lost = status == ScanStatus::kTooFewPoints;
-  advance(found.motion, frame, times, lost);
+  const Registration found = align(slices, times.last);
+  const Measurement& measurement = found.measurement;
+  const ScanStatus status = status_of(measurement, count_points(slices));
+  const bool used = is_used(status);
+  const Steps steps = used || map_.empty() ? found.steps : coasted(slices, times.last);
 
-  const auto body_motion = estimation::moved(body_from_lidar_, found.motion);
-  registered_scan_ = estimation::placed(body_motion, points, parallel_);
+  const std::vector<Eigen::Vector3f> points = points_in_map(slices, steps);
+  advance(steps, times);
+  if (used) grow_map(points);
+  registered_scan_ = transformed(body_from_lidar_, points);
   return {poses_.back(),
           status,
           std::nullopt,
           {.points = points.size(),
-           .keypoints = keypoints.size(),
-           .matches = found.matches,
-           .iterations = found.iterations,
-           .map_points = map_.size(),
+           .keypoints = measurement.points,
+           .matches = measurement.on_planes,
+           .near_planes = measurement.near_planes,
+           .iterations = found.passes,
+           .map_points = map_.fine().size(),
            .scans_refused = scans_refused_,
-           .inserted = !lost},
-          rigid ? std::vector<StampedPose>{}
-                : estimation::body_poses(found.motion, times, body_from_lidar_)};
+           .inserted = used},
+          motion_within(slices, steps, times)};
 }
 
-Registration ArenaLo::align(std::span<const TimedPoint> keypoints,
-                            const estimation::ScanTimes& times) const {
-  const Expectation expected = history_.expect(times, config_.registration.segments, config_.prior);
-  if (map_.empty()) return {expected.guess};
-  return register_keypoints(keypoints, map_, expected, config_.registration, parallel_);
+double ArenaLo::slice_duration(const estimation::ScanTimes& times) const {
+  return scans_mapped_ == 1 ? std::max(config_.slice_s, times.seconds()) : config_.slice_s;
 }
 
-ScanStatus ArenaLo::status_of(const Registration& found, std::size_t points) const {
+Registration ArenaLo::align(const std::vector<Slice>& slices, Time end) const {
+  if (!map_.empty()) return register_slices(known_, slices, end, map_, config_, parallel_);
+  return {Steps(slices.size() + 1, {{known_.estimate}, known_.estimate}), {}, 0};
+}
+
+ScanStatus ArenaLo::status_of(const Measurement& measurement, std::size_t points) {
   if (points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
-  if (found.failed) return ScanStatus::kTooFewPoints;
-  return found.observability < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
+  if (measurement.near_planes < kMinMatches) return ScanStatus::kTooFewPoints;
+  const double share =
+      static_cast<double>(measurement.on_planes) / static_cast<double>(measurement.near_planes);
+  const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
+  contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
+  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;
+  if (contradicts) return ScanStatus::kDegenerate;
+  usual_share_ = usual_share_.value_or(share) * (1.0 - kShareMemory) + kShareMemory * share;
+  return weakest_share(measurement) < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
-void ArenaLo::advance(const estimation::ElasticMotion& motion, std::span<const TimedPoint> frame,
-                      const estimation::ScanTimes& times, bool lost) {
-  if (!lost) map_.insert(estimation::placed(motion, frame, parallel_));
-  map_.remove_far(motion.end().translation().cast<float>(), config_.map.radius_m);
-  if (lost) {
-    history_.add_lost(motion, times);
-  } else {
-    history_.add(motion, times);
+bool ArenaLo::is_used(ScanStatus status) const {
+  return status != ScanStatus::kTooFewPoints && contradicting_scans_ == 0;
+}
+
+Steps ArenaLo::coasted(const std::vector<Slice>& slices, Time end) const {
+  Steps steps = coast(known_, slices, end, config_);
+  estimation::MotionState& last = steps.back().estimate.state;
+  last.velocity *= kLostMotionFactor;
+  last.rate *= kLostMotionFactor;
+  return steps;
+}
+
+void ArenaLo::advance(const Steps& steps, const estimation::ScanTimes& times) {
+  known_ = {steps.back().estimate, times.last};
+  poses_.push_back(body_pose(times.last, known_.estimate.state.pose));
+  if (times.timed) scan_duration_ = times.last - times.first;
+}
+
+void ArenaLo::grow_map(const std::vector<Eigen::Vector3f>& points) {
+  if (scans_mapped_ < kStartScans) map_.clear();
+  ++scans_mapped_;
+  const Eigen::Vector3f sensor = known_.estimate.state.pose.translation().cast<float>();
+  map_.insert(points, sensor);
+  map_.follow(sensor);
+}
+
+std::vector<Eigen::Vector3f> ArenaLo::points_in_map(const std::vector<Slice>& slices,
+                                                    const Steps& steps) const {
+  std::vector<Eigen::Vector3f> points;
+  points.reserve(count_points(slices));
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const auto part = placed(slices[i], steps[i].estimate.state, Pose::Identity(), parallel_);
+    points.insert(points.end(), part.begin(), part.end());
   }
-  store(motion.end(), times.last, times);
+  return points;
+}
+
+std::vector<StampedPose> ArenaLo::motion_within(const std::vector<Slice>& slices,
+                                                const Steps& steps,
+                                                const estimation::ScanTimes& times) const {
+  if (!times.timed) return {};
+  const double lead = to_seconds(times.first - slices.front().middle);
+  std::vector<StampedPose> motion{
+      body_pose(times.first, steps.front().estimate.state.pose_after(lead))};
+  for (std::size_t i = 0; i < slices.size(); ++i)
+    motion.push_back(body_pose(slices[i].middle, steps[i].estimate.state.pose));
+  motion.push_back(body_pose(times.last, steps.back().estimate.state.pose));
+  return motion;
+}
+
+StampedPose ArenaLo::body_pose(Time instant, const Pose& map_from_lidar) const {
+  return {instant, body_from_lidar_ * map_from_lidar * body_from_lidar_.inverse()};
+}
+
+/// A scan out of time order is counted and changes nothing else.
+ScanResult ArenaLo::refused_scan() {
+  ++scans_refused_;
+  return {poses_.back(),
+          ScanStatus::kTooFewPoints,
+          std::nullopt,
+          {.scans_refused = scans_refused_},
+          {}};
+}
+
+std::vector<Eigen::Vector3f> ArenaLo::map() const {
+  return transformed(body_from_lidar_, map_.fine().centers());
+}
+
+std::map<std::string, std::uint64_t> ArenaLo::memory() const {
+  return {{"map", map_.memory_bytes()},
+          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
+          {"backlog", 0},
+          {"other", poses_.capacity() * sizeof(StampedPose)}};
 }
 
 }  // namespace lidarena::odometry::arena_lo

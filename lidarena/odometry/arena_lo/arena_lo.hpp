@@ -1,33 +1,68 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <optional>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/estimation/motion_filter.hpp"
+#include "lidarena/estimation/scan_times.hpp"
+#include "lidarena/map/local_planes.hpp"
 #include "lidarena/odometry/arena_lo/config.hpp"
-#include "lidarena/odometry/arena_lo/prediction.hpp"
 #include "lidarena/odometry/arena_lo/registration.hpp"
-#include "lidarena/odometry/voxel_map_odometry.hpp"
+#include "lidarena/odometry/arena_lo/slices.hpp"
+#include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
-/// LiDAR odometry by elastic scan-to-map registration: a scan moves in several segments of constant
-/// velocity, of which the poses between them are estimated. See README.md in this folder.
-class ArenaLo : public VoxelMapOdometry {
+/// LiDAR odometry: a Kalman smoother follows the motion within a scan from slice to slice, by the
+/// distances of points from a map of planes. See README.md in this folder.
+class ArenaLo : public Odometry {
  public:
   ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
+  OdometryTraits traits() const override { return {}; }
   ScanResult register_scan(const Scan& scan) override;
+  Trajectory trajectory() const override { return Trajectory(poses_, "arena_lo"); }
+  std::vector<Eigen::Vector3f> map() const override;
+  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
+  std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// Aligns the keypoints with the map, if there is one.
-  Registration align(std::span<const TimedPoint> keypoints,
-                     const estimation::ScanTimes& times) const;
-  ScanStatus status_of(const Registration& found, std::size_t points) const;
-  /// Stores the scan's motion; inserts `frame` into the map unless the scan is `lost`.
-  void advance(const estimation::ElasticMotion& motion, std::span<const TimedPoint> frame,
-               const estimation::ScanTimes& times, bool lost);
+  /// The second scan is a single slice: it shows the velocity, as the first was placed without it.
+  double slice_duration(const estimation::ScanTimes& times) const;
+  /// The scan against the map; the first one, which has none, stands still at the origin.
+  Registration align(const std::vector<Slice>& slices, Time end) const;
+  ScanStatus status_of(const Measurement& measurement, std::size_t points);
+  /// Whether a scan with this status enters the map.
+  bool is_used(ScanStatus status) const;
+  /// The last motion, which continues, but slows down.
+  Steps coasted(const std::vector<Slice>& slices, Time end) const;
+  void advance(const Steps& steps, const estimation::ScanTimes& times);
+  void grow_map(const std::vector<Eigen::Vector3f>& points);
+
+  std::vector<Eigen::Vector3f> points_in_map(const std::vector<Slice>& slices,
+                                             const Steps& steps) const;
+  /// Poses of the body at the scan's begin, at the slices' middles and at its end.
+  std::vector<StampedPose> motion_within(const std::vector<Slice>& slices, const Steps& steps,
+                                         const estimation::ScanTimes& times) const;
+  StampedPose body_pose(Time instant, const Pose& map_from_lidar) const;
+  ScanResult refused_scan();
 
   Config config_;
-  MotionHistory history_;
+  Pose body_from_lidar_;
+  Parallel parallel_;
 
+  Known known_;  ///< of the lidar at the end of the last scan; map: its frame at the first scan
+  map::LocalPlanes map_;
+  std::size_t scans_mapped_ = 0;
+  int contradicting_scans_ = 0;        ///< in a row
+  std::optional<double> usual_share_;  ///< running mean of the share of points on their planes
+
+  std::vector<StampedPose> poses_;
+  std::vector<Eigen::Vector3f> registered_scan_;
+  Time scan_duration_;             ///< of the last scan that had times
   std::size_t scans_refused_ = 0;  ///< out of time order
 };
 

@@ -5,9 +5,9 @@ namespace lidarena::odometry::arena_lo {
 
 Config settings_for(const LidarInfo& lidar) {
   Config config;
-  config.sampling.min_range_m = lidar.min_range_m;
-  config.sampling.max_range_m = lidar.max_range_m;
-  config.map.radius_m = 1.5 * lidar.max_range_m;
+  config.min_range_m = lidar.min_range_m;
+  config.max_range_m = lidar.max_range_m;
+  config.map_radius_m = 1.5 * lidar.max_range_m;
   return config;
 }
 

@@ -6,112 +6,79 @@
 
 namespace lidarena::odometry::arena_lo {
 
-struct SamplingConfig {
+struct Config {
   double min_range_m = 0.1;
   double max_range_m = 100.0;
+  double slice_s = 0.005;
   double scan_voxel_size_m = 0.1;
-  double keypoint_voxel_size_m = 0.25;
-  int max_keypoints = 2500;
+  int max_scan_points = 12000;
+
+  double map_cell_size_m = 0.2;
+  int max_cell_points = 400;
+  double map_radius_m = 150.0;
+
+  int max_passes = 2;
+  double first_kernel_scale_m = 0.1;
+  double kernel_scale_m = 0.05;
+  double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets
+  double min_inlier_share = 0.75;
+
+  double acceleration_m_s2 = 2.0;
+  double acceleration_time_s = 0.3;
+  double angular_acceleration_rad_s2 = 10.0;
+  double angular_acceleration_time_s = 0.1;
+
+  /// Former names, for the message that names the new one.
+  static constexpr RenamedKey renamed_keys[] = {
+      {"sampling", "min_range_m, max_range_m, scan_voxel_size_m and max_scan_points"},
+      {"registration", "max_passes and kernel_scale_m"},
+      {"prior", "acceleration_m_s2 and angular_acceleration_rad_s2"},
+      {"map", "map_cell_size_m, max_cell_points and map_radius_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farther points are dropped", above(0));
+    v("slice_s", self.slice_s, "s",
+      "longest duration of a slice, the part of a scan that has a pose of its own", above(0));
     v("scan_voxel_size_m", self.scan_voxel_size_m, "m",
-      "voxel size of the downsampled scan, of which one point per cell goes into the map",
+      "voxel size in which a slice's points are averaged", above(0));
+    v("max_scan_points", self.max_scan_points, "",
+      "upper limit on the averages of all slices of a scan, taken evenly from all; bounds the time "
+      "of a scan",
+      at_least(100));
+    v("map_cell_size_m", self.map_cell_size_m, "m",
+      "edge of a cell of the map, which has one plane for each side it is seen from; where there "
+      "is none, cells of three times this edge are used",
       above(0));
-    v("keypoint_voxel_size_m", self.keypoint_voxel_size_m, "m",
-      "voxel size of the keypoints, the points of the downsampled scan that are registered",
+    v("max_cell_points", self.max_cell_points, "",
+      "points after which a cell of the map does not change any more", at_least(10));
+    v("map_radius_m", self.map_radius_m, "m",
+      "half the edge of the box around the sensor outside of which cells are removed", above(0));
+    v("max_passes", self.max_passes, "",
+      "maximum number of passes over a scan with the kernel's final scale", at_least(1));
+    v("first_kernel_scale_m", self.first_kernel_scale_m, "m",
+      "scale of the kernel in the first pass, halved from pass to pass; wider for points of which "
+      "the position is less certain",
       above(0));
-    v("max_keypoints", self.max_keypoints, "",
-      "upper limit on the keypoints, drawn at random; accuracy against time", at_least(1));
-  }
-};
-
-struct RegistrationConfig {
-  int segments = 3;
-  int max_iterations = 30;
-  double search_radius_m = 0.4;
-  double reassociation_distance_m = 0.03;
-  int min_neighbors = 10;
-  double robust_kernel_scale_m = 0.05;
-  double lost_rotation_rad = 1.2;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("segments", self.segments, "", "number of pieces of constant velocity within a scan",
-      Limits{1, 16});
-    v("max_iterations", self.max_iterations, "", "maximum number of Gauss-Newton steps",
-      at_least(1));
-    v("search_radius_m", self.search_radius_m, "m", "radius of the neighbor search in the map",
+    v("kernel_scale_m", self.kernel_scale_m, "m",
+      "distance from its plane at which a point has a quarter of its weight", above(0));
+    v("point_variance_m2", self.point_variance_m2, "m^2",
+      "variance of a point's distance from its plane; that of the plane's points if it is larger",
       above(0));
-    v("reassociation_distance_m", self.reassociation_distance_m, "m",
-      "neighbors are searched again after a keypoint has moved this far; larger is faster; 0: in "
-      "each iteration",
-      at_least(0));
-    v("min_neighbors", self.min_neighbors, "", "a keypoint with fewer neighbors is not matched",
-      at_least(3));
-    v("robust_kernel_scale_m", self.robust_kernel_scale_m, "m",
-      "scale of the Cauchy kernel, on the weighted distance", above(0));
-    v("lost_rotation_rad", self.lost_rotation_rad, "rad",
-      "a registration with a larger rotation within the scan has failed; default: 690 deg/s at 10 "
-      "Hz, twice that of an aggressive flight",
-      above(0));
-  }
-};
-
-struct PriorConfig {
-  double location = 0.01;
-  double orientation = 0.01;
-  double velocity = 0.001;
-  double velocity_change = 0.01;
-  double angular_velocity_change = 0.02;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("location", self.location, "", "weight of: the scan begins at the predicted position",
-      at_least(0));
-    v("orientation", self.orientation, "m^2/rad^2",
-      "weight of: it begins with the predicted rotation", at_least(0));
-    v("velocity", self.velocity, "", "weight of: it has the predicted velocity", at_least(0));
-    v("velocity_change", self.velocity_change, "",
-      "weight of: neighboring segments have the same velocity", at_least(0));
-    v("angular_velocity_change", self.angular_velocity_change, "m^2/rad^2",
-      "weight of: neighboring segments have the same angular velocity", at_least(0));
-  }
-};
-
-struct MapConfig {
-  double voxel_size_m = 0.4;
-  int max_points_per_voxel = 40;
-  double min_point_spacing_m = 0.05;
-  double radius_m = 150.0;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("voxel_size_m", self.voxel_size_m, "m",
-      "voxel size; with a larger search radius a search visits 125 cells instead of 27", above(0));
-    v("max_points_per_voxel", self.max_points_per_voxel, "", "maximum number of points in a cell",
-      Limits{1, 4096});
-    v("min_point_spacing_m", self.min_point_spacing_m, "m",
-      "minimum distance between the points of a cell", at_least(0));
-    v("radius_m", self.radius_m, "m", "points farther from the sensor are removed", above(0));
-  }
-};
-
-struct Config {
-  SamplingConfig sampling;
-  RegistrationConfig registration;
-  PriorConfig prior;
-  MapConfig map;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("sampling", self.sampling, "", "which points are used");
-    v("registration", self.registration, "", "how they are aligned with the map");
-    v("prior", self.prior, "",
-      "motion prior: weights relative to the mean squared error of a point");
-    v("map", self.map, "", "the local map");
+    v("min_inlier_share", self.min_inlier_share, "",
+      "a scan is not added to the map when the share of its points that lie on their planes is "
+      "smaller than this times the usual share; after fifteen such scans in a row the status is "
+      "diverged",
+      between(0, 1));
+    v("acceleration_m_s2", self.acceleration_m_s2, "m/s^2",
+      "standard deviation of the acceleration along each axis", above(0));
+    v("acceleration_time_s", self.acceleration_time_s, "s",
+      "time over which the correlation of the acceleration falls to 1/e", above(0));
+    v("angular_acceleration_rad_s2", self.angular_acceleration_rad_s2, "rad/s^2",
+      "standard deviation of the angular acceleration about each axis", above(0));
+    v("angular_acceleration_time_s", self.angular_acceleration_time_s, "s",
+      "time over which the correlation of the angular acceleration falls to 1/e", above(0));
   }
 };
 

@@ -1,138 +1,149 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lo/registration.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <optional>
-#include <vector>
+#include <utility>
 
-#include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/robust_kernel.hpp"
 
 namespace lidarena::odometry::arena_lo {
-
 namespace {
 
-constexpr std::size_t kMaxNeighbors = 20;    // the nearest of them describe the map at a keypoint
-constexpr double kMaxPlaneDistance = 0.3;    // m; matches beyond are dropped
-constexpr double kPlanarityWeight = 0.9;     // share of the squared planarity in a match's weight
-constexpr double kProximityWeight = 0.1;     // share of the plane point's proximity
-constexpr std::size_t kMinMatches = 50;      // with fewer, a registration has failed
-constexpr double kConverged = 1e-3;          // m, change of both ends together by an iteration
-constexpr double kConvergedRotation = 2e-4;  // rad, likewise
-constexpr double kLostTranslation = 5.0;     // m, from the expected begin; 180 km/h at 10 Hz
-constexpr std::size_t kGrain = 64;           // keypoints per task: about 0.2 ms of work
+constexpr std::size_t kGrain = 128;    // points per task
+constexpr double kNarrowing = 0.5;     // of the kernel, from one pass to the next
+constexpr double kMaxScale = 3.0;      // m, of the kernel in the second pass
+constexpr double kCut = 4.0;           // scales of the kernel; points beyond have no weight
+constexpr double kConvergence = 2e-4;  // m and rad: largest change by a pass that ends a search
 
-/// A keypoint's neighborhood and its position (m, world) when it was searched.
-struct Found {
-  std::optional<map::Neighborhood> neighborhood;
-  Eigen::Vector3d searched_at = Eigen::Vector3d::Constant(INFINITY);
-};
-
-/// Matches keypoints with the map; keeps neighborhoods from one iteration to the next.
-class Matcher {
- public:
-  Matcher(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
-          const RegistrationConfig& config)
-      : keypoints_(keypoints),
-        map_(map),
-        config_(config),
-        found_(keypoints.size()),
-        candidates_(keypoints.size()) {}
-
-  std::span<const estimation::ElasticMatch> match(const estimation::ElasticMotion& motion,
-                                                  const Parallel& parallel) {
-    const estimation::ElasticTrack track(motion);
-    parallel.for_each(keypoints_.size(), kGrain, [&](std::size_t i) {
-      candidates_[i] = match_one(keypoints_[i], track, found_[i]);
-    });
-    matches_.clear();
-    for (const auto& candidate : candidates_) {
-      if (candidate) matches_.push_back(*candidate);
-    }
-    return matches_;
-  }
-
- private:
-  std::optional<estimation::ElasticMatch> match_one(const TimedPoint& keypoint,
-                                                    const estimation::ElasticTrack& track,
-                                                    Found& found) const {
-    const Eigen::Vector3d position = track.place(keypoint.position.cast<double>(), keypoint.alpha);
-    if (!((position - found.searched_at).norm() < config_.reassociation_distance_m)) {
-      found = {search(position.cast<float>()), position};
-    }
-    if (!found.neighborhood) return std::nullopt;
-    const map::Neighborhood& near = *found.neighborhood;
-    const double distance = near.normal.dot(position - near.mean);
-    if (std::abs(distance) >= kMaxPlaneDistance) return std::nullopt;
-    return plane_match(keypoint, position, near, config_);
-  }
-
-  std::optional<map::Neighborhood> search(const Eigen::Vector3f& position) const {
-    std::array<map::Neighbor, kMaxNeighbors> near;
-    const std::size_t count =
-        map_.nearest(position, static_cast<float>(config_.search_radius_m), near);
-    if (count < static_cast<std::size_t>(config_.min_neighbors)) return std::nullopt;
-    return map::describe(std::span(near).first(count));
-  }
-
-  std::span<const TimedPoint> keypoints_;
-  const map::VoxelHashMap& map_;
-  const RegistrationConfig& config_;
-  std::vector<Found> found_;
-  std::vector<std::optional<estimation::ElasticMatch>> candidates_;
-  std::vector<estimation::ElasticMatch> matches_;
-};
-
-bool is_plausible(const estimation::ElasticMotion& motion, const Pose& expected_begin,
-                  double max_rotation) {
-  if (!motion.begin().matrix().allFinite() || !motion.end().matrix().allFinite()) return false;
-  const double turned = so3::angle(motion.begin().linear().transpose() * motion.end().linear());
-  const double moved = (motion.end().translation() - expected_begin.translation()).norm();
-  return moved <= kLostTranslation && turned <= max_rotation;
+/// Standard deviation (m) of the position of a point of the body, the mean of all directions.
+double deviation(const estimation::MotionMatrix& covariance, const Eigen::Vector3d& arm) {
+  const double of_position = covariance.block<3, 3>(0, 0).trace();
+  const double of_rotation = covariance.block<3, 3>(3, 3).trace();
+  return std::sqrt((of_position + of_rotation * arm.squaredNorm()) / 3.0);
 }
 
-bool has_converged(const estimation::ElasticMotion& before, const estimation::ElasticMotion& now) {
-  const estimation::MotionChange change = estimation::change_between(before, now);
-  return change.translation_m < kConverged && change.rotation_rad < kConvergedRotation;
+/// Adds a point (m, lidar frame) to the sums of measure().
+void add(const Eigen::Vector3f& point, const estimation::MotionEstimate& at, double least_scale,
+         const map::LocalPlanes& map, const Config& config, Measurement& sum) {
+  const Eigen::Vector3d arm = point.cast<double>();
+  const Eigen::Vector3d position = at.state.pose * arm;
+  const double scale = std::max(least_scale, deviation(at.covariance, arm));
+  ++sum.points;
+  sum.sum_of_scales += scale;
+  // A place that is uncertain by more than a cell has fine planes of elsewhere.
+  const map::MapPlane* plane =
+      map.plane_at(position.cast<float>(), at.state.pose.translation().cast<float>(),
+                   scale > config.map_cell_size_m);
+  if (plane == nullptr) return;
+  ++sum.near_planes;
+  const Eigen::Vector3d normal = plane->normal.cast<double>();
+  const double distance = normal.dot(position - plane->center.cast<double>());
+  if (std::abs(distance) > kCut * scale) return;
+  if (std::abs(distance) < config.kernel_scale_m) ++sum.on_planes;
+  Eigen::Matrix<double, 1, 6> row;
+  row << normal.transpose(), arm.cross(at.state.pose.linear().transpose() * normal).transpose();
+  const double widened = scale / config.kernel_scale_m;
+  const double variance =
+      std::max(config.point_variance_m2 * widened * widened, static_cast<double>(plane->variance));
+  sum.equations.add<1>(row, Eigen::Matrix<double, 1, 1>(distance),
+                       estimation::geman_mcclure_weight(distance, scale) / variance);
+}
+
+/// Largest change (m, rad) of a pose from one pass to the next.
+double change_between(const Steps& a, const Steps& b) {
+  double largest = 0.0;
+  for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
+    const estimation::MotionVector change = b[i].estimate.state - a[i].estimate.state;
+    largest = std::max(largest, change.head<6>().cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// One filtering pass: steps at the slices' middles, updated by what `measured` says of slice i,
+/// for which it is given the prediction, and where it linearized it; and a last step at `end`.
+template <class Measured>
+Steps filtered(const Known& before, std::span<const Slice> slices, Time end, const Config& config,
+               Measured&& measured) {
+  const estimation::ManeuverModel model{config.acceleration_m_s2, config.acceleration_time_s,
+                                        config.angular_acceleration_rad_s2,
+                                        config.angular_acceleration_time_s};
+  Steps steps;
+  steps.reserve(slices.size() + 1);
+  Known known = before;
+  const auto go_to = [&](Time instant) {
+    const double seconds = to_seconds(instant - known.instant);
+    const auto prediction = estimation::predicted(known.estimate, seconds, model);
+    known = {prediction.estimate, instant};
+    steps.push_back({prediction, prediction.estimate});
+  };
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    go_to(slices[i].middle);
+    known.estimate = measured(i, known.estimate);
+    steps.back().estimate = known.estimate;
+  }
+  go_to(end);
+  return steps;
 }
 
 }  // namespace
 
-estimation::ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
-                                     const map::Neighborhood& near,
-                                     const RegistrationConfig& config) {
-  const double reach = kMaxPlaneDistance * config.min_neighbors;  // m, decay of the proximity
-  const double proximity = std::exp(-(near.mean - position).norm() / reach);
-  estimation::ElasticMatch match;
-  match.point = keypoint.position.cast<double>();
-  match.alpha = keypoint.alpha;
-  match.anchor = near.mean;
-  match.normal = near.normal;
-  match.weight = kPlanarityWeight * near.planarity * near.planarity + kProximityWeight * proximity;
-  return match;
+Measurement& Measurement::operator+=(const Measurement& other) {
+  equations += other.equations;
+  points += other.points;
+  sum_of_scales += other.sum_of_scales;
+  near_planes += other.near_planes;
+  on_planes += other.on_planes;
+  return *this;
 }
 
-Registration register_keypoints(std::span<const TimedPoint> keypoints, const map::VoxelHashMap& map,
-                                const Expectation& expected, const RegistrationConfig& config,
-                                const Parallel& parallel) {
-  Registration result{expected.guess};
-  Matcher matcher(keypoints, map, config);
-  while (result.iterations < config.max_iterations) {
-    const auto matches = matcher.match(result.motion, parallel);
-    result.matches = matches.size();
-    result.failed = matches.size() < kMinMatches;
-    if (result.failed) break;
-    result.observability = estimation::observability_of(matches);
-    const estimation::ElasticMotion before = result.motion;
-    result.motion = estimation::gauss_newton_step(
-        {matches, expected.prior, config.robust_kernel_scale_m}, before, parallel);
-    ++result.iterations;
-    if (has_converged(before, result.motion)) break;
+Measurement measure(std::span<const Eigen::Vector3f> points, const estimation::MotionEstimate& at,
+                    double least_scale, const map::LocalPlanes& map, const Config& config,
+                    const Parallel& parallel) {
+  return parallel.reduce(
+      points.size(), kGrain, Measurement{},
+      [&](std::size_t begin, std::size_t end) {
+        Measurement part;
+        for (std::size_t i = begin; i < end; ++i)
+          add(points[i], at, least_scale, map, config, part);
+        return part;
+      },
+      [](Measurement& total, const Measurement& part) { total += part; });
+}
+
+Steps coast(const Known& before, std::span<const Slice> slices, Time end, const Config& config) {
+  return filtered(before, slices, end, config,
+                  [](std::size_t, const estimation::MotionEstimate& prior) { return prior; });
+}
+
+Registration register_slices(const Known& before, std::span<const Slice> slices, Time end,
+                             const map::LocalPlanes& map, const Config& config,
+                             const Parallel& parallel) {
+  const int most = std::max(1, config.max_scan_points / static_cast<int>(slices.size()));
+  std::vector<std::vector<Eigen::Vector3f>> points(slices.size());
+  Registration found;
+  double scale = std::max(config.first_kernel_scale_m, config.kernel_scale_m);
+  for (int narrow = 0; narrow < config.max_passes; ++found.passes) {
+    Measurement whole;
+    const auto measured = [&](std::size_t i, const estimation::MotionEstimate& prior) {
+      const estimation::MotionEstimate& at = found.passes == 0 ? prior : found.steps[i].estimate;
+      if (found.passes < 2) points[i] = averages(slices[i], at.state, most, config, parallel);
+      const Measurement part = measure(points[i], at, scale, map, config, parallel);
+      whole += part;
+      return estimation::updated(prior, at.state, part.equations);
+    };
+    Steps steps = filtered(before, slices, end, config, measured);
+    estimation::smooth(steps);
+    const double change = change_between(found.steps, steps);
+    found.steps = std::move(steps);
+    found.measurement = whole;
+    if (scale <= config.kernel_scale_m) ++narrow;
+    if (narrow > 1 && change < kConvergence) narrow = config.max_passes;
+    const double mean_scale =
+        whole.sum_of_scales / std::max(1.0, static_cast<double>(whole.points));
+    scale = std::max(kNarrowing * std::min(mean_scale, kMaxScale), config.kernel_scale_m);
   }
-  result.failed = result.failed ||
-                  !is_plausible(result.motion, expected.guess.begin(), config.lost_rotation_rad);
-  if (result.failed) result.motion = expected.guess;
-  return result;
+  return found;
 }
 
 }  // namespace lidarena::odometry::arena_lo

@@ -26,14 +26,14 @@ Points floor_points(double noise = 0.0) {
   return points;
 }
 
-LocalMap map_of(const Points& points) {
-  LocalMap map(Config{});
+map::LocalPlanes map_of(const Points& points) {
+  map::LocalPlanes map({});
   map.insert(points);
   return map;
 }
 
 /// Sum of w n n^T along z, of the first evaluation, or of a later one.
-double weight(const LocalMap& map, const Eigen::Vector3f& point, double prior_sigma = 0.0,
+double weight(const map::LocalPlanes& map, const Eigen::Vector3f& point, double prior_sigma = 0.0,
               int evaluation = 1) {
   const Points points{point};
   const Config config;
@@ -45,7 +45,7 @@ double weight(const LocalMap& map, const Eigen::Vector3f& point, double prior_si
 }
 
 TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
-  const LocalMap map = map_of(floor_points());
+  const map::LocalPlanes map = map_of(floor_points());
   const Points points{{0.4F, 0.7F, 0.01F}};
   const Config config;
   const Parallel parallel(1);
@@ -64,7 +64,7 @@ TEST(ArenaLioPlanes, AThickPlaneCountsLess) {
 }
 
 TEST(ArenaLioPlanes, TheKernelNarrowsFromThePriorsUncertaintyToItsScale) {
-  const LocalMap map = map_of(floor_points());
+  const map::LocalPlanes map = map_of(floor_points());
   const Eigen::Vector3f off(0.4F, 0.7F, 0.04F);
   EXPECT_NEAR(weight(map, off, 0.0), std::pow(1.0 + 0.64, -2), 0.01);
   EXPECT_NEAR(weight(map, off, 1.0), 1.0, 0.01) << "1 m";
@@ -79,17 +79,17 @@ TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
     const auto x = static_cast<float>(i % 5);
     sparse.emplace_back(0.17F * x, 0.2F * static_cast<float>(i / 5), 0.0F);
   }
-  const LocalMap map = map_of(sparse);
+  const map::LocalPlanes map = map_of(sparse);
   const Config config;
   const Parallel parallel(1);
   PlaneResiduals residuals(sparse, map, 0.0, true, config, parallel);
   EXPECT_GT(residuals({}, true).count, 5U);
-  const LocalMap dense = map_of(floor_points());
+  const map::LocalPlanes dense = map_of(floor_points());
   EXPECT_EQ(weight(dense, {0.4F, 0.7F, 3.0F}), 0.0) << "3 m above";
 }
 
 TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
-  const LocalMap map = map_of(floor_points());
+  const map::LocalPlanes map = map_of(floor_points());
   const Points points{{0.4F, 0.7F, 0.01F}, {0.4F, 0.6F, -0.02F}, {0.3F, 0.6F, 9.0F}};
   const Config config;
   const Parallel parallel(1);
@@ -107,7 +107,7 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
 }
 
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
-  const LocalMap map = map_of(floor_points());
+  const map::LocalPlanes map = map_of(floor_points());
   const Points points{{0.5F, 0.3F, 0.0F}};
   const Parallel parallel(1);
   const auto sums = [&](bool extrinsics) {

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "lidarena/base/so3.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 
 namespace lidarena::odometry::arena_lo {
@@ -67,6 +69,40 @@ TEST(ArenaLo, AScanOutOfOrderIsCountedAndChangesNothing) {
   }
   EXPECT_EQ(odometry.trajectory().poses().back().world_from_body.matrix(),
             undisturbed.trajectory().poses().back().world_from_body.matrix());
+}
+
+TEST(ArenaLo, FollowsTurnsOfFortyDegreesAScan) {
+  const auto turning = [](double t) {
+    const double phase = 8.0 * std::max(0.0, t - 1.0);  // from rest
+    return synthetic::flight(0.0) *
+           make_pose(so3::exp({0, 0, 0.9 * (1.0 - std::cos(phase))}), Eigen::Vector3d::Zero());
+  };
+  const synthetic::Recording recording{.motion = turning, .range_noise_m = 0.02, .seconds = 3.0};
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  ScanResult result;
+  for (const Scan& scan : synthetic::scans_of(recording)) {
+    result = odometry.register_scan(scan);
+    EXPECT_NE(result.status, ScanStatus::kTooFewPoints);
+    const Pose truth = synthetic::truth(recording, recording.epoch, result.estimate.stamp);
+    const Pose error = truth.inverse() * result.estimate.world_from_body;
+    EXPECT_LT(so3::angle(error.linear()), 0.02);
+    EXPECT_LT(error.translation().norm(), 0.02);
+  }
+  EXPECT_EQ(result.status, ScanStatus::kTracked);
+}
+
+TEST(ArenaLo, TheMotionWithinAScanBeginsAfterTheLastOneAndEndsAtThePose) {
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  Time last{0};
+  for (const Scan& scan : synthetic::scans_of({.seconds = 1.0})) {
+    const ScanResult result = odometry.register_scan(scan);
+    ASSERT_GT(result.motion.size(), 2U);
+    EXPECT_GT(result.motion.front().stamp, last);
+    EXPECT_EQ(result.motion.back().stamp, result.estimate.stamp);
+    EXPECT_EQ(result.motion.back().world_from_body.matrix(),
+              result.estimate.world_from_body.matrix());
+    last = result.estimate.stamp;
+  }
 }
 
 }  // namespace

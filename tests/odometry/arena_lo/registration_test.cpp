@@ -7,98 +7,128 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "tests/odometry/synthetic_room.hpp"
 
 namespace lidarena::odometry::arena_lo {
 namespace {
 
-TEST(ArenaLoMatch, IsThePlaneThroughTheMeanAndWeighsMoreIfFlatAndNear) {
-  const map::Neighborhood near{{0, 0, 2}, {0, 0, 1}, 0.5};
-  const auto match = plane_match({{1, 2, 3}, 0.25F}, {0, 0, 2.3}, near, RegistrationConfig{});
-  EXPECT_EQ(match.point, Eigen::Vector3d(1, 2, 3));
-  EXPECT_EQ(match.alpha, 0.25);
-  EXPECT_EQ(match.anchor, near.mean);
-  EXPECT_EQ(match.normal, near.normal);
-  EXPECT_NEAR(match.weight, 0.9 * 0.25 + 0.1 * std::exp(-0.3 / (0.3 * 10)), 1e-12);
+const Parallel& single_thread() {
+  static const Parallel parallel(1);
+  return parallel;
 }
 
-Eigen::Vector3d beam_of(const CounterRandom& random, std::uint64_t i) {
-  const auto n = random.normals(i, 0);
-  return Eigen::Vector3d(n[0], n[1], random.normals(i, 1)[0]).normalized();
-}
-
-/// The synthetic room, seen from its middle, as a map.
-const map::VoxelHashMap& room() {
-  static const map::VoxelHashMap filled = [] {
-    map::VoxelHashMap made({0.4, 40, 0.05});
-    const CounterRandom random(3);
-    for (std::uint64_t i = 0; i < 400'000; ++i) {
-      const Eigen::Vector3d beam = beam_of(random, i);
-      made.insert((synthetic::cast(Eigen::Vector3d::Zero(), beam) * beam).cast<float>());
+/// Three walls and a floor about the origin, seen from there.
+map::LocalPlanes arena_lo_corner_map() {
+  map::LocalPlanes map({.cell_size = Config{}.map_cell_size_m});
+  std::vector<Eigen::Vector3f> points;
+  for (int i = -60; i < 60; ++i) {
+    for (int k = -60; k < 60; ++k) {
+      const float a = static_cast<float>(i) / 20.0F;
+      const float b = static_cast<float>(k) / 20.0F;
+      points.emplace_back(3.0F, a, b);
+      points.emplace_back(a, 3.0F, b);
+      points.emplace_back(a, b, -3.0F);
     }
-    return made;
-  }();
-  return filled;
-}
-
-std::vector<TimedPoint> seen_from(const estimation::ElasticMotion& motion, std::uint64_t count) {
-  const CounterRandom random(4);
-  std::vector<TimedPoint> points;
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const double alpha = random.uniform(i, 2);
-    const Pose pose = motion.at(alpha);
-    const Eigen::Vector3d beam = beam_of(random, i);
-    const double range = synthetic::cast(pose.translation(), pose.linear() * beam);
-    points.push_back({(range * beam).cast<float>(), static_cast<float>(alpha)});
   }
-  return points;
+  map.insert(points, Eigen::Vector3f(0, 0, 0));
+  return map;
 }
 
-/// A motion that accelerates: 0, 2 and 10 degrees at its three knots.
-estimation::ElasticMotion accelerating() {
-  return {{Pose::Identity(), make_pose(so3::exp({0, 0, 0.035}), {0.03, 0.01, 0.0}),
-           make_pose(so3::exp({0, 0, 0.17}), {0.12, 0.02, 0.02})}};
+estimation::MotionEstimate arena_lo_prior(double pose_sigma) {
+  estimation::MotionEstimate prior;
+  prior.covariance.diagonal() << Eigen::Matrix<double, 6, 1>::Constant(pose_sigma * pose_sigma),
+      Eigen::Matrix<double, 6, 1>::Constant(1e-2), Eigen::Matrix<double, 6, 1>::Constant(1.0);
+  return prior;
 }
 
-TEST(ArenaLoRegistration, FollowsAnAccelerationWithinTheScanThatTwoPosesCannot) {
-  const estimation::ElasticMotion truth = accelerating();
-  const auto keypoints = seen_from(truth, 2500);
-  const auto error_with = [&](int segments) {
-    const Expectation expected{estimation::ElasticMotion::still(Pose::Identity(), segments), {}};
-    const Registration found =
-        register_keypoints(keypoints, room(), expected, RegistrationConfig{}, Parallel(1));
-    EXPECT_FALSE(found.failed);
-    return so3::angle(found.motion.at(0.5).linear().transpose() * truth.at(0.5).linear());
-  };
-  // A quarter of the 8 - 2 degrees between a straight line and the path's middle remain at least
-  // with one segment; with two, planes at edges and corners are off by centimeters over 5 m.
-  EXPECT_GT(error_with(1), 0.02);
-  EXPECT_LT(error_with(2), 0.004);
+/// Cost of one point, of which the kernel's weight is held at 1.
+double signed_distance(const Eigen::Vector3f& point, const estimation::MotionState& state) {
+  return (state.pose * point.cast<double>()).x() - 3.0;
 }
 
-TEST(ArenaLoRegistration, IsTheSameBitsOnAnyNumberOfThreads) {
-  const auto keypoints = seen_from(accelerating(), 600);
-  const Expectation expected{estimation::ElasticMotion::still(Pose::Identity(), 3), {}};
-  const auto with = [&](int threads) {
-    return register_keypoints(keypoints, room(), expected, RegistrationConfig{}, Parallel(threads));
-  };
-  EXPECT_EQ(with(1).motion.end().matrix(), with(3).motion.end().matrix());
-}
-
-TEST(ArenaLoRegistration, FailsWithFewMatchesOrTooMuchRotationAndReturnsTheGuess) {
-  const auto keypoints = seen_from(accelerating(), 600);
-  const Expectation expected{estimation::ElasticMotion::still(Pose::Identity(), 3), {}};
-  const auto with = [&](std::size_t count, double max_rotation) {
-    RegistrationConfig config;
-    config.lost_rotation_rad = max_rotation;
-    return register_keypoints(std::span(keypoints).first(count), room(), expected, config,
-                              Parallel(1));
-  };
-  EXPECT_FALSE(with(600, 1.2).failed);
-  for (const Registration& failed : {with(0, 1.2), with(49, 1.2), with(600, 0.1)}) {
-    EXPECT_TRUE(failed.failed);
-    EXPECT_EQ(failed.motion.end().matrix(), expected.guess.end().matrix());
+TEST(ArenaLoRegistration, TheRowIsTheNumericDerivativeOfTheDistance) {
+  const map::LocalPlanes map = arena_lo_corner_map();
+  estimation::MotionEstimate at = arena_lo_prior(1e-4);
+  at.state.pose = make_pose(so3::exp({0.02, -0.03, 0.05}), {0.004, 0.01, -0.02});
+  const Eigen::Vector3f point(2.95F, 0.7F, 0.4F);
+  const Config config;
+  const Measurement found = measure({&point, 1}, at, 10.0, map, config, single_thread());
+  ASSERT_EQ(found.near_planes, 1U);
+  const double scale = std::sqrt(found.equations.hessian.topLeftCorner<3, 3>().trace());
+  Eigen::Matrix<double, 6, 1> numeric;
+  for (int i = 0; i < 6; ++i) {
+    constexpr double kStep = 1e-6;
+    const estimation::MotionVector step = kStep * estimation::MotionVector::Unit(i);
+    numeric[i] =
+        (signed_distance(point, at.state + step) - signed_distance(point, at.state + (-step))) /
+        (2.0 * kStep);
   }
+  const Eigen::Matrix<double, 6, 6> expected = scale * scale * numeric * numeric.transpose();
+  EXPECT_LT((found.equations.hessian - expected).norm(), 1e-3 * expected.norm());
+  const double distance = signed_distance(point, at.state);
+  EXPECT_LT((found.equations.gradient - scale * scale * distance * numeric).norm(),
+            1e-3 * scale * scale * std::abs(distance) * numeric.norm() + 1e-6);
+}
+
+TEST(ArenaLoRegistration, AnUncertainPoseWidensTheKernelAndTheVariance) {
+  const map::LocalPlanes map = arena_lo_corner_map();
+  const Eigen::Vector3f off(2.9F, 0.7F, 0.4F);
+  const Config config;
+  const auto weight = [&](double sigma) {
+    const estimation::MotionEstimate at = arena_lo_prior(sigma);
+    return measure({&off, 1}, at, config.kernel_scale_m, map, config, single_thread())
+        .equations.hessian(0, 0);
+  };
+  const double kernel = 1.0 / std::pow(1.0 + 0.1 * 0.1 / (0.05 * 0.05), 2);
+  EXPECT_NEAR(weight(1e-4), kernel / config.point_variance_m2, 1.0);
+  EXPECT_GT(weight(0.03), 1.5 * weight(1e-4)) << "0.03 m and rad: 10 cm of the point";
+  EXPECT_LT(weight(1.0), weight(0.03)) << "what may be meters off says little";
+}
+
+/// What a sensor with this motion measures of the walls of the corner, in 0.1 s, by random rays.
+std::vector<Slice> arena_lo_corner_scan(const estimation::MotionState& at_begin, double noise) {
+  SequentialRandom random(6, 1);
+  Scan scan{.stamp = Time{1'000'000'000}, .points = {}, .timed = true};
+  for (int i = 0; i < 8000; ++i) {
+    const double seconds = 0.1 * i / 8000.0;
+    const Pose pose = at_begin.pose_after(seconds);
+    const Eigen::Vector3d beam(random.normal(), random.normal(), random.normal());
+    const Eigen::Vector3d there = pose.linear() * beam.normalized();
+    const Eigen::Vector3d walls(3.0, 3.0, -3.0);
+    const Eigen::Array3d ranges = (walls - pose.translation()).array() / there.array();
+    double range = 1e9;
+    for (const double r : ranges) range = r > 0.0 ? std::min(range, r) : range;
+    if (range > 4.5) continue;
+    range += noise * random.normal();
+    scan.points.push_back(
+        {(range * beam.normalized()).cast<float>(), 0, static_cast<std::int32_t>(1e9 * seconds)});
+  }
+  return slices_of(scan, estimation::times_of(scan, Time{100'000'000}), 0.005, Config{});
+}
+
+TEST(ArenaLoRegistration, FollowsAccelerationsWithinAScan) {
+  estimation::MotionState truth;
+  truth.velocity = {1.0, -2.0, 0.5};
+  truth.rate = {1.0, -2.0, 6.0};
+  truth.acceleration = {5.0, 8.0, -3.0};
+  truth.angular_acceleration = {30.0, -20.0, -15.0};
+  estimation::MotionEstimate prior = arena_lo_prior(1e-3);
+  prior.state = truth;
+  prior.state.acceleration.setZero();
+  prior.state.angular_acceleration.setZero();
+  prior.covariance.diagonal().segment<6>(12) << 9.0, 9.0, 9.0, 225.0, 225.0, 225.0;
+  const std::vector<Slice> slices = arena_lo_corner_scan(truth, 0.02);
+  const Time end{1'100'000'000};
+  const Registration found = register_slices({prior, Time{1'000'000'000}}, slices, end,
+                                             arena_lo_corner_map(), Config{}, single_thread());
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Pose expected = truth.pose_after(to_seconds(slices[i].middle - Time{1'000'000'000}));
+    const Pose error = expected.inverse() * found.steps[i].estimate.state.pose;
+    EXPECT_LT(error.translation().norm(), 0.01) << i;
+    EXPECT_LT(so3::angle(error.linear()), 0.006) << i;
+  }
+  const Steps guess = coast({prior, Time{1'000'000'000}}, slices, end, Config{});
+  const Pose missed = truth.pose_after(0.1).inverse() * guess.back().estimate.state.pose;
+  EXPECT_GT(so3::angle(missed.linear()), 0.1) << "where constant velocity would have ended";
 }
 
 }  // namespace

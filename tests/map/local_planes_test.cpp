@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/odometry/arena_lio/local_map.hpp"
+#include "lidarena/map/local_planes.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-namespace lidarena::odometry::arena_lio {
+namespace lidarena::map {
 namespace {
 
 /// A floor 0.6 m wide along x, a point each 5 cm.
@@ -22,9 +22,8 @@ float least_x(const std::vector<Eigen::Vector3f>& points) {
   return std::ranges::min_element(points, by_x)->x();
 }
 
-TEST(ArenaLioMap, FollowsTheSensorInStepsOfAQuarterOfItsRadius) {
-  const Config config{.map_radius_m = 40.0};
-  LocalMap map(config);
+TEST(LocalPlanes, FollowsTheSensorInStepsOfAQuarterOfItsRadius) {
+  LocalPlanes map({.radius = 40.0});
   EXPECT_TRUE(map.empty());
   const auto points = floor_along_x(-50.0F, 50.0F);
   map.insert(points);
@@ -40,5 +39,19 @@ TEST(ArenaLioMap, FollowsTheSensorInStepsOfAQuarterOfItsRadius) {
   EXPECT_EQ(map.fine().size(), 0U);
 }
 
+TEST(LocalPlanes, ACoarseCellServesWhereTheFineOneHasNoPlane) {
+  LocalPlanes map({});
+  std::vector<Eigen::Vector3f> sparse;
+  for (int i = 0; i < 400; ++i)
+    sparse.emplace_back(0.25F * static_cast<float>(i % 20), 0.25F * static_cast<float>(i / 20),
+                        0.0F);
+  map.insert(sparse);
+  const Eigen::Vector3f point(2.1F, 2.1F, 0.01F);
+  const Eigen::Vector3f above(2.0F, 2.0F, 3.0F);
+  ASSERT_EQ(map.fine().plane_at(point), nullptr);
+  EXPECT_EQ(map.plane_at(point, above, false), map.coarse().plane_at(point));
+  EXPECT_EQ(map.plane_at(point, above, true), map.coarse().plane_at(point));
+}
+
 }  // namespace
-}  // namespace lidarena::odometry::arena_lio
+}  // namespace lidarena::map
