@@ -237,7 +237,7 @@ std::vector<Algorithm> algorithms() {
                     "LiDAR and IMU: edges and planes, smoothed in a factor graph (Shan 2020)",
                     true),
       plain<LioSamLc>("lio_sam_lc", "LIO-SAM with its loop closure", true),
-      plain<ArenaLo>("arena_lo", "our own, LiDAR only: elastic scans of several segments", false),
+      plain<ArenaLo>("arena_lo", "our own, LiDAR only: Kalman smoother over slices of a scan", false),
       plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true),
       looped<Kiss>("kiss_icp+loop", "KISS-ICP with our loop closure around it", false),
       looped<FastLio>("fast_lio2+loop", "FAST-LIO2 with our loop closure around it", true),
