@@ -139,9 +139,9 @@ Registration register_slices(const Known& before, std::span<const Slice> slices,
     found.measurement = whole;
     if (scale <= config.kernel_scale_m) ++narrow;
     if (narrow > 1 && change < kConvergence) narrow = config.max_passes;
-    const double mean_scale =
-        whole.sum_of_scales / std::max(1.0, static_cast<double>(whole.points));
-    scale = std::max(kNarrowing * std::min(mean_scale, kMaxScale), config.kernel_scale_m);
+    if (found.passes == 0 && whole.points > 0)  // the kernels of uncertain points are wider
+      scale = std::min(whole.sum_of_scales / static_cast<double>(whole.points), kMaxScale);
+    scale = std::max(kNarrowing * scale, config.kernel_scale_m);
   }
   return found;
 }

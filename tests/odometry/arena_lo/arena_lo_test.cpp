@@ -77,7 +77,7 @@ TEST(ArenaLo, FollowsTurnsOfFortyDegreesAScan) {
     return synthetic::flight(0.0) *
            make_pose(so3::exp({0, 0, 0.9 * (1.0 - std::cos(phase))}), Eigen::Vector3d::Zero());
   };
-  const synthetic::Recording recording{.motion = turning, .range_noise_m = 0.02, .seconds = 3.0};
+  const synthetic::Recording recording{.motion = turning, .seconds = 3.0, .range_noise_m = 0.02};
   ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
   ScanResult result;
   for (const Scan& scan : synthetic::scans_of(recording)) {
