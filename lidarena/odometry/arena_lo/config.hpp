@@ -23,9 +23,9 @@ struct Config {
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets
   double min_inlier_share = 0.75;
 
-  double acceleration_m_s2 = 2.0;
+  double acceleration_m_s2 = 3.0;
   double acceleration_time_s = 0.3;
-  double angular_acceleration_rad_s2 = 10.0;
+  double angular_acceleration_rad_s2 = 15.0;
   double angular_acceleration_time_s = 0.1;
 
   /// Former names, for the message that names the new one.
