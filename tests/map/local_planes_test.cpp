@@ -45,9 +45,9 @@ TEST(LocalPlanes, ACoarseCellServesWhereTheFineOneHasNoPlane) {
   for (int i = 0; i < 400; ++i)
     sparse.emplace_back(0.25F * static_cast<float>(i % 20), 0.25F * static_cast<float>(i / 20),
                         0.0F);
-  map.insert(sparse);
   const Eigen::Vector3f point(2.1F, 2.1F, 0.01F);
   const Eigen::Vector3f above(2.0F, 2.0F, 3.0F);
+  map.insert(sparse, above);
   ASSERT_EQ(map.fine().plane_at(point), nullptr);
   EXPECT_EQ(map.plane_at(point, above, false), map.coarse().plane_at(point));
   EXPECT_EQ(map.plane_at(point, above, true), map.coarse().plane_at(point));
