@@ -10,11 +10,12 @@
 namespace lidarena::odometry::arena_lo {
 namespace {
 
-constexpr std::size_t kGrain = 128;    // points per task
-constexpr double kNarrowing = 0.5;     // of the kernel, from one pass to the next
-constexpr double kMaxScale = 3.0;      // m, of the kernel in the second pass
-constexpr double kCut = 4.0;           // scales of the kernel; points beyond have no weight
-constexpr double kConvergence = 2e-4;  // m and rad: largest change by a pass that ends a search
+constexpr std::size_t kGrain = 128;     // points per task
+constexpr double kNarrowing = 0.5;      // of the kernel, from one pass to the next
+constexpr double kMaxScale = 3.0;       // m, of the kernel in the second pass
+constexpr int kSingleSlicePasses = 10;  // as many times the passes of others, at most
+constexpr double kCut = 4.0;            // scales of the kernel; points beyond have no weight
+constexpr double kConvergence = 2e-4;   // m and rad: largest change by a pass that ends a search
 
 /// Standard deviation (m) of the position of a point of the body, the mean of all directions.
 double deviation(const estimation::MotionMatrix& covariance, const Eigen::Vector3d& arm) {
@@ -123,7 +124,9 @@ Registration register_slices(const Known& before, std::span<const Slice> slices,
   std::vector<std::vector<Eigen::Vector3f>> points(slices.size());
   Registration found;
   double scale = std::max(config.first_kernel_scale_m, config.kernel_scale_m);
-  for (int narrow = 0; narrow < config.max_passes; ++found.passes) {
+  // A single slice has no others that predict it, so it starts farther away.
+  const int passes = slices.size() > 1 ? config.max_passes : kSingleSlicePasses * config.max_passes;
+  for (int narrow = 0; narrow < passes; ++found.passes) {
     Measurement whole;
     const auto measured = [&](std::size_t i, const estimation::MotionEstimate& prior) {
       const estimation::MotionEstimate& at = found.passes == 0 ? prior : found.steps[i].estimate;
@@ -138,7 +141,7 @@ Registration register_slices(const Known& before, std::span<const Slice> slices,
     found.steps = std::move(steps);
     found.measurement = whole;
     if (scale <= config.kernel_scale_m) ++narrow;
-    if (narrow > 1 && change < kConvergence) narrow = config.max_passes;
+    if (narrow > 1 && change < kConvergence) narrow = passes;
     if (found.passes == 0 && whole.points > 0)  // the kernels of uncertain points are wider
       scale = std::min(whole.sum_of_scales / static_cast<double>(whole.points), kMaxScale);
     scale = std::max(kNarrowing * scale, config.kernel_scale_m);
