@@ -17,9 +17,9 @@ LidarInfo turned_lidar() {
 }
 
 /// Moves by 1 m along the lidar's x axis in each scan, whose points are the map.
-class Walker : public VoxelMapOdometry {
+class MapWalker : public VoxelMapOdometry {
  public:
-  Walker() : VoxelMapOdometry("walker", turned_lidar(), {1.0, 10, 0.0}, Parallel(1)) {}
+  MapWalker() : VoxelMapOdometry("walker", turned_lidar(), {1.0, 10, 0.0}, Parallel(1)) {}
   ScanResult register_scan(const Scan& scan) override {
     const estimation::ScanTimes times = times_of(scan);
     if (is_out_of_order(times.last)) return unchanged(ScanStatus::kTooFewPoints, {.points = 7});
@@ -39,7 +39,7 @@ Scan empty_at(double seconds) {
 }
 
 TEST(VoxelMapOdometry, TellsThePosesAndTheMapOfTheBody) {
-  Walker walker;
+  MapWalker walker;
   Scan scan = empty_at(1.0);
   scan.timed = true;
   scan.points.resize(2);
@@ -60,7 +60,7 @@ TEST(VoxelMapOdometry, TellsThePosesAndTheMapOfTheBody) {
 }
 
 TEST(VoxelMapOdometry, EmptyScansLastAsLongAsTheLastOneThatHadTimes) {
-  Walker walker;
+  MapWalker walker;
   EXPECT_EQ(walker.register_scan(empty_at(1.0)).estimate.stamp, from_seconds(1.2))
       << "nominal: 5 Hz";
   Scan scan = empty_at(2.0);
@@ -72,7 +72,7 @@ TEST(VoxelMapOdometry, EmptyScansLastAsLongAsTheLastOneThatHadTimes) {
 }
 
 TEST(VoxelMapOdometry, AScanThatIsNotLaterChangesNothing) {
-  Walker walker;
+  MapWalker walker;
   walker.register_scan(empty_at(1.0));
   const ScanResult again = walker.register_scan(empty_at(1.0));
   EXPECT_EQ(again.status, ScanStatus::kTooFewPoints);
