@@ -86,10 +86,11 @@ TEST_P(OnRealData, FindsThePublishedMotionBetweenTwoSweeps) {
   const Pose found = motion_between(dataset::read_cloud(folder / "target.ply").points,
                                     dataset::read_cloud(folder / "source.ply").points);
   const Pose error = target_from_source.inverse() * found;
-  // the published motion agrees with another ICP to 0.02 m and 0.3 degrees; keypoints are 1.5 m
-  // apart: 0.25 m of matching noise divided by the square root of about 1000 keypoints
+  // The published motion agrees with another ICP to 0.02 m and 0.3 degrees. A method's own noise
+  // comes on top: keypoints are 1.5 m apart, so 0.25 m of matching noise divided by the square root
+  // of about 1000 keypoints is 8 mm, at 10 m 0.05 degrees.
   EXPECT_LT(error.translation().norm(), 0.05);
-  EXPECT_LT(degrees(error), 0.3);
+  EXPECT_LT(degrees(error), 0.35);
 }
 
 TEST_P(OnRealData, ThereAndBackAgainIsNoMotion) {
