@@ -9,8 +9,8 @@
 
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/so3.hpp"
-#include "lidarena/estimation/elastic_alignment.hpp"
 #include "lidarena/odometry/arena_lo/registration.hpp"
+#include "lidarena/odometry/ct_icp/alignment.hpp"
 
 namespace lidarena::odometry::arena_lo {
 namespace {
@@ -118,10 +118,10 @@ void insert_scan(benchmark::State& state) {
 BENCHMARK(insert_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void levenberg_marquardt(benchmark::State& state) {
-  std::vector<estimation::ElasticMatch> matches;
+  std::vector<ct_icp::ElasticMatch> matches;
   for (const Slice& slice : slices(scan_of(2'000, 2))) {
     for (const Slice::Point& point : slice.points) {
-      estimation::ElasticMatch& match = matches.emplace_back();
+      ct_icp::ElasticMatch& match = matches.emplace_back();
       match.point = point.position.cast<double>();
       match.alpha = 10.0 * (to_seconds(slice.middle) + double{point.seconds});
       match.anchor = match.point;
@@ -130,11 +130,9 @@ void levenberg_marquardt(benchmark::State& state) {
       match.normal = Eigen::Vector3d::Unit(axis);
     }
   }
-  const auto guess = estimation::ElasticMotion::still(before().estimate.state.pose, 1);
+  const auto guess = ct_icp::ElasticMotion::still(before().estimate.state.pose);
   const Parallel one(1);
-  for (auto _ : state)
-    benchmark::DoNotOptimize(
-        estimation::align_by_levenberg_marquardt({matches, {}, 0.1}, guess, 20, one));
+  for (auto _ : state) benchmark::DoNotOptimize(ct_icp::align({matches, {}, 0.1}, guess, 20, one));
 }
 BENCHMARK(levenberg_marquardt)->Unit(benchmark::kMillisecond);
 

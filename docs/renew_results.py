@@ -3,16 +3,21 @@
 """Keeps the figures of the documentation equal to the studies' results.
 
 usage: renew_results.py STUDY --as NAME   takes over the figures of the report in the folder STUDY
+       renew_results.py SPEED.json        takes over what lidar_benchmark --benchmark_out=SPEED.json
+                                          --benchmark_filter='measure|simulate|bare' has measured
        renew_results.py                   renews the pages from docs/results/data
        renew_results.py --check           fails if a page differs from docs/results/data, if the
-                                          tables there are not those of the runs there, or if a
-                                          page of docs/results has a decimal figure typed by hand
+                                          tables there are not those of the runs there, or if
+                                          README or a page of docs/results has a decimal figure
+                                          typed by hand
 
 docs/results/data/NAME.csv has all runs of a study, NAME.json the tables of its report that pages
 use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page has such a table
 (KIND: drift, map, ...; `KIND,KIND` for two in one), between `<!-- runs NAME -->` and `<!-- end -->`
 the number of runs, and in a line `<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->`
-one figure.
+one figure. docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
+and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
+`<!-- speed machine -->` the processor.
 """
 import argparse
 import csv
@@ -26,7 +31,8 @@ import sys
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
-PAGES = [DOCS.parent / "README.md", *sorted((DOCS / "results").glob("*.md"))]
+PAGES = [DOCS.parent / "README.md", DOCS / "performance.md",
+         *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
          "livox_mid360_vibrating": "Mid-360", "ouster_os0_128_vibrating": "OS0-128",
@@ -37,9 +43,11 @@ NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "
 COLUMNS = {"drift": "rpe_1m_at_poses_translation_cm",
            "live-drift": "live_rpe_1m_at_poses_translation_cm", "map": "own_map_rmse_cm",
            "map-all": "reprojected_map_rmse_cm", "outliers": "own_map_outliers_percent",
-           "outliers-all": "reprojected_map_outliers_percent", "cpu": "cpu_load_percent"}
+           "outliers-all": "reprojected_map_outliers_percent",
+           "map-vertices": "own_map_rmse_vertices_cm",
+           "outliers-vertices": "own_map_outliers_vertices_percent", "cpu": "cpu_load_percent"}
 LOST = {"own_map_outliers_percent": 50.0, "rpe_1m_at_poses_translation_cm": 100.0}
-BLOCK = re.compile(r"(<!-- (table|runs|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|speed|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -103,11 +111,67 @@ def figure(study, kind, variant, world, sensor, method):
     raise KeyError((world, sensor, method))
 
 
+BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
+EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
+           "range_noise": "+ range noise",
+           "sheet": "+ near and weak-signal noise, angles, rounding, dropouts",
+           "split_beam": "+ seven rays a beam, two echoes"}
+LAYOUTS = {"si": "ours, 24 bytes per point", "driver": "the driver's"}
+
+
+def speed_cell(value, name):
+    if name in ("bare", "measured", "simulated", "items_per_second"):
+        return f"{value / 1e6:.2f} M/s"
+    return f"{value:.2f}" if name == "of_bare" else f"{value:.2g}"
+
+
+def speed_table(kind, rows):
+    """Markdown of the rows on one thread that begin with `kind`."""
+    columns = {"measure": ["bare", "measured", "of_bare", "real_time"],
+               "simulate": ["bare", "simulated", "of_bare"]}[kind]
+    head = {"measure": "| sensor | what is simulated | bare | scan | of bare | times real time |",
+            "simulate": "| sensor | noise | layout | bare | simulate | of bare |"}[kind]
+    lines = [head, re.sub(r"[^|]+", "---", head)]
+    for name, figures in rows.items():
+        parts = name.split("/")
+        if parts[0] != kind:
+            continue
+        labels = [BENCHMARKED[parts[1]], EFFECTS[parts[2]], *(LAYOUTS[p] for p in parts[3:])]
+        lines.append("| " + " | ".join(
+            labels + [speed_cell(figures[column], column) for column in columns]) + " |")
+    return "\n".join(lines)
+
+
+def speed(words):
+    data = json.loads((DATA / "speed.json").read_text())
+    if words == ["machine"]:
+        return data["machine"]
+    if len(words) == 1:
+        return f"\n\n{speed_table(words[0], data['rows'])}\n\n"
+    return speed_cell(data["rows"][words[0]][words[1]], words[1])
+
+
+def take_over_speed(file):
+    """The counters of the rows on one thread, and on which processor."""
+    counters = ("bare", "measured", "simulated", "of_bare", "real_time", "items_per_second")
+    rows = {}
+    for row in json.loads(file.read_text())["benchmarks"]:
+        name = re.sub(r"/(iterations:\d+|real_time)", "", row["name"])
+        if name.endswith("threads:2"):
+            continue
+        rows[name.removesuffix("/threads:1")] = {k: row[k] for k in counters if k in row}
+    cpu = pathlib.Path("/proc/cpuinfo").read_text()
+    machine = re.search(r"model name\s*: (.*)", cpu)[1]
+    (DATA / "speed.json").write_text(json.dumps({"machine": machine, "rows": rows}, indent=1) + "\n")
+
+
 def renewed(page):
     def content(found):
         what, words = found[2], found[3].split()
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), words[2])}\n\n{found[5]}"
+        if what == "speed":
+            return found[1] + speed(words) + found[5]
         text = str(len(runs_of(words[0]))) if what == "runs" else figure(*words)
         return found[1] + text + found[5]
     return BLOCK.sub(content, page)
@@ -120,20 +184,31 @@ def judged(run, column):
     return math.inf if lost else float(run[column]) if run[column] else None
 
 
+def is_spread(text, values):
+    """Whether "1.2 to 3.4, 8 of 8" says the best, the worst and how many of `values` were kept."""
+    kept = [value for value in values if math.isfinite(value)]
+    found = re.fullmatch(r"(?:(.*) to (.*), )?(\d+) of (\d+)", text)
+    if not found or (int(found[3]), int(found[4])) != (len(kept), len(values)):
+        return False
+    return found[1] is None or all(
+        shown == "lost" if math.isinf(value) else
+        math.isclose(float(shown), value, rel_tol=0.006, abs_tol=1e-9)
+        for shown, value in ((found[1], min(values)), (found[2], max(values))))
+
+
 def faults_of(study):
     """Cells of the stored tables that are not the medians of the stored runs."""
     runs = runs_of(study)
     checked = 0
     for name, stored in tables_of(study).items():
         kind = next(k for k in sorted(COLUMNS, key=len, reverse=True) if name.startswith(k + "-"))
-        world, variant = name[len(kind) + 1:].rsplit("-", 1)
+        world, variant = name[len(kind) + 1:].split("-", 1)
         for sensor, method, cell in cells_of(stored):
             values = [judged(run, COLUMNS[kind]) for run in runs
                       if (run["world"], run["sensor"], run["algorithm"]) == (world, sensor, method)
-                      and run["preset"] in ("", variant)]
+                      and run["preset"] in ("", variant.split("-")[0])]
             values = [value for value in values if value is not None]
             median = statistics.median(values) if values else None
-            kept = sum(math.isfinite(value) for value in values)
             checked += 1
             if median is not None and math.isinf(median):
                 same = cell["text"] == "lost"
@@ -141,7 +216,7 @@ def faults_of(study):
                 same = math.isclose(cell["value"], median, rel_tol=1e-6, abs_tol=1e-9)
             else:
                 same = cell["value"] is None
-            if not same or (values and not cell["spread"].endswith(f"{kept} of {len(values)}")):
+            if not same or (values and not is_spread(cell["spread"], values)):
                 yield f"{study}: {name}, {sensor}, {method}: {cell}, but the runs give {median}"
     if checked == 0:
         yield f"{study}: no table of it was compared with its runs"
@@ -153,7 +228,7 @@ def check():
         page = file.read_text()
         if renewed(page) != page:
             faults.append(f"{file.name}: differs from docs/results/data, run docs/renew_results.py")
-        if file.parent.name == "results":
+        if file.name != "performance.md":  # it also has figures of other programs
             by_hand = re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])", BLOCK.sub("", page))
             faults += [f"{file.name}: {number} was typed by hand" for number in by_hand]
     return faults
@@ -161,7 +236,7 @@ def check():
 
 def take_over(study, name):
     wanted = {(w[1], w[2]) for page in PAGES for found in BLOCK.finditer(page.read_text())
-              for w in [found[3].split()] if w[0] == name and found[2] != "runs"}
+              for w in [found[3].split()] if w[0] == name and found[2] in ("table", "=")}
     kinds = {(kind, variant) for kinds, variant in wanted for kind in kinds.split(",")}
     tables = {}
     for file in sorted((study / "tables").glob("*.json")):
@@ -187,7 +262,9 @@ def main():
         faults = check()
         print(*faults, sep="\n")
         sys.exit(1 if faults else 0)
-    if arguments.study:
+    if arguments.study and arguments.study.suffix == ".json":
+        take_over_speed(arguments.study)
+    elif arguments.study:
         take_over(arguments.study, arguments.name or arguments.study.name)
     for page in PAGES:
         page.write_text(renewed(page.read_text()))

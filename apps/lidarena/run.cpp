@@ -67,7 +67,7 @@ void print_summary(const Common& common, const odometry::RunSummary& s, bool pac
   for (const auto& [status, count] : s.statuses)
     counts +=
         fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
-  fmt::print("{} scans ({}) in {:.1f} s: {:.1f} times real time\n", s.scans, counts,
+  fmt::print("{} scans ({}): the method took {:.1f} s, {:.1f} times real time\n", s.scans, counts,
              s.compute_seconds, s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0);
   if (paced) {
     fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",

@@ -171,7 +171,7 @@ void add_view(CLI::App& app, Common& common, int& exit_code) {
       ->check(CLI::Range(0.001, 1000.0))
       ->capture_default_str();
   verb->add_option("--map", o->map,
-                   "Map of a run: reprojected (all returns), own (of the algorithm), both, or "
+                   "Map of a run: reprojected (sampled returns), own (of the algorithm), both, or "
                    "scored (a sample)")
       ->check(CLI::IsMember({"reprojected", "own", "both", "scored"}))
       ->capture_default_str();

@@ -45,14 +45,6 @@ Vector6 log(const Pose& pose) {
   return xi;
 }
 
-Matrix6 adjoint(const Pose& pose) {
-  Matrix6 m = Matrix6::Zero();
-  m.topLeftCorner<3, 3>() = pose.linear();
-  m.bottomRightCorner<3, 3>() = pose.linear();
-  m.topRightCorner<3, 3>() = so3::hat(pose.translation()) * pose.linear();
-  return m;
-}
-
 Matrix6 left_jacobian(const Vector6& xi) {
   Matrix6 m = Matrix6::Zero();
   m.topLeftCorner<3, 3>() = so3::left_jacobian(xi.tail<3>());

@@ -17,8 +17,6 @@ using Matrix6 = Eigen::Matrix<double, 6, 6>;
 Pose exp(const Vector6& xi);
 /// Twist of `pose`; rotation angle in [0, pi].
 Vector6 log(const Pose& pose);
-/// exp(adjoint(T) xi) == T exp(xi) T^-1.
-Matrix6 adjoint(const Pose& pose);
 /// exp(xi + d) ~ exp(left_jacobian(xi) d) exp(xi).
 Matrix6 left_jacobian(const Vector6& xi);
 /// Inverse of left_jacobian; rotation angle < 2 pi.

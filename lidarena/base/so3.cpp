@@ -41,10 +41,6 @@ Matrix3 hat(const Vector3& v) {
   return m;
 }
 
-Vector3 vee(const Matrix3& m) {
-  return 0.5 * Vector3(m(2, 1) - m(1, 2), m(0, 2) - m(2, 0), m(1, 0) - m(0, 1));
-}
-
 Matrix3 exp(const Vector3& v) {
   const double t2 = v.squaredNorm();
   const Matrix3 k = hat(v);

@@ -12,8 +12,6 @@ using Vector3 = Eigen::Vector3d;
 
 /// Skew matrix: hat(a) * b == a.cross(b).
 Matrix3 hat(const Vector3& v);
-/// Inverse of hat, applied to the antisymmetric part of `m`.
-Vector3 vee(const Matrix3& m);
 /// Rotation matrix of the rotation vector `v` (Rodrigues).
 Matrix3 exp(const Vector3& v);
 /// Rotation vector of `r`, length in [0, pi]; accurate near 0 and near pi.

@@ -32,9 +32,12 @@ Pose moved(const Pose& pose, const PoseEquations::Vector& step) {
 }
 
 std::optional<Line> fit_line(const FivePoints& points) {
-  const PrincipalAxes principal = principal_axes(points);
-  if (!(principal.spread[2] > kMinLineRatio * principal.spread[1])) return std::nullopt;
-  return Line{principal.center, principal.axes.col(2)};
+  const Vector3d center = points.rowwise().mean();
+  const FivePoints centered = points.colwise() - center;
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> spread;
+  spread.computeDirect(centered * centered.transpose());
+  if (!(spread.eigenvalues()[2] > kMinLineRatio * spread.eigenvalues()[1])) return std::nullopt;
+  return Line{center, spread.eigenvectors().col(2)};
 }
 
 void FeatureResidual::add_to(PoseEquations& sum) const {

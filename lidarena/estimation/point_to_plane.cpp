@@ -27,21 +27,40 @@ bool is_inlier(double distance, double range) {
   return 1.0 - 0.9 * std::abs(distance) / std::sqrt(range) > 0.9;
 }
 
-NormalEquations<kPointDof> sum_residuals(std::span<const Eigen::Vector3f> points,
-                                         const InertialState& state, bool extrinsics,
-                                         PointPlanes& planes, const Parallel& parallel) {
-  return accumulate_normal_equations<kPointDof>(
-      parallel, points.size(), [&](std::size_t i, NormalEquations<kPointDof>& sum) {
+namespace {
+
+/// The sum in the first N unknowns.
+template <int N>
+NormalEquations<N> sum_in(std::span<const Eigen::Vector3f> points, const InertialState& state,
+                          PointPlanes& planes, const Parallel& parallel) {
+  return accumulate_normal_equations<N>(
+      parallel, points.size(), [&](std::size_t i, NormalEquations<N>& sum) {
         std::optional<Plane>& plane = planes[i];
         if (!plane) return;
         const Eigen::Vector3d point = points[i].cast<double>();
-        const PointResidual residual = point_residual(point, *plane, state, extrinsics);
+        const PointResidual residual = point_residual(point, *plane, state, N > 6);
         if (!is_inlier(residual.distance, point.norm())) {
           plane.reset();
           return;
         }
-        sum.add<1>(residual.row, Eigen::Matrix<double, 1, 1>(residual.distance), 1.0);
+        const Eigen::Matrix<double, 1, N> row = residual.row.template head<N>();
+        sum.template add<1>(row, Eigen::Matrix<double, 1, 1>(residual.distance), 1.0);
       });
+}
+
+}  // namespace
+
+NormalEquations<kPointDof> sum_residuals(std::span<const Eigen::Vector3f> points,
+                                         const InertialState& state, bool extrinsics,
+                                         PointPlanes& planes, const Parallel& parallel) {
+  if (extrinsics) return sum_in<kPointDof>(points, state, planes, parallel);
+  const NormalEquations<6> of_pose = sum_in<6>(points, state, planes, parallel);
+  NormalEquations<kPointDof> sum;
+  sum.hessian.topLeftCorner<6, 6>() = of_pose.hessian;
+  sum.gradient.head<6>() = of_pose.gradient;
+  sum.cost = of_pose.cost;
+  sum.count = of_pose.count;
+  return sum;
 }
 
 }  // namespace lidarena::estimation

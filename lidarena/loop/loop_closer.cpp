@@ -74,9 +74,9 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
   estimation::append_to_chain(
       previous_from_this, covariance_of(kOdometryTranslationSigma, kOdometryRotationSigma), graph_);
   if (config_.descriptor_candidates > 0) {
-    descriptors_.push_back(
-        describe(turned(around(index, kSourceKeyframes, 0, cloud), graph_.nodes.back().linear()),
-                 config_.descriptor_range_m));
+    descriptors_.emplace(index, describe(turned(around(index, kSourceKeyframes, 0, cloud),
+                                                graph_.nodes.back().linear()),
+                                         config_.descriptor_range_m));
   }
   if (pending_.empty() && index % kKeyframesPerSearch == 0)
     pending_ = candidates(path_lengths_to_last());
@@ -125,18 +125,18 @@ void LoopCloser::add_nearest(const std::vector<double>& path_lengths,
 void LoopCloser::add_similar(const std::vector<double>& path_lengths,
                              std::vector<Candidate>& found) const {
   if (config_.descriptor_candidates == 0) return;
-  const PlaceDescriptor& here = descriptors_.back();
+  const PlaceDescriptor& here = descriptors_.at(last());
   std::vector<std::pair<float, std::size_t>> by_rings;
-  for (std::size_t i = 0; i + 1 < descriptors_.size(); ++i) {
-    if (may_close(i, path_lengths))
-      by_rings.emplace_back((descriptors_[i].ring_means - here.ring_means).norm(), i);
+  for (const auto& [i, descriptor] : descriptors_) {
+    if (i != last() && may_close(i, path_lengths))
+      by_rings.emplace_back((descriptor.ring_means - here.ring_means).norm(), i);
   }
   std::sort(by_rings.begin(), by_rings.end());
   by_rings.resize(
       std::min(by_rings.size(), 4 * static_cast<std::size_t>(config_.descriptor_candidates)));
   std::vector<std::pair<double, Candidate>> similar;
   for (const auto& [unused, i] : by_rings) {
-    const Resemblance resemblance = compare(descriptors_[i], here);
+    const Resemblance resemblance = compare(descriptors_.at(i), here);
     if (resemblance.distance > kMaxDescriptorDistance) continue;
     const Eigen::Matrix3d level = so3::exp({0.0, 0.0, resemblance.rotation_rad});
     const Eigen::Matrix3d rotation =
@@ -237,10 +237,8 @@ std::vector<double> LoopCloser::path_lengths_to_last() const {
     if (path_length > path_lengths[i]) continue;
     if (i > 0) reach(i - 1, path_length + steps_[i]);
     if (i + 1 < count) reach(i + 1, path_length + steps_[i + 1]);
-    for (const LoopRecord& loop : accepted_) {
-      if (loop.first == i) reach(loop.second, path_length);
-      if (loop.second == i) reach(loop.first, path_length);
-    }
+    const auto [tied, tied_end] = tied_.equal_range(i);
+    for (auto other = tied; other != tied_end; ++other) reach(other->second, path_length);
   }
   return path_lengths;
 }
@@ -279,6 +277,8 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
       graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,
                                  covariance_of(kLoopTranslationSigma, kLoopRotationSigma), kLoss});
     accepted_.push_back(loop);
+    tied_.emplace(loop.first, loop.second);
+    tied_.emplace(loop.second, loop.first);
     for (LoopRecord& record : records_) {
       if (record.first == loop.first && record.second == loop.second &&
           record.verdict == LoopVerdict::kWaiting)
@@ -291,7 +291,7 @@ void LoopCloser::close(const std::vector<LoopRecord>& loops) {
 
 std::uint64_t LoopCloser::memory_bytes() const {
   return pending_.capacity() * sizeof(Candidate) + stamps_.capacity() * sizeof(Time) +
-         steps_.capacity() * sizeof(double) + descriptors_.capacity() * sizeof(PlaceDescriptor) +
+         steps_.capacity() * sizeof(double) + descriptors_.size() * sizeof(PlaceDescriptor) +
          estimation::memory_bytes(graph_) +
          (records_.capacity() + waiting_.capacity() + accepted_.capacity()) * sizeof(LoopRecord);
 }

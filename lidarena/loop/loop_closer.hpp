@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <set>
 #include <span>
 #include <vector>
@@ -74,7 +75,10 @@ class LoopCloser {
 
   /// From now on, no loop is searched for to this keyframe, and its points are not needed any more:
   /// another stands for its place. It must not be one of the kSourceReach last ones.
-  void retire(std::size_t keyframe) { retired_.insert(keyframe); }
+  void retire(std::size_t keyframe) {
+    retired_.insert(keyframe);
+    descriptors_.erase(keyframe);
+  }
   static constexpr std::size_t kSourceReach = 12;
   /// Keyframe of the second visit of the last loop that was accepted; 0 without any.
   std::size_t closed_until() const { return accepted_.empty() ? 0 : accepted_.back().second; }
@@ -117,14 +121,15 @@ class LoopCloser {
   LoopConfig config_;
   Parallel parallel_;
   std::vector<Time> stamps_;
-  std::vector<double> steps_;  ///< m, path length from the keyframe before
-  std::vector<PlaceDescriptor> descriptors_;
+  std::vector<double> steps_;                           ///< m, path length from the keyframe before
+  std::map<std::size_t, PlaceDescriptor> descriptors_;  ///< of keyframes that are not retired
   std::set<std::size_t> retired_;
   estimation::PoseGraph graph_;
   std::vector<Candidate> pending_;  ///< of the last search, not verified yet
   std::vector<LoopRecord> records_;
   std::vector<LoopRecord> waiting_;
   std::vector<LoopRecord> accepted_;
+  std::multimap<std::size_t, std::size_t> tied_;  ///< keyframes of accepted loops, both ways
 };
 
 }  // namespace lidarena::loop

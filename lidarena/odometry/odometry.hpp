@@ -122,8 +122,8 @@ class Odometry {
   /// call.
   virtual std::span<const Eigen::Vector3f> registered_scan() const { return {}; }
   /// From the body's frame at the start to the world frame of the last result. It changes while a
-  /// gravity_aligned method learns where up is; trajectory(), map() and registered_scan() are in the
-  /// last world.
+  /// gravity_aligned method learns where up is; trajectory(), map() and registered_scan() are in
+  /// the last world.
   virtual Pose world_from_start() const { return Pose::Identity(); }
   /// Bytes held by part: "map", "scan_buffer", "backlog", "other".
   virtual std::map<std::string, std::uint64_t> memory() const = 0;

@@ -79,6 +79,13 @@ Candidate candidate(const results::StudyCells& cells, const std::string& world,
     if (criterion.figure != nullptr) {
       c.values.push_back(spread(*criterion.figure).median);
       c.cells.push_back(results::spread_cell(spread(*criterion.figure)));
+      const bool is_map = criterion.figure == &results::kMapRmse;
+      if (is_map && std::ranges::any_of(c.runs, [](const RunRecord* run) {
+            return is_bent_by_interpolation(*run);
+          })) {
+        c.values.back().reset();  // it judges the interpolation
+        c.cells.back().text += ", bent by interpolation";
+      }
       continue;
     }
     c.cells.push_back(fact_of(*c.runs.front(), criterion.key));
@@ -225,7 +232,8 @@ results::Table decision_table(const results::StudyResults& results, const std::s
       "decision-" + world,
       "All combinations tried, " + world,
       "The Pareto front first: no other combination that keeps tracking in every run is as good in "
-      "all of drift, map (of all returns), CPU, weight, power and price and better in one. Then "
+      "all of drift, map (of sampled returns), CPU, weight, power and price and better in one. "
+      "Then "
       "what "
       "is dominated, and by which; then what lost track. Medians over flights and seeds, the range "
       "and the runs that kept tracking. Whether a difference is more than chance is tested over "

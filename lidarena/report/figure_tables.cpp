@@ -30,9 +30,13 @@ const std::array kKinds{
     Kind{"drift", "RMSE of the drift, cm per 1 m", results::kDrift},
     Kind{"live-drift", "RMSE of the drift of the live trajectory, cm per 1 m", results::kLiveDrift},
     Kind{"map", "Own map: RMSE of the point-to-mesh distance, cm", results::kOwnMapRmse},
-    Kind{"map-all", "All returns: RMSE of the point-to-mesh distance, cm", results::kMapRmse},
+    Kind{"map-all", "Sampled returns: RMSE of the point-to-mesh distance, cm", results::kMapRmse},
     Kind{"outliers", "Own map: points beyond 20 cm, %", results::kOwnMapOutliers},
-    Kind{"outliers-all", "All returns: points beyond 20 cm, %", results::kMapOutliers},
+    Kind{"map-vertices", "Own map: RMSE of the distance to the nearest vertex, cm",
+         results::kOwnMapRmseToVertices},
+    Kind{"outliers-vertices", "Own map: points farther than 20 cm from any vertex, %",
+         results::kOwnMapBeyondVertices},
+    Kind{"outliers-all", "Sampled returns: points beyond 20 cm, %", results::kMapOutliers},
     Kind{"cpu", "CPU time, % of one core", results::kCpuLoad}};
 
 /// The cells of an accuracy table: sensors by algorithms, with the claims between the cells of each
@@ -134,8 +138,15 @@ Table accuracy_table(const StudyResults& results, const StudyCells& cells, const
 }
 
 /// Whether a table of this kind tells anything: some run has the figure; the live trajectory
-/// differs from the final one in some run.
+/// differs from the final one in some run. Distances to vertices only stand beside published ones.
 bool is_told(const StudyResults& results, const Kind& kind) {
+  const bool is_to_vertices = &kind.figure == &results::kOwnMapRmseToVertices ||
+                              &kind.figure == &results::kOwnMapBeyondVertices;
+  const auto is_published = [&](const results::RunRecord& run) {
+    return results::reference_of(results, run.world, run.sensor, run.algorithm, kind.figure.key)
+        .has_value();
+  };
+  if (is_to_vertices && std::ranges::none_of(results.rows, is_published)) return false;
   return std::ranges::any_of(results.rows, [&](const results::RunRecord& run) {
     const auto value = results::value_of(run, kind.figure);
     return value && (&kind.figure != &results::kLiveDrift ||

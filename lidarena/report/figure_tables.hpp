@@ -16,7 +16,7 @@ double increase_of_last(double a, double b);
 /// The usual definition: (b - a) / a, in percent.
 double increase(double a, double b);
 
-/// Drift (final, and live where that differs), own map and map of all returns, CPU time of the runs
+/// Drift (final, and live where that differs), own map and map of sampled returns, CPU time of the runs
 /// of one variant by sensor and algorithm, for each world; the growth of the drift between the
 /// worlds of a study of two; the sensors as simulated. Published figures of the study's `reference`
 /// stand beside.

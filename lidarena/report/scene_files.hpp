@@ -13,10 +13,10 @@ namespace lidarena::report {
 
 /// Which maps of a RUN folder are shown.
 enum class MapChoice {
-  kReprojected,  ///< all returns, placed along the estimated path
+  kReprojected,  ///< sampled returns, placed along the estimated path
   kOwn,          ///< the map that the algorithm publishes
   kBoth,
-  kScored  ///< the sample of all returns that evaluation kept, with its distances
+  kScored  ///< the sample of returns that evaluation kept, with its distances
 };
 constexpr auto enum_names(MapChoice) {
   return std::array{std::pair{"reprojected", MapChoice::kReprojected},

@@ -30,6 +30,9 @@ TableCell figure_cell(const results::RunRecord& run, const results::Figure& figu
   if (run.metrics)
     cell.text = results::value_text(cell.value, results::zero_bound(figure.read(*run.metrics)));
   if (&figure == &results::kOwnMapRmse && cell.value && has_mean_map(run)) cell.text += ", means";
+  if (&figure == &results::kMapRmse && is_bent_by_interpolation(run))
+    cell.text +=
+        ", floor " + number(1e2 * run.metrics->maps.interpolation_floor.rmse_m.value_or(0.0)).text;
   return cell;
 }
 
@@ -47,6 +50,10 @@ bool has_mean_map(const results::RunRecord& run) {
   return run.manifest.is_object() && run.manifest.value("own_map", "") == "means";
 }
 
+bool is_bent_by_interpolation(const results::RunRecord& run) {
+  return run.metrics && !run.metrics->maps.interpolation_floor.empty();
+}
+
 std::string methods_with_mean_maps(const results::StudyResults& results) {
   std::vector<std::string> names;
   for (const results::RunRecord& run : results.rows) {
@@ -62,13 +69,13 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
       "All runs, " + world,
       "RPE over 1 m, of the final trajectory and as known live. ATE after alignment by SE(3). Own "
       "map: as published by the algorithm (\"means\": its points are means of several returns); "
-      "all "
-      "returns: at most 20,000 of a scan, placed by the estimated motion. CPU time of all threads: "
+      "sampled returns: every k-th of a scan, at most 20,000, placed by the estimated motion. CPU "
+      "time of all threads: "
       "share of one core, and P95 per scan. Own memory: map, scan buffer and backlog as the "
       "algorithm counts them. Below: the upper bound of a share of 0 of N points, 3/N.",
       {"sensor, algorithm, seed", "state", "coverage, %", "RPE, cm per m", "live RPE, cm per m",
-       "RPE, deg per m", "ATE, cm", "own map RMSE, cm", "all returns RMSE, cm",
-       "own map > 20 cm, %", "all returns > 20 cm, %", "CPU, % of a core", "CPU P95, ms",
+       "RPE, deg per m", "ATE, cm", "own map RMSE, cm", "sampled returns RMSE, cm",
+       "own map > 20 cm, %", "sampled returns > 20 cm, %", "CPU, % of a core", "CPU P95, ms",
        "own memory, MB"},
       {}};
   for (const results::RunRecord& row : results.rows) {

@@ -13,6 +13,9 @@ Json facts_of(const results::RunRecord& row);
 
 /// Whether the points of the run's own map are means of several returns.
 bool has_mean_map(const results::RunRecord& run);
+/// Whether its map of returns was made with poses interpolated between the estimates, since the
+/// method told no motion within its scans: that bends a map even if every pose is perfect.
+bool is_bent_by_interpolation(const results::RunRecord& run);
 /// The algorithms with such maps: "arena_lio+loop, lio_sam"; empty if there is none.
 std::string methods_with_mean_maps(const results::StudyResults& results);
 

@@ -117,8 +117,12 @@ Reading identity(const MapInGauge& map) {
 template <std::optional<double> VertexDistance::*value>
 Reading vertices(const MapInGauge& map) {
   const VertexDistance& d = map.point_vertex;
-  return of_map(d.*value, d.definition, count_of(d.points, "points"),
-                d.refused ? d.refused : map.refused);
+  Reading reading = of_map(d.*value, d.definition, count_of(d.points, "points"),
+                           d.refused ? d.refused : map.refused);
+  reading.used = d.points;
+  reading.total = std::max<std::size_t>(d.points, map.map_points);
+  reading.is_share = value == &VertexDistance::outliers_percent;
+  return reading;
 }
 constexpr auto kToVertices = vertices<&VertexDistance::rmse_m>;
 constexpr auto kBeyondVertices = vertices<&VertexDistance::outliers_percent>;
@@ -317,6 +321,8 @@ const Figure& kDriftRotation = known("rpe_1m_at_poses_rotation");
 const Figure& kAte = known("ate_se3_translation");
 const Figure& kOwnMapRmse = known("own_map_rmse");
 const Figure& kOwnMapOutliers = known("own_map_outliers");
+const Figure& kOwnMapRmseToVertices = known("own_map_rmse_vertices");
+const Figure& kOwnMapBeyondVertices = known("own_map_outliers_vertices");
 const Figure& kMapRmse = known("reprojected_map_rmse");
 const Figure& kMapOutliers = known("reprojected_map_outliers");
 const Figure& kLatencyP95 = known("latency_p95");

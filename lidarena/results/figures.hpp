@@ -54,7 +54,8 @@ struct Figure {
 // Those that tables and reports name; drift is the RPE per meter from pose to pose, maps are scored
 // in the gauge of scores_of().
 extern const Figure &kDrift, &kDriftRotation, &kAte, &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
-    &kMapOutliers, &kLatencyP95, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift;
+    &kMapOutliers, &kLatencyP95, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift,
+    &kOwnMapRmseToVertices, &kOwnMapBeyondVertices;
 
 /// All of them, in the order in which they are shown.
 std::span<const Figure> figures();

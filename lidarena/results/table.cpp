@@ -14,10 +14,13 @@ std::string shown(const TableCell& cell, const char* dash) {
   return cell.text.empty() ? dash : cell.text;
 }
 
-/// Escapes what would end a cell in Markdown.
+/// Escapes what Markdown would not show as it is, so that a command can be copied from a table.
 std::string for_markdown(const std::string& text) {
   std::string out;
-  for (const char c : text) out += c == '|' ? "\\|" : c == '\n' ? " " : std::string(1, c);
+  for (const char c : text) {
+    if (std::string_view("\\`*|<[").find(c) != std::string_view::npos) out += '\\';
+    out += c == '\n' ? ' ' : c;
+  }
   return out;
 }
 

@@ -72,24 +72,15 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
     center += random.uniform(-variation, variation);
     return Opening{axis, line, center, c.door_width_m, 0, c.door_height_m};
   };
-  if (c.symmetric) {
-    return {door(1, w.living_dining, 0.32 * c.depth_m),
-            door(1, w.dining_kitchen, 0.32 * c.depth_m),
-            door(0, w.y, 0.86 * c.width_m),
-            door(1, w.bath_main, w.y + 0.5 * north),
-            door(1, w.hall_bath, w.y + 0.5 * north),
-            door(0, w.y, 0.5 * (w.child_hall + w.living_dining)),
-            door(0, w.y, 0.14 * c.width_m),
-            door(1, w.child_hall, w.y + 0.5 * north)};
-  }
+  const auto at = [&](double usual, double symmetric) { return c.symmetric ? symmetric : usual; };
   return {door(1, w.living_dining, 0.32 * c.depth_m),
-          door(1, w.dining_kitchen, 0.36 * c.depth_m),
-          door(0, w.y, 0.85 * c.width_m),
-          door(1, w.bath_main, w.y + 0.30 * north),
-          door(1, w.hall_bath, w.y + 0.68 * north),
+          door(1, w.dining_kitchen, at(0.36, 0.32) * c.depth_m),
+          door(0, w.y, at(0.85, 0.86) * c.width_m),
+          door(1, w.bath_main, w.y + at(0.30, 0.5) * north),
+          door(1, w.hall_bath, w.y + at(0.68, 0.5) * north),
           door(0, w.y, 0.5 * (w.child_hall + w.living_dining)),
-          door(0, w.y, 0.55 * w.child_hall),
-          door(1, w.child_hall, w.y + 0.60 * north)};
+          door(0, w.y, at(0.55 * w.child_hall, 0.14 * c.width_m)),
+          door(1, w.child_hall, w.y + at(0.60, 0.5) * north)};
 }
 
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {

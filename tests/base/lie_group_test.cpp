@@ -87,16 +87,6 @@ TEST(Se3, ExponentialAgreesWithTheMatrixSeriesAndLogarithmUndoesIt) {
   }
 }
 
-TEST(Se3, AdjointMovesATwistThroughAPose) {
-  const auto all = twists();
-  const Vector6 xi = 0.1 * all[9];
-  for (const Vector6& t : all) {
-    const Pose pose = se3::exp(t);
-    const Pose moved = pose * se3::exp(xi) * pose.inverse();
-    EXPECT_LT((se3::exp(se3::adjoint(pose) * xi).matrix() - moved.matrix()).norm(), 1e-12);
-  }
-}
-
 TEST(Se3, LeftAndRightJacobiansAgreeWithCentralDifferences) {
   constexpr double h = 1e-6;
   for (const Vector6& xi : twists()) {

@@ -15,7 +15,7 @@ namespace lidarena::estimation {
 namespace {
 
 using Eigen::Vector3d;
-const Vector3d kGravity(0.0, 0.0, -9.8);
+const Vector3d kGravityVector(0.0, 0.0, -9.8);
 constexpr ImuNoise kNoise{1e-3, 1e-2, 1e-4, 1e-3};
 constexpr double kDt = 0.005;
 constexpr int kSteps = 20;  // IMU samples from one pose to the next
@@ -59,7 +59,7 @@ Flight fly(int measurements, const ImuBias& bias, double noise, std::uint64_t se
       flight.imu.back().emplace_back(rate + state.bias.gyro + gyro_noise,
                                      force + state.bias.accel + accel_noise);
     }
-    state = exact.predict(state, kGravity);
+    state = exact.predict(state, kGravityVector);
     flight.truth.push_back(state);
     const Vector3d turn = random_vector(random, noise * kTurnSigma);
     const Vector3d place = random_vector(random, noise * kPlaceSigma);
@@ -74,7 +74,7 @@ InertialStart start_at(const NavState& state) {
   InertialStart start;
   start.state = state;
   start.state.bias = {};
-  start.gravity = kGravity;
+  start.gravity = kGravityVector;
   NavState::Vector sigma;
   sigma << Vector3d::Constant(1e-3), Vector3d::Constant(0.1), Vector3d::Constant(1e-3),
       Vector3d::Constant(0.02), Vector3d::Constant(0.2);

@@ -108,16 +108,24 @@ TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
 TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
   WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
   std::uint64_t after_two_rounds = 0;
+  std::uint64_t loops_then = 0;
+  std::size_t keyframes = 0;
   for (int i = 0; i < 1050; ++i) {  // 210 s, five rounds
     Scan scan;
     scan.stamp = from_seconds(0.2 * i);
     scan.points.resize(1);
     looped.register_scan(scan);
-    if (i == 420) after_two_rounds = looped.memory().at("map");
+    if (i != 420) continue;
+    after_two_rounds = looped.memory().at("map");
+    loops_then = looped.loops().memory_bytes();
+    keyframes = looped.loops().poses().size();
   }
   EXPECT_LT(static_cast<double>(looped.memory().at("map")),
             1.3 * static_cast<double>(after_two_rounds))
       << "it would be 2.5 times as much";
+  // the graph grows with the path, descriptors do not
+  EXPECT_LT(looped.loops().memory_bytes() - loops_then,
+            (looped.loops().poses().size() - keyframes) * sizeof(loop::PlaceDescriptor) / 2);
 }
 
 }  // namespace

@@ -55,8 +55,10 @@ TEST(Table, ACellOfRunsHasItsRangeAndHowManyWereKept) {
 }
 
 TEST(Table, WhatAFormatReservesIsEscaped) {
-  Table table{"", "", "", {"run", "50 % & more"}, {{word("a|b_c"), word("x^~\\")}}};
-  EXPECT_THAT(table_markdown(table), HasSubstr("| a\\|b_c | x^~\\ |"));
+  Table table{
+      "", "", "", {"run", "50 % & more"}, {{word("a|b_c"), word("x^~\\")}, {word("`a*`<[")}}};
+  EXPECT_THAT(table_markdown(table), HasSubstr("| a\\|b_c | x^~\\\\ |"));
+  EXPECT_THAT(table_markdown(table), HasSubstr("| \\`a\\*\\`\\<\\[ |"));
   EXPECT_THAT(table_latex(table), HasSubstr("run & 50 \\% \\& more \\\\"));
   EXPECT_THAT(table_latex(table),
               HasSubstr("a|b\\_c & x\\textasciicircum{}\\textasciitilde{}\\textbackslash{}"));

@@ -142,6 +142,16 @@ TEST(Fidelity, InTheHouseWithTheMid360) {
   expect_like_program(flight, {"lio_sam", "indoor"}, "lio_sam");
 }
 
+TEST(Fidelity, OurOwnMethodsStayAsAccurateAsTheyWere) {
+  // twice what they measured: 0.00075, 0.0034, 0.00084, 0.0037 m per m
+  const CalmFlight cave("cave", "livox_mid360", "mid360");
+  EXPECT_LT(drift(cave.of_remake({"arena_lio", ""}), cave.truth()), 0.0015);
+  EXPECT_LT(drift(cave.of_remake({"arena_lo", ""}), cave.truth()), 0.0068);
+  const CalmFlight house("house", "livox_mid360", "mid360");
+  EXPECT_LT(drift(house.of_remake({"arena_lio", ""}), house.truth()), 0.0017);
+  EXPECT_LT(drift(house.of_remake({"arena_lo", ""}), house.truth()), 0.0075);
+}
+
 TEST(Fidelity, WhereAProgramIsLostSoIsItsRemake) {
   constexpr double kLost = 0.3;            // m per meter; rooms are a few meters wide
   constexpr double kSecondsToLoss = 30.0;  // LIO-SAM's port is lost from 23 s on

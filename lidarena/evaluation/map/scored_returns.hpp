@@ -7,11 +7,12 @@
 
 namespace lidarena::evaluation {
 
-/// Maximum number of returns of a scan that are scored: all of a Mid-360's, every 15th of an
-/// OS0-128's 262,144. With more, the score would depend on the number of points that the sensor
-/// measures.
+/// Maximum number of returns of a scan that are scored: all 20,000 of a Mid-360's unless the
+/// recording is long, every 7th of an OS0-128's 131,072. With more, the score would depend on the
+/// number of points that the sensor measures.
 inline constexpr std::size_t kScoredReturns = 20'000;
-/// Approximate maximum for a whole recording. With more, the score would depend on its duration.
+/// Approximate maximum for a whole recording: from 50 s at 10 Hz on fewer of each scan. With more,
+/// the score would depend on its duration.
 inline constexpr std::size_t kScoredInAll = 10'000'000;
 
 /// Maximum number of scored returns of a scan in a recording of `scans` scans (0: not known).

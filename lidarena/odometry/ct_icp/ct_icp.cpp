@@ -2,7 +2,6 @@
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 namespace lidarena::odometry::ct_icp {
@@ -12,26 +11,40 @@ namespace {
 constexpr int kRigidScans = 2;          // at the start, registered without motion within the scan
 constexpr int kInitialIterations = 15;  // at least, for the first initial_scans
 constexpr double kDegenerate = 0.01;    // minimum share of a direction; isotropic: 1/3
-constexpr estimation::RangeGate kAllRanges{0.0, std::numeric_limits<double>::infinity()};
 
 }  // namespace
 
 CtIcp::CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : VoxelMapOdometry("ct_icp", lidar,
-                       {config.map.voxel_size_m, config.map.max_points_per_voxel,
-                        config.map.min_point_spacing_m, map::VoxelRounding::kTruncate},
-                       std::move(parallel)),
-      config_(config) {}
+    : config_(config),
+      parallel_(std::move(parallel)),
+      map_({config.map.voxel_size_m, config.map.max_points_per_voxel,
+            config.map.min_point_spacing_m, map::VoxelRounding::kTruncate}),
+      path_(lidar) {}
+
+std::vector<Eigen::Vector3f> CtIcp::map() const {
+  return transformed(path_.body_from_lidar(), map_.points());
+}
+
+std::map<std::string, std::uint64_t> CtIcp::memory() const {
+  return {{"map", map_.memory_bytes()},
+          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
+          {"backlog", 0},
+          {"other", path_.memory_bytes()}};
+}
+
+ScanResult CtIcp::unchanged(ScanStatus status) const {
+  return {path_.poses().back(), status, std::nullopt, {.scans_refused = scans_refused_}, {}};
+}
 
 ScanResult CtIcp::register_scan(const Scan& scan) {
-  if (ended_) return unchanged(ScanStatus::kDiverged, {.scans_refused = scans_refused_});
-  const estimation::ScanTimes times = times_of(scan);
-  if (is_out_of_order(times.last)) {
+  if (ended_) return unchanged(ScanStatus::kDiverged);
+  const estimation::ScanTimes times = path_.times_of(scan);
+  if (path_.is_out_of_order(times.last)) {
     ++scans_refused_;
-    return unchanged(ScanStatus::kTooFewPoints, {.scans_refused = scans_refused_});
+    return unchanged(ScanStatus::kTooFewPoints);
   }
   const bool rigid = !times.timed || map_.empty() || scans_ < kRigidScans;
-  const auto points = estimation::timed_points(scan, times, rigid, kAllRanges);
+  const auto points = timed_points(scan, times, rigid);
   const SamplingConfig& sampling = config_.sampling;
   const auto frame =
       thin(points, starting() ? sampling.initial_scan_voxel_size_m : sampling.scan_voxel_size_m);
@@ -40,12 +53,11 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const Registration found = align(keypoints);
   const ScanStatus status = status_of(found, points.size());
   ended_ = status == ScanStatus::kDiverged;
-  if (ended_) return unchanged(status, {.scans_refused = scans_refused_});
+  if (ended_) return unchanged(status);
   const bool inserted = advance(found, frame, times);
 
-  const auto body_motion = estimation::moved(body_from_lidar_, found.motion);
-  registered_scan_ = estimation::placed(body_motion, points, parallel_);
-  return {poses_.back(),
+  registered_scan_ = placed(path_.body_from_lidar(), found.motion, points, parallel_);
+  return {path_.poses().back(),
           status,
           std::nullopt,
           {.points = points.size(),
@@ -56,7 +68,7 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
            .scans_refused = scans_refused_,
            .inserted = inserted},
           rigid ? std::vector<StampedPose>{}
-                : estimation::body_poses(found.motion, times, body_from_lidar_)};
+                : body_poses(found.motion, times, path_.body_from_lidar())};
 }
 
 Registration CtIcp::align(std::span<const TimedPoint> keypoints) const {
@@ -78,12 +90,12 @@ ScanStatus CtIcp::status_of(const Registration& found, std::size_t points) const
 
 bool CtIcp::advance(const Registration& found, std::span<const TimedPoint> frame,
                     const estimation::ScanTimes& times) {
-  const estimation::ElasticMotion& motion = found.motion;
+  const ElasticMotion& motion = found.motion;
   const bool inserted = !frame.empty() && (config_.map.always_insert || gate_.admits(motion));
-  if (inserted) map_.insert(estimation::placed(motion, frame, parallel_));
-  map_.remove_far(motion.end().translation().cast<float>(), config_.map.radius_m);
+  if (inserted) map_.insert(placed(Pose::Identity(), motion, frame, parallel_));
+  map_.remove_far(motion.end.translation().cast<float>(), config_.map.radius_m);
   history_.add(motion);
-  store(motion.end(), times.last, times);
+  path_.add(motion.end, times.last, times);
   ++scans_;
   return inserted;
 }

@@ -1,26 +1,41 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/map/voxel_hash_map.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
 #include "lidarena/odometry/ct_icp/prediction.hpp"
 #include "lidarena/odometry/ct_icp/quality.hpp"
 #include "lidarena/odometry/ct_icp/registration.hpp"
-#include "lidarena/odometry/voxel_map_odometry.hpp"
+#include "lidarena/odometry/lidar_path.hpp"
+#include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::ct_icp {
 
 /// LiDAR odometry by elastic scan-to-map registration: a scan has a pose at its beginning and one
 /// at its end, after Dellenbach, Deschaud, Jacquet, Goulette, "CT-ICP: Real-time Elastic LiDAR
 /// Odometry with Loop Closure" (ICRA 2022). See README.md in this folder.
-class CtIcp : public VoxelMapOdometry {
+class CtIcp : public Odometry {
  public:
   CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
+  OdometryTraits traits() const override { return {}; }
   ScanResult register_scan(const Scan& scan) override;
+  Trajectory trajectory() const override { return Trajectory(path_.poses(), "ct_icp"); }
+  std::vector<Eigen::Vector3f> map() const override;
+  std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
+  std::map<std::string, std::uint64_t> memory() const override;
 
  private:
   /// The first scans use finer voxels and more iterations.
   bool starting() const { return scans_ < config_.sampling.initial_scans; }
+  /// The result of a scan that changes nothing.
+  ScanResult unchanged(ScanStatus status) const;
   /// Aligns the keypoints with the map, if there is one.
   Registration align(std::span<const TimedPoint> keypoints) const;
   ScanStatus status_of(const Registration& found, std::size_t points) const;
@@ -29,6 +44,10 @@ class CtIcp : public VoxelMapOdometry {
                const estimation::ScanTimes& times);
 
   Config config_;
+  Parallel parallel_;
+  map::VoxelHashMap map_;  ///< in the lidar's frame at its first pose
+  LidarPath path_;
+  std::vector<Eigen::Vector3f> registered_scan_;
   InsertionGate gate_;
   MotionHistory history_;
 

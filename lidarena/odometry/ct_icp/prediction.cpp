@@ -10,28 +10,28 @@ Pose repeated(const Pose& before, const Pose& last) { return last * before.inver
 
 }  // namespace
 
-void MotionHistory::add(const estimation::ElasticMotion& motion) {
+void MotionHistory::add(const ElasticMotion& motion) {
   before_ = last_;
   last_ = motion;
   ++scans_;
 }
 
-estimation::ElasticMotion MotionHistory::predict(InitialMotion initial_motion) const {
+ElasticMotion MotionHistory::predict(InitialMotion initial_motion) const {
   if (initial_motion == InitialMotion::kLastPose || scans_ < 2)
-    return estimation::ElasticMotion::still(last_.end(), 1);
-  const Pose end = repeated(before_.end(), last_.end());
+    return ElasticMotion::still(last_.end);
+  const Pose end = repeated(before_.end, last_.end);
   // The first two scans are rigid: the third one begins where the second ended.
-  if (scans_ == 2) return {{last_.end(), end}};
-  return {{repeated(before_.begin(), last_.begin()), end}};
+  if (scans_ == 2) return {last_.end, end};
+  return {repeated(before_.begin, last_.begin), end};
 }
 
-estimation::MotionPrior MotionHistory::prior(const PriorConfig& weights) const {
-  estimation::MotionPrior prior;
-  prior.begin = last_.end();
-  prior.step = last_.end().translation() - last_.begin().translation();
+MotionPrior MotionHistory::prior(const PriorConfig& weights) const {
+  MotionPrior prior;
+  prior.begin = last_.end;
+  prior.step = last_.end.translation() - last_.begin.translation();
   prior.location = weights.location;
   prior.velocity = weights.velocity;
-  prior.alignment = weights.orientation;
+  prior.orientation = weights.orientation;
   prior.small_velocity = weights.small_velocity;
   return prior;
 }

@@ -20,18 +20,17 @@ double rotation_between(const Pose& a, const Pose& b) {
 
 }  // namespace
 
-bool is_plausible(const estimation::ElasticMotion& motion, const Pose& last_end) {
-  const Pose& begin = motion.begin();
-  const Pose& end = motion.end();
+bool is_plausible(const ElasticMotion& motion, const Pose& last_end) {
+  const Pose& begin = motion.begin;
+  const Pose& end = motion.end;
   return begin.matrix().allFinite() && end.matrix().allFinite() &&
          (end.translation() - begin.translation()).norm() <= kMaxTranslation &&
          rotation_between(begin, end) <= kMaxRotation &&
          rotation_between(last_end, end) <= kMaxRotation;
 }
 
-bool InsertionGate::admits(const estimation::ElasticMotion& motion) {
-  if (rotation_between(motion.begin(), motion.end()) > kInsertedRotation &&
-      skipped_ <= kMaxSkipped) {
+bool InsertionGate::admits(const ElasticMotion& motion) {
+  if (rotation_between(motion.begin, motion.end) > kInsertedRotation && skipped_ <= kMaxSkipped) {
     ++skipped_;
     return false;
   }

@@ -14,10 +14,9 @@ namespace {
 constexpr std::size_t kMaxNeighbors = 64;  // upper limit of the key max_neighbors
 constexpr std::size_t kGrain = 64;         // keypoints per task: about 0.2 ms of work
 
-std::optional<estimation::ElasticMatch> match_of(const TimedPoint& keypoint,
-                                                 const Eigen::Vector3d& position,
-                                                 const map::VoxelHashMap& map,
-                                                 const RegistrationConfig& config) {
+std::optional<ElasticMatch> match_of(const TimedPoint& keypoint, const Eigen::Vector3d& position,
+                                     const map::VoxelHashMap& map,
+                                     const RegistrationConfig& config) {
   std::array<map::Neighbor, kMaxNeighbors> room;
   const std::span near(room.data(), static_cast<std::size_t>(config.max_neighbors));
   const std::size_t count =
@@ -26,19 +25,17 @@ std::optional<estimation::ElasticMatch> match_of(const TimedPoint& keypoint,
   return plane_match(keypoint, position, near.first(count), config);
 }
 
-std::vector<estimation::ElasticMatch> matches_of(std::span<const TimedPoint> keypoints,
-                                                 const estimation::ElasticMotion& motion,
-                                                 const map::VoxelHashMap& map,
-                                                 const RegistrationConfig& config,
-                                                 const Parallel& parallel) {
-  const estimation::ElasticTrack track(motion);
-  std::vector<std::optional<estimation::ElasticMatch>> found(keypoints.size());
+std::vector<ElasticMatch> matches_of(std::span<const TimedPoint> keypoints,
+                                     const ElasticMotion& motion, const map::VoxelHashMap& map,
+                                     const RegistrationConfig& config, const Parallel& parallel) {
+  const ElasticTrack track(motion);
+  std::vector<std::optional<ElasticMatch>> found(keypoints.size());
   parallel.for_each(keypoints.size(), kGrain, [&](std::size_t i) {
     const TimedPoint& keypoint = keypoints[i];
     const auto position = track.place(keypoint.position.cast<double>(), keypoint.alpha);
     found[i] = match_of(keypoint, position, map, config);
   });
-  std::vector<estimation::ElasticMatch> matches;
+  std::vector<ElasticMatch> matches;
   matches.reserve(found.size());
   for (const auto& match : found) {
     if (match) matches.push_back(*match);
@@ -48,14 +45,14 @@ std::vector<estimation::ElasticMatch> matches_of(std::span<const TimedPoint> key
 
 }  // namespace
 
-estimation::ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
-                                     std::span<const map::Neighbor> neighbors,
-                                     const RegistrationConfig& config) {
+ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
+                         std::span<const map::Neighbor> neighbors,
+                         const RegistrationConfig& config) {
   const map::Neighborhood plane = map::describe(neighbors);
   const auto farthest = std::max_element(
       neighbors.begin(), neighbors.end(),
       [](const auto& a, const auto& b) { return a.squared_distance < b.squared_distance; });
-  estimation::ElasticMatch match;
+  ElasticMatch match;
   match.point = keypoint.position.cast<double>();
   match.alpha = keypoint.alpha;
   match.anchor = farthest->point.cast<double>();
@@ -77,13 +74,12 @@ Registration register_keypoints(std::span<const TimedPoint> keypoints, const map
     result.matches = matches.size();
     result.failed = matches.size() < static_cast<std::size_t>(config.min_neighbors);
     if (result.failed) return result;
-    result.observability = estimation::observability_of(matches);
-    const estimation::ElasticMotion before = result.motion;
-    result.motion = estimation::align_by_levenberg_marquardt(
-        {matches, expected.prior, config.robust_kernel_scale_m}, before, config.inner_iterations,
-        parallel);
+    result.observability = observability_of(matches);
+    const ElasticMotion before = result.motion;
+    result.motion = align({matches, expected.prior, config.robust_kernel_scale_m}, before,
+                          config.inner_iterations, parallel);
     ++result.iterations;
-    const estimation::MotionChange change = estimation::change_between(before, result.motion);
+    const MotionChange change = change_between(before, result.motion);
     if (change.translation_m < config.convergence_translation_m &&
         change.rotation_rad < config.convergence_rotation_rad)
       break;

@@ -13,19 +13,19 @@
 namespace lidarena::odometry::ct_icp {
 
 struct Registration {
-  estimation::ElasticMotion motion;  ///< of the lidar in the map
+  ElasticMotion motion;  ///< of the lidar in the map
   int iterations = 0;
   std::size_t matches = 0;     ///< matched keypoints in the last iteration
-  double observability = 1.0;  ///< see estimation::observability_of
+  double observability = 1.0;  ///< see observability_of
   bool failed = false;         ///< an iteration had fewer than min_neighbors matches
 };
 
 /// Match of a keypoint, at `position` (m, map) with the present motion, with the plane of the
 /// neighbors through the farthest of them. Weight, with c1 + c2 = 1:
 /// c1 planarity^2 + c2 exp(-distance of that neighbor / (max_plane_distance_m min_neighbors)).
-estimation::ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
-                                     std::span<const map::Neighbor> neighbors,
-                                     const RegistrationConfig& config);
+ElasticMatch plane_match(const TimedPoint& keypoint, const Eigen::Vector3d& position,
+                         std::span<const map::Neighbor> neighbors,
+                         const RegistrationConfig& config);
 
 /// Elastic ICP of `keypoints` against `map` (CT-ICP, III-B): alternates neighbor searches and
 /// solutions.

@@ -4,12 +4,10 @@
 #include <span>
 #include <vector>
 
-#include "lidarena/estimation/elastic_scan.hpp"
 #include "lidarena/odometry/ct_icp/config.hpp"
+#include "lidarena/odometry/ct_icp/elastic_motion.hpp"
 
 namespace lidarena::odometry::ct_icp {
-
-using estimation::TimedPoint;
 
 /// One point of each cubic cell (edge in m), drawn uniformly from those in it. Coordinates are
 /// truncated to cells, so that the cells around x, y, z = 0 are twice as wide.

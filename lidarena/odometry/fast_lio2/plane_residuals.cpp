@@ -14,8 +14,7 @@ constexpr std::size_t kGrain = 64;           // points per task: about 0.1 ms of
 
 /// The unit-offset fit has no plane through the world's origin.
 std::optional<estimation::Plane> plane_through(const Neighbors& points) {
-  return estimation::fit_plane(map::columns_of(points), estimation::PlaneFit::kUnitOffset,
-                               kMaxThickness);
+  return estimation::fit_plane(map::columns_of(points), kMaxThickness);
 }
 
 bool are_same_points(const Neighbors& a, const Neighbors& b) {

@@ -3,8 +3,8 @@
 
 #include <utility>
 
+#include "lidarena/base/se3.hpp"
 #include "lidarena/estimation/deskew.hpp"
-#include "lidarena/estimation/elastic_scan.hpp"
 
 namespace lidarena::odometry::kiss_icp {
 
@@ -21,15 +21,32 @@ map::VoxelHashMap::Options map_options(const Config& config) {
 }  // namespace
 
 KissIcp::KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel)
-    : VoxelMapOdometry("kiss_icp", lidar, map_options(config), std::move(parallel)),
-      config_(config),
-      threshold_(config) {}
+    : config_(config),
+      parallel_(std::move(parallel)),
+      threshold_(config),
+      map_(map_options(config)),
+      path_(lidar) {}
+
+std::vector<Eigen::Vector3f> KissIcp::map() const {
+  return transformed(path_.body_from_lidar(), map_.points());
+}
+
+std::map<std::string, std::uint64_t> KissIcp::memory() const {
+  return {{"map", map_.memory_bytes()},
+          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
+          {"backlog", 0},
+          {"other", path_.memory_bytes()}};
+}
+
+ScanResult KissIcp::refused_scan() const {
+  return {path_.poses().back(), ScanStatus::kTooFewPoints, std::nullopt, {}, {}};
+}
 
 ScanResult KissIcp::register_scan(const Scan& scan) {
   registered_scan_.clear();
-  const estimation::ScanTimes times = times_of(scan);
+  const estimation::ScanTimes times = path_.times_of(scan);
   const Time instant = pose_instant(config_.release, times);
-  if (is_out_of_order(instant)) return unchanged(ScanStatus::kTooFewPoints, {});
+  if (path_.is_out_of_order(instant)) return refused_scan();
 
   const se3::Vector6 twist = deskews(scan) ? twist_within(times, motion_) : se3::Vector6::Zero();
   const Points points = preprocess(scan, times, twist, instant);
@@ -46,8 +63,8 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
   threshold_.observe(guess, pose);
 
   advance(pose, map_points, times);
-  append_transformed(body_from_lidar_ * pose, points, registered_scan_);
-  return {poses_.back(),
+  append_transformed(path_.body_from_lidar() * pose, points, registered_scan_);
+  return {path_.poses().back(),
           status,
           std::nullopt,
           {.points = points.size(),
@@ -60,7 +77,8 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
 }
 
 bool KissIcp::deskews(const Scan& scan) const {
-  return config_.deskew && scan.timed && poses_.size() >= scans_before_deskewing(config_.release);
+  return config_.deskew && scan.timed &&
+         path_.poses().size() >= scans_before_deskewing(config_.release);
 }
 
 Points KissIcp::preprocess(const Scan& scan, const estimation::ScanTimes& times,
@@ -84,16 +102,20 @@ void KissIcp::advance(const Pose& pose, const Points& map_points,
   map_.remove_far(pose.translation().cast<float>(), config_.max_range_m);
   motion_ = map_from_lidar_.inverse() * pose;
   map_from_lidar_ = pose;
-  store(pose, pose_instant(config_.release, times), times);
+  path_.add(pose, pose_instant(config_.release, times), times);
 }
 
 std::vector<StampedPose> KissIcp::motion_within(const estimation::ScanTimes& times,
                                                 const se3::Vector6& twist) const {
   if (twist.isZero(0.0)) return {};
-  const StampedPose lidar{pose_instant(config_.release, times), map_from_lidar_};
-  return estimation::body_poses(
-      estimation::constant_twist_motion(lidar, twist, times, kMotionSteps), times,
-      body_from_lidar_);
+  const Time known = pose_instant(config_.release, times);
+  std::vector<StampedPose> poses;
+  for (int i = 0; i <= kMotionSteps; ++i) {
+    const Time instant = times.first + (times.last - times.first) * i / kMotionSteps;
+    const Pose map_from_lidar = map_from_lidar_ * se3::exp(twist * to_seconds(instant - known));
+    poses.push_back({instant, path_.body_pose(map_from_lidar)});
+  }
+  return poses;
 }
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -14,7 +14,7 @@ constexpr float kMaxNeighbor = 1.0F;        // m, maximum distance of the fifth 
 constexpr double kMaxPlaneThickness = 0.2;  // m, maximum distance of a neighbor from the plane
 
 std::optional<estimation::Plane> plane_through(const FivePoints& near) {
-  return estimation::fit_plane(near, estimation::PlaneFit::kUnitOffset, kMaxPlaneThickness);
+  return estimation::fit_plane(near, kMaxPlaneThickness);
 }
 
 template <class Fit, class Residual>

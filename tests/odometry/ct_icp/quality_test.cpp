@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kDegree = M_PI / 180.0;
 
-estimation::ElasticMotion motion_of(double degrees, double meters = 0.0) {
-  return {{Pose::Identity(), make_pose(so3::exp({0, 0, degrees * kDegree}), {meters, 0.0, 0.0})}};
+ElasticMotion motion_of(double degrees, double meters = 0.0) {
+  return {Pose::Identity(), make_pose(so3::exp({0, 0, degrees * kDegree}), {meters, 0.0, 0.0})};
 }
 
 TEST(CtIcpQuality, LimitsTheMotionOfAScan) {

@@ -132,7 +132,7 @@ export function decision(page: Page): HTMLElement {
         `Medians, their range, and the runs that kept tracking; a test of the drift: ${page.data.claims.words[DRIFT]}.`,
       ),
       `On the front is what keeps tracking in every run and is not dominated: no other is as good in all of ${criteria.map(({ label: text }) => text).join(", ")} ` +
-        "and better in one, in the medians over flights and seeds; what a test says of them stands with what is dominated. Map: of all returns. " +
+        "and better in one, in the medians over flights and seeds; what a test says of them stands with what is dominated. Map: of sampled returns. " +
         `The weights order the front by the mean logarithm of the ratios to the best (default ${criteria.map(({ label: text, weight }) => `${text} ${weight}`).join(", ")}); that order is a taste, not a test. ` +
         "A price counts by the number in it. Real time: at most 5 % of the scans take more CPU time than their period on one core (in paced runs: more time by the clock)." +
         all,

@@ -90,7 +90,7 @@ function histograms(all: Run[], world: string, kind: "own_map" | "all_returns"):
   const own = kind === "own_map";
   return panels({
     id: `histogram-${world}${own ? "" : "-all-returns"}`,
-    title: `Distance from map to mesh, ${world}${own ? "" : ", all returns"}`,
+    title: `Distance from map to mesh, ${world}${own ? "" : ", sampled returns"}`,
     world,
     caption:
       `Share of points by their distance to the mesh in bins of 1 cm, mean over seeds; the last bar is the share beyond ${bins} cm (yellow line). ` +
@@ -119,7 +119,7 @@ function memory(all: Run[], world: string): Figure | null {
     id: `memory-${world}`,
     title: `Memory of the algorithm, ${world}`,
     world,
-    caption: "As counted by the algorithm, stacked: map (or tree), scan buffer, backlog of measurements not yet processed. First seed.",
+    caption: "As counted by the algorithm, stacked: map (or tree), scan buffer, backlog of measurements not yet processed. The first seed that has it.",
     names: first.map((run) => `${label(run)}, ${run.sensor}`),
     legend: MEMORY_PARTS.map(([, name]) => name),
     columns: 4,
@@ -152,7 +152,7 @@ function drift(all: Run[], world: string): Figure | null {
     title: `Error of the path over time, ${world}`,
     world,
     caption:
-      "Distance between the estimated and the true position after aligning the whole paths by SE(3), on a logarithmic scale. First seed.",
+      "Distance between the estimated and the true position after aligning the whole paths by SE(3), on a logarithmic scale. The first seed that has it.",
     names: sensors,
     legend: algorithms,
     columns: 2,
@@ -181,7 +181,11 @@ function spread(data: ReportData, all: Run[], world: string): Figure | null {
     name: sensor,
     itemStyle: { color: "#ffffff00", borderColor: sensorColor(sensor, sensors) },
     boxWidth: [8, 26],
-    data: algorithms.map((algorithm) => values(algorithm, sensor)).map((list) => (list.length > 0 ? fiveNumbers(list) : [])),
+    data: algorithms.map((algorithm) => {
+      const list = values(algorithm, sensor);
+      const allKept = list.length === cellOf(inWorld(all, world), algorithm, sensor).length;
+      return list.length > 0 && allKept ? fiveNumbers(list) : [];
+    }),
   }));
   const dots = sensors.map((sensor, k) => ({
     type: "scatter",
@@ -197,7 +201,7 @@ function spread(data: ReportData, all: Run[], world: string): Figure | null {
       title: `Spread over flights and seeds, ${world}`,
       world,
       caption:
-        "RPE over 1 m of each flight and seed: every run is a dot; boxes reach from the lower to the upper quartile with the median, whiskers to the extremes." +
+        "RPE over 1 m of each flight and seed: every run is a dot; boxes reach from the lower to the upper quartile with the median, whiskers to the extremes; a cell with lost runs has no box. " +
         absent(inWorld(all, world), runs),
     },
     algorithms,

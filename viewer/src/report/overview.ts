@@ -32,9 +32,9 @@ import type { Settings } from "./settings";
 const SWITCH: [string, string][] = [
   [DRIFT, "drift"],
   [OWN_RMSE, "own map"],
-  [MAP_RMSE, "all returns"],
+  [MAP_RMSE, "sampled returns"],
   [OWN_OUTLIERS, "outliers, own map"],
-  [OUTLIERS, "outliers, all returns"],
+  [OUTLIERS, "outliers, sampled returns"],
   [CPU, "CPU"],
   [MEMORY, "memory"],
 ];
