@@ -119,7 +119,8 @@ function memory(all: Run[], world: string): Figure | null {
     id: `memory-${world}`,
     title: `Memory of the algorithm, ${world}`,
     world,
-    caption: "As counted by the algorithm, stacked: map (or tree), scan buffer, backlog of measurements not yet processed. The first seed that has it.",
+    caption:
+      "As counted by the algorithm, stacked: map (or tree), scan buffer, backlog of measurements not yet processed. The first seed that has it.",
     names: first.map((run) => `${label(run)}, ${run.sensor}`),
     legend: MEMORY_PARTS.map(([, name]) => name),
     columns: 4,
