@@ -8,7 +8,8 @@ cmake_policy(SET CMP0057 NEW)
 # What each part consists of: modules, or files with their headers.
 set(simulator base world scenes flight sensor dataset study/simulate_dataset study/example_scan)
 set(method base dataset map estimation loop odometry evaluation/map/reproject
-    study/simulate_dataset study/run_algorithm study/run_external)
+    study/simulate_dataset study/run_algorithm study/run_external
+    study/foreign_program)
 set(scorer base dataset world estimation map results evaluation study/simulate_dataset
     study/run_algorithm)
 

@@ -3,6 +3,7 @@
 
 #include <dds/ddsi/ddsi_serdata.h>
 #include <dds/ddsi/ddsi_sertype.h>
+#include <dds/ddsi/q_protocol.h>
 #include <dds/ddsi/q_radmin.h>
 
 #include <algorithm>
@@ -25,6 +26,7 @@ constexpr std::byte kPaddingMask{3};
 struct CdrData : ddsi_serdata {
   std::vector<std::byte> bytes;  ///< with the header, padded to a multiple of four
   std::size_t size = 0;          ///< without the padding
+  std::int64_t sequence = 0;     ///< see sequence_of()
 };
 
 const CdrData* as_cdr(const ddsi_serdata* data) { return static_cast<const CdrData*>(data); }
@@ -58,11 +60,23 @@ std::uint32_t size_of(const ddsi_serdata* data) {
 }
 void free_data(ddsi_serdata* data) { delete static_cast<CdrData*>(data); }
 
+/// The number of the message that a fragment is a part of, from the head of the submessage that
+/// brought it (DDSI-RTPS 2.3, 9.4.5.3 and 9.4.5.4); Cyclone DDS has its bytes in the host's order.
+std::int64_t sequence_in(const nn_rdata* fragment) {
+  Data_DataFrag_common_t head;
+  std::memcpy(&head, NN_RMSG_PAYLOADOFF(fragment->rmsg, NN_RDATA_SUBMSG_OFF(fragment)),
+              sizeof head);
+  if (head.smhdr.submessageId != SMID_DATA && head.smhdr.submessageId != SMID_DATA_FRAG) return 0;
+  return std::int64_t{head.writerSN.high} * (std::int64_t{1} << 32) +
+         std::int64_t{head.writerSN.low};
+}
+
 /// Joins the received fragments, which may overlap.
 ddsi_serdata* from_fragments(const ddsi_sertype* type, ddsi_serdata_kind kind,
                              const nn_rdata* fragment, std::size_t size) {
   if (size < kHeaderBytes) return nullptr;
   auto data = new_data(type, kind, size);
+  data->sequence = sequence_in(fragment);
   std::uint32_t offset = 0;
   for (; fragment != nullptr; fragment = fragment->nextfrag) {
     if (fragment->maxp1 <= offset) continue;
@@ -192,5 +206,7 @@ dataset::Bytes message_of(const ddsi_serdata* data) {
   const CdrData* cdr = as_cdr(data);
   return dataset::Bytes(cdr->bytes).first(cdr->size);
 }
+
+std::int64_t sequence_of(const ddsi_serdata* data) { return as_cdr(data)->sequence; }
 
 }  // namespace lidarena::dds

@@ -3,6 +3,7 @@
 
 #include <dds/dds.h>
 
+#include <cstdint>
 #include <string>
 
 #include "lidarena/dataset/byte_stream.hpp"
@@ -30,5 +31,9 @@ ddsi_serdata* make_data(const ddsi_sertype* type, dataset::Bytes message);
 
 /// The message, without the padding that DDS adds; valid as long as the caller has a reference.
 dataset::Bytes message_of(const ddsi_serdata* data);
+
+/// The number that its publisher gave a received message: 1, 2, ... for each of a topic. 0: not
+/// known, since it did not come over the network but from this process.
+std::int64_t sequence_of(const ddsi_serdata* data);
 
 }  // namespace lidarena::dds

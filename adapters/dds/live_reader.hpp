@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -24,6 +25,11 @@ struct LiveReaderOptions {
   std::chrono::milliseconds idle{2000};
   /// Asked at least ten times a second; true ends the reading.
   std::function<bool()> stopped = [] { return false; };
+  /// By topic: messages that may wait to be read; a later one then takes the place of the oldest,
+  /// which is lost. Topics without an entry: all.
+  std::map<std::string, int> waiting{};
+  /// Whether to read a topic of messages of a type (both as in ROS 2) that is in `topics`.
+  std::function<bool(const std::string& topic, const std::string& type)> wanted{};
 };
 
 /// Subscribes to the topics of ROS 2 nodes as they appear, with the reliability and durability that
@@ -39,12 +45,21 @@ class LiveReader final : public dataset::RecordingReader {
 
   /// Topics found so far and how many messages of each were returned.
   const std::vector<dataset::RecordedTopic>& topics() const { return found_; }
-  /// Messages that were lost, as far as the subscriptions know.
+  /// Messages that were sent and not received, or received and replaced before they were read: by
+  /// their publishers' numbers, from the first one on that was returned of each publisher. Those
+  /// from this process have no numbers.
   std::uint64_t lost() const;
+  std::uint64_t lost(const std::string& topic) const;
+  /// The topics of ROS 2 nodes that were seen so far, read or not, with their types.
+  const std::map<std::string, std::string>& seen() const { return seen_; }
 
  private:
+  using Guid = std::array<std::uint8_t, 16>;  ///< of a publisher, also after it was out of reach
   struct Subscription {
     Entity topic, reader;
+    std::map<std::uint64_t, Guid> publishers{};  ///< by the handle that Cyclone DDS gave
+    std::map<Guid, std::int64_t> received{};     ///< number of the last message
+    std::uint64_t lost = 0;
   };
   struct Message {
     std::size_t topic;
@@ -54,12 +69,15 @@ class LiveReader final : public dataset::RecordingReader {
 
   void find_topics();
   void subscribe(const dds_builtintopic_endpoint_t& publisher);
+  bool wants(const std::string& topic, const std::string& type) const;
   void take(std::size_t topic);
+  static void note_received(Subscription& from, std::uint64_t publisher, std::int64_t sequence);
   void release_current();
 
   LiveReaderOptions reading_;
   Participant participant_;
   Entity publications_, waiting_;
+  std::map<std::string, std::string> seen_;
   std::vector<dataset::RecordedTopic> found_;
   std::vector<Subscription> subscriptions_;
   std::deque<Message> taken_;

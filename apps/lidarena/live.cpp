@@ -18,6 +18,14 @@ void add_live_options(CLI::App& verb, dds::LiveOptions& options) {
       "Reach other machines, too; default: this one alone. CYCLONEDDS_URI decides where set");
 }
 
+CLI::Option* add_topic_option(CLI::App& verb, const std::string& name, std::string& topic,
+                              const std::string& what) {
+  return verb.add_option_function<std::string>(
+      name,
+      [&topic](const std::string& given) { topic = (given.starts_with('/') ? "" : "/") + given; },
+      what);
+}
+
 bool (*end_on_interrupt())() {
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, [](int) { was_interrupted = 1; });
   return [] { return was_interrupted != 0; };

@@ -7,6 +7,7 @@
 #include "adapters/dds/live_reader.hpp"
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/live.hpp"
+#include "apps/lidarena/record_run.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
@@ -24,6 +25,7 @@ struct RecordRequest {
   double idle_s = 2.0;
   bool compress = false;
   dds::LiveOptions live;
+  RunToRecord run;  ///< instead of a file, if it names a dataset
 };
 
 /// Writes live messages into a file as they come, with the times at which they were sent.
@@ -54,11 +56,12 @@ class Recorder {
       out_->write(*entry->second, message.log_time, message.log_time, message.data);
   }
 
-  /// {topic: {messages, delay_median_s, delay_p99_s}}: of the time from sending to receipt.
-  Json topics() {
+  /// {topic: {messages, lost, delay_median_s, delay_p99_s}}: of the time from sending to receipt.
+  Json topics(const dds::LiveReader& live) {
     Json topics = Json::object();
     for (auto& [name, delays] : delays_) {
       topics[name] = {{"messages", delays.size()},
+                      {"lost", live.lost(name)},
                       {"delay_median_s", results::quantile(delays, 0.5)},
                       {"delay_p99_s", results::quantile(delays, 0.99)}};
     }
@@ -78,7 +81,24 @@ class Recorder {
   std::map<std::string, std::vector<double>> delays_;  ///< s, of all messages of a topic
 };
 
+int record_results(const Common& common, const RecordRequest& request) {
+  Console log(common.quiet);
+  const std::size_t poses = record_run(request.run, request.live, request.idle_s, request.out,
+                                       Parallel(common.threads), log);
+  if (common.json) {
+    print_json({{"poses", poses}, {"run", request.out}});
+  } else {
+    fmt::print("recorded {} poses; score them: lidarena evaluate {}\n", poses, request.out);
+  }
+  return kDone;
+}
+
 int record(const Common& common, const RecordRequest& request) {
+  if (!request.run.dataset.empty()) return record_results(common, request);
+  if (!(request.run.topics.odometry + request.run.topics.path + request.run.topics.points).empty())
+    throw InputError("record", "names topics of results",
+                     "say with --truth what they are scored "
+                     "against, or give --topic");
   Console log(common.quiet || common.json);
   dds::LiveReaderOptions reading;
   reading.topics = {request.topics.begin(), request.topics.end()};
@@ -89,8 +109,9 @@ int record(const Common& common, const RecordRequest& request) {
   while (const auto message = live.next()) recorder.add(*message);
   const dataset::RecordingInfo info = recorder.finish();
   if (common.json) {
-    print_json(
-        {{"messages", info.message_count}, {"lost", live.lost()}, {"topics", recorder.topics()}});
+    print_json({{"messages", info.message_count},
+                {"lost", live.lost()},
+                {"topics", recorder.topics(live)}});
   } else {
     fmt::print("recorded {} messages on {} topics, {} lost: {}\n", info.message_count,
                info.topics.size(), live.lost(), request.out);
@@ -101,15 +122,18 @@ int record(const Common& common, const RecordRequest& request) {
 }  // namespace
 
 void add_record(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand("record", "Write live topics of ROS 2 nodes into an MCAP file");
+  auto* verb = app.add_subcommand(
+      "record", "Write live topics of ROS 2 nodes into an MCAP file, or a SLAM node's into a RUN");
   auto request = std::make_shared<RecordRequest>();
-  verb->add_option("--out", request->out, "MCAP file to write")->required();
+  verb->add_option("--out", request->out, "MCAP file to write; with --truth: RUN folder")
+      ->required();
   verb->add_option("--topic", request->topics, "Topics to record; default: all");
   verb->add_option("--idle", request->idle_s,
                    "Ends when nothing came for so many seconds after the first message; 0: only by "
                    "Ctrl-C")
       ->check(CLI::NonNegativeNumber);
   verb->add_flag("--compress", request->compress, "Compress the file (zstd)");
+  add_run_to_record(*verb, request->run);
   add_live_options(*verb, request->live);
   set_verb(
       *verb, common, [&common, request] { return record(common, *request); }, exit_code);

@@ -5,13 +5,11 @@
 
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/study/foreign_program.hpp"
 #include "lidarena/study/run_algorithm.hpp"
 #include "lidarena/study/study_spec.hpp"
 
 namespace lidarena::study {
-
-/// File in a RUN folder that holds what the external program printed.
-inline constexpr const char* kProgramLog = "program.log";
 
 /// Runs an external program over the dataset that `request` names and writes the RUN folder `out`
 /// from its results, so that it can be scored like a built-in algorithm. The program gets a
