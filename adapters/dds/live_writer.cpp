@@ -12,18 +12,17 @@
 namespace lidarena::dds {
 namespace {
 
-constexpr int kKept = 5;  // messages for subscribers that are slow, as ROS 2 nodes have it
-constexpr dds_duration_t kMaxBlocking = DDS_MSECS(100);
+constexpr dds_duration_t kMaxBlocking = 0;  // a limited history never blocks
 constexpr dds_duration_t kLastDelivery = DDS_SECS(3);
 
 struct DeleteQos {
   void operator()(dds_qos_t* qos) const { dds_delete_qos(qos); }
 };
 
-std::unique_ptr<dds_qos_t, DeleteQos> writer_qos(bool latched) {
+std::unique_ptr<dds_qos_t, DeleteQos> writer_qos(bool latched, int kept) {
   std::unique_ptr<dds_qos_t, DeleteQos> qos(dds_create_qos());
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
-  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, latched ? 1 : kKept);
+  dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, latched ? 1 : kept);
   dds_qset_durability(qos.get(),
                       latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   return qos;
@@ -31,13 +30,13 @@ std::unique_ptr<dds_qos_t, DeleteQos> writer_qos(bool latched) {
 
 }  // namespace
 
-LiveWriter::LiveWriter(const LiveOptions& options) : participant_(options) {}
+LiveWriter::LiveWriter(const LiveOptions& options, int kept) : participant_(options), kept_(kept) {}
 
 std::uint16_t LiveWriter::add_topic(const std::string& name, std::string_view type, bool latched) {
   const CdrTopic created =
       create_cdr_topic(participant_.get(), dds_topic_of(name), dds_type_of(type));
   Topic topic{Entity(created.topic, name), {}, created.type};
-  const auto qos = writer_qos(latched);
+  const auto qos = writer_qos(latched, kept_);
   topic.writer =
       Entity(dds_create_writer(participant_.get(), created.topic, qos.get(), nullptr), name);
   topics_.push_back(std::move(topic));
@@ -48,8 +47,7 @@ std::uint16_t LiveWriter::add_topic(const std::string& name, std::string_view ty
 void LiveWriter::write(std::uint16_t topic, Time log_time, Time, dataset::Bytes message) {
   const Topic& at = topics_.at(topic);
   const dds_return_t sent = dds_writecdr(at.writer.get(), make_data(at.type, message));
-  if (sent < 0 && sent != DDS_RETCODE_TIMEOUT)
-    throw Error(info_.topics[topic].topic + ": " + dds_strretcode(sent));
+  if (sent < 0) throw Error(info_.topics[topic].topic + ": " + dds_strretcode(sent));
   info_.start = info_.message_count == 0 ? log_time : std::min(info_.start, log_time);
   info_.end = std::max(info_.end, log_time);
   ++info_.message_count;

@@ -12,12 +12,15 @@ struct ddsi_sertype;
 
 namespace lidarena::dds {
 
-/// Publishes messages on topics that ROS 2 nodes understand: reliable, the last five kept for slow
-/// subscribers; of a latched topic the last one also reaches those that come later. What is written
-/// is sent at once; times are not sent, a message's own stamp is in its header.
+/// Publishes messages on topics that ROS 2 nodes understand: reliable, the last ones of a topic kept
+/// for slow subscribers, which miss those before; of a latched topic the last one also reaches those
+/// that come later. What is written is sent at once, and no subscriber delays it; times are not
+/// sent, a message's own stamp is in its header.
 class LiveWriter final : public dataset::RecordingWriter {
  public:
-  explicit LiveWriter(const LiveOptions& options);
+  /// `kept`: messages of a topic. Five, as ROS 2 nodes have it, is enough for what comes at a
+  /// sensor's rate.
+  explicit LiveWriter(const LiveOptions& options, int kept = 5);
 
   dataset::Encoding encoding() const override { return dataset::Encoding::kCdr; }
   std::uint16_t add_topic(const std::string& name, std::string_view type, bool latched) override;
@@ -37,6 +40,7 @@ class LiveWriter final : public dataset::RecordingWriter {
   };
 
   Participant participant_;
+  int kept_;
   std::vector<Topic> topics_;
   dataset::RecordingInfo info_;
 };

@@ -3,6 +3,7 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/run_live.hpp"
+#include "apps/lidarena/run_node.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/study/run_algorithm.hpp"
@@ -89,8 +90,9 @@ int run_verb(const Common& common, const RunOptions& o) {
     if (o.live.asked)
       return run_live(o.live, request, common.config_folder(), out, parallel, console);
     if (o.external.empty()) return study::run_algorithm(request, out, parallel, console);
-    return study::run_external(load_config<study::ExternalProgram>(o.external), request, out,
-                               parallel, console);
+    const auto program = load_config<study::ExternalProgram>(o.external);
+    if (program.node.is_used()) return run_node(program, request, out, parallel, console);
+    return study::run_external(program, request, out, parallel, console);
   };
   const odometry::RunSummary s = run();
   print_summary(common, s, request.paced, out);

@@ -9,12 +9,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <sstream>
 #include <thread>
 
@@ -94,6 +96,7 @@ struct Usage {
 
 /// The values used of one process's line in /proc/PID/stat.
 struct ProcessLine {
+  int parent = 0;
   int group = 0;
   double busy_s = 0.0;
   double resident_mb = 0.0;
@@ -115,24 +118,53 @@ std::optional<ProcessLine> process_line(const fs::path& folder) {
   if (!fields) return std::nullopt;
   static const auto kTicks = static_cast<double>(sysconf(_SC_CLK_TCK));
   static const auto kPage = static_cast<double>(sysconf(_SC_PAGESIZE));
-  return ProcessLine{static_cast<int>(number[1]),
+  return ProcessLine{static_cast<int>(number[0]), static_cast<int>(number[1]),
                      (number[10] + number[11] + number[12] + number[13]) / kTicks,
                      number[20] * kPage * 1e-6};
+}
+
+/// All processes by their ids.
+std::map<int, ProcessLine> all_processes() {
+  std::map<int, ProcessLine> processes;
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator("/proc", ignored)) {
+    const std::string name = entry.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    if (const auto process = process_line(entry.path())) processes[std::stoi(name)] = *process;
+  }
+  return processes;
 }
 
 /// Processor time and memory of all processes of a group.
 Usage usage_of_group(int group) {
   Usage usage;
-  std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator("/proc", ignored)) {
-    const std::string name = entry.path().filename();
-    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const auto process = process_line(entry.path());
-    if (!process || process->group != group) continue;
-    usage.busy_s += process->busy_s;
-    usage.resident_mb += process->resident_mb;
+  for (const auto& [id, process] : all_processes()) {
+    if (process.group != group) continue;
+    usage.busy_s += process.busy_s;
+    usage.resident_mb += process.resident_mb;
   }
   return usage;
+}
+
+/// A process, those that it started, those that these started, and so on.
+std::vector<int> tree_of(int root) {
+  const std::map<int, ProcessLine> processes = all_processes();
+  std::vector<int> tree{root};
+  for (std::size_t i = 0; i < tree.size(); ++i) {
+    for (const auto& [id, process] : processes) {
+      if (process.parent == tree[i]) tree.push_back(id);
+    }
+  }
+  return tree;
+}
+
+/// Whether a process runs; not one that has ended and that nobody has waited for.
+bool is_running(int process) {
+  std::ifstream file(fmt::format("/proc/{}/stat", process));
+  std::string line;
+  if (!std::getline(file, line)) return false;
+  const std::size_t state = line.rfind(')') + 2;  // no name's end: 1, the state is not 'Z' then
+  return state < line.size() && line[state] != 'Z' && line[state] != 'X';
 }
 
 /// The last line of a log that is not empty, without the program's name before an error.
@@ -226,6 +258,19 @@ ProcessEnd Process::wait() {
     if (auto end = poll()) return *end;
     std::this_thread::sleep_for(kPollPeriod);
   }
+}
+
+ProcessEnd Process::stop(std::chrono::milliseconds grace) {
+  const std::vector<int> tree = tree_of(pid_);
+  for (const int process : tree) kill(process, SIGINT);
+  const auto end = Clock::now() + grace;
+  const auto runs = [](int process) { return is_running(process); };
+  while (Clock::now() < end && std::ranges::any_of(tree, runs))
+    std::this_thread::sleep_for(kPollPeriod);
+  for (const int process : tree) {
+    if (runs(process)) kill(process, SIGKILL);
+  }
+  return wait();
 }
 
 Answer answer_of(Command command, const ProcessLimits& limits) {

@@ -51,6 +51,9 @@ class Process {
   std::optional<ProcessEnd> poll();
   /// Waits until it ends.
   ProcessEnd wait();
+  /// Asks it and the processes that it started to end (SIGINT, as Ctrl-C does), waits for `grace`,
+  /// and kills those that have not ended.
+  ProcessEnd stop(std::chrono::milliseconds grace);
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -35,6 +35,10 @@ dataset::Cloud map_of(const fs::path& output) {
 
 odometry::RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
                                   const fs::path& out, const Parallel& parallel, LogSink& log) {
+  if (program.node.is_used()) {
+    throw InputError(program.name, "is driven through live topics",
+                     "run it by the program: lidarena run NAME DATASET --external FILE");
+  }
   const fs::path input = out / kProgramInput, output = out / kProgramOutput;
   for (const fs::path& stale : {input, output}) fs::remove_all(stale);
   fs::create_directories(output);

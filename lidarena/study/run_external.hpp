@@ -18,7 +18,7 @@ namespace lidarena::study {
 /// (the LiDAR's id) and {threads} are replaced. It must write trajectory.tum to {output}: poses of
 /// the frame `program.pose_of`, at the scans' stamps or any others. It may write map.ply or
 /// map.pcd. What it prints goes to program.log. Throws Error if its exit code is not 0, InputError
-/// if its files cannot be read.
+/// if its files cannot be read, or for a program with a `node` (see `lidarena run`).
 odometry::RunSummary run_external(const ExternalProgram& program, const RunRequest& request,
                                   const std::filesystem::path& out, const Parallel& parallel,
                                   LogSink& log);
