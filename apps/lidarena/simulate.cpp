@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/simulate_live.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/study/example_scan.hpp"
 
@@ -23,6 +24,7 @@ struct SimulateOptions {
   bool compress = false;
   bool no_data = false;
   bool example_scans = false;
+  LiveSimulation live;
 };
 
 /// Finds the files of sensors, world and flight. What is given is judged first, then what is
@@ -70,20 +72,27 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   const std::string out = options.out.empty() ? default_output(request) : options.out;
   Console console(common.quiet);
   if (options.out.empty()) console.info("writes to " + out);
-  const study::SimulateSummary s =
-      study::simulate_dataset(request, out, Parallel(common.threads), console);
-  if (options.example_scans) study::write_example_scans(out, Parallel(common.threads));
+  const Parallel parallel(common.threads);
+  const PublishedFlight flight =
+      options.live.asked
+          ? simulate_live(options.live, request, out, parallel, console)
+          : PublishedFlight{study::simulate_dataset(request, out, parallel, console), {}, {}};
+  const study::SimulateSummary& s = flight.summary;
+  if (options.example_scans) study::write_example_scans(out, parallel);
   if (common.json) {
-    print_json({{"dataset", out},
-                {"triangles", s.triangles},
-                {"seconds", s.seconds},
-                {"path_m", s.path_m},
-                {"scans", s.scans},
-                {"points", s.points},
-                {"imu_samples", s.imu_samples}});
+    Json told{{"dataset", out},
+              {"triangles", s.triangles},
+              {"seconds", s.seconds},
+              {"path_m", s.path_m},
+              {"scans", s.scans},
+              {"points", s.points},
+              {"imu_samples", s.imu_samples}};
+    if (options.live.asked) told["published"] = flight.messages;
+    print_json(told);
   } else {
     fmt::print("world {} triangles; flew {:.1f} s, {:.1f} m; {} scans, {} points, {} IMU samples\n",
                s.triangles, s.seconds, s.path_m, s.scans, s.points, s.imu_samples);
+    if (options.live.asked) fmt::print("published {}\n", flight.text);
     fmt::print("dataset: {}\n", out);
   }
   return kDone;
@@ -139,6 +148,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
       "--no-data", o->no_data,
       "Write a manifest only: the same points are simulated whenever the dataset is read");
   add_allow_missing(*verb, o->request.allow_missing);
+  add_live_simulation(*verb, o->live);
   set_verb(
       *verb, common, [&common, o] { return simulate_verb(common, *o); }, exit_code);
 }

@@ -32,6 +32,11 @@ std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& 
                                                    const Rig& rig, const WriteOptions& options,
                                                    bool is_folder);
 
+class RecordingWriter;
+/// Gives `out` what would be stored in a recording of `rig`, message by message.
+std::unique_ptr<DatasetStore> make_message_store(std::shared_ptr<RecordingWriter> out,
+                                                 const Rig& rig, const WriteOptions& options);
+
 /// Stores sweeps, times and IMU rows, one subfolder per sensor. `folder` must exist.
 std::unique_ptr<DatasetStore> make_sweep_store(const std::filesystem::path& folder, const Rig& rig,
                                                DatasetFormat format);

@@ -51,11 +51,11 @@ RecordedSensors sensors_of(const Rig& rig, const WriteOptions& options) {
 
 class RecordingStore final : public DatasetStore {
  public:
-  RecordingStore(const std::filesystem::path& file, const Rig& rig, const WriteOptions& options,
-                 bool is_folder)
+  RecordingStore(std::shared_ptr<RecordingWriter> recording, const Rig& rig,
+                 const WriteOptions& options)
       : rig_(rig),
         sensors_(sensors_of(rig, options)),
-        recording_(create_recording(file, recording_options(rig, sensors_, options, is_folder))),
+        recording_(std::move(recording)),
         message_(recording_->encoding()) {
     tf_static_ = recording_->add_topic("/tf_static", ros::kTfMessage, true);
     const RecordedSensors topics = layout::topics_of(rig);
@@ -169,7 +169,7 @@ class RecordingStore final : public DatasetStore {
 
   Rig rig_;
   RecordedSensors sensors_;
-  std::unique_ptr<RecordingWriter> recording_;
+  std::shared_ptr<RecordingWriter> recording_;
   std::map<std::string, LidarTopics> lidars_;  ///< by sensor id
   std::map<std::string, ImuTopic> imus_;
   std::map<std::string, std::uint16_t> hits_;  ///< ground truth of points, by sensor id
@@ -186,7 +186,14 @@ class RecordingStore final : public DatasetStore {
 std::unique_ptr<DatasetStore> make_recording_store(const std::filesystem::path& file,
                                                    const Rig& rig, const WriteOptions& options,
                                                    bool is_folder) {
-  return std::make_unique<RecordingStore>(file, rig, options, is_folder);
+  return std::make_unique<RecordingStore>(
+      create_recording(file, recording_options(rig, sensors_of(rig, options), options, is_folder)),
+      rig, options);
+}
+
+std::unique_ptr<DatasetStore> make_message_store(std::shared_ptr<RecordingWriter> out,
+                                                 const Rig& rig, const WriteOptions& options) {
+  return std::make_unique<RecordingStore>(std::move(out), rig, options);
 }
 
 }  // namespace lidarena::dataset

@@ -4,10 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <functional>
 #include <map>
 
+#include "lidarena/dataset/dataset_store.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
@@ -15,6 +16,7 @@
 #include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
+#include "lidarena/study/read_ahead.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
 #include "lidarena/world/world.hpp"
@@ -143,26 +145,21 @@ Time end_of_measurement(const dataset::Event& event) {
   return scan != nullptr ? end_of(*scan) : std::get<ImuSample>(event.data).stamp;
 }
 
-void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
-                  const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
-  dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), request.write);
+/// Gives the truth and the measurements to `writer` in the order of their times.
+template <class Writer>
+void give_events(const SimulateRequest& request, const Scene& scene, dataset::EventSource& events,
+                 Writer& writer, LogSink& log, SimulateSummary& summary) {
   Time truth_time{0};
   const auto write_truth_until = [&](Time end) {
     for (; truth_time <= end; truth_time += kTruthStep) {
       writer.write_truth({truth_time, scene.flight->pose_at(truth_time)});
     }
   };
-  sensor::SimulationOptions options = scene.options;
-  ScoredTruth scored(scene, [&](const dataset::ScanTruth& truth) { writer.write(truth); });
-  if (request.truth) {
-    options.truth = &writer;
-  } else if (request.scored_truth) {
-    options.truth = &scored;
-  }
-  auto events = sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
-  while (const auto event = events->next()) {
+  const auto stopped = [&] { return request.stopped && request.stopped(); };
+  while (const auto event = events.next()) {
     // Before the event, so that all messages stand in the order of their times.
     write_truth_until(end_of_measurement(*event));
+    if (stopped()) return;
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       ++summary.scans;
       summary.points += scan->points.size();
@@ -174,7 +171,45 @@ void write_events(const SimulateRequest& request, const Scene& scene, const fs::
   }
   write_truth_until(scene.duration());
   log.progress("flying", summary.seconds, summary.seconds);
+}
+
+void write_events(const SimulateRequest& request, const Scene& scene, const fs::path& out,
+                  const Parallel& parallel, LogSink& log, SimulateSummary& summary) {
+  dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), request.write);
+  sensor::SimulationOptions options = scene.options;
+  ScoredTruth scored(scene, [&](const dataset::ScanTruth& truth) { writer.write(truth); });
+  if (request.truth) {
+    options.truth = &writer;
+  } else if (request.scored_truth) {
+    options.truth = &scored;
+  }
+  const auto events =
+      sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
+  give_events(request, scene, *events, writer, log, summary);
   writer.finish(manifest_of(request, scene));
+}
+
+/// A store, with the functions of a DatasetWriter.
+class StoreWriter {
+ public:
+  explicit StoreWriter(std::unique_ptr<dataset::DatasetStore> store) : store_(std::move(store)) {}
+  void write_truth(const StampedPose& pose) { store_->write_truth(pose); }
+  void write(const dataset::Event& event) {
+    std::visit([&](const auto& data) { store_->write(event.sensor_id, data); }, event.data);
+  }
+
+ private:
+  std::unique_ptr<dataset::DatasetStore> store_;
+};
+
+/// Simulates ahead of what is published, so that a scan that takes long does not delay others.
+void publish_events(const SimulateRequest& request, const Scene& scene, const Parallel& parallel,
+                    LogSink& log, SimulateSummary& summary) {
+  StoreWriter writer(
+      dataset::make_message_store(request.live, sensor::make_rig(scene.sensors), request.write));
+  ReadAhead events(
+      sensor::simulate(*scene.world, *scene.flight, scene.sensors, scene.options, parallel));
+  give_events(request, scene, events, writer, log, summary);
 }
 
 Trajectory truth_of(const Scene& scene) {
@@ -338,12 +373,13 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   world::save_ply(out / "world.ply", scene->world->mesh());
   copy_flight(request.flight, out);
   copy_patterns(scene->sensors, out);
-  if (request.data) {
+  if (request.data && !request.live) {
     write_events(request, *scene, out, parallel, log, summary);
   } else {
     dataset::write_tum(out / "truth.tum", truth_of(*scene), dataset::kTruthHeader);
     dataset::write_json(out / "manifest.json", manifest_of(request, *scene));
   }
+  if (request.live) publish_events(request, *scene, parallel, log, summary);
   return summary;
 }
 

@@ -3,6 +3,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +14,10 @@
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+
+namespace lidarena::dataset {
+class RecordingWriter;
+}
 
 namespace lidarena::study {
 
@@ -33,6 +39,10 @@ struct SimulateRequest {
   bool truth = false;                    ///< also write what each point hit, as /truth/SENSOR/hits
   bool scored_truth = false;             ///< the same of the returns that scoring uses alone
   dataset::WriteOptions write;           ///< format and dialect of the measurements
+  /// If given, gets the messages that data.mcap would hold, while they are simulated; the dataset
+  /// is then written as if `data` was false, before the first of them.
+  std::shared_ptr<dataset::RecordingWriter> live{};
+  std::function<bool()> stopped{};  ///< with `live`: asked often; true ends the flight
 };
 
 /// Counts and sizes of what was simulated.
