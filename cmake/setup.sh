@@ -30,6 +30,8 @@ if [ "${1:-run}" = test ]; then
   optional+=(python3-pyflakes)
   # browser for tests of the HTML pages; without it the tests of the view are reported as skipped
   optional+=(chromium)
+  # the other implementation of DDS, beside which live topics are tested; without it that is skipped
+  optional+=(libfastrtps-dev)
   # ROS 1's own bag reader; without it the test that needs it is reported as skipped
   optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
 fi

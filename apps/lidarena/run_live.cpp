@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "apps/lidarena/run_live.hpp"
 
-#include "adapters/dds/live_reader.hpp"
+#include <fmt/format.h>
+
 #include "adapters/dds/live_writer.hpp"
 #include "apps/lidarena/live.hpp"
+#include "apps/lidarena/live_events.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
-#include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/sensor/simulate.hpp"
 
@@ -92,7 +93,10 @@ dataset::RecordedSensors topics_of(const LiveRun& run, const LidarInfo& lidar, c
 
 dds::LiveReaderOptions reading_of(const LiveRun& run, const dataset::RecordedSensors& sensors) {
   dds::LiveReaderOptions reading;
-  for (const auto& [topic, id] : sensors.lidars) reading.topics.insert(topic);
+  for (const auto& [topic, id] : sensors.lidars) {
+    reading.topics.insert(topic);
+    if (run.queue > 0) reading.waiting[topic] = run.queue;
+  }
   for (const auto& [topic, id] : sensors.imus) reading.topics.insert(topic);
   reading.idle = std::chrono::milliseconds(static_cast<int>(1e3 * run.idle_s));
   reading.stopped = end_on_interrupt();
@@ -100,12 +104,14 @@ dds::LiveReaderOptions reading_of(const LiveRun& run, const dataset::RecordedSen
 }
 
 Json manifest_of(const odometry::OdometryRequest& chosen, const Json& config,
-                 const std::string& lidar_id, const odometry::RunSummary& summary) {
+                 const std::string& lidar_id, const odometry::RunSummary& summary,
+                 const Json& messages) {
   return {{"kind", "run"},
           {"algorithm", chosen.algorithm},
           {"preset", chosen.preset},
           {"config", config},
           {"live", true},
+          {"messages", messages},
           {"sensor", lidar_id},
           {"status", summary.diverged ? "diverged" : "ok"},
           {"reason", summary.reason},
@@ -122,6 +128,11 @@ void add_live_run(CLI::App& verb, LiveRun& run) {
   verb.add_option("--imu-topic", run.imu_topic, "With --live; default: /SENSOR/imu");
   verb.add_option("--idle", run.idle_s,
                   "With --live: ends when nothing came for so many seconds after the first message")
+      ->check(CLI::NonNegativeNumber);
+  verb.add_option(
+          "--queue", run.queue,
+          "With --live: scans that may wait while the algorithm is busy; of more, the oldest "
+          "are dropped; 0: all wait")
       ->check(CLI::NonNegativeNumber);
   verb.add_option("--domain", run.domain, "With --live: DDS domain; default: ROS_DOMAIN_ID, else 0")
       ->check(CLI::Range(0, 232));
@@ -142,16 +153,18 @@ odometry::RunSummary run_live(const LiveRun& run, const study::RunRequest& reque
   dds::LiveWriter writer(live);
   PublishingOdometry published(*made.odometry, rig.body_frame, writer);
   const dataset::RecordedSensors sensors = topics_of(run, lidar, imu);
-  const auto events = dataset::recorded_events(
-      std::make_unique<dds::LiveReader>(live, reading_of(run, sensors)), "live topics", sensors,
-      imu == nullptr ? std::vector<std::string>{} : std::vector{imu->id});
+  LiveEvents events(live, reading_of(run, sensors), sensors,
+                    imu == nullptr ? std::vector<std::string>{} : std::vector{imu->id}, log);
   odometry::RunOptions options;
   options.lidar_id = lidar.id;
   if (imu != nullptr) options.imu_id = imu->id;
   for (const auto& [topic, id] : sensors.lidars) log.info("waits for " + topic);
-  odometry::RunResult result = odometry::run(published, *events, options, log);
+  odometry::RunResult result = odometry::run(published, events, options, log);
   writer.close();
-  result.files.manifest = manifest_of(chosen, made.config, lidar.id, result.summary);
+  const Json messages = events.summary();
+  if (events.lost() > 0)
+    log.warn(fmt::format("messages were lost or dropped: {}", messages.at("lost").dump()));
+  result.files.manifest = manifest_of(chosen, made.config, lidar.id, result.summary, messages);
   if (!request.dataset.empty()) {
     result.files.manifest["dataset"] =
         fs::proximate(fs::absolute(request.dataset), fs::absolute(out)).generic_string();

@@ -15,6 +15,7 @@ struct LiveRun {
   bool asked = false;
   std::string points_topic, imu_topic;  ///< empty: /SENSOR/points, /SENSOR/imu
   double idle_s = 2.0;
+  int queue = 0;  ///< scans that may wait while the algorithm is busy; 0: all
   int domain = -1;
   bool network = false;
 };
