@@ -8,28 +8,12 @@
 
 #include <optional>
 
-#include "adapters/gazebo/sdf_config.hpp"
+#include "adapters/gazebo/plugin/flight_config.hpp"
+#include "adapters/gazebo/plugin/sdf_config.hpp"
 #include "lidarena/base/error.hpp"
-#include "lidarena/flight/recording.hpp"
-#include "lidarena/flight/replay_flight.hpp"
 
 namespace lidarena::gazebo_plugin {
 namespace {
-
-struct FlightPluginConfig {
-  std::string trajectory;
-  double thin_s = 0.01;
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("trajectory", self.trajectory, "",
-      "TUM file (t x y z qx qy qz qw) of the model's frame, also searched in "
-      "GAZEBO_RESOURCE_PATH; its first pose is at simulated time 0");
-    v("thin_s", self.thin_s, "s",
-      "minimum time between poses, closer ones are left out: their rounding would disturb the IMU",
-      at_least(0));
-  }
-};
 
 ignition::math::Pose3d to_gazebo(const Pose& pose) {
   const Eigen::Quaterniond q(pose.linear());
@@ -46,8 +30,7 @@ class FlightPlugin : public ::gazebo::ModelPlugin {
       const auto config =
           read_sdf_config<FlightPluginConfig>(sdf, "flight plugin of " + model->GetName());
       const std::string found = ::gazebo::common::find_file(config.trajectory);
-      const std::string& file = found.empty() ? config.trajectory : found;
-      flight_.emplace(flight::thinned(flight::read_recording(file), config.thin_s), file);
+      flight_ = load_flight(config, found.empty() ? config.trajectory : found);
     } catch (const Error& error) {
       gzerr << "lidarena: " << error.what() << "; " << model->GetName() << " does not move\n";
       return;

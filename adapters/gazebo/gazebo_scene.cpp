@@ -7,7 +7,6 @@
 #include <gazebo/common/MeshManager.hh>
 #include <gazebo/msgs/msgs.hh>
 #include <gazebo/physics/physics.hh>
-#include <sstream>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/primitives.hpp"
@@ -23,31 +22,21 @@ namespace {
 Vector3d to_vector(const ignition::math::Vector3d& v) { return {v.X(), v.Y(), v.Z()}; }
 Vector3d to_vector(const msgs::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
-/// Pose of a plane z = 0 with this normal.
-Pose facing(const Vector3d& normal) {
-  return make_pose(Eigen::Quaterniond::FromTwoVectors(Vector3d::UnitZ(), normal), Vector3d::Zero());
-}
-
 /// All triangles of a mesh file, or of one of its sub-meshes, in mesh coordinates.
-world::TriangleMesh triangles_of(const ::gazebo::common::Mesh& mesh, const std::string& submesh,
-                                 bool centered) {
+world::TriangleMesh triangles_of(const MeshPart& wanted) {
+  const auto* mesh = ::gazebo::common::MeshManager::Instance()->Load(wanted.file);
+  if (mesh == nullptr) throw InputError(wanted.file, "no mesh found");
   world::TriangleMesh out;
-  for (unsigned int s = 0; s < mesh.GetSubMeshCount(); ++s) {
-    const auto* part = mesh.GetSubMesh(s);
-    if (!submesh.empty() && part->GetName() != submesh) continue;
+  for (unsigned int s = 0; s < mesh->GetSubMeshCount(); ++s) {
+    const auto* part = mesh->GetSubMesh(s);
+    if (!wanted.submesh.empty() && part->GetName() != wanted.submesh) continue;
     if (part->GetPrimitiveType() != ::gazebo::common::SubMesh::TRIANGLES) continue;
-    const auto first = static_cast<std::uint32_t>(out.vertices.size());
-    const Vector3d middle = centered && !submesh.empty()
+    const Vector3d origin = wanted.centered && !wanted.submesh.empty()
                                 ? Vector3d(0.5 * (to_vector(part->Max()) + to_vector(part->Min())))
                                 : Vector3d::Zero();
-    for (unsigned int i = 0; i < part->GetVertexCount(); ++i) {
-      out.vertices.push_back(to_vector(part->Vertex(i)) - middle);
-    }
-    for (unsigned int i = 0; i + 2 < part->GetIndexCount(); i += 3) {
-      out.triangles.push_back({first + static_cast<std::uint32_t>(part->GetIndex(i)),
-                               first + static_cast<std::uint32_t>(part->GetIndex(i + 1)),
-                               first + static_cast<std::uint32_t>(part->GetIndex(i + 2))});
-    }
+    append_submesh(
+        part->GetVertexCount(), [&](unsigned int i) { return to_vector(part->Vertex(i)); },
+        part->GetIndexCount(), [&](unsigned int i) { return part->GetIndex(i); }, origin, out);
   }
   return out;
 }
@@ -60,7 +49,7 @@ Pose to_pose(const ignition::math::Pose3d& pose) {
 }
 
 GazeboScene::GazeboScene(physics::WorldPtr world, Geometry geometry, const physics::Link* carrier)
-    : world_(std::move(world)), geometry_(geometry), carrier_(carrier) {}
+    : world_(std::move(world)), geometry_(geometry), carrier_(carrier), meshes_(triangles_of) {}
 
 bool GazeboScene::has_changed() const {
   const auto models = world_->Models();
@@ -176,24 +165,12 @@ void GazeboScene::add_visuals(const physics::LinkPtr& link, bool is_static) {
 world::ShapePtr GazeboScene::mesh(const std::string& uri, const std::string& submesh, bool centered,
                                   const Vector3d& scale) {
   const std::string file = ::gazebo::common::find_file(uri);
-  std::ostringstream key;
-  key << file << '|' << submesh << '|' << centered << '|' << scale.transpose();
-  const auto [entry, is_new] = meshes_.try_emplace(key.str(), nullptr);
-  if (!is_new) return entry->second;
-  const auto* loaded = ::gazebo::common::MeshManager::Instance()->Load(file);
-  if (loaded == nullptr) {
-    gzerr << "lidarena: no mesh found at " << uri << "\n";
-    return nullptr;
-  }
-  world::TriangleMesh scaled;
-  scaled.append(triangles_of(*loaded, submesh, centered), Pose::Identity(), scale);
   try {
-    world::clean_mesh(scaled, uri);
-    entry->second = world::make_mesh(std::move(scaled));
+    return meshes_.get({file.empty() ? uri : file, submesh, centered, scale});
   } catch (const Error& error) {
     gzerr << "lidarena: " << error.what() << "\n";
+    return nullptr;
   }
-  return entry->second;
 }
 
 }  // namespace lidarena::gazebo_plugin

@@ -3,12 +3,12 @@
 
 #include <gazebo/physics/PhysicsTypes.hh>
 #include <ignition/math/Pose3.hh>
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
-#include "adapters/gazebo/plugin_config.hpp"
+#include "adapters/gazebo/plugin/mesh_shapes.hpp"
+#include "adapters/gazebo/plugin/plugin_config.hpp"
 #include "lidarena/world/moving_world.hpp"
 
 namespace lidarena::gazebo_plugin {
@@ -47,7 +47,7 @@ class GazeboScene {
   void add(const ::gazebo::physics::LinkPtr& link, bool is_static, const Pose& link_from_shape,
            world::ShapePtr shape, const std::string& name);
   world::ShapePtr mesh(const std::string& uri, const std::string& submesh, bool centered,
-                       const Eigen::Vector3d& scale);
+                       const Eigen::Vector3d& scale);  ///< nullptr if there is none
 
   ::gazebo::physics::WorldPtr world_;
   Geometry geometry_;
@@ -55,7 +55,7 @@ class GazeboScene {
   std::vector<KnownModel> models_;
   std::vector<world::PlacedShape> shapes_;  ///< while building
   std::vector<Moving> moving_;
-  std::map<std::string, world::ShapePtr> meshes_;  ///< by file, part and scale
+  MeshShapes meshes_;
 };
 
 }  // namespace lidarena::gazebo_plugin

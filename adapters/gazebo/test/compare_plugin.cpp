@@ -11,7 +11,7 @@
 #include <cstdio>
 
 #include "adapters/gazebo/gazebo_scene.hpp"
-#include "adapters/gazebo/sdf_config.hpp"
+#include "adapters/gazebo/plugin/sdf_config.hpp"
 #include "lidarena/sensor/lidar.hpp"
 
 namespace lidarena::gazebo_plugin {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include <ignition/msgs/imu.pb.h>
-#include <ignition/msgs/pointcloud_packed.pb.h>
-
 #include <cstring>
-#include <ignition/transport/Node.hh>
 
-#include "adapters/gazebo/output.hpp"
+#include "adapters/gazebo/plugin/output.hpp"
+#include "adapters/gazebo/plugin/transport.hpp"
 
 namespace lidarena::gazebo_plugin {
 namespace {
@@ -13,16 +10,20 @@ namespace {
 constexpr std::int64_t kSecond = 1'000'000'000;
 
 template <class Message>
-void stamp(Message& message, Time t) {
-  message.mutable_header()->mutable_stamp()->set_sec(t.count() / kSecond);
-  message.mutable_header()->mutable_stamp()->set_nsec(static_cast<int>(t.count() % kSecond));
+void put_header(Message& message, Time t, const std::string& frame) {
+  auto* header = message.mutable_header();
+  header->mutable_stamp()->set_sec(t.count() / kSecond);
+  header->mutable_stamp()->set_nsec(static_cast<int>(t.count() % kSecond));
+  auto* entry = header->add_data();
+  entry->set_key("frame_id");
+  entry->add_value(frame);
 }
 
-ignition::msgs::PointCloudPacked packed(const Scan& scan) {
-  using Field = ignition::msgs::PointCloudPacked::Field;
+gz_msgs::PointCloudPacked packed(const Scan& scan, const std::string& frame) {
+  using Field = gz_msgs::PointCloudPacked::Field;
   constexpr std::uint32_t kStep = 24;
-  ignition::msgs::PointCloudPacked message;
-  stamp(message, scan.stamp);
+  gz_msgs::PointCloudPacked message;
+  put_header(message, scan.stamp, frame);
   const auto add = [&](const char* name, std::uint32_t offset, Field::DataType type) {
     Field* field = message.add_field();
     field->set_name(name);
@@ -54,21 +55,23 @@ ignition::msgs::PointCloudPacked packed(const Scan& scan) {
   return message;
 }
 
-class GazeboOutput final : public Output {
+class TransportOutput final : public Output {
  public:
-  GazeboOutput(const PluginConfig& config, const Rig& rig)
-      : points_(node_.Advertise<ignition::msgs::PointCloudPacked>(points_topic(config, rig))),
-        imu_(node_.Advertise<ignition::msgs::IMU>(imu_topic(config, rig))) {}
+  TransportOutput(const PluginConfig& config, const Rig& rig)
+      : frame_(points_frame(config, rig)),
+        imu_frame_(rig.lidars.front().id + "_imu"),
+        points_(node_.Advertise<gz_msgs::PointCloudPacked>(points_topic(config, rig))),
+        imu_(node_.Advertise<gz_msgs::IMU>(imu_topic(config, rig))) {}
 
   void write(const dataset::Event& event) override {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
-      points_.Publish(packed(*scan));
+      points_.Publish(packed(*scan, frame_));
       return;
     }
     const auto& sample = std::get<ImuSample>(event.data);
-    ignition::msgs::IMU message;
-    stamp(message, sample.stamp);
-    const auto put = [](const Eigen::Vector3d& v, ignition::msgs::Vector3d& out) {
+    gz_msgs::IMU message;
+    put_header(message, sample.stamp, imu_frame_);
+    const auto put = [](const Eigen::Vector3d& v, gz_msgs::Vector3d& out) {
       out.set_x(v.x());
       out.set_y(v.y());
       out.set_z(v.z());
@@ -79,14 +82,15 @@ class GazeboOutput final : public Output {
   }
 
  private:
-  ignition::transport::Node node_;
-  ignition::transport::Node::Publisher points_, imu_;
+  std::string frame_, imu_frame_;
+  gz_transport::Node node_;
+  gz_transport::Node::Publisher points_, imu_;
 };
 
 }  // namespace
 
-std::unique_ptr<Output> make_gazebo_output(const PluginConfig& config, const Rig& rig) {
-  return std::make_unique<GazeboOutput>(config, rig);
+std::unique_ptr<Output> make_transport_output(const PluginConfig& config, const Rig& rig) {
+  return std::make_unique<TransportOutput>(config, rig);
 }
 
 }  // namespace lidarena::gazebo_plugin

@@ -19,7 +19,8 @@ constexpr auto enum_names(Geometry) {
                     std::pair{"visual", Geometry::kVisual}};
 }
 
-/// The elements inside <plugin>; fields have their names.
+/// The elements inside <plugin>; fields have their names. The defaults of `ros` and `gazebo` are
+/// those of Gazebo Classic.
 struct PluginConfig {
   std::string sensor = "livox_mid360";
   std::string set;
@@ -63,8 +64,11 @@ struct PluginConfig {
     v("stop", self.stop, "", "exit the simulator after record_seconds");
     v("dialect", self.dialect, "",
       "si, or driver: units and message layouts of the sensor's ROS driver");
-    v("ros", self.ros, "", "publish through ROS 1, if the plugin was built with it");
-    v("gazebo", self.gazebo, "", "publish through ignition transport");
+    v("ros", self.ros, "",
+      "publish on the topics of ROS nodes, if the plugin was built with it: ROS 1 (Gazebo "
+      "Classic), "
+      "ROS 2 (gz-sim)");
+    v("gazebo", self.gazebo, "", "publish through Gazebo's own transport");
     v("topic", self.topic, "", "topic of the points; /ID/points if empty");
     v("imu_topic", self.imu_topic, "", "topic of the IMU; /ID/imu if empty");
     v("frame", self.frame, "", "frame_id of the points; ID_lidar if empty");

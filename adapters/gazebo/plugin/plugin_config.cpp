@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "adapters/gazebo/plugin_config.hpp"
+#include "adapters/gazebo/plugin/plugin_config.hpp"
 
 #include <algorithm>
 #include <array>

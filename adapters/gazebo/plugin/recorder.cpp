@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "adapters/gazebo/output.hpp"
+#include "adapters/gazebo/plugin/output.hpp"
 #include "lidarena/dataset/dataset.hpp"
 
 namespace lidarena::gazebo_plugin {
@@ -7,20 +7,23 @@ namespace {
 
 class Recorder final : public Output {
  public:
-  Recorder(const PluginConfig& config, const Rig& rig)
-      : writer_(config.record, rig, {dataset::DatasetFormat::kMcap, config.dialect, false}) {}
+  Recorder(const PluginConfig& config, const Rig& rig, std::string source)
+      : writer_(config.record, rig, {dataset::DatasetFormat::kMcap, config.dialect, false}),
+        source_(std::move(source)) {}
   void write(const dataset::Event& event) override { writer_.write(event); }
   void write_truth(const StampedPose& pose) override { writer_.write_truth(pose); }
-  void finish() override { writer_.finish({{"kind", "dataset"}, {"source", "gazebo"}}); }
+  void finish() override { writer_.finish({{"kind", "dataset"}, {"source", source_}}); }
 
  private:
   dataset::DatasetWriter writer_;
+  std::string source_;
 };
 
 }  // namespace
 
-std::unique_ptr<Output> make_recorder(const PluginConfig& config, const Rig& rig) {
-  return std::make_unique<Recorder>(config, rig);
+std::unique_ptr<Output> make_recorder(const PluginConfig& config, const Rig& rig,
+                                      const std::string& source) {
+  return std::make_unique<Recorder>(config, rig, source);
 }
 
 std::string points_topic(const PluginConfig& config, const Rig& rig) {
@@ -30,6 +33,10 @@ std::string points_topic(const PluginConfig& config, const Rig& rig) {
 
 std::string imu_topic(const PluginConfig& config, const Rig& rig) {
   return config.imu_topic.empty() ? "/" + rig.lidars.front().id + "/imu" : config.imu_topic;
+}
+
+std::string points_frame(const PluginConfig& config, const Rig& rig) {
+  return config.frame.empty() ? rig.lidars.front().id + "_lidar" : config.frame;
 }
 
 }  // namespace lidarena::gazebo_plugin
