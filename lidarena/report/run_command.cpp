@@ -18,6 +18,11 @@ std::string text_in(const Json& json, const char* key) {
   return json.contains(key) && json.at(key).is_string() ? json.at(key).get<std::string>() : "";
 }
 
+/// Whether the run was made of live topics.
+bool is_live(const results::RunRecord& row) {
+  return row.manifest.is_object() && row.manifest.value("live", false);
+}
+
 std::string simulate_command(const results::RunRecord& row) {
   const Json& made = row.simulation;
   std::string command = "lidarena simulate" + option("--world", row.sources.world) +
@@ -29,7 +34,7 @@ std::string simulate_command(const results::RunRecord& row) {
   command += option("--mode", row.mode.empty() ? text_in(made, "mode") : row.mode);
   if (!made.value("noise", true)) command += " --noise off";
   if (made.value("allow_missing", false)) command += " --allow-missing";
-  return command + " --no-data --out data";
+  return command + (is_live(row) ? " --out data" : " --no-data --out data");
 }
 
 /// What was set beside the preset.
@@ -50,6 +55,18 @@ std::string settings_of(const results::RunRecord& row) {
   return settings;
 }
 
+/// What listens to live topics, beside a player; a foreign node is to be started, too.
+std::string live_command(const results::RunRecord& row, const std::string& dataset) {
+  const bool is_recorded = row.preset == "live";
+  const std::string listener =
+      is_recorded
+          ? fmt::format("lidarena record --truth {}{}", dataset, option("--name", row.algorithm))
+          : fmt::format("lidarena run {} {} --live{}", shell_word(row.algorithm), dataset,
+                        settings_of(row));
+  return fmt::format("{{ {}{} --out run & lidarena play {} && wait; }} && lidarena evaluate run",
+                     listener, option("--sensor", row.sensor), dataset);
+}
+
 }  // namespace
 
 std::string command_of(const results::RunRecord& row) {
@@ -58,9 +75,11 @@ std::string command_of(const results::RunRecord& row) {
   if (!is_simulated && row.manifest.is_object()) {
     dataset = (row.folder / row.manifest.value("dataset", "")).lexically_normal().generic_string();
   }
-  return fmt::format("{}lidarena run {} {}{}{} --out run && lidarena evaluate run",
-                     is_simulated ? simulate_command(row) + " && " : "", shell_word(row.algorithm),
-                     shell_word(dataset), settings_of(row), option("--sensor", row.sensor));
+  const std::string simulate = is_simulated ? simulate_command(row) + " && " : "";
+  if (is_live(row)) return simulate + live_command(row, shell_word(dataset));
+  return fmt::format("{}lidarena run {} {}{}{} --out run && lidarena evaluate run", simulate,
+                     shell_word(row.algorithm), shell_word(dataset), settings_of(row),
+                     option("--sensor", row.sensor));
 }
 
 }  // namespace lidarena::report

@@ -231,6 +231,20 @@ TEST(SummaryTables, ACommandHasAllSettingsOfItsRunAndRecordedDataStayWhereTheyAr
   EXPECT_THAT(command_of(run), HasSubstr(" --external fast_lio2.yaml --sensor lidar"));
 }
 
+TEST(SummaryTables, ACommandOfALiveRunListensBesideAPlayer) {
+  results::RunRecord run = row("cave", "lidar", "fast_lio2", 1.0, 0.0);
+  run.folder = "runs/one";
+  run.manifest = Json::parse(R"({"dataset":"../../data","live":true})");
+  EXPECT_EQ(command_of(run),
+            "{ lidarena run fast_lio2 data --live --preset indoor --sensor lidar --out run & "
+            "lidarena play data && wait; } && lidarena evaluate run");
+  run.algorithm = "my_slam";
+  run.preset = "live";
+  EXPECT_EQ(command_of(run),
+            "{ lidarena record --truth data --name my_slam --sensor lidar --out run & "
+            "lidarena play data && wait; } && lidarena evaluate run");
+}
+
 /// A run with a map RMSE and a CPU time, in % of one core.
 results::RunRecord tried(const std::string& sensor, const std::string& algorithm,
                          double map_rmse_cm, double cpu_percent, std::uint64_t seed = 1) {
