@@ -19,6 +19,9 @@ constexpr double kConvergence = 1e-3;            // m, rad, m/s: largest step of
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
+// Of a start in motion:
+constexpr std::size_t kOpeningScans = 5;  // that are registered again with each that follows
+constexpr int kFirstPasses = 5;           // over the first two scans
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
 
 /// The data sheet's noise, with a factor for each of the two sensors.
@@ -74,26 +77,19 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
-  if (started_) {
-    predict(intervals);
-  } else if (!start(samples, intervals)) {
+  const bool starts = !started_;
+  if (starts && !start(samples)) {
     using enum ScanStatus;
     return finish_scan(scan.stamp, end, scan.points.empty() ? kTooFewPoints : kInitializing, {});
   }
+  const Scan usable = usable_points(scan, config_.min_range_m);
+  if (opening_) begin_again({usable, end, intervals});
+  if (!starts) predict(intervals);
 
   const State predicted = estimate_.state;
-  const Scan usable = usable_points(scan, config_.min_range_m);
-  const std::vector<Eigen::Vector3f> reduced =
-      map::evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
-                  config_.max_scan_points);
-  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_),
-                           config_.estimate_extrinsics && has_moved_, config_, parallel_);
-  const estimation::IteratedUpdate update = estimation::iterated_update(
-      estimate_, std::ref(residuals),
-      {config_.max_iterations + residuals.narrowing(), kConvergence, config_.point_variance_m2});
-  estimate_ = update.estimate;
-  const Agreement agreement = residuals.agreement(estimate_.state);
-  const ScanStatus status = tracking_.judge(update, agreement, map_.empty());
+  const Match found = match(usable);
+  estimate_ = found.update.estimate;
+  const ScanStatus status = tracking_.judge(found.update, found.agreement, map_.empty());
   const bool still = stands(samples, predicted);
   if (status == ScanStatus::kTracked && !still) calibrate(predicted);
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
@@ -102,12 +98,24 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   publish(points);
   return finish_scan(scan.stamp, end, status,
                      {.points = points.size(),
-                      .keypoints = reduced.size(),
-                      .matches = agreement.on_planes,
-                      .near_planes = agreement.near_planes,
-                      .iterations = update.evaluations,
+                      .keypoints = found.keypoints,
+                      .matches = found.agreement.on_planes,
+                      .near_planes = found.agreement.near_planes,
+                      .iterations = found.update.evaluations,
                       .map_points = map_.fine().size(),
                       .standing = still});
+}
+
+ArenaLio::Match ArenaLio::match(const Scan& usable) const {
+  const std::vector<Eigen::Vector3f> reduced =
+      map::evenly(map::voxel_means(deskewed(usable), config_.scan_voxel_size_m, kGrid),
+                  config_.max_scan_points);
+  PlaneResiduals residuals(reduced, map_, position_sigma(estimate_),
+                           config_.estimate_extrinsics && has_moved_, config_, parallel_);
+  const estimation::IteratedUpdate update = estimation::iterated_update(
+      estimate_, std::ref(residuals),
+      {config_.max_iterations + residuals.narrowing(), kConvergence, config_.point_variance_m2});
+  return {update, residuals.agreement(update.estimate.state), reduced.size()};
 }
 
 Time ArenaLio::scan_end(const Scan& scan) {
@@ -135,8 +143,7 @@ std::vector<estimation::ImuInterval> ArenaLio::intervals_until(Time end) {
   return intervals;
 }
 
-bool ArenaLio::start(const std::vector<ImuSample>& samples,
-                     const std::vector<estimation::ImuInterval>& intervals) {
+bool ArenaLio::start(const std::vector<ImuSample>& samples) {
   start_samples_.insert(start_samples_.end(), samples.begin(), samples.end());
   const std::optional<Start> begin = start_from(start_samples_, imu_from_lidar_);
   if (!begin) return false;
@@ -146,11 +153,57 @@ bool ArenaLio::start(const std::vector<ImuSample>& samples,
   accel_scale_ = begin->accel_scale;
   first_pose_ = estimate_.state.world_from_imu();
   started_ = true;
-  moving_start_ = !begin->still;
-  if (moving_start_) track_ = turning_track(intervals, estimate_.state);
+  if (!begin->still) opening_ = {{}, estimate_};
   imu_.set_accel_scale(accel_scale_);
   start_samples_ = {};
   return true;
+}
+
+void ArenaLio::begin_again(OpeningScan latest) {
+  std::vector<OpeningScan>& scans = opening_->scans;
+  if (scans.empty()) {
+    track_ = track_before(latest.intervals, estimate_.state, accel_scale_);
+    scans.push_back(std::move(latest));
+    return;
+  }
+  const int passes = scans.size() == 1 ? kFirstPasses : 1;
+  std::vector<estimation::ImuInterval> since_first;
+  for (std::size_t i = 1; i < scans.size(); ++i)
+    since_first.insert(since_first.end(), scans[i].intervals.begin(), scans[i].intervals.end());
+  since_first.insert(since_first.end(), latest.intervals.begin(), latest.intervals.end());
+  for (int pass = 0; pass < passes; ++pass) {
+    replay_opening();
+    predict(latest.intervals);
+    const State last = match(latest.usable).update.estimate.state;
+    State& first = opening_->estimate.state;
+    first = carried_back(last, since_first, first, accel_scale_);
+  }
+  replay_opening();
+  scans.push_back(std::move(latest));
+  if (scans.size() == kOpeningScans) opening_.reset();
+}
+
+void ArenaLio::replay_opening() {
+  estimate_ = opening_->estimate;
+  map_.clear();
+  for (const OpeningScan& scan : opening_->scans) {
+    const bool is_first = &scan == &opening_->scans.front();
+    if (is_first) {
+      track_ = track_before(scan.intervals, estimate_.state, accel_scale_);
+    } else {
+      predict(scan.intervals);
+      estimate_ = match(scan.usable).update.estimate;
+      track_ =
+          estimation::bent_track(std::move(track_), scan.end, estimate_.state.world_from_imu());
+    }
+    map_.insert(transformed(estimate_.state.world_from_lidar(), deskewed(scan.usable)));
+    const auto published = std::ranges::find(poses_, scan.end, &StampedPose::stamp);
+    if (published != poses_.end()) published->world_from_body = start_from_body();
+  }
+}
+
+Pose ArenaLio::start_from_body() const {
+  return world_.start_from_map() * estimate_.state.world_from_lidar() * lidar_from_body_;
 }
 
 bool ArenaLio::stands(const std::vector<ImuSample>& samples, const State& predicted) {
@@ -211,10 +264,6 @@ std::vector<Eigen::Vector3f> ArenaLio::deskewed(const Scan& usable) const {
 
 void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   if (still_.scans() > kStandingScansMapped) return;
-  if (moving_start_ && !map_.empty()) {  // the second scan, after which the velocity is known
-    map_.clear();
-    moving_start_ = false;
-  }
   const Pose world_from_lidar = estimate_.state.world_from_lidar();
   map_.insert(transformed(world_from_lidar, points));
   map_.follow(world_from_lidar.translation().cast<float>());
@@ -261,8 +310,7 @@ ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
       imu_from_lidar_.linear().transpose() * so3::exp(-gyro_.turned()) * imu_from_lidar_.linear();
   result.counters.lidar_moved_m = moved.translation().norm();
   result.counters.lidar_turned_rad = so3::angle(turned * moved.linear());
-  if (poses_.empty() || end > poses_.back().stamp)
-    poses_.push_back({end, world_.start_from_map() * map_from_body});
+  if (poses_.empty() || end > poses_.back().stamp) poses_.push_back({end, start_from_body()});
   return result;
 }
 

@@ -28,7 +28,9 @@ class ArenaLio : public Odometry {
  public:
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
-  OdometryTraits traits() const override { return {.needs_imu = true, .gravity_aligned = true}; }
+  OdometryTraits traits() const override {
+    return {.needs_imu = true, .revises_past = true, .gravity_aligned = true};
+  }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
   ScanResult register_scan(const Scan& scan) override;
   void finish() override;
@@ -47,10 +49,34 @@ class ArenaLio : public Odometry {
   std::vector<ImuSample> new_samples(Time end) const;
   /// IMU intervals since the end of the last scan, or since the first sample.
   std::vector<estimation::ImuInterval> intervals_until(Time end);
-  /// Collects samples and initializes once there are enough; returns whether it has. The scan that
-  /// ends the intervals is de-skewed by its rotation alone if the sensor moves.
-  bool start(const std::vector<ImuSample>& samples,
-             const std::vector<estimation::ImuInterval>& intervals);
+  /// How a scan fits the map.
+  struct Match {
+    estimation::IteratedUpdate update;
+    Agreement agreement;
+    std::size_t keypoints = 0;
+  };
+
+  struct OpeningScan {
+    Scan usable;
+    Time end{0};
+    std::vector<estimation::ImuInterval> intervals;  ///< of the IMU, up to its end
+  };
+  /// Of a start in motion: the first scans, and the estimate at the end of the very first.
+  struct Opening {
+    std::vector<OpeningScan> scans;
+    estimation::StateEstimate estimate;
+  };
+
+  /// Collects samples and initializes once there are enough; returns whether it has.
+  bool start(const std::vector<ImuSample>& samples);
+  /// Of a start in motion: registers the opening again, from the velocity, gravity and biases at
+  /// the first scan's end that follow from the latest scan, which then belongs to it. Estimate and
+  /// map are then as before the latest scan.
+  void begin_again(OpeningScan latest);
+  /// Estimate, map and poses by the scans of the opening.
+  void replay_opening();
+  /// The iterated update of the estimate with averages of the scan's points.
+  Match match(const Scan& usable) const;
   /// Whether the sensor stands still; if so, updates the filter with this knowledge.
   bool stands(const std::vector<ImuSample>& samples, const State& predicted);
   /// Propagates state and covariance over the intervals and stores the track for de-skewing.
@@ -64,6 +90,8 @@ class ArenaLio : public Odometry {
   void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Places a scan (m, LiDAR frame at its end) in the world, which is leveled before.
   void publish(const std::vector<Eigen::Vector3f>& points);
+  /// Pose of the body, as estimated.
+  Pose start_from_body() const;
   ScanResult refused_scan();
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
@@ -82,7 +110,7 @@ class ArenaLio : public Odometry {
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
   bool started_ = false;
-  bool moving_start_ = false;  ///< the map is of the first scan alone, whose motion was not known
+  std::optional<Opening> opening_;
   double accel_scale_ = 1.0;
 
   estimation::StateEstimate

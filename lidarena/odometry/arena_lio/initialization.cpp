@@ -56,17 +56,35 @@ std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pos
   return start;
 }
 
-estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
-                                   const estimation::InertialState& state) {
+estimation::ImuTrack track_before(const std::vector<estimation::ImuInterval>& intervals,
+                                  const State& state, double accel_scale) {
   estimation::ImuTrack track;
   Pose pose = state.world_from_imu();
+  Eigen::Vector3d velocity = state.nav.velocity;
   for (auto interval = intervals.rbegin(); interval != intervals.rend(); ++interval) {
+    const double dt = interval->seconds();
     const Eigen::Vector3d rate = interval->gyro - state.nav.bias.gyro;
-    pose.linear() = pose.linear() * so3::exp(-interval->seconds() * rate);
-    track.push_back({.begin = interval->begin, .world_from_imu = pose, .rate = rate});
+    const Eigen::Matrix3d middle = pose.linear() * so3::exp(-0.5 * dt * rate);
+    const Eigen::Vector3d force = accel_scale * interval->accel - state.nav.bias.accel;
+    const Eigen::Vector3d acceleration = middle * force + state.gravity;
+    pose.linear() = pose.linear() * so3::exp(-dt * rate);
+    pose.translation() -= velocity * dt - 0.5 * dt * dt * acceleration;
+    velocity -= acceleration * dt;
+    track.push_back({interval->begin, pose, velocity, acceleration, rate});
   }
   std::ranges::reverse(track);
   return track;
+}
+
+State carried_back(const State& last, const std::vector<estimation::ImuInterval>& intervals,
+                   State first, double accel_scale) {
+  if (intervals.empty()) return first;
+  const estimation::ImuStep then = track_before(intervals, last, accel_scale).front();
+  const Eigen::Matrix3d turn = first.rotation() * then.world_from_imu.linear().transpose();
+  first.nav.velocity = turn * then.velocity;
+  first.nav.bias = last.nav.bias;
+  first.gravity = turn * last.gravity;
+  return first;
 }
 
 bool StillDetector::observe(const estimation::ImuStatistics& imu,

@@ -25,10 +25,16 @@ struct Start {
 /// world is the IMU's frame. Nothing if there are too few samples or they show no acceleration.
 std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar);
 
-/// The rotation through the intervals by the gyro alone, which ends in the state's pose: of a
-/// sensor that moves with an unknown velocity.
-estimation::ImuTrack turning_track(const std::vector<estimation::ImuInterval>& intervals,
-                                   const estimation::InertialState& state);
+/// The motion through the intervals that ends in `state`, by the IMU backwards. `accel_scale`:
+/// factor to m/s^2.
+estimation::ImuTrack track_before(const std::vector<estimation::ImuInterval>& intervals,
+                                  const estimation::InertialState& state, double accel_scale);
+
+/// The state `first`, which is before the intervals, with the velocity, gravity and biases that
+/// follow from the state `last` after them by the IMU. `accel_scale`: factor to m/s^2.
+estimation::InertialState carried_back(const estimation::InertialState& last,
+                                       const std::vector<estimation::ImuInterval>& intervals,
+                                       estimation::InertialState first, double accel_scale);
 
 /// Decides at each scan whether the sensor stands still. Slow motion is detected by the distance
 /// from the place where the standstill began.
