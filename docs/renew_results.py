@@ -38,6 +38,8 @@ NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "
          "livox_mid360_vibrating": "Mid-360", "ouster_os0_128_vibrating": "OS0-128",
          "ouster_os0_128_same_imu": "OS0-128, IMU of the Mid-360",
          "livox_mid360_paper": "Mid-360", "ouster_os0_128_paper": "OS0-128",
+         "edgar_mine": "Edgar mine", "lava_tube": "lava tube", "subt_cave": "SubT cave",
+         "ltu_cave": "LTU cave", "darpa_cave": "DARPA cave",
          "ct_icp": "CT-ICP", "kiss_icp": "KISS-ICP", "lio_sam": "LIO-SAM",
          "lio_sam_lc": "LIO-SAM with loops", "fast_lio2": "FAST-LIO2"}
 COLUMNS = {"drift": "rpe_1m_at_poses_translation_cm",

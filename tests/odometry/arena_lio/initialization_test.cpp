@@ -80,6 +80,74 @@ TEST(ArenaLioStart, ShakingIsNotStanding) {
             1.0);
 }
 
+/// What an IMU reads of a constant turn and a constant acceleration, and the states before and
+/// after.
+struct Maneuver {
+  estimation::InertialState first;
+  estimation::InertialState last;
+  std::vector<estimation::ImuInterval> intervals;
+};
+Maneuver maneuver() {
+  const Eigen::Vector3d rate(0.5, -1.0, 3.0);
+  const Eigen::Vector3d acceleration(2.0, -1.0, 4.0);
+  Maneuver result;
+  estimation::InertialState& first = result.first;
+  first.rotation() = so3::exp({0.2, 0.1, -0.3});
+  first.nav.velocity = {3.0, -2.0, 0.5};
+  first.nav.bias = {{0.01, -0.02, 0.03}, {0.1, 0.2, -0.1}};
+  first.gravity = {0.0, 0.0, -9.80665};
+  constexpr double kStep = 0.005;
+  constexpr int kSteps = 40;
+  for (int i = 0; i < kSteps; ++i) {
+    const Eigen::Matrix3d middle = first.rotation() * so3::exp((i + 0.5) * kStep * rate);
+    result.intervals.push_back(
+        {.begin = from_seconds(i * kStep),
+         .end = from_seconds((i + 1) * kStep),
+         .gyro = rate + first.nav.bias.gyro,
+         .accel = middle.transpose() * (acceleration - first.gravity) + first.nav.bias.accel});
+  }
+  constexpr double kSeconds = kSteps * kStep;
+  result.last = first;
+  result.last.rotation() = first.rotation() * so3::exp(kSeconds * rate);
+  result.last.nav.velocity += kSeconds * acceleration;
+  result.last.position() +=
+      kSeconds * first.nav.velocity + 0.5 * kSeconds * kSeconds * acceleration;
+  return result;
+}
+
+TEST(ArenaLioStart, TheTrackBeforeAStateIsTheMotionThatLedToIt) {
+  const Maneuver m = maneuver();
+  const estimation::ImuTrack track = track_before(m.intervals, m.last, 1.0);
+  ASSERT_EQ(track.size(), m.intervals.size());
+  const estimation::ImuStep& begin = track.front();
+  EXPECT_EQ(begin.begin, Time{0});
+  EXPECT_LT(begin.world_from_imu.translation().norm(), 1e-9);
+  EXPECT_LT((begin.world_from_imu.linear() - m.first.rotation()).norm(), 1e-9);
+  EXPECT_LT((begin.velocity - m.first.nav.velocity).norm(), 1e-9);
+  EXPECT_LT(
+      (estimation::pose_at(track, m.intervals.back().end).translation() - m.last.position()).norm(),
+      1e-9);
+}
+
+TEST(ArenaLioStart, WhatALaterScanTellsIsCarriedBack) {
+  Maneuver m = maneuver();
+  const Eigen::Matrix3d turn =
+      so3::exp({0.3, -0.1, 0.2});  // of the frame that the last state is in
+  m.last.rotation() = turn * m.last.rotation();
+  m.last.nav.velocity = turn * m.last.nav.velocity;
+  m.last.gravity = turn * m.last.gravity;
+  estimation::InertialState guess = m.first;
+  guess.nav.velocity.setZero();
+  guess.nav.bias = {};
+  guess.gravity = so3::exp({0.5, 0.0, 0.0}) * guess.gravity;
+  const estimation::InertialState found = carried_back(m.last, m.intervals, guess, 1.0);
+  EXPECT_LT((found.nav.velocity - m.first.nav.velocity).norm(), 1e-9);
+  EXPECT_LT((found.gravity - m.first.gravity).norm(), 1e-9);
+  EXPECT_EQ(found.nav.bias.gyro, m.first.nav.bias.gyro);
+  EXPECT_EQ(found.rotation(), guess.rotation());
+  EXPECT_EQ(found.position(), guess.position());
+}
+
 TEST(ArenaLioStart, SlowMotionEndsTheStanding) {
   StillDetector detector;
   const estimation::ImuStatistics imu = estimation::statistics(standing(1.0, 1e-3));
