@@ -196,7 +196,7 @@ void ArenaLio::replay_opening() {
       track_ =
           estimation::bent_track(std::move(track_), scan.end, estimate_.state.world_from_imu());
     }
-    map_.insert(transformed(estimate_.state.world_from_lidar(), deskewed(scan.usable)));
+    insert(deskewed(scan.usable));
     const auto published = std::ranges::find(poses_, scan.end, &StampedPose::stamp);
     if (published != poses_.end()) published->world_from_body = start_from_body();
   }
@@ -262,11 +262,16 @@ std::vector<Eigen::Vector3f> ArenaLio::deskewed(const Scan& usable) const {
                             parallel_);
 }
 
+void ArenaLio::insert(const std::vector<Eigen::Vector3f>& points) {
+  const Pose world_from_lidar = estimate_.state.world_from_lidar();
+  const Eigen::Vector3f sensor = world_from_lidar.translation().cast<float>();
+  map_.insert(transformed(world_from_lidar, points), sensor);
+}
+
 void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   if (still_.scans() > kStandingScansMapped) return;
-  const Pose world_from_lidar = estimate_.state.world_from_lidar();
-  map_.insert(transformed(world_from_lidar, points));
-  map_.follow(world_from_lidar.translation().cast<float>());
+  insert(points);
+  map_.follow(estimate_.state.world_from_lidar().translation().cast<float>());
 }
 
 void ArenaLio::publish(const std::vector<Eigen::Vector3f>& points) {

@@ -86,7 +86,9 @@ class ArenaLio : public Odometry {
   void calibrate(const State& predicted);
   /// Positions of the scan's points in the LiDAR's frame at the scan's end, by the current track.
   std::vector<Eigen::Vector3f> deskewed(const Scan& usable) const;
-  /// Adds a scan (m, LiDAR frame at its end) to the map, unless the sensor has long stood still.
+  /// Adds a scan (m, LiDAR frame at its end) to the map.
+  void insert(const std::vector<Eigen::Vector3f>& points);
+  /// The same, unless the sensor has long stood still; what is far is removed.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
   /// Places a scan (m, LiDAR frame at its end) in the world, which is leveled before.
   void publish(const std::vector<Eigen::Vector3f>& points);

@@ -63,14 +63,15 @@ void PlaneResiduals::find_planes(const Pose& world_from_lidar, bool with_coarse)
   const bool uncertain = scale_ > config_.kernel_scale_m;
   const map::PlaneMap& first = uncertain ? map_.coarse() : map_.fine();
   const map::PlaneMap& second = uncertain ? map_.fine() : map_.coarse();
+  const Eigen::Vector3f sensor = world_from_lidar.translation().cast<float>();
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
     in_map_[i] = (world_from_lidar * points_[i].cast<double>()).cast<float>();
-    planes_[i] = first.plane_at(in_map_[i]);
+    planes_[i] = first.plane_at(in_map_[i], sensor);
   });
   const double needed = kMinFineShare * static_cast<double>(points_.size());
   if (!uncertain && !with_coarse && weakest_direction(planes_) >= needed) return;
   parallel_.for_each(points_.size(), kGrain, [&](std::size_t i) {
-    if (planes_[i] == nullptr) planes_[i] = second.plane_at(in_map_[i]);
+    if (planes_[i] == nullptr) planes_[i] = second.plane_at(in_map_[i], sensor);
   });
 }
 
