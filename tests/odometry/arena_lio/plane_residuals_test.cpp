@@ -13,14 +13,16 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// The floor z = 0, 4 x 4 m about the origin, with noise across it (m).
-Points floor_points(double noise = 0.0) {
+constexpr float kFloor = -1.35F;  // m, z; the sensor is at the origin
+
+/// A floor of 4 x 4 m below the origin, with noise across it (m).
+Points floor_points(double noise = 0.0, float z = kFloor) {
   SequentialRandom random(8, 1);
   Points points;
   for (int x = -60; x < 60; ++x) {
     for (int y = -60; y < 60; ++y) {
       points.emplace_back(static_cast<float>(x) / 30.0F, static_cast<float>(y) / 30.0F,
-                          static_cast<float>(noise * random.normal()));
+                          z + static_cast<float>(noise * random.normal()));
     }
   }
   return points;
@@ -28,7 +30,7 @@ Points floor_points(double noise = 0.0) {
 
 map::LocalPlanes map_of(const Points& points) {
   map::LocalPlanes map({});
-  map.insert(points);
+  map.insert(points, Eigen::Vector3f::Zero());
   return map;
 }
 
@@ -46,7 +48,7 @@ double weight(const map::LocalPlanes& map, const Eigen::Vector3f& point, double 
 
 TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
   const map::LocalPlanes map = map_of(floor_points());
-  const Points points{{0.4F, 0.7F, 0.01F}};
+  const Points points{{0.4F, 0.7F, kFloor + 0.01F}};
   const Config config;
   const Parallel parallel(1);
   const auto sums = PlaneResiduals(points, map, 0.0, true, config, parallel)({}, true);
@@ -58,14 +60,14 @@ TEST(ArenaLioPlanes, TheResidualIsTheDistanceFromThePlaneOfTheCell) {
 }
 
 TEST(ArenaLioPlanes, AThickPlaneCountsLess) {
-  EXPECT_NEAR(weight(map_of(floor_points(0.01)), {0.4F, 0.7F, 0.0F}), 1.0, 0.1)
+  EXPECT_NEAR(weight(map_of(floor_points(0.01)), {0.4F, 0.7F, kFloor}), 1.0, 0.1)
       << "within the points' own noise of 2 cm";
-  EXPECT_NEAR(weight(map_of(floor_points(0.04)), {0.4F, 0.7F, 0.0F}), 0.25, 0.08);
+  EXPECT_NEAR(weight(map_of(floor_points(0.04)), {0.4F, 0.7F, kFloor}), 0.25, 0.08);
 }
 
 TEST(ArenaLioPlanes, TheKernelNarrowsFromThePriorsUncertaintyToItsScale) {
   const map::LocalPlanes map = map_of(floor_points());
-  const Eigen::Vector3f off(0.4F, 0.7F, 0.04F);
+  const Eigen::Vector3f off(0.4F, 0.7F, kFloor + 0.04F);
   EXPECT_NEAR(weight(map, off, 0.0), std::pow(1.0 + 0.64, -2), 0.01);
   EXPECT_NEAR(weight(map, off, 1.0), 1.0, 0.01) << "1 m";
   EXPECT_NEAR(weight(map, off, 1.0, 3), std::pow(1.0 + 0.0625, -2), 0.01) << "0.16 m";
@@ -77,7 +79,7 @@ TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
   Points sparse;
   for (int i = 0; i < 20; ++i) {
     const auto x = static_cast<float>(i % 5);
-    sparse.emplace_back(0.17F * x, 0.2F * static_cast<float>(i / 5), 0.0F);
+    sparse.emplace_back(0.17F * x, 0.2F * static_cast<float>(i / 5), kFloor);
   }
   const map::LocalPlanes map = map_of(sparse);
   const Config config;
@@ -85,12 +87,13 @@ TEST(ArenaLioPlanes, WhereFinePlanesAreRareTheCoarseOnesServe) {
   PlaneResiduals residuals(sparse, map, 0.0, true, config, parallel);
   EXPECT_GT(residuals({}, true).count, 5U);
   const map::LocalPlanes dense = map_of(floor_points());
-  EXPECT_EQ(weight(dense, {0.4F, 0.7F, 3.0F}), 0.0) << "3 m above";
+  EXPECT_EQ(weight(dense, {0.4F, 0.7F, kFloor + 3.0F}), 0.0) << "3 m above";
 }
 
 TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
   const map::LocalPlanes map = map_of(floor_points());
-  const Points points{{0.4F, 0.7F, 0.01F}, {0.4F, 0.6F, -0.02F}, {0.3F, 0.6F, 9.0F}};
+  const Points points{
+      {0.4F, 0.7F, kFloor + 0.01F}, {0.4F, 0.6F, kFloor - 0.02F}, {0.3F, 0.6F, 9.0F}};
   const Config config;
   const Parallel parallel(1);
   PlaneResiduals residuals(points, map, 0.0, true, config, parallel);
@@ -106,9 +109,26 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
   EXPECT_EQ(PlaneResiduals({}, map, 0.0, true, config, parallel).agreement({}).share, 0.0);
 }
 
+TEST(ArenaLioPlanes, AWallHasTwoSides) {
+  // 10 cm thick, seen from above and from below: one cell of the map holds points of both faces.
+  constexpr float kBelow = -3.0F;  // m, z of the sensor
+  map::LocalPlanes map = map_of(floor_points(0.0, kFloor + 0.05F));
+  map.insert(floor_points(0.0, kFloor - 0.05F), Eigen::Vector3f(0.0F, 0.0F, kBelow));
+  EXPECT_NEAR(weight(map, {0.4F, 0.7F, kFloor + 0.05F}), 1.0, 1e-3);
+  estimation::InertialState below;
+  below.position().z() = static_cast<double>(kBelow);
+  const Points points{{0.4F, 0.7F, kFloor - 0.05F - kBelow}};
+  const Config config;
+  const Parallel parallel(1);
+  const auto sums = PlaneResiduals(points, map, 0.0, true, config, parallel)(below, true);
+  EXPECT_EQ(sums.count, 1U);
+  EXPECT_NEAR(sums.gradient[2], 0.0, 1e-3);
+  EXPECT_NEAR(sums.hessian(2, 2), 1.0, 1e-3);
+}
+
 TEST(ArenaLioPlanes, ExtrinsicsAreMovedOnlyIfTheyAreEstimated) {
   const map::LocalPlanes map = map_of(floor_points());
-  const Points points{{0.5F, 0.3F, 0.0F}};
+  const Points points{{0.5F, 0.3F, kFloor}};
   const Parallel parallel(1);
   const auto sums = [&](bool extrinsics) {
     const Config config;
