@@ -70,8 +70,8 @@ class ArenaLio : public Odometry {
   /// Collects samples and initializes once there are enough; returns whether it has.
   bool start(const std::vector<ImuSample>& samples);
   /// Of a start in motion: registers the opening again, from the velocity, gravity and biases at
-  /// the first scan's end that follow from the latest scan, which then belongs to it. Estimate and
-  /// map are then as before the latest scan.
+  /// the first scan's end that follow from the latest scan, which then belongs to it. Leaves the
+  /// estimate and the map of all scans but the latest.
   void begin_again(OpeningScan latest);
   /// Estimate, map and poses by the scans of the opening.
   void replay_opening();
@@ -112,7 +112,7 @@ class ArenaLio : public Odometry {
   std::size_t saturated_ = 0;             ///< intervals of the IMU, in the last scan
   std::vector<ImuSample> start_samples_;
   bool started_ = false;
-  std::optional<Opening> opening_;
+  std::optional<Opening> opening_;  ///< none once it is complete, or after a start at rest
   double accel_scale_ = 1.0;
 
   estimation::StateEstimate
