@@ -37,9 +37,11 @@ if(LIDARENA_PRECOMPILED_HEADERS)
   endif()
 endif()
 
-# lidarena_module(NAME SOURCES a.cpp ... [MODULES base ...] [PUBLIC lib ...] [PRIVATE lib ...])
+# lidarena_module(NAME SOURCES a.cpp ... [MODULES base ...] [PUBLIC lib ...] [PRIVATE lib ...]
+#                 [NO_NUMERICS])
+# A module with NO_NUMERICS has no loop that matters; it is optimized less and compiles faster.
 function(lidarena_module name)
-  cmake_parse_arguments(arg "" "" "SOURCES;MODULES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(arg "NO_NUMERICS" "" "SOURCES;MODULES;PUBLIC;PRIVATE" ${ARGN})
   add_library(lidarena_${name} STATIC ${arg_SOURCES})
   add_library(lidarena::${name} ALIAS lidarena_${name})
   set_target_properties(lidarena_${name} PROPERTIES EXPORT_NAME ${name})
@@ -50,6 +52,9 @@ function(lidarena_module name)
   list(TRANSFORM arg_MODULES PREPEND lidarena::)
   target_link_libraries(lidarena_${name} PUBLIC Eigen3::Eigen ${arg_MODULES} ${arg_PUBLIC}
                                          PRIVATE ${arg_PRIVATE} $<BUILD_INTERFACE:lidarena_flags>)
+  if(arg_NO_NUMERICS)
+    target_compile_options(lidarena_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   if(LIDARENA_PRECOMPILED_HEADERS)
     target_precompile_headers(lidarena_${name} REUSE_FROM lidarena_library_headers)
   endif()

@@ -24,8 +24,9 @@ ScanResult WithLoop::register_scan(const Scan& scan) {
   const Time stamp = result.estimate.stamp;
   const Pose upright = odometry_->world_from_start();
   const Pose odom_from_body = upright.inverse() * result.estimate.world_from_body;
-  const bool usable =
-      result.status != ScanStatus::kTooFewPoints && !odometry_->registered_scan().empty();
+  const bool usable = result.status != ScanStatus::kTooFewPoints &&
+                      result.status != ScanStatus::kInitializing &&
+                      !odometry_->registered_scan().empty();
   if (usable && is_keyframe(odom_from_body)) keep(stamp, odom_from_body);
   poses_.add(stamp,
              clouds_.empty() ? odom_from_body : odom_from_keyframe_.inverse() * odom_from_body);
@@ -46,7 +47,16 @@ bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
          so3::angle(moved.linear()) >= config_.keyframe_rotation_rad;
 }
 
+void WithLoop::take_first_poses(Time until) {
+  const Pose start_from_world = odometry_->world_from_start().inverse();
+  const Trajectory revised = odometry_->trajectory();
+  poses_ = {};
+  for (const StampedPose& pose : revised.poses())
+    if (pose.stamp < until) poses_.add(pose.stamp, start_from_world * pose.world_from_body);
+}
+
 void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
+  if (clouds_.empty()) take_first_poses(stamp);
   const Pose body_from_world = (odometry_->world_from_start() * odom_from_body).inverse();
   const std::vector<Eigen::Vector3f> cloud =
       transformed(body_from_world, odometry_->registered_scan());

@@ -60,6 +60,9 @@ class WithLoop : public Odometry {
 
  private:
   bool is_keyframe(const Pose& odom_from_body) const;
+  /// The poses before the first keyframe, as the odometry has them once it has begun: a start in
+  /// motion revises the poses of its first scans, which it calls initializing.
+  void take_first_poses(Time until);
   void keep(Time stamp, const Pose& odom_from_body);
   /// Forgets the points of a keyframe at a place that an older one stands for, once loops tie the
   /// two visits: the memory follows the places that were seen, not the time.

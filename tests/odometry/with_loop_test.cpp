@@ -128,5 +128,42 @@ TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
             (looped.loops().poses().size() - keyframes) * sizeof(loop::PlaceDescriptor) / 2);
 }
 
+/// Its first four scans are initializing, 5 cm off, and their poses are mended with the fifth.
+class LateStarter : public Drifter {
+ public:
+  ScanResult register_scan(const Scan& scan) override {
+    ScanResult result = Drifter::register_scan(scan);
+    if (++scans_ >= 5) return result;
+    result.status = ScanStatus::kInitializing;
+    result.estimate.world_from_body.translation().x() += 0.05;
+    return result;
+  }
+
+ private:
+  int scans_ = 0;
+};
+
+TEST(WithLoop, PosesOfAnUnfinishedStartAreTakenOverOnceTheyAreRevised) {
+  LateStarter alone;
+  WithLoop looped(std::make_unique<LateStarter>(), quick(), Parallel(1));
+  for (int i = 0; i < 20; ++i) {
+    Scan scan;
+    scan.stamp = from_seconds(0.2 * i);
+    scan.points.resize(1);
+    alone.register_scan(scan);
+    const ScanResult result = looped.register_scan(scan);
+    EXPECT_EQ(result.counters.keyframes == 0, i < 4) << "no keyframe of a scan that will move";
+  }
+  const Trajectory poses = looped.trajectory();
+  const Trajectory expected = alone.trajectory();
+  ASSERT_EQ(poses.size(), expected.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_EQ(poses.poses()[i].stamp, expected.poses()[i].stamp);
+    EXPECT_TRUE(
+        poses.poses()[i].world_from_body.isApprox(expected.poses()[i].world_from_body, 1e-9))
+        << i;
+  }
+}
+
 }  // namespace
 }  // namespace lidarena::odometry

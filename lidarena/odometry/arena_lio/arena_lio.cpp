@@ -89,7 +89,8 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   const State predicted = estimate_.state;
   const Match found = match(usable);
   estimate_ = found.update.estimate;
-  const ScanStatus status = tracking_.judge(found.update, found.agreement, map_.empty());
+  ScanStatus status = tracking_.judge(found.update, found.agreement, map_.empty());
+  if (opening_ && status == ScanStatus::kTracked) status = ScanStatus::kInitializing;
   const bool still = stands(samples, predicted);
   if (status == ScanStatus::kTracked && !still) calibrate(predicted);
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());

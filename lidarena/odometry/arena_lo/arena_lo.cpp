@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "lidarena/base/so3.hpp"
+
 namespace lidarena::odometry::arena_lo {
 
 namespace {
@@ -16,6 +18,7 @@ constexpr std::size_t kMinMatches = 50;    // points near planes; with fewer, a 
 constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
 constexpr double kShareMemory = 0.1;       // weight of a scan in the usual share of inliers
 constexpr std::size_t kStartScans = 3;     // the map begins anew with each of them, see README.md
+constexpr int kStartPasses = 5;            // over the first two scans
 constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
 constexpr double kLostMotionFactor = 0.5;  // on the velocity after each scan without registration
 
@@ -47,9 +50,10 @@ ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel
 
 ScanResult ArenaLo::register_scan(const Scan& scan) {
   const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
-  if (!poses_.empty() && times.last <= known_.instant) return refused_scan();
+  if (!poses_.empty() && times.last <= poses_.back().stamp) return refused_scan();
   const std::vector<Slice> slices = slices_of(scan, times, slice_duration(times), config_);
-
+  if (map_.empty()) opening_ = {slices, {start(config_), slices.front().middle}, times.last};
+  if (scans_mapped_ == 1) begin_again(slices, times.last);
   const Registration found = align(slices, times.last);
   const Measurement& measurement = found.measurement;
   const ScanStatus status = status_of(measurement, count_points(slices));
@@ -59,6 +63,7 @@ ScanResult ArenaLo::register_scan(const Scan& scan) {
   const std::vector<Eigen::Vector3f> points = points_in_map(slices, steps);
   advance(steps, times);
   if (used) grow_map(points);
+  if (scans_mapped_ > 1) opening_.reset();
   registered_scan_ = transformed(body_from_lidar_, points);
   return {poses_.back(),
           status,
@@ -75,7 +80,28 @@ ScanResult ArenaLo::register_scan(const Scan& scan) {
 }
 
 double ArenaLo::slice_duration(const estimation::ScanTimes& times) const {
-  return scans_mapped_ == 1 ? std::max(config_.slice_s, times.seconds()) : config_.slice_s;
+  return scans_mapped_ <= 1 ? std::max(config_.slice_s, times.seconds()) : config_.slice_s;
+}
+
+void ArenaLo::begin_again(const std::vector<Slice>& second, Time end) {
+  const double seconds = to_seconds(second.front().middle - opening_->known.instant);
+  if (seconds <= 0.0) return;
+  for (int pass = 0; pass < kStartPasses; ++pass) {
+    known_ = opening_->known;
+    const Registration found = align(second, end);
+    if (found.measurement.near_planes < kMinMatches) return;
+    const Pose moved = found.steps.front().estimate.state.pose;
+    estimation::MotionState& state = opening_->known.estimate.state;
+    state.velocity = moved.translation() / seconds;
+    state.rate = so3::log(moved.linear()) / seconds;
+    map_.clear();
+    map_.insert(placed(opening_->slices.front(), state, Pose::Identity(), parallel_),
+                Eigen::Vector3f::Zero());
+  }
+  known_ = opening_->known;
+  const auto published = std::ranges::find(poses_, opening_->end, &StampedPose::stamp);
+  const double after_middle = to_seconds(opening_->end - known_.instant);
+  *published = body_pose(opening_->end, known_.estimate.state.pose_after(after_middle));
 }
 
 Registration ArenaLo::align(const std::vector<Slice>& slices, Time end) const {

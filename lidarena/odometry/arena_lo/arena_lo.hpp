@@ -22,7 +22,7 @@ class ArenaLo : public Odometry {
  public:
   ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {}; }
+  OdometryTraits traits() const override { return {.revises_past = true}; }
   ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override { return Trajectory(poses_, "arena_lo"); }
   std::vector<Eigen::Vector3f> map() const override;
@@ -30,8 +30,19 @@ class ArenaLo : public Odometry {
   std::map<std::string, std::uint64_t> memory() const override;
 
  private:
-  /// The second scan is a single slice: it shows the velocity, as the first was placed without it.
+  /// The first scan of the map, which is placed again once the second shows the velocity.
+  struct Opening {
+    std::vector<Slice> slices;  ///< a single one
+    Known known;                ///< at its middle
+    Time end{0};
+  };
+
+  /// The first and the second scan are single slices: motions within them are not known yet.
   double slice_duration(const estimation::ScanTimes& times) const;
+  /// Finds the velocity between the middles of the first two scans, by which both are de-skewed:
+  /// registers the second against the first, places the first by the velocity that follows, and so
+  /// on. With a wrong velocity both are smeared alike about their middles, so that one converges.
+  void begin_again(const std::vector<Slice>& second, Time end);
   /// The scan against the map; the first one, which has none, stands still at the origin.
   Registration align(const std::vector<Slice>& slices, Time end) const;
   ScanStatus status_of(const Measurement& measurement, std::size_t points);
@@ -56,6 +67,7 @@ class ArenaLo : public Odometry {
 
   Known known_;  ///< of the lidar at the end of the last scan; map: its frame at the first scan
   map::LocalPlanes map_;
+  std::optional<Opening> opening_;  ///< from the first scan to the second
   std::size_t scans_mapped_ = 0;
   int contradicting_scans_ = 0;        ///< in a row
   std::optional<double> usual_share_;  ///< running mean of the share of points on their planes
