@@ -91,6 +91,26 @@ TEST(ArenaLo, FollowsTurnsOfFortyDegreesAScan) {
   EXPECT_EQ(result.status, ScanStatus::kTracked);
 }
 
+TEST(ArenaLo, AStartInFlightIsKnownFromItsFirstPoseOn) {
+  const auto turning = [](double t) {  // at 3 m/s and up to 50 degrees/s
+    const Eigen::Vector3d position(3.0 * std::sin(t), 2.0 - 2.0 * std::cos(t),
+                                   0.3 * std::sin(2.0 * t));
+    return make_pose(so3::exp({0.0, 0.0, 0.6 * std::sin(1.5 * t)}), position);
+  };
+  const synthetic::Recording flying{
+      .motion = turning, .seconds = 1.5, .points_per_scan = 20480, .repeating = false};
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  for (const Scan& scan : synthetic::scans_of(flying)) odometry.register_scan(scan);
+  const Trajectory estimate = odometry.trajectory();
+  const StampedPose first = estimate.poses().front();
+  for (const StampedPose& pose : estimate.poses()) {
+    const Pose moved = first.world_from_body.inverse() * pose.world_from_body;
+    const Pose error = moved.inverse() * synthetic::truth(flying, first.stamp, pose.stamp);
+    EXPECT_LT(error.translation().norm(), 0.02) << to_seconds(pose.stamp - first.stamp) << " s";
+    EXPECT_LT(so3::angle(error.linear()), 0.01);
+  }
+}
+
 TEST(ArenaLo, TheMotionWithinAScanBeginsAfterTheLastOneAndEndsAtThePose) {
   ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
   Time last{0};
