@@ -7,6 +7,8 @@
 #include <cctype>
 #include <fstream>
 #include <iterator>
+#include <map>
+#include <string>
 #include <string_view>
 
 #include "lidarena/base/error.hpp"
@@ -102,8 +104,15 @@ void save_obj(const fs::path& file, const TriangleMesh& mesh) {
   for (const Eigen::Vector3d& v : mesh.vertices) {
     fmt::format_to(out, "v {:.9g} {:.9g} {:.9g}\n", v.x(), v.y(), v.z());
   }
-  for (const Triangle& t : mesh.triangles) {  // OBJ indices start at 1
-    fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  std::map<std::string, std::size_t> normals;  // numbers by what is written, from 1 on
+  for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+    const Eigen::Vector3d n = mesh.cross(i).normalized() + Eigen::Vector3d::Zero();  // no -0
+    const auto [normal, is_new] = normals.try_emplace(
+        fmt::format("vn {:.6g} {:.6g} {:.6g}\n", n.x(), n.y(), n.z()), normals.size() + 1);
+    if (is_new) text += normal->first;
+    const Triangle& t = mesh.triangles[i];  // OBJ indices start at 1
+    fmt::format_to(out, "f {0}//{3} {1}//{3} {2}//{3}\n", t[0] + 1, t[1] + 1, t[2] + 1,
+                   normal->second);
   }
   write_whole(file, text);
 }

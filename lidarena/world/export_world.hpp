@@ -8,7 +8,8 @@
 
 namespace lidarena::world {
 
-/// Writes Wavefront OBJ: one object, meters, z up, 9 significant digits, no normals or colors.
+/// Writes Wavefront OBJ: one object, meters, z up, 9 significant digits, with the normals of
+/// the triangles (which the physics of Gazebo needs), without colors.
 /// The file appears under its name only once it is complete. Throws Error if it cannot be written.
 void save_obj(const std::filesystem::path& file, const TriangleMesh& mesh);
 

@@ -5,6 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstdio>
+#include <fstream>
+#include <string>
+#include <vector>
+
 #include "lidarena/base/error.hpp"
 #include "lidarena/world/primitives.hpp"
 #include "tests/temporary_folder.hpp"
@@ -39,6 +45,36 @@ TEST(ExportWorld, ComesBackAsItWas) {
     if (is_sdf && !LIDARENA_TEST_SDF) continue;
     expect_same((is_sdf ? load_sdf(file, {}, log) : load_mesh(file)), two_bodies());
   }
+}
+
+TEST(ExportWorld, AnObjHasTheNormalOfEachTriangleOnce) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "box.obj";
+  save_obj(file, box_shape({4.0, 3.0, 2.5}));
+  std::ifstream in(file);
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<Eigen::Vector3d> normals;
+  std::size_t triangles = 0;
+  for (std::string line; std::getline(in, line);) {
+    Eigen::Vector3d v;
+    std::array<std::array<std::size_t, 2>, 3> corner{};
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &v[0], &v[1], &v[2]) == 3) vertices.push_back(v);
+    if (std::sscanf(line.c_str(), "vn %lf %lf %lf", &v[0], &v[1], &v[2]) == 3) normals.push_back(v);
+    if (std::sscanf(line.c_str(), "f %zu//%zu %zu//%zu %zu//%zu", &corner[0][0], &corner[0][1],
+                    &corner[1][0], &corner[1][1], &corner[2][0], &corner[2][1]) != 6)
+      continue;
+    ++triangles;
+    const Eigen::Vector3d center = (vertices.at(corner[0][0] - 1) + vertices.at(corner[1][0] - 1) +
+                                    vertices.at(corner[2][0] - 1)) /
+                                   3.0;
+    const Eigen::Vector3d& normal = normals.at(corner[0][1] - 1);
+    EXPECT_NEAR(normal.norm(), 1.0, 1e-6);
+    EXPECT_GT(normal.dot(center), 1.2) << "outward: the faces are 1.25 m and more from the center";
+    EXPECT_EQ(corner[0][1], corner[1][1]);
+    EXPECT_EQ(corner[0][1], corner[2][1]);
+  }
+  EXPECT_EQ(triangles, 12U);
+  EXPECT_EQ(normals.size(), 6U);
 }
 
 TEST(ExportWorld, NamesTheFileAndTheRemedy) {
