@@ -7,7 +7,7 @@ namespace lidarena::loop {
 
 /// Which loops are searched for and accepted. Candidates come by distance and by appearance; they
 /// are verified by overlap, fit and the possible drift of the odometry, and accepted when two
-/// agree.
+/// agree to within their accuracy and the drift between them.
 struct LoopConfig {
   double min_time_gap_s = 10.0;
   double min_path_length_m = 20.0;
@@ -50,8 +50,8 @@ struct LoopConfig {
     v("min_overlap", self.min_overlap, "", "minimum share of the new place's points that overlap",
       between(0, 1));
     v("translation_drift_m_per_m", self.translation_drift_m_per_m, "m/m",
-      "sigma of the odometry's drift in translation; a loop that corrects more than three sigmas "
-      "is rejected",
+      "sigma of the odometry's drift in translation: weighs the odometry against loops, decides "
+      "whether two loops agree, and a loop that corrects more than three sigmas is rejected",
       above(0));
     v("rotation_drift_rad_per_m", self.rotation_drift_rad_per_m, "rad/m",
       "sigma of the odometry's drift in rotation", above(0));

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <queue>
 #include <utility>
 
@@ -26,14 +28,11 @@ constexpr double kVoxelSize = 0.2;              // m, in which both clouds are a
 constexpr std::size_t kMaxSourcePoints = 1000;
 constexpr std::size_t kMinSourcePoints = 300;
 constexpr std::size_t kMinTargetPoints = 1000;
-constexpr double kMinConstraint = 0.005;            // of the least constrained direction
-constexpr double kDriftGate = 3.0;                  // sigmas by which a loop may correct the poses
-constexpr std::size_t kConsistentLoops = 2;         // loops that must agree
-constexpr double kConsistencyTranslation = 0.3;     // m, within which they agree
-constexpr double kConsistencyRotation = 0.03;       // rad
-constexpr double kOdometryTranslationSigma = 0.01;  // m, from keyframe to keyframe
-constexpr double kOdometryRotationSigma = 1e-3;     // rad
-constexpr double kLoopKernelScale = 3.0;            // sigmas, of the Cauchy kernel of loops
+constexpr double kMinConstraint = 0.005;     // of the least constrained direction
+constexpr double kGate = 3.0;                // sigmas, of all decisions about loops
+constexpr std::size_t kConsistentLoops = 2;  // loops that must agree
+constexpr double kMinStep = 0.1;             // m of path length between keyframes, for drift
+constexpr double kLoopKernelScale = 3.0;     // sigmas, of the Cauchy kernel of loops
 
 estimation::PoseGraph::Covariance covariance_of(double translation_sigma, double rotation_sigma) {
   return estimation::diagonal_covariance(translation_sigma * translation_sigma,
@@ -71,8 +70,11 @@ bool LoopCloser::add(Time stamp, const Pose& previous_from_this, const KeyframeC
   stamps_.push_back(stamp);
   steps_.push_back(previous_from_this.translation().norm() +
                    kLeverArm * so3::angle(previous_from_this.linear()));
-  estimation::append_to_chain(
-      previous_from_this, covariance_of(kOdometryTranslationSigma, kOdometryRotationSigma), graph_);
+  const double step = std::max(steps_.back(), kMinStep);
+  estimation::append_to_chain(previous_from_this,
+                              covariance_of(config_.translation_drift_m_per_m * step,
+                                            config_.rotation_drift_rad_per_m * step),
+                              graph_);
   if (config_.descriptor_candidates > 0) {
     descriptors_.emplace(index, describe(turned(around(index, kSourceKeyframes, 0, cloud),
                                                 graph_.nodes.back().linear()),
@@ -169,7 +171,7 @@ bool LoopCloser::is_beyond_drift(const LoopRecord& loop) const {
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
   return apart - kIcpReach >
-         kDriftGate * (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
+         kGate * (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
@@ -215,8 +217,8 @@ LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) cons
       kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length;
   const double rotation_rad =
       kMinRotationSigma + config_.rotation_drift_rad_per_m * loop.path_length;
-  const bool beyond = loop.translation_m > kDriftGate * translation_m ||
-                      loop.rotation_rad > kDriftGate * rotation_rad;
+  const bool beyond =
+      loop.translation_m > kGate * translation_m || loop.rotation_rad > kGate * rotation_rad;
   return beyond ? LoopVerdict::kBeyondDrift : LoopVerdict::kAccepted;
 }
 
@@ -249,8 +251,20 @@ bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
   const Pose by_b = x[b.first] * b.first_from_second;
   const Pose by_a = x[a.first] * a.first_from_second * x[a.second].inverse() * x[b.second];
   const Pose apart = by_a.inverse() * by_b;
-  return apart.translation().norm() < kConsistencyTranslation &&
-         so3::angle(apart.linear()) < kConsistencyRotation;
+  const double between = std::hypot(drift_steps(a.first, b.first), drift_steps(a.second, b.second));
+  const double translation_m = std::hypot(std::numbers::sqrt2 * kLoopTranslationSigma,
+                                          config_.translation_drift_m_per_m * between);
+  const double rotation_rad = std::hypot(std::numbers::sqrt2 * kLoopRotationSigma,
+                                         config_.rotation_drift_rad_per_m * between);
+  return apart.translation().norm() < kGate * translation_m &&
+         so3::angle(apart.linear()) < kGate * rotation_rad;
+}
+
+double LoopCloser::drift_steps(std::size_t a, std::size_t b) const {
+  const auto [first, last] = std::minmax(a, b);
+  double squares = 0.0;
+  for (std::size_t i = first + 1; i <= last; ++i) squares += steps_[i] * steps_[i];
+  return std::sqrt(squares);
 }
 
 std::vector<LoopRecord> LoopCloser::confirmed_loops() {
@@ -271,7 +285,8 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
-  const bool corrects = std::ranges::any_of(loops, &LoopRecord::corrects);
+  // The poses are as known as the loops: one that contradicts them alone is more likely wrong.
+  const bool corrects = std::ranges::all_of(loops, &LoopRecord::corrects);
   for (const LoopRecord& loop : loops) {
     if (corrects)
       graph_.betweens.push_back({loop.first, loop.second, loop.first_from_second,

@@ -32,8 +32,8 @@ enum class LoopVerdict {
 };
 const char* to_string(LoopVerdict verdict);
 
-inline constexpr double kLoopTranslationSigma = 0.03;  // m, of a loop
-inline constexpr double kLoopRotationSigma = 3e-3;     // rad
+inline constexpr double kLoopTranslationSigma = 0.01;  // m, of a loop
+inline constexpr double kLoopRotationSigma = 1e-3;     // rad
 
 /// A loop candidate that was verified, accepted or not.
 struct LoopRecord {
@@ -52,7 +52,7 @@ struct LoopRecord {
   /// False: it agrees with the path to within its own accuracy, so it ties the two visits, and
   /// there is nothing that it could correct.
   bool corrects() const {
-    return translation_m > kLoopTranslationSigma || rotation_rad > kLoopRotationSigma;
+    return translation_m > 3.0 * kLoopTranslationSigma || rotation_rad > 3.0 * kLoopRotationSigma;
   }
 };
 
@@ -112,6 +112,9 @@ class LoopCloser {
   LoopVerdict judge(const IcpResult& icp, const LoopRecord& loop) const;
   /// Path length (m) from each keyframe to the last one, by the shortest path through known loops.
   std::vector<double> path_lengths_to_last() const;
+  /// Root of the sum of the squared steps (m) between two keyframes, by which drift accumulates.
+  double drift_steps(std::size_t a, std::size_t b) const;
+  /// Whether the two differ by no more than their errors and the drift between them.
   bool agree(const LoopRecord& a, const LoopRecord& b) const;
   /// The last record and the waiting ones that agree with it, if they are enough to be accepted;
   /// else none, and the last record waits, too.

@@ -108,8 +108,18 @@ struct LioSamLc : LioSam {
   }
 };
 
+/// Settings of the loop closure around an odometry that is known to drift less than the defaults of
+/// LoopConfig say.
+WithLoopConfig loops_for_drift(double m_per_m, double rad_per_m) {
+  WithLoopConfig config;
+  config.loop.translation_drift_m_per_m = m_per_m;
+  config.loop.rotation_drift_rad_per_m = rad_per_m;
+  return config;
+}
+
 struct ArenaLo {
   using Config = arena_lo::Config;
+  static WithLoopConfig loops() { return loops_for_drift(5e-3, 5e-4); }
   static PresetTable<Config> presets() { return {{"", arena_lo::settings_for}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
@@ -119,6 +129,7 @@ struct ArenaLo {
 
 struct ArenaLio {
   using Config = arena_lio::Config;
+  static WithLoopConfig loops() { return loops_for_drift(2e-3, 2e-4); }
   static PresetTable<Config> presets() { return {{"", arena_lio::settings_for}}; }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
@@ -177,11 +188,17 @@ MadeOdometry make(const OdometryRequest& request, const Rig& rig, const LidarInf
   return {Maker::build(config, rig, lidar, parallel), to_json(config)};
 }
 
+/// The preset of `Maker` with the settings of the loop closure around it.
+template <class Maker>
+LoopedConfig<typename Maker::Config> with_loops(typename Maker::Config odometry) {
+  if constexpr (requires { Maker::loops(); }) return {std::move(odometry), Maker::loops()};
+  return {std::move(odometry), {}};
+}
+
 template <class Maker>
 MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
                             const Parallel& parallel) {
-  const LoopedConfig<typename Maker::Config> preset{preset_config<Maker>(request, lidar), {}};
-  const auto config = configured(preset, request);
+  const auto config = configured(with_loops<Maker>(preset_config<Maker>(request, lidar)), request);
   return {std::make_unique<WithLoop>(Maker::build(config.odometry, rig, lidar, parallel),
                                      config.loops, parallel),
           to_json(config)};
@@ -201,8 +218,8 @@ Json schema(const AlgorithmInfo& info) {
 
 template <class Maker>
 Json schema_with_loop(const AlgorithmInfo& info) {
-  const LoopedConfig<typename Maker::Config> config{default_config<Maker>(), {}};
-  return schema_document(info.name + ": " + info.summary, config);
+  return schema_document(info.name + ": " + info.summary,
+                         with_loops<Maker>(default_config<Maker>()));
 }
 
 struct Algorithm {
