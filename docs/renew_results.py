@@ -13,9 +13,10 @@ usage: renew_results.py STUDY --as NAME   takes over the figures of the report i
 
 docs/results/data/NAME.csv has all runs of a study, NAME.json the tables of its report that pages
 use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page has such a table
-(KIND: drift, map, ...; `KIND,KIND` for two in one), between `<!-- runs NAME -->` and `<!-- end -->`
-the number of runs, and in a line `<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->`
-one figure. docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
+(KIND: drift, map, ...; `KIND,KIND` for two in one; VARIANT: a preset, or `none`), between
+`<!-- runs NAME -->` and `<!-- end -->` the number of runs, and in a line
+`<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure.
+docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor.
 """
@@ -167,9 +168,14 @@ def take_over_speed(file):
     (DATA / "speed.json").write_text(json.dumps({"machine": machine, "rows": rows}, indent=1) + "\n")
 
 
+def words_of(found):
+    """The words of a mark, with an empty one for `none`."""
+    return ["" if word == "none" else word for word in found[3].split()]
+
+
 def renewed(page):
     def content(found):
-        what, words = found[2], found[3].split()
+        what, words = found[2], words_of(found)
         if what == "table":
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), words[2])}\n\n{found[5]}"
         if what == "speed":
@@ -238,7 +244,7 @@ def check():
 
 def take_over(study, name):
     wanted = {(w[1], w[2]) for page in PAGES for found in BLOCK.finditer(page.read_text())
-              for w in [found[3].split()] if w[0] == name and found[2] in ("table", "=")}
+              for w in [words_of(found)] if w[0] == name and found[2] in ("table", "=")}
     kinds = {(kind, variant) for kinds, variant in wanted for kind in kinds.split(",")}
     tables = {}
     for file in sorted((study / "tables").glob("*.json")):
