@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// Times of the single steps of arena_lio with its own settings, in a box of 16 x 12 x 4 m:
+// propagation, de-skewing, averages, the iterated update and one evaluation of it, insertion, and a
+// scan as a whole.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <functional>
+#include <vector>
+
+#include "lidarena/base/random.hpp"
+#include "lidarena/base/so3.hpp"
+#include "lidarena/estimation/imu_track.hpp"
+#include "lidarena/map/voxel_filter.hpp"
+#include "lidarena/odometry/arena_lio/arena_lio.hpp"
+#include "lidarena/odometry/arena_lio/plane_residuals.hpp"
+
+namespace lidarena::odometry::arena_lio {
+namespace {
+
+using estimation::InertialState;
+
+const Eigen::Array3d kHalf(8.0, 6.0, 2.0);  // m, of the box
+constexpr double kImuStep = 0.005;          // s
+constexpr double kScan = 0.1;               // s
+
+/// A scan of 0.1 s at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
+/// Of 131,072 points, 128 share their time, as those of a column of an OS0-128 do.
+Scan scan_of(std::size_t count, std::uint64_t seed) {
+  const CounterRandom random(seed);
+  const std::size_t at_once = count == 131'072 ? 128 : 1;
+  Scan scan{.stamp = Time{0}, .points = {}, .timed = true};
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 2.0 * random.uniform(i, 0) - 1.0;
+    const double azimuth = 2.0 * M_PI * random.uniform(i, 1);
+    const double radius = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3d beam(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+    const double range = (kHalf / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
+    const double share = static_cast<double>(i / at_once * at_once) / static_cast<double>(count);
+    scan.points.push_back(
+        {(range * beam).cast<float>(), 0, static_cast<std::int32_t>(1e8 * share)});
+  }
+  return scan;
+}
+
+const Config& config() {
+  static const Config made = settings_for(LidarInfo{});
+  return made;
+}
+
+std::vector<Eigen::Vector3f> positions(const Scan& scan) {
+  std::vector<Eigen::Vector3f> points;
+  for (const Point& point : scan.points) points.push_back(point.position);
+  return points;
+}
+
+std::vector<Eigen::Vector3f> averages(const std::vector<Eigen::Vector3f>& points) {
+  return map::evenly(map::voxel_means(points, config().scan_voxel_size_m, map::GridAxes::kRotated),
+                     config().max_scan_points);
+}
+
+map::LocalPlanes box() {
+  map::LocalPlanes made(
+      {config().map_cell_size_m, config().max_cell_points, config().map_radius_m});
+  made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
+  return made;
+}
+
+/// At rest, a centimeter or two and a hundredth of a radian off the true pose.
+estimation::StateEstimate before() {
+  estimation::StateEstimate estimate;
+  estimate.state.nav.world_from_imu =
+      make_pose(so3::exp({0.01, 0.0, 0.02}), Eigen::Vector3d(0.02, 0.0, 0.01));
+  estimate.covariance = InertialState::Matrix::Identity() * 1e-4;
+  return estimate;
+}
+
+estimation::ImuTrack track_at_rest() {
+  estimation::ImuTrack track;
+  for (int i = 0; i < std::lround(kScan / kImuStep); ++i)
+    track.push_back({.begin = from_seconds(kImuStep * i)});
+  return track;
+}
+
+void propagate_scan(benchmark::State& state) {
+  for (auto _ : state) {
+    estimation::StateEstimate estimate = before();
+    for (int i = 0; i < std::lround(kScan / kImuStep); ++i) {
+      const InertialState::Matrix f = estimation::propagate(
+          estimate.state, Eigen::Vector3d(0.1, 0.2, 0.3), Eigen::Vector3d(0.0, 0.0, 9.81), kImuStep,
+          estimation::Integration::kSecondOrder);
+      estimate.covariance = f * estimate.covariance * f.transpose() +
+                            estimation::step_noise(estimation::kCoastingNoise, kImuStep);
+    }
+    benchmark::DoNotOptimize(estimate);
+  }
+}
+BENCHMARK(propagate_scan)->Unit(benchmark::kMillisecond);
+
+void deskew_scan(benchmark::State& state) {
+  const Scan scan = scan_of(static_cast<std::size_t>(state.range(0)), 2);
+  const estimation::ImuTrack track = track_at_rest();
+  const Parallel one(1);
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        estimation::deskew(scan, track, Pose::Identity(), Pose::Identity(), one));
+  }
+}
+BENCHMARK(deskew_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void average_scan(benchmark::State& state) {
+  const auto points = positions(scan_of(static_cast<std::size_t>(state.range(0)), 2));
+  for (auto _ : state) benchmark::DoNotOptimize(averages(points));
+}
+BENCHMARK(average_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void evaluate_residuals(benchmark::State& state) {
+  const map::LocalPlanes map = box();
+  const auto points = averages(positions(scan_of(131'072, 2)));
+  const Parallel one(1);
+  PlaneResiduals residuals(points, map, 0.01, true, config(), one);
+  for (auto _ : state) benchmark::DoNotOptimize(residuals(before().state, true));
+  state.counters["points"] = static_cast<double>(points.size());
+}
+BENCHMARK(evaluate_residuals)->Unit(benchmark::kMillisecond);
+
+void update(benchmark::State& state) {
+  const map::LocalPlanes map = box();
+  const auto points = averages(positions(scan_of(static_cast<std::size_t>(state.range(0)), 2)));
+  const Parallel one(1);
+  for (auto _ : state) {
+    PlaneResiduals residuals(points, map, 0.01, true, config(), one);
+    benchmark::DoNotOptimize(estimation::iterated_update(
+        before(), std::ref(residuals),
+        {config().max_iterations + residuals.narrowing(), 1e-3, config().point_variance_m2}));
+  }
+  state.counters["points"] = static_cast<double>(points.size());
+}
+BENCHMARK(update)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+void insert_scan(benchmark::State& state) {
+  map::LocalPlanes grown = box();
+  const auto points = positions(scan_of(static_cast<std::size_t>(state.range(0)), 3));
+  for (auto _ : state) grown.insert(points, Eigen::Vector3f(0, 0, 0));
+}
+BENCHMARK(insert_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+/// Scans at rest with their IMU samples, 200 in a second.
+void register_scan(benchmark::State& state) {
+  LidarInfo lidar;
+  lidar.rate_hz = 1.0 / kScan;
+  ArenaLio odometry(config(), lidar, ImuInfo{}, Parallel(1));
+  Scan scan = scan_of(static_cast<std::size_t>(state.range(0)), 2);
+  Time sampled{0};
+  for (auto _ : state) {
+    state.PauseTiming();
+    for (const Time end = scan.stamp + from_seconds(kScan); sampled <= end;
+         sampled += from_seconds(kImuStep))
+      odometry.register_imu({sampled, Eigen::Vector3d::Zero(), Eigen::Vector3d(0.0, 0.0, 9.81)});
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(odometry.register_scan(scan));
+    scan.stamp += from_seconds(kScan);
+  }
+}
+BENCHMARK(register_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace lidarena::odometry::arena_lio
