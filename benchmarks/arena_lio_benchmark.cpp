@@ -8,7 +8,7 @@
 #include <functional>
 #include <vector>
 
-#include "lidarena/base/random.hpp"
+#include "benchmarks/box_scan.hpp"
 #include "lidarena/base/so3.hpp"
 #include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/map/voxel_filter.hpp"
@@ -18,40 +18,16 @@
 namespace lidarena::odometry::arena_lio {
 namespace {
 
+using box::positions;
+using box::scan_of;
 using estimation::InertialState;
 
-const Eigen::Array3d kHalf(8.0, 6.0, 2.0);  // m, of the box
-constexpr double kImuStep = 0.005;          // s
-constexpr double kScan = 0.1;               // s
-
-/// A scan of 0.1 s at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
-/// Of 131,072 points, 128 share their time, as those of a column of an OS0-128 do.
-Scan scan_of(std::size_t count, std::uint64_t seed) {
-  const CounterRandom random(seed);
-  const std::size_t at_once = count == 131'072 ? 128 : 1;
-  Scan scan{.stamp = Time{0}, .points = {}, .timed = true};
-  for (std::size_t i = 0; i < count; ++i) {
-    const double z = 2.0 * random.uniform(i, 0) - 1.0;
-    const double azimuth = 2.0 * M_PI * random.uniform(i, 1);
-    const double radius = std::sqrt(1.0 - z * z);
-    const Eigen::Vector3d beam(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
-    const double range = (kHalf / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
-    const double share = static_cast<double>(i / at_once * at_once) / static_cast<double>(count);
-    scan.points.push_back(
-        {(range * beam).cast<float>(), 0, static_cast<std::int32_t>(1e8 * share)});
-  }
-  return scan;
-}
+constexpr double kImuStep = 0.005;  // s
+constexpr double kScan = 0.1;       // s
 
 const Config& config() {
   static const Config made = settings_for(LidarInfo{});
   return made;
-}
-
-std::vector<Eigen::Vector3f> positions(const Scan& scan) {
-  std::vector<Eigen::Vector3f> points;
-  for (const Point& point : scan.points) points.push_back(point.position);
-  return points;
 }
 
 std::vector<Eigen::Vector3f> averages(const std::vector<Eigen::Vector3f>& points) {
@@ -59,7 +35,7 @@ std::vector<Eigen::Vector3f> averages(const std::vector<Eigen::Vector3f>& points
                      config().max_scan_points);
 }
 
-map::LocalPlanes box() {
+map::LocalPlanes map_of_box() {
   map::LocalPlanes made(
       {config().map_cell_size_m, config().max_cell_points, config().map_radius_m});
   made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
@@ -115,7 +91,7 @@ void average_scan(benchmark::State& state) {
 BENCHMARK(average_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void evaluate_residuals(benchmark::State& state) {
-  const map::LocalPlanes map = box();
+  const map::LocalPlanes map = map_of_box();
   const auto points = averages(positions(scan_of(131'072, 2)));
   const Parallel one(1);
   PlaneResiduals residuals(points, map, 0.01, true, config(), one);
@@ -125,7 +101,7 @@ void evaluate_residuals(benchmark::State& state) {
 BENCHMARK(evaluate_residuals)->Unit(benchmark::kMillisecond);
 
 void update(benchmark::State& state) {
-  const map::LocalPlanes map = box();
+  const map::LocalPlanes map = map_of_box();
   const auto points = averages(positions(scan_of(static_cast<std::size_t>(state.range(0)), 2)));
   const Parallel one(1);
   for (auto _ : state) {
@@ -139,7 +115,7 @@ void update(benchmark::State& state) {
 BENCHMARK(update)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
-  map::LocalPlanes grown = box();
+  map::LocalPlanes grown = map_of_box();
   const auto points = positions(scan_of(static_cast<std::size_t>(state.range(0)), 3));
   for (auto _ : state) grown.insert(points, Eigen::Vector3f(0, 0, 0));
 }

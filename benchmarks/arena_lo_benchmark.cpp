@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "lidarena/base/random.hpp"
+#include "benchmarks/box_scan.hpp"
 #include "lidarena/base/so3.hpp"
 #include "lidarena/odometry/arena_lo/registration.hpp"
 #include "lidarena/odometry/ct_icp/alignment.hpp"
@@ -15,24 +15,8 @@
 namespace lidarena::odometry::arena_lo {
 namespace {
 
-const Eigen::Array3d kHalf(8.0, 6.0, 2.0);  // m, of the box
-
-/// A scan of 0.1 s at rest in the middle of the box, uniform over the sphere, with 2 cm of noise.
-Scan scan_of(std::size_t count, std::uint64_t seed) {
-  const CounterRandom random(seed);
-  Scan scan{.stamp = Time{0}, .points = {}, .timed = true};
-  for (std::size_t i = 0; i < count; ++i) {
-    const double z = 2.0 * random.uniform(i, 0) - 1.0;
-    const double azimuth = 2.0 * M_PI * random.uniform(i, 1);
-    const double radius = std::sqrt(1.0 - z * z);
-    const Eigen::Vector3d beam(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
-    const double range = (kHalf / beam.array().abs()).minCoeff() + 0.02 * random.normals(i, 2)[0];
-    const double share = static_cast<double>(i) / static_cast<double>(count);
-    scan.points.push_back(
-        {(range * beam).cast<float>(), 0, static_cast<std::int32_t>(1e8 * share)});
-  }
-  return scan;
-}
+using box::positions;
+using box::scan_of;
 
 const Config& config() {
   static const Config made = settings_for(LidarInfo{});
@@ -43,13 +27,7 @@ std::vector<Slice> slices(const Scan& scan) {
   return slices_of(scan, estimation::times_of(scan, from_seconds(0.1)), config().slice_s, config());
 }
 
-std::vector<Eigen::Vector3f> positions(const Scan& scan) {
-  std::vector<Eigen::Vector3f> points;
-  for (const Point& point : scan.points) points.push_back(point.position);
-  return points;
-}
-
-map::LocalPlanes box() {
+map::LocalPlanes map_of_box() {
   map::LocalPlanes made({.cell_size = config().map_cell_size_m});
   made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
   return made;
@@ -81,7 +59,7 @@ void average_slices(benchmark::State& state) {
 BENCHMARK(average_slices)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void measure_points(benchmark::State& state) {
-  const map::LocalPlanes map = box();
+  const map::LocalPlanes map = map_of_box();
   const auto points = positions(scan_of(static_cast<std::size_t>(config().max_scan_points), 2));
   const Parallel one(1);
   for (auto _ : state)
@@ -101,7 +79,7 @@ void filter_and_smooth(benchmark::State& state) {
 BENCHMARK(filter_and_smooth)->Unit(benchmark::kMillisecond);
 
 void register_scan(benchmark::State& state) {
-  const map::LocalPlanes map = box();
+  const map::LocalPlanes map = map_of_box();
   const auto parts = slices(scan_of(static_cast<std::size_t>(state.range(0)), 2));
   const Parallel one(1);
   for (auto _ : state)
@@ -111,7 +89,7 @@ void register_scan(benchmark::State& state) {
 BENCHMARK(register_scan)->Arg(20'000)->Arg(131'072)->Unit(benchmark::kMillisecond);
 
 void insert_scan(benchmark::State& state) {
-  map::LocalPlanes grown = box();
+  map::LocalPlanes grown = map_of_box();
   const auto points = positions(scan_of(static_cast<std::size_t>(state.range(0)), 3));
   for (auto _ : state) grown.insert(points, Eigen::Vector3f(0, 0, 0));
 }
@@ -126,7 +104,7 @@ void levenberg_marquardt(benchmark::State& state) {
       match.alpha = 10.0 * (to_seconds(slice.middle) + double{point.seconds});
       match.anchor = match.point;
       Eigen::Index axis = 0;
-      (match.point.array().abs() / kHalf).maxCoeff(&axis);
+      (match.point.array().abs() / box::kHalf).maxCoeff(&axis);
       match.normal = Eigen::Vector3d::Unit(axis);
     }
   }
