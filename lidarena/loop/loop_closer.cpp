@@ -29,7 +29,6 @@ constexpr std::size_t kMaxSourcePoints = 1000;
 constexpr std::size_t kMinSourcePoints = 300;
 constexpr std::size_t kMinTargetPoints = 1000;
 constexpr double kMinConstraint = 0.005;     // of the least constrained direction
-constexpr double kGate = 3.0;                // sigmas, of all decisions about loops
 constexpr std::size_t kConsistentLoops = 2;  // loops that must agree
 constexpr double kMinStep = 0.1;             // m of path length between keyframes, for drift
 constexpr double kLoopKernelScale = 3.0;     // sigmas, of the Cauchy kernel of loops
@@ -171,7 +170,7 @@ bool LoopCloser::is_beyond_drift(const LoopRecord& loop) const {
   const double apart =
       (graph_.nodes[loop.first].translation() - graph_.nodes[loop.second].translation()).norm();
   return apart - kIcpReach >
-         kGate * (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
+         kLoopGate * (kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length);
 }
 
 LoopRecord LoopCloser::verify(const Candidate& candidate, const KeyframeCloud& cloud) const {
@@ -217,8 +216,8 @@ LoopVerdict LoopCloser::judge(const IcpResult& icp, const LoopRecord& loop) cons
       kMinTranslationSigma + config_.translation_drift_m_per_m * loop.path_length;
   const double rotation_rad =
       kMinRotationSigma + config_.rotation_drift_rad_per_m * loop.path_length;
-  const bool beyond =
-      loop.translation_m > kGate * translation_m || loop.rotation_rad > kGate * rotation_rad;
+  const bool beyond = loop.translation_m > kLoopGate * translation_m ||
+                      loop.rotation_rad > kLoopGate * rotation_rad;
   return beyond ? LoopVerdict::kBeyondDrift : LoopVerdict::kAccepted;
 }
 
@@ -256,8 +255,8 @@ bool LoopCloser::agree(const LoopRecord& a, const LoopRecord& b) const {
                                           config_.translation_drift_m_per_m * between);
   const double rotation_rad = std::hypot(std::numbers::sqrt2 * kLoopRotationSigma,
                                          config_.rotation_drift_rad_per_m * between);
-  return apart.translation().norm() < kGate * translation_m &&
-         so3::angle(apart.linear()) < kGate * rotation_rad;
+  return apart.translation().norm() < kLoopGate * translation_m &&
+         so3::angle(apart.linear()) < kLoopGate * rotation_rad;
 }
 
 double LoopCloser::drift_steps(std::size_t a, std::size_t b) const {

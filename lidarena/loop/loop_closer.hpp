@@ -34,6 +34,7 @@ const char* to_string(LoopVerdict verdict);
 
 inline constexpr double kLoopTranslationSigma = 0.01;  // m, of a loop
 inline constexpr double kLoopRotationSigma = 1e-3;     // rad
+inline constexpr double kLoopGate = 3.0;               // sigmas, of all decisions about loops
 
 /// A loop candidate that was verified, accepted or not.
 struct LoopRecord {
@@ -52,7 +53,8 @@ struct LoopRecord {
   /// False: it agrees with the path to within its own accuracy, so it ties the two visits, and
   /// there is nothing that it could correct.
   bool corrects() const {
-    return translation_m > 3.0 * kLoopTranslationSigma || rotation_rad > 3.0 * kLoopRotationSigma;
+    return translation_m > kLoopGate * kLoopTranslationSigma ||
+           rotation_rad > kLoopGate * kLoopRotationSigma;
   }
 };
 

@@ -108,8 +108,8 @@ struct LioSamLc : LioSam {
   }
 };
 
-/// Settings of the loop closure around an odometry that is known to drift less than the defaults of
-/// LoopConfig say.
+/// Settings of the loop closure around an odometry that drifts less than the defaults of LoopConfig
+/// say: somewhat more than what it drifts in the development flights.
 WithLoopConfig loops_for_drift(double m_per_m, double rad_per_m) {
   WithLoopConfig config;
   config.loop.translation_drift_m_per_m = m_per_m;
