@@ -56,8 +56,7 @@ int show(const std::string& algorithm, const std::string& path,
   odometry->finish();
   fmt::print(
       "| first, s | second, s | by | verdict | fitness m^2 | overlap | constraint | corrects cm | "
-      "mrad "
-      "| error cm | mrad |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
+      "mrad | error cm | mrad |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
   for (const loop::LoopRecord& loop : with_loop->loops().records()) print(loop, stamps, *truth);
   return 0;
 }

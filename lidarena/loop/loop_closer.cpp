@@ -284,7 +284,7 @@ std::vector<LoopRecord> LoopCloser::confirmed_loops() {
 
 void LoopCloser::close(const std::vector<LoopRecord>& loops) {
   constexpr estimation::RobustLoss kLoss{estimation::RobustKernel::kCauchy, kLoopKernelScale};
-  // The poses are as known as the loops: one that contradicts them alone is more likely wrong.
+  // A single loop that contradicts the poses is more likely wrong than they are.
   const bool corrects = std::ranges::all_of(loops, &LoopRecord::corrects);
   for (const LoopRecord& loop : loops) {
     if (corrects)
