@@ -1,54 +1,20 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The plugins in a running server: what they record and publish against closed forms.
+// The plugins in a running server: what they measure, against closed forms.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cstring>
-#include <functional>
-#include <mutex>
-#include <thread>
-
-#include "adapters/gazebo/plugin/transport.hpp"
 #include "adapters/gz_sim/test/closed_forms.hpp"
 #include "adapters/gz_sim/test/test_server.hpp"
+#include "adapters/gz_sim/test/test_world.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
-#include "tests/temporary_folder.hpp"
 
 namespace lidarena::gz_sim_test {
 namespace {
 
-namespace fs = std::filesystem;
-using Eigen::AngleAxisd;
-
-constexpr Time kStep{1'000'000};
-constexpr double kMaxRange = 15.0;   // m
 constexpr double kTolerance = 1e-4;  // m; a direction rounded to a float moves a hit at 15 m and
                                      // a grazing angle of 5 degrees by 2e-5 m
-constexpr const char* kGround = "<plane><normal>0 0 1</normal><size>100 100</size></plane>";
-
-/// Elements of a plugin that records without noise; `more` are further elements.
-std::string recording(const fs::path& file, const std::string& more = "<imu>off</imu>") {
-  return fmt::format(
-      "<sensor>livox_mid360</sensor><set>max_range_m={}</set><noise>off</noise>"
-      "<gazebo>off</gazebo><record>{}</record>{}",
-      kMaxRange, file.string(), more);
-}
-
-/// The ground, and a ball, a box and a pillar around the origin.
-std::string primitives() {
-  return model("ground", {}, shape(kGround)) +
-         model("ball", {{0, 6, 1}}, shape("<sphere><radius>1.5</radius></sphere>")) +
-         model("box", {{5, 0, 1}, {0.1, 0.2, 0.3}}, shape("<box><size>1 2 2</size></box>")) +
-         model("pillar", {{-7, 0, 1}, {0.3, 0.2, 0}},
-               shape("<cylinder><radius>0.5</radius><length>3</length></cylinder>"));
-}
-std::vector<Distance> primitives_in_closed_form() {
-  return {plane_at(0.0), ball({0, 6, 1}, 1.5),
-          box(SdfPose{{5, 0, 1}, {0.1, 0.2, 0.3}}.pose(), {1, 2, 2}),
-          cylinder(SdfPose{{-7, 0, 1}, {0.3, 0.2, 0}}.pose(), 0.5, 3.0)};
-}
 
 /// Differences between measured and expected ranges, m.
 struct Comparison {
@@ -100,12 +66,6 @@ void report(const char* what, const Comparison& result) {
   fmt::print("{}: {} points, largest difference {:.2e} m\n", what, result.points, result.largest);
 }
 
-class GzSim : public testing::Test {
- protected:
-  fs::path file(const std::string& name = "flight.mcap") const { return folder_.path() / name; }
-  TemporaryFolder folder_;
-};
-
 TEST_F(GzSim, AStandingSensorMeasuresClosedForms) {
   const SdfPose robot{{0, 0, 1}, {0.1, -0.2, 0.3}}, mount{{0.1, 0.2, 0.3}, {0, 0, 0.5}};
   {
@@ -133,34 +93,6 @@ TEST_F(GzSim, AStandingSensorMeasuresClosedForms) {
     }
     EXPECT_GT(hits, 50U) << "body " << body;
   }
-}
-
-/// A motion of constant velocity that turns about a tilted axis.
-struct Motion {
-  static constexpr double kRate = 1.5;  // rad/s
-  Vector3d start{0, 0, 1.5}, velocity{3, -1, 0.2};
-  Vector3d axis = Vector3d(0.3, 0.2, 1.0).normalized();
-
-  Pose at(double t_s) const {
-    return make_pose(Eigen::Quaterniond(AngleAxisd(kRate * t_s, axis)), start + t_s * velocity);
-  }
-  std::string tum(double seconds) const {
-    std::string text;
-    for (int i = 0; 0.01 * i <= seconds; ++i) {
-      const Pose pose = at(0.01 * i);
-      const Eigen::Quaterniond q(pose.linear());
-      const Vector3d p = pose.translation();
-      text += fmt::format("{:.2f} {:.16} {:.16} {:.16} {:.16} {:.16} {:.16} {:.16}\n", 0.01 * i,
-                          p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w());
-    }
-    return text;
-  }
-};
-
-std::string flying(const std::string& content, const fs::path& trajectory) {
-  return "<model name=\"robot\"><link name=\"link\">" + content +
-         "</link><plugin filename=\"LidarenaGzFlight\" name=\"lidarena::Flight\"><trajectory>" +
-         trajectory.string() + "</trajectory></plugin></model>";
 }
 
 TEST_F(GzSim, EachShotIsCastFromThePoseOfItsInstant) {
@@ -399,132 +331,5 @@ TEST_F(GzSim, TwoSensorsSeeEachOtherButNotThemselves) {
   check("right.mcap", right, left);
 }
 
-TEST_F(GzSim, AThreadOfItsOwnGivesTheSameScans) {
-  const Motion motion;
-  const fs::path trajectory = folder_.write("motion.tum", motion.tum(0.8));
-  for (const char* threads : {"0", "1"}) {
-    TestServer server(primitives() +
-                      flying(sensor({}, recording(file(std::string(threads) + ".mcap"),
-                                                  fmt::format("<threads>{}</threads>", threads))),
-                             trajectory));
-    server.step(500);
-  }
-  const auto own = scans_in(file("0.mcap"), "livox_mid360");
-  const auto other = scans_in(file("1.mcap"), "livox_mid360");
-  ASSERT_EQ(own.size(), 3U);  // the fourth waits for an IMU sample
-  ASSERT_EQ(other.size(), own.size());
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    ASSERT_EQ(own[i].points.size(), other[i].points.size());
-    for (std::size_t k = 0; k < own[i].points.size(); ++k) {
-      ASSERT_EQ(own[i].points[k].position, other[i].points[k].position);
-      ASSERT_EQ(own[i].points[k].dt_ns, other[i].points[k].dt_ns);
-    }
-  }
-}
-
-/// The clouds of a topic as they arrive.
-class Subscriber {
- public:
-  using Cloud = gazebo_plugin::gz_msgs::PointCloudPacked;
-
-  explicit Subscriber(const std::string& topic) {
-    std::function<void(const Cloud&)> keep = [this](const Cloud& cloud) {
-      const std::lock_guard lock(mutex_);
-      clouds_.push_back(cloud);
-    };
-    node_.Subscribe(topic, keep);
-  }
-  /// Waits until `count` clouds are there, at most 5 s.
-  std::vector<Cloud> wait_for(std::size_t count) {
-    for (int i = 0; i < 500; ++i) {
-      {
-        const std::lock_guard lock(mutex_);
-        if (clouds_.size() >= count) return clouds_;
-      }
-      std::this_thread::sleep_for(std::chrono::milliseconds(10));
-    }
-    const std::lock_guard lock(mutex_);
-    return clouds_;
-  }
-
- private:
-  gazebo_plugin::gz_transport::Node node_;
-  std::mutex mutex_;
-  std::vector<Cloud> clouds_;
-};
-
-template <class T>
-T value_at(const std::string& data, std::size_t offset) {
-  T value{};
-  std::memcpy(&value, data.data() + offset, sizeof(T));
-  return value;
-}
-
-TEST_F(GzSim, ThePublishedCloudsAreTheRecordedOnes) {
-  Subscriber subscriber("/front/points");
-  {
-    TestServer server(primitives() + model("robot", {{0, 0, 1}},
-                                           sensor({}, "<id>front</id><imu>off</imu><record>" +
-                                                          file().string() + "</record>")));
-    server.step(350);
-    ASSERT_EQ(subscriber.wait_for(2).size(), 2U);
-  }
-  const std::vector<Scan> scans = scans_in(file(), "front");
-  const auto clouds = subscriber.wait_for(2);
-  ASSERT_EQ(scans.size(), 2U);
-  for (std::size_t i = 0; i < scans.size(); ++i) {
-    const auto& stamp = clouds[i].header().stamp();
-    EXPECT_EQ(Time{stamp.sec() * 1'000'000'000L + stamp.nsec()}, scans[i].stamp);
-    EXPECT_EQ(clouds[i].header().data(0).value(0), "front_lidar");
-    ASSERT_EQ(clouds[i].width(), scans[i].points.size());
-    ASSERT_EQ(clouds[i].field(4).name(), "t");
-    for (std::size_t k = 0; k < scans[i].points.size(); ++k) {
-      const std::size_t at = k * clouds[i].point_step();
-      const Point& point = scans[i].points[k];
-      ASSERT_EQ(value_at<float>(clouds[i].data(), at + clouds[i].field(0).offset()),
-                point.position.x());
-      ASSERT_EQ(value_at<std::uint32_t>(clouds[i].data(), at + clouds[i].field(4).offset()),
-                static_cast<std::uint32_t>(point.dt_ns));
-    }
-    EXPECT_GT(scans[i].points.back().dt_ns, 60'000'000);  // spread over the scan's 0.1 s
-  }
-}
-
-TEST_F(GzSim, ARecordingEndsWithTheModelThatCarriesTheSensor) {
-  TestServer server(primitives() + model("robot", {{0, 0, 1}}, sensor({}, recording(file()))));
-  server.step(350);
-  EXPECT_FALSE(fs::exists(file()));
-  server.remove("robot");
-  server.step(2);
-  ASSERT_TRUE(fs::exists(file()));
-  EXPECT_EQ(scans_in(file(), "livox_mid360").size(), 2U);
-}
-
-TEST_F(GzSim, AMisspelledElementSwitchesTheSensorOffAndSaysWhatWasMeant) {
-  testing::internal::CaptureStderr();
-  {
-    TestServer server(
-        model("robot", {{0, 0, 1}}, sensor({}, recording(file(), "<geometri>visual</geometri>"))));
-    server.step(10);
-  }
-  const std::string told = testing::internal::GetCapturedStderr();
-  EXPECT_NE(told.find("geometri"), std::string::npos) << told;
-  EXPECT_NE(told.find("'geometry'"), std::string::npos) << told;
-  EXPECT_NE(told.find("switched off"), std::string::npos) << told;
-  EXPECT_FALSE(fs::exists(file()));
-}
-
 }  // namespace
 }  // namespace lidarena::gz_sim_test
-
-int main(int argc, char** argv) {
-  testing::InitGoogleTest(&argc, argv);
-  const std::string partition = "lidarena_" + std::to_string(::getpid());
-  for (const char* prefix : {"IGN", "GZ"}) {
-    ::setenv((std::string(prefix) + "_PARTITION").c_str(), partition.c_str(), 1);
-    ::setenv((std::string(prefix) + "_IP").c_str(), "127.0.0.1", 1);
-  }
-  ::setenv("IGN_GAZEBO_SYSTEM_PLUGIN_PATH", LIDARENA_PLUGIN_PATH, 1);
-  ::setenv("GZ_SIM_SYSTEM_PLUGIN_PATH", LIDARENA_PLUGIN_PATH, 1);
-  return RUN_ALL_TESTS();
-}
