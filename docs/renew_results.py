@@ -5,6 +5,7 @@
 usage: renew_results.py STUDY --as NAME   takes over the figures of the report in the folder STUDY
        renew_results.py SPEED.json        takes over what lidar_benchmark --benchmark_out=SPEED.json
                                           --benchmark_filter='measure|simulate|bare' has measured
+       renew_results.py COSTS.tsv         takes over what .ci/run has written as build/ci_costs.tsv
        renew_results.py                   renews the pages from docs/results/data
        renew_results.py --check           fails if a page differs from docs/results/data, if the
                                           tables there are not those of the runs there, or if
@@ -18,7 +19,7 @@ use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page
 `<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure.
 docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
-`<!-- speed machine -->` the processor.
+`<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
 """
 import argparse
 import csv
@@ -50,7 +51,7 @@ COLUMNS = {"drift": "rpe_1m_at_poses_translation_cm",
            "map-vertices": "own_map_rmse_vertices_cm",
            "outliers-vertices": "own_map_outliers_vertices_percent", "cpu": "cpu_load_percent"}
 LOST = {"own_map_outliers_percent": 50.0, "rpe_1m_at_poses_translation_cm": 100.0}
-BLOCK = re.compile(r"(<!-- (table|runs|speed|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -168,6 +169,16 @@ def take_over_speed(file):
     (DATA / "speed.json").write_text(json.dumps({"machine": machine, "rows": rows}, indent=1) + "\n")
 
 
+def costs():
+    """Markdown of what each step of .ci/run took."""
+    lines = ["| step | minutes | CPU-minutes |", "|---|---:|---:|"]
+    steps = [line.split("\t") for line in (DATA / "costs.tsv").read_text().splitlines()]
+    steps.append(["**all**"] + [sum(int(step[i]) for step in steps) for i in (1, 2)])
+    for name, seconds, cpu in steps:
+        lines.append(f"| {name} | {int(seconds) / 60:.1f} | {int(cpu) / 60:.1f} |")
+    return "\n".join(lines)
+
+
 def words_of(found):
     """The words of a mark, with an empty one for `none`."""
     return ["" if word == "none" else word for word in found[3].split()]
@@ -180,6 +191,8 @@ def renewed(page):
             return f"{found[1]}\n\n{table(words[0], words[1].split(','), words[2])}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
+        if what == "costs":
+            return f"{found[1]}\n\n{costs()}\n\n{found[5]}"
         text = str(len(runs_of(words[0]))) if what == "runs" else figure(*words)
         return found[1] + text + found[5]
     return BLOCK.sub(content, page)
@@ -211,10 +224,11 @@ def faults_of(study):
     for name, stored in tables_of(study).items():
         kind = next(k for k in sorted(COLUMNS, key=len, reverse=True) if name.startswith(k + "-"))
         world, variant = name[len(kind) + 1:].split("-", 1)
+        preset, _, mode = variant.partition("-")
         for sensor, method, cell in cells_of(stored):
             values = [judged(run, COLUMNS[kind]) for run in runs
                       if (run["world"], run["sensor"], run["algorithm"]) == (world, sensor, method)
-                      and run["preset"] in ("", variant.split("-")[0])]
+                      and run["preset"] in ("", preset) and run["mode"] == mode]
             values = [value for value in values if value is not None]
             median = statistics.median(values) if values else None
             checked += 1
@@ -272,6 +286,8 @@ def main():
         sys.exit(1 if faults else 0)
     if arguments.study and arguments.study.suffix == ".json":
         take_over_speed(arguments.study)
+    elif arguments.study and arguments.study.suffix == ".tsv":
+        shutil.copyfile(arguments.study, DATA / "costs.tsv")
     elif arguments.study:
         take_over(arguments.study, arguments.name or arguments.study.name)
     for page in PAGES:
