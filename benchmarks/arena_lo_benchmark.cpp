@@ -71,9 +71,9 @@ BENCHMARK(measure_points)->Unit(benchmark::kMillisecond);
 void filter_and_smooth(benchmark::State& state) {
   const auto parts = slices(scan_of(20'000, 2));
   for (auto _ : state) {
-    Steps steps = coast(before(), parts, from_seconds(0.1), config());
-    estimation::smooth(steps);
-    benchmark::DoNotOptimize(steps);
+    const Steps steps = coast(before(), parts, from_seconds(0.1), config());
+    Motion motion = estimation::smoothed(steps);
+    benchmark::DoNotOptimize(motion);
   }
 }
 BENCHMARK(filter_and_smooth)->Unit(benchmark::kMillisecond);

@@ -129,18 +129,21 @@ MotionEstimate updated(const MotionEstimate& prior, const MotionState& state,
   return minimum;
 }
 
-void smooth(std::span<MotionStep> steps) {
+std::vector<MotionEstimate> smoothed(std::span<const MotionStep> steps) {
+  std::vector<MotionEstimate> estimates;
+  estimates.reserve(steps.size());
+  for (const MotionStep& step : steps) estimates.push_back(step.estimate);
   for (std::size_t i = steps.size(); i-- > 1;) {
-    const MotionStep& after = steps[i];
-    MotionEstimate& estimate = steps[i - 1].estimate;
-    const MotionEstimate& expected = after.prediction.estimate;
-    const MotionMatrix gain = expected.covariance.ldlt()
-                                  .solve(after.prediction.transition * estimate.covariance)
-                                  .transpose();
-    estimate.state = estimate.state + MotionVector(gain * (after.estimate.state - expected.state));
-    estimate.covariance +=
-        gain * (after.estimate.covariance - expected.covariance) * gain.transpose();
+    const MotionPrediction& prediction = steps[i].prediction;
+    const MotionEstimate& expected = prediction.estimate;
+    const MotionEstimate& after = estimates[i];
+    MotionEstimate& estimate = estimates[i - 1];
+    const MotionMatrix gain =
+        expected.covariance.ldlt().solve(prediction.transition * estimate.covariance).transpose();
+    estimate.state = estimate.state + MotionVector(gain * (after.state - expected.state));
+    estimate.covariance += gain * (after.covariance - expected.covariance) * gain.transpose();
   }
+  return estimates;
 }
 
 }  // namespace lidarena::estimation

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <span>
+#include <vector>
 
 #include "lidarena/base/pose.hpp"
 #include "lidarena/estimation/least_squares.hpp"
@@ -66,8 +67,8 @@ struct MotionStep {
   MotionPrediction prediction;
   MotionEstimate estimate;
 };
-/// Replaces the estimates by those given the measurements of all steps (H. Rauch, F. Tung, C.
+/// The estimates of a filter's steps given the measurements of all of them (H. Rauch, F. Tung, C.
 /// Striebel, "Maximum Likelihood Estimates of Linear Dynamic Systems", AIAA Journal 1965).
-void smooth(std::span<MotionStep> steps);
+std::vector<MotionEstimate> smoothed(std::span<const MotionStep> steps);
 
 }  // namespace lidarena::estimation

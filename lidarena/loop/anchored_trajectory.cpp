@@ -14,6 +14,11 @@ void AnchoredTrajectory::add(Time stamp, const Pose& anchor_from_body) {
   poses_.push_back({stamp, anchors_.size(), anchor_from_body});
 }
 
+void AnchoredTrajectory::revise(Time stamp, const Pose& anchor_from_body) {
+  if (!poses_.empty() && poses_.back().stamp == stamp)
+    poses_.back().anchor_from_body = anchor_from_body;
+}
+
 std::vector<StampedPose> AnchoredTrajectory::placed(std::span<const Pose> anchors) const {
   std::vector<StampedPose> placed;
   placed.reserve(poses_.size());

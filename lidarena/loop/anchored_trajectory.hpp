@@ -21,6 +21,9 @@ class AnchoredTrajectory {
   /// later than the one before are left out.
   void add(Time stamp, const Pose& anchor_from_body);
 
+  /// Replaces the last pose, if it is at `stamp`; relative to the same as that.
+  void revise(Time stamp, const Pose& anchor_from_body);
+
   /// All poses in the world, for keyframes at `anchors` (as many as were added).
   std::vector<StampedPose> placed(std::span<const Pose> anchors) const;
 

@@ -12,20 +12,31 @@ constexpr Time kStep = std::chrono::milliseconds(5);
 }  // namespace
 
 void MotionRecord::add(const ScanResult& result) {
-  const Pose body_from_world = result.estimate.world_from_body.inverse();
+  const bool revises = !result.revised.empty() && !scans_.empty() &&
+                       scans_.back().stamp == result.revised.back().stamp;
+  if (revises) {
+    scans_.pop_back();
+    steps_.resize(scans_.empty() ? 0 : scans_.back().end);
+    add(result.revised.back(), result.revised);
+  }
+  add(result.estimate, result.motion);
+}
+
+void MotionRecord::add(const StampedPose& estimate, std::span<const StampedPose> motion) {
+  const Pose body_from_world = estimate.world_from_body.inverse();
   std::optional<Time> last;
-  for (const StampedPose& pose : result.motion) {
-    const bool is_end = &pose == &result.motion.back();
+  for (const StampedPose& pose : motion) {
+    const bool is_end = &pose == &motion.back();
     if (last && pose.stamp - *last < kStep && !is_end) continue;
     last = pose.stamp;
     const Pose relative = body_from_world * pose.world_from_body;
-    steps_.push_back({static_cast<std::int32_t>((pose.stamp - result.estimate.stamp).count()),
+    steps_.push_back({static_cast<std::int32_t>((pose.stamp - estimate.stamp).count()),
                       relative.translation().cast<float>(),
                       Eigen::Quaterniond(relative.linear()).cast<float>()});
   }
-  if (result.motion.empty()) steps_.emplace_back();
-  any_ = any_ || !result.motion.empty();
-  scans_.push_back({result.estimate.stamp, steps_.size()});
+  if (motion.empty()) steps_.emplace_back();
+  any_ = any_ || motion.size() > 1;
+  scans_.push_back({estimate.stamp, steps_.size()});
 }
 
 Trajectory MotionRecord::along(const Trajectory& trajectory) const {

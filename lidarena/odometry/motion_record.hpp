@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
@@ -15,7 +16,8 @@ namespace lidarena::odometry {
 /// are kept at least 5 ms apart; 32 bytes each.
 class MotionRecord {
  public:
-  /// `result`: of the next scan. A scan without motion is at its estimate's pose and instant.
+  /// `result`: of the next scan. A scan without motion is at its estimate's pose and instant. What
+  /// it revises replaces the motion of the scan before.
   void add(const ScanResult& result);
   /// The poses along `trajectory`: each scan's motion from the pose that the trajectory has at the
   /// scan's instant (scans outside it are left out), without those that are not later than the pose
@@ -23,6 +25,8 @@ class MotionRecord {
   Trajectory along(const Trajectory& trajectory) const;
 
  private:
+  void add(const StampedPose& estimate, std::span<const StampedPose> motion);
+
   struct Step {
     std::int32_t dt_ns = 0;  ///< since the estimate's instant
     Eigen::Vector3f translation = Eigen::Vector3f::Zero();

@@ -90,6 +90,9 @@ struct ScanResult {
   ScanCounters counters;
   /// Poses within the scan, if the method estimates or assumes them; for de-skewing by others.
   std::vector<StampedPose> motion;
+  /// Such poses of the scan before, given this scan as well, if the method revises them: the last
+  /// one is its pose in trajectory() from now on.
+  std::vector<StampedPose> revised{};
 };
 
 struct OdometryTraits {

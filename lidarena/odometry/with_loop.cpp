@@ -24,20 +24,29 @@ ScanResult WithLoop::register_scan(const Scan& scan) {
   const Time stamp = result.estimate.stamp;
   const Pose upright = odometry_->world_from_start();
   const Pose odom_from_body = upright.inverse() * result.estimate.world_from_body;
+  if (!result.revised.empty()) {
+    const StampedPose& before = result.revised.back();
+    poses_.revise(before.stamp, in_keyframe(upright.inverse() * before.world_from_body));
+  }
   const bool usable = result.status != ScanStatus::kTooFewPoints &&
                       result.status != ScanStatus::kInitializing &&
                       !odometry_->registered_scan().empty();
   if (usable && is_keyframe(odom_from_body)) keep(stamp, odom_from_body);
-  poses_.add(stamp,
-             clouds_.empty() ? odom_from_body : odom_from_keyframe_.inverse() * odom_from_body);
+  poses_.add(stamp, in_keyframe(odom_from_body));
   const Pose corrected = upright * world_from_odom_ * upright.inverse();
   result.estimate.world_from_body = orthonormalized(corrected * result.estimate.world_from_body);
-  for (StampedPose& pose : result.motion)
-    pose.world_from_body = orthonormalized(corrected * pose.world_from_body);
+  for (std::vector<StampedPose>* poses : {&result.motion, &result.revised}) {
+    for (StampedPose& pose : *poses)
+      pose.world_from_body = orthonormalized(corrected * pose.world_from_body);
+  }
   result.counters.keyframes = clouds_.size();
   result.counters.loops = closer_.accepted();
   result.counters.loops_tried = closer_.records().size();
   return result;
+}
+
+Pose WithLoop::in_keyframe(const Pose& odom_from_body) const {
+  return clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
 }
 
 bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
@@ -60,8 +69,7 @@ void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
   const Pose body_from_world = (odometry_->world_from_start() * odom_from_body).inverse();
   const std::vector<Eigen::Vector3f> cloud =
       transformed(body_from_world, odometry_->registered_scan());
-  const Pose previous_from_this =
-      clouds_.empty() ? odom_from_body : Pose(odom_from_keyframe_.inverse() * odom_from_body);
+  const Pose previous_from_this = in_keyframe(odom_from_body);
   clouds_.push_back(map::voxel_means(cloud, config_.cloud_voxel_size_m));
   poses_.add_anchor(stamp, previous_from_this);
   odom_from_keyframe_ = odom_from_body;

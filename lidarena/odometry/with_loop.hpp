@@ -59,6 +59,8 @@ class WithLoop : public Odometry {
   const loop::LoopCloser& loops() const { return closer_; }
 
  private:
+  /// Relative to the last keyframe; as it is, as long as there is none.
+  Pose in_keyframe(const Pose& odom_from_body) const;
   bool is_keyframe(const Pose& odom_from_body) const;
   /// The poses before the first keyframe, as the odometry has them once it has begun: a start in
   /// motion revises the poses of its first scans, which it calls initializing.

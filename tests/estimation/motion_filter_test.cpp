@@ -109,18 +109,18 @@ TEST(MotionFilter, SmoothingGivesTheEarlierStateWhatTheLaterOneMeasured) {
   equations.hessian.diagonal().head<3>().setConstant(1e6);
   equations.gradient.head<3>() = -1e6 * Eigen::Vector3d(0.02, -0.01, 0.03);
   const MotionEstimate posterior = updated(prior, prior.state, equations);
-  std::array steps{MotionStep{{before, {}}, before}, MotionStep{prediction, posterior}};
-  smooth(steps);
+  const std::array steps{MotionStep{{before, {}}, before}, MotionStep{prediction, posterior}};
+  const std::vector<MotionEstimate> both = smoothed(steps);
   // The joint covariance of both states, conditioned on the measured positions.
   const Eigen::Matrix<double, kMotionDof, 3> cross =
       (before.covariance * prediction.transition.transpose()).leftCols<3>();
   const Eigen::Matrix3d measured =
       prior.covariance.topLeftCorner<3, 3>() + 1e-6 * Eigen::Matrix3d::Identity();
   const MotionVector expected = cross * measured.inverse() * Eigen::Vector3d(0.02, -0.01, 0.03);
-  EXPECT_LT((steps[0].estimate.state - before.state - expected).norm(), 1e-6);
+  EXPECT_LT((both[0].state - before.state - expected).norm(), 1e-6);
   const MotionMatrix left = before.covariance - cross * measured.inverse() * cross.transpose();
-  EXPECT_LT((steps[0].estimate.covariance - left).norm(), 1e-6);
-  EXPECT_EQ(steps[1].estimate.state.pose.matrix(), posterior.state.pose.matrix());
+  EXPECT_LT((both[0].covariance - left).norm(), 1e-6);
+  EXPECT_EQ(both[1].state.pose.matrix(), posterior.state.pose.matrix());
 }
 
 }  // namespace

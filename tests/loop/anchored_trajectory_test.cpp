@@ -55,5 +55,14 @@ TEST(AnchoredTrajectory, BeforeTheFirstKeyframePosesStandInTheWorldAndTimeGoesOn
   EXPECT_EQ(trajectory.placed({}).front().world_from_body.translation().x(), 3.0);
 }
 
+TEST(AnchoredTrajectory, OnlyTheLastPoseIsRevised) {
+  AnchoredTrajectory trajectory = straight();
+  trajectory.revise(from_seconds(25), at_x(0.7));
+  trajectory.revise(from_seconds(24), at_x(9.0));
+  const auto placed = trajectory.placed(std::vector{at_x(0.0), at_x(1.0), at_x(2.0)});
+  EXPECT_NEAR(placed[24].world_from_body.translation().x(), 2.4, 1e-12);
+  EXPECT_NEAR(placed[25].world_from_body.translation().x(), 2.7, 1e-12);
+}
+
 }  // namespace
 }  // namespace lidarena::loop

@@ -69,6 +69,25 @@ TEST(MotionRecord, AScanWithoutMotionIsAtItsEstimate) {
   EXPECT_EQ(motion.poses()[1].stamp, Time{150ms});
 }
 
+TEST(MotionRecord, WhatAScanRevisesReplacesTheMotionOfTheOneBefore) {
+  const Pose off = make_pose(so3::exp({0.0, 0.0, 0.01}), Vector3d(0.01, 0, 0));
+  MotionRecord record;
+  for (int i = 1; i <= 3; ++i) {
+    ScanResult result = scan_ending(i * 100ms, 10ms);
+    for (StampedPose& pose : result.motion)
+      if (pose.stamp != result.estimate.stamp) pose.world_from_body = pose.world_from_body * off;
+    if (i > 1) result.revised = scan_ending((i - 1) * 100ms, 10ms).motion;
+    record.add(result);
+  }
+  const Trajectory motion = record.along(ends(3));
+  ASSERT_EQ(motion.size(), 31U);
+  for (const StampedPose& pose : motion.poses()) {
+    const bool is_revised = pose.stamp <= 200ms || pose.stamp == 300ms;
+    EXPECT_EQ(pose.world_from_body.isApprox(screw(pose.stamp), 1e-6), is_revised)
+        << to_seconds(pose.stamp);
+  }
+}
+
 TEST(MotionRecord, IsEmptyIfNoScanTellsAMotion) {
   MotionRecord record;
   for (int i = 1; i <= 3; ++i) {

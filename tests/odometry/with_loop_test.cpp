@@ -165,5 +165,39 @@ TEST(WithLoop, PosesOfAnUnfinishedStartAreTakenOverOnceTheyAreRevised) {
   }
 }
 
+/// Each pose is 2 cm off until the next scan revises it.
+class Reviser : public Drifter {
+ public:
+  ScanResult register_scan(const Scan& scan) override {
+    const Trajectory before = trajectory();
+    ScanResult result = Drifter::register_scan(scan);
+    if (before.size() > 0) result.revised = {before.poses().back()};
+    result.estimate.world_from_body.translation().x() += 0.02;
+    return result;
+  }
+};
+
+TEST(WithLoop, APoseThatTheNextScanRevisesIsTakenOver) {
+  Reviser alone;
+  WithLoop looped(std::make_unique<Reviser>(), quick(), Parallel(1));
+  for (int i = 0; i < 20; ++i) {
+    Scan scan;
+    scan.stamp = from_seconds(0.2 * i);
+    scan.points.resize(1);
+    alone.register_scan(scan);
+    const ScanResult result = looped.register_scan(scan);
+    ASSERT_EQ(result.revised.size(), i > 0 ? 1U : 0U);
+  }
+  ASSERT_GT(looped.loops().poses().size(), 2U) << "keyframes";
+  const Trajectory poses = looped.trajectory();
+  const Trajectory expected = alone.trajectory();
+  ASSERT_EQ(poses.size(), expected.size());
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    EXPECT_TRUE(
+        poses.poses()[i].world_from_body.isApprox(expected.poses()[i].world_from_body, 1e-9))
+        << i;
+  }
+}
+
 }  // namespace
 }  // namespace lidarena::odometry

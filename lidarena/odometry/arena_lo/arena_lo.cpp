@@ -58,10 +58,13 @@ ScanResult ArenaLo::register_scan(const Scan& scan) {
   const Measurement& measurement = found.measurement;
   const ScanStatus status = status_of(measurement, count_points(slices));
   const bool used = is_used(status);
-  const Steps steps = used || map_.empty() ? found.steps : coasted(slices, times.last);
+  const bool moves_on = used || map_.empty();
+  const Steps steps = moves_on ? found.steps : coasted(slices, times.last);
+  const Motion motion = moves_on ? found.motion : estimation::smoothed(steps);
 
-  const std::vector<Eigen::Vector3f> points = points_in_map(slices, steps);
-  advance(steps, times);
+  const std::vector<Eigen::Vector3f> points = points_in_map(slices, motion);
+  std::vector<StampedPose> revised = revise(steps, motion);
+  advance(slices, steps, times);
   if (used) grow_map(points);
   if (scans_mapped_ > 1) opening_.reset();
   registered_scan_ = transformed(body_from_lidar_, points);
@@ -76,7 +79,8 @@ ScanResult ArenaLo::register_scan(const Scan& scan) {
            .map_points = map_.fine().size(),
            .scans_refused = scans_refused_,
            .inserted = used},
-          motion_within(slices, steps, times)};
+          times.timed ? poses_within(last_, motion) : std::vector<StampedPose>{},
+          std::move(revised)};
 }
 
 double ArenaLo::slice_duration(const estimation::ScanTimes& times) const {
@@ -90,7 +94,7 @@ void ArenaLo::begin_again(const std::vector<Slice>& second, Time end) {
     known_ = opening_->known;
     const Registration found = align(second, end);
     if (found.measurement.near_planes < kMinMatches) return;
-    const Pose moved = found.steps.front().estimate.state.pose;
+    const Pose moved = found.motion.front().state.pose;
     estimation::MotionState& state = opening_->known.estimate.state;
     state.velocity = moved.translation() / seconds;
     state.rate = so3::log(moved.linear()) / seconds;
@@ -106,7 +110,10 @@ void ArenaLo::begin_again(const std::vector<Slice>& second, Time end) {
 
 Registration ArenaLo::align(const std::vector<Slice>& slices, Time end) const {
   if (!map_.empty()) return register_slices(known_, slices, end, map_, config_, parallel_);
-  return {Steps(slices.size() + 1, {{known_.estimate}, known_.estimate}), {}, 0};
+  return {Steps(slices.size() + 1, {{known_.estimate}, known_.estimate}),
+          Motion(slices.size() + 1, known_.estimate),
+          {},
+          0};
 }
 
 ScanStatus ArenaLo::status_of(const Measurement& measurement, std::size_t points) {
@@ -135,7 +142,20 @@ Steps ArenaLo::coasted(const std::vector<Slice>& slices, Time end) const {
   return steps;
 }
 
-void ArenaLo::advance(const Steps& steps, const estimation::ScanTimes& times) {
+std::vector<StampedPose> ArenaLo::revise(const Steps& steps, const Motion& motion) {
+  if (scans_mapped_ < 2) return {};
+  Steps before = last_.steps;
+  before.push_back({steps.front().prediction, motion.front()});
+  const std::vector<StampedPose> revised = poses_within(last_, estimation::smoothed(before));
+  poses_.back() = revised.back();
+  return revised;
+}
+
+void ArenaLo::advance(const std::vector<Slice>& slices, const Steps& steps,
+                      const estimation::ScanTimes& times) {
+  last_ = {times, {}, steps};
+  for (const Slice& slice : slices) last_.instants.push_back(slice.middle);
+  last_.instants.push_back(times.last);
   known_ = {steps.back().estimate, times.last};
   poses_.push_back(body_pose(times.last, known_.estimate.state.pose));
   if (times.timed) scan_duration_ = times.last - times.first;
@@ -150,27 +170,25 @@ void ArenaLo::grow_map(const std::vector<Eigen::Vector3f>& points) {
 }
 
 std::vector<Eigen::Vector3f> ArenaLo::points_in_map(const std::vector<Slice>& slices,
-                                                    const Steps& steps) const {
+                                                    const Motion& motion) const {
   std::vector<Eigen::Vector3f> points;
   points.reserve(count_points(slices));
   for (std::size_t i = 0; i < slices.size(); ++i) {
-    const auto part = placed(slices[i], steps[i].estimate.state, Pose::Identity(), parallel_);
+    const auto part = placed(slices[i], motion[i].state, Pose::Identity(), parallel_);
     points.insert(points.end(), part.begin(), part.end());
   }
   return points;
 }
 
-std::vector<StampedPose> ArenaLo::motion_within(const std::vector<Slice>& slices,
-                                                const Steps& steps,
-                                                const estimation::ScanTimes& times) const {
-  if (!times.timed) return {};
-  const double lead = to_seconds(times.first - slices.front().middle);
-  std::vector<StampedPose> motion{
-      body_pose(times.first, steps.front().estimate.state.pose_after(lead))};
-  for (std::size_t i = 0; i < slices.size(); ++i)
-    motion.push_back(body_pose(slices[i].middle, steps[i].estimate.state.pose));
-  motion.push_back(body_pose(times.last, steps.back().estimate.state.pose));
-  return motion;
+std::vector<StampedPose> ArenaLo::poses_within(const ScanSteps& scan, const Motion& motion) const {
+  std::vector<StampedPose> poses;
+  if (scan.times.timed) {
+    const double lead = to_seconds(scan.times.first - scan.instants.front());
+    poses.push_back(body_pose(scan.times.first, motion.front().state.pose_after(lead)));
+  }
+  for (std::size_t i = 0; i < scan.instants.size(); ++i)
+    poses.push_back(body_pose(scan.instants[i], motion[i].state.pose));
+  return poses;
 }
 
 StampedPose ArenaLo::body_pose(Time instant, const Pose& map_from_lidar) const {
@@ -195,7 +213,8 @@ std::map<std::string, std::uint64_t> ArenaLo::memory() const {
   return {{"map", map_.memory_bytes()},
           {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
           {"backlog", 0},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
+          {"other", poses_.capacity() * sizeof(StampedPose) +
+                        last_.steps.capacity() * sizeof(estimation::MotionStep)}};
 }
 
 }  // namespace lidarena::odometry::arena_lo

@@ -37,6 +37,13 @@ class ArenaLo : public Odometry {
     Time end{0};
   };
 
+  /// The filter's steps through a scan.
+  struct ScanSteps {
+    estimation::ScanTimes times;
+    std::vector<Time> instants;  ///< of the steps: the slices' middles, the scan's end
+    Steps steps;
+  };
+
   /// The first and the second scan are single slices: motions within them are not known yet.
   double slice_duration(const estimation::ScanTimes& times) const;
   /// Finds the velocity between the middles of the first two scans, by which both are de-skewed:
@@ -50,14 +57,17 @@ class ArenaLo : public Odometry {
   bool is_used(ScanStatus status) const;
   /// The last motion, which continues, but slows down.
   Steps coasted(const std::vector<Slice>& slices, Time end) const;
-  void advance(const Steps& steps, const estimation::ScanTimes& times);
+  /// The motion of the scan before, given that of this scan as well, if it was already registered
+  /// against the map; its last pose becomes that of the trajectory.
+  std::vector<StampedPose> revise(const Steps& steps, const Motion& motion);
+  void advance(const std::vector<Slice>& slices, const Steps& steps,
+               const estimation::ScanTimes& times);
   void grow_map(const std::vector<Eigen::Vector3f>& points);
 
   std::vector<Eigen::Vector3f> points_in_map(const std::vector<Slice>& slices,
-                                             const Steps& steps) const;
-  /// Poses of the body at the scan's begin, at the slices' middles and at its end.
-  std::vector<StampedPose> motion_within(const std::vector<Slice>& slices, const Steps& steps,
-                                         const estimation::ScanTimes& times) const;
+                                             const Motion& motion) const;
+  /// Poses of the body at the scan's begin, if points have times, and at the instants of `motion`.
+  std::vector<StampedPose> poses_within(const ScanSteps& scan, const Motion& motion) const;
   StampedPose body_pose(Time instant, const Pose& map_from_lidar) const;
   ScanResult refused_scan();
 
@@ -65,7 +75,8 @@ class ArenaLo : public Odometry {
   Pose body_from_lidar_;
   Parallel parallel_;
 
-  Known known_;  ///< of the lidar at the end of the last scan; map: its frame at the first scan
+  Known known_;     ///< of the lidar at the end of the last scan; map: its frame at the first scan
+  ScanSteps last_;  ///< how it came to that
   map::LocalPlanes map_;
   std::optional<Opening> opening_;  ///< from the first scan to the second
   std::size_t scans_mapped_ = 0;

@@ -52,10 +52,10 @@ void add(const Eigen::Vector3f& point, const estimation::MotionEstimate& at, dou
 }
 
 /// Largest change (m, rad) of a pose from one pass to the next.
-double change_between(const Steps& a, const Steps& b) {
+double change_between(const Motion& a, const Motion& b) {
   double largest = 0.0;
   for (std::size_t i = 0; i < std::min(a.size(), b.size()); ++i) {
-    const estimation::MotionVector change = b[i].estimate.state - a[i].estimate.state;
+    const estimation::MotionVector change = b[i].state - a[i].state;
     largest = std::max(largest, change.head<6>().cwiseAbs().maxCoeff());
   }
   return largest;
@@ -129,16 +129,16 @@ Registration register_slices(const Known& before, std::span<const Slice> slices,
   for (int narrow = 0; narrow < passes; ++found.passes) {
     Measurement whole;
     const auto measured = [&](std::size_t i, const estimation::MotionEstimate& prior) {
-      const estimation::MotionEstimate& at = found.passes == 0 ? prior : found.steps[i].estimate;
+      const estimation::MotionEstimate& at = found.passes == 0 ? prior : found.motion[i];
       if (found.passes < 2) points[i] = averages(slices[i], at.state, most, config, parallel);
       const Measurement part = measure(points[i], at, scale, map, config, parallel);
       whole += part;
       return estimation::updated(prior, at.state, part.equations);
     };
-    Steps steps = filtered(before, slices, end, config, measured);
-    estimation::smooth(steps);
-    const double change = change_between(found.steps, steps);
-    found.steps = std::move(steps);
+    found.steps = filtered(before, slices, end, config, measured);
+    Motion motion = estimation::smoothed(found.steps);
+    const double change = change_between(found.motion, motion);
+    found.motion = std::move(motion);
     found.measurement = whole;
     if (scale <= config.kernel_scale_m) ++narrow;
     if (narrow > 1 && change < kConvergence) narrow = passes;

@@ -40,14 +40,17 @@ struct Known {
   Time instant{0};
 };
 
-/// The motion of a scan: at the middle of each slice, and as the last step at the scan's end.
+/// The motion of a scan: at the middle of each slice, and at the scan's end; given the measurements
+/// up to each instant, and given those of the whole scan.
 using Steps = std::vector<estimation::MotionStep>;
+using Motion = std::vector<estimation::MotionEstimate>;
 
 /// The motion as it continues without measurements.
 Steps coast(const Known& before, std::span<const Slice> slices, Time end, const Config& config);
 
 struct Registration {
   Steps steps;
+  Motion motion;
   Measurement measurement;  ///< in the last pass, of all slices
   std::size_t passes = 0;
 };

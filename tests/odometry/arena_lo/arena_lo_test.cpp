@@ -125,5 +125,48 @@ TEST(ArenaLo, TheMotionWithinAScanBeginsAfterTheLastOneAndEndsAtThePose) {
   }
 }
 
+TEST(ArenaLo, EachScanRevisesTheMotionOfTheOneBefore) {
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  ScanResult before;
+  std::size_t scans = 0;
+  for (const Scan& scan : synthetic::scans_of({.seconds = 1.0})) {
+    const ScanResult result = odometry.register_scan(scan);
+    if (scans++ < 2) {
+      EXPECT_TRUE(result.revised.empty()) << "of the opening";
+    } else {
+      ASSERT_EQ(result.revised.size(), before.motion.size());
+      for (std::size_t i = 0; i < before.motion.size(); ++i)
+        EXPECT_EQ(result.revised[i].stamp, before.motion[i].stamp);
+      const Trajectory trajectory = odometry.trajectory();
+      const StampedPose& now = *(trajectory.poses().end() - 2);
+      EXPECT_EQ(now.stamp, before.estimate.stamp);
+      EXPECT_EQ(now.world_from_body.matrix(), result.revised.back().world_from_body.matrix());
+    }
+    before = result;
+  }
+}
+
+TEST(ArenaLo, APoseIsMoreAccurateOnceTheNextScanIsThere) {
+  const synthetic::Recording recording{.seconds = 4.0, .range_noise_m = 0.03, .repeating = false};
+  ArenaLo odometry(settings_for(lidar()), lidar(), Parallel(1));
+  double live = 0.0;
+  double revised = 0.0;
+  const auto squared_error = [&](const StampedPose& pose) {
+    const Pose truth = synthetic::truth(recording, recording.epoch, pose.stamp);
+    return (truth.translation() - pose.world_from_body.translation()).squaredNorm();
+  };
+  const std::vector<Scan> scans = synthetic::scans_of(recording);
+  StampedPose before;
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanResult result = odometry.register_scan(scans[i]);
+    if (i > 4) {
+      live += squared_error(before);
+      revised += squared_error(result.revised.back());
+    }
+    before = result.estimate;
+  }
+  EXPECT_LT(std::sqrt(revised), 0.8 * std::sqrt(live));
+}
+
 }  // namespace
 }  // namespace lidarena::odometry::arena_lo

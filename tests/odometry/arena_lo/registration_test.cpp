@@ -122,7 +122,7 @@ TEST(ArenaLoRegistration, FollowsAccelerationsWithinAScan) {
                                              arena_lo_corner_map(), Config{}, single_thread());
   for (std::size_t i = 0; i < slices.size(); ++i) {
     const Pose expected = truth.pose_after(to_seconds(slices[i].middle - Time{1'000'000'000}));
-    const Pose error = expected.inverse() * found.steps[i].estimate.state.pose;
+    const Pose error = expected.inverse() * found.motion[i].state.pose;
     EXPECT_LT(error.translation().norm(), 0.01) << i;
     EXPECT_LT(so3::angle(error.linear()), 0.006) << i;
   }
