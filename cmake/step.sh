@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: BSD-3-Clause
-# Sourced by scripts that consist of steps: step NAME says that the next one begins. If LIDARENA_COSTS
-# names a file, each step that ends adds a line to it: its name, its seconds by the clock, and the
-# CPU-seconds of the programs that it ran and waited for, separated by tabs.
+# Sourced by scripts that consist of steps: step NAME [PLACE] says that the next one begins, and its
+# place among all (1/3). If LIDARENA_COSTS names a file, each step that ends adds a line to it: its
+# name, its seconds by the clock, and the CPU-seconds of the programs that it ran and waited for,
+# separated by tabs.
 step_name=
 
-# CPU time of the finished programs of this shell, in hundredths of a second: proc(5), stat, cutime and cstime
+# Sets cpu to the CPU time of this shell's finished programs, in hundredths of a second (proc(5), stat,
+# cutime and cstime).
 cpu_of_programs() {
   local stat
   read -r stat </proc/$$/stat
@@ -26,7 +28,7 @@ step() {
   local cpu
   cpu_of_programs
   step_name=$1 step_began=$SECONDS step_cpu=$cpu
-  printf '\n== %s (%ds)\n' "$1" "$SECONDS"
+  printf '\n== %s%s (%ds)\n' "${2:+$2 }" "$1" "$SECONDS"
 }
 
 trap end_step EXIT
