@@ -67,6 +67,14 @@ WithLoopConfig quick() {
   return config;
 }
 
+/// The i-th scan, one each 0.2 s; what it sees is made up by the odometries here.
+Scan scan_after(int i) {
+  Scan scan;
+  scan.stamp = from_seconds(0.2 * i);
+  scan.points.resize(1);
+  return scan;
+}
+
 double rms_height(std::span<const StampedPose> poses) {
   double sum = 0.0;
   for (const StampedPose& pose : poses)
@@ -79,9 +87,7 @@ TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
   WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
   std::vector<StampedPose> live;
   for (int i = 0; i < 320; ++i) {  // 64 s, one and a half rounds
-    Scan scan;
-    scan.stamp = from_seconds(0.2 * i);
-    scan.points.resize(1);
+    const Scan scan = scan_after(i);
     alone.register_scan(scan);
     live.push_back(looped.register_scan(scan).estimate);
   }
@@ -111,9 +117,7 @@ TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
   std::uint64_t loops_then = 0;
   std::size_t keyframes = 0;
   for (int i = 0; i < 1050; ++i) {  // 210 s, five rounds
-    Scan scan;
-    scan.stamp = from_seconds(0.2 * i);
-    scan.points.resize(1);
+    const Scan scan = scan_after(i);
     looped.register_scan(scan);
     if (i != 420) continue;
     after_two_rounds = looped.memory().at("map");
@@ -147,9 +151,7 @@ TEST(WithLoop, PosesOfAnUnfinishedStartAreTakenOverOnceTheyAreRevised) {
   LateStarter alone;
   WithLoop looped(std::make_unique<LateStarter>(), quick(), Parallel(1));
   for (int i = 0; i < 20; ++i) {
-    Scan scan;
-    scan.stamp = from_seconds(0.2 * i);
-    scan.points.resize(1);
+    const Scan scan = scan_after(i);
     alone.register_scan(scan);
     const ScanResult result = looped.register_scan(scan);
     EXPECT_EQ(result.counters.keyframes == 0, i < 4) << "no keyframe of a scan that will move";
@@ -181,9 +183,7 @@ TEST(WithLoop, APoseThatTheNextScanRevisesIsTakenOver) {
   Reviser alone;
   WithLoop looped(std::make_unique<Reviser>(), quick(), Parallel(1));
   for (int i = 0; i < 20; ++i) {
-    Scan scan;
-    scan.stamp = from_seconds(0.2 * i);
-    scan.points.resize(1);
+    const Scan scan = scan_after(i);
     alone.register_scan(scan);
     const ScanResult result = looped.register_scan(scan);
     ASSERT_EQ(result.revised.size(), i > 0 ? 1U : 0U);
