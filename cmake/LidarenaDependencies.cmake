@@ -17,6 +17,7 @@ pkg_check_modules(lz4 REQUIRED IMPORTED_TARGET liblz4)
 pkg_check_modules(lzf REQUIRED IMPORTED_TARGET liblzf)
 pkg_check_modules(md REQUIRED IMPORTED_TARGET libmd)
 find_package(BZip2 QUIET)  # reads ROS 1 bags with bz2 chunks
+pkg_check_modules(sqlite QUIET IMPORTED_TARGET sqlite3)  # reads bags of rosbag2 in SQLite storage
 
 # Embree 4 if found, else Embree 3 (a single .cpp file handles the differences), else the built-in
 # bounding volume hierarchy.

@@ -11,9 +11,9 @@ packages=(g++ cmake ninja-build pkg-config ca-certificates
           liblz4-dev libxxhash-dev liblzf-dev libmd-dev libceres-dev libcpp-httplib-dev libgtest-dev libgmock-dev libbenchmark-dev
           dpkg-dev file)
 # Debian 12 has sdformat 12; later releases dropped it, which disables SDF worlds. Without libbz2,
-# ROS 1 bags with bz2 chunks cannot be read; without nanoflann, benchmarks leave out the comparison
+# ROS 1 bags with bz2 chunks cannot be read; without libsqlite3, .db3 bags of rosbag2; without nanoflann, benchmarks leave out the comparison
 # with it. Live topics need Cyclone DDS, the Python module needs pybind11 and NumPy.
-optional=(libsdformat-dev cyclonedds-dev libbz2-dev libnanoflann-dev python3-dev pybind11-dev python3-numpy)
+optional=(libsdformat-dev cyclonedds-dev libbz2-dev libsqlite3-dev libnanoflann-dev python3-dev pybind11-dev python3-numpy)
 
 installed() { [ "$(dpkg-query -W -f '${db:Status-Status}' "$1" 2>/dev/null)" = installed ]; }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <cstdio>
+#include <utility>
 
 namespace lidarena {
 namespace {
@@ -19,6 +20,14 @@ std::string bar(double share) {
          std::string(static_cast<std::size_t>(kBarWidth - filled), '.');
 }
 
+/// Writes to standard error. Where that is impossible (a full disk, a closed pipe), the work goes
+/// on.
+template <class... Values>
+void print(fmt::format_string<Values...> format, Values&&... values) {
+  const std::string text = fmt::format(format, std::forward<Values>(values)...);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
 }  // namespace
 
 std::string clock_text(double seconds) {
@@ -30,14 +39,14 @@ std::string clock_text(double seconds) {
 Console::Console(bool quiet) : quiet_(quiet), terminal_(isatty(STDERR_FILENO) == 1) {}
 
 void Console::erase_line() {
-  if (line_open_) fmt::print(stderr, "\r\x1b[K");
+  if (line_open_) print("\r\x1b[K");
   line_open_ = false;
 }
 
 void Console::message(LogLevel level, std::string_view text) {
   if (quiet_ && level == LogLevel::kInfo) return;
   erase_line();
-  fmt::print(stderr, "{}{}\n", level == LogLevel::kWarning ? "warning: " : "", text);
+  print("{}{}\n", level == LogLevel::kWarning ? "warning: " : "", text);
 }
 
 void Console::progress(std::string_view stage, double done, double total) {
@@ -52,7 +61,7 @@ void Console::progress(std::string_view stage, double done, double total) {
   const double elapsed = std::chrono::duration<double>(now - stage_begin_).count();
   if (finished) {
     erase_line();
-    if (elapsed > 1.0) fmt::print(stderr, "  {}: done in {}\n", stage, clock_text(elapsed));
+    if (elapsed > 1.0) print("  {}: done in {}\n", stage, clock_text(elapsed));
     stage_.clear();
     return;
   }
@@ -62,11 +71,11 @@ void Console::progress(std::string_view stage, double done, double total) {
   const std::string left =
       share > 0.01 ? clock_text(elapsed * (1.0 - share) / share) + " left" : "estimating";
   if (terminal_) {
-    fmt::print(stderr, "\r\x1b[K  {} [{}] {:3.0f} %  {}", stage, bar(share), 100 * share, left);
+    print("\r\x1b[K  {} [{}] {:3.0f} %  {}", stage, bar(share), 100 * share, left);
     std::fflush(stderr);
     line_open_ = true;
   } else {
-    fmt::print(stderr, "  {}: {:.0f} %, {}\n", stage, 100 * share, left);
+    print("  {}: {:.0f} %, {}\n", stage, 100 * share, left);
   }
 }
 

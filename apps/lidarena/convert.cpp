@@ -11,6 +11,7 @@
 #include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
+#include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 #include "lidarena/world/export_world.hpp"
@@ -78,7 +79,7 @@ Json convert_world(const fs::path& in, const fs::path& out, const scenes::WorldO
 }
 
 Json convert_cloud(const fs::path& in, const fs::path& out) {
-  const dataset::Cloud cloud = dataset::read_cloud(in);
+  const dataset::Cloud cloud = dataset::read_cloud(in, true);
   if (out.extension() == ".ply") {
     dataset::write_ply(out, cloud);
   } else if (out.extension() == ".pcd") {
@@ -120,13 +121,32 @@ dataset::WriteOptions write_options(const ConvertOptions& o) {
   return options;
 }
 
+/// Says which topics of a recording of others are not converted.
+void tell_left_out(const dataset::Dataset& in, LogSink& log) {
+  std::vector<std::string> left_out;
+  for (const dataset::TopicSummary& topic : in.topics) {
+    const bool is_ours = topic.topic.starts_with("/truth/") || topic.topic == "/tf" ||
+                         topic.topic == "/tf_static" || topic.topic.starts_with("/lidarena/");
+    if (topic.is_read || is_ours) continue;
+    left_out.push_back(
+        fmt::format("{} ({}, {} messages)", topic.topic, topic.type, topic.messages));
+  }
+  if (!left_out.empty()) log.warn(fmt::format("left out: {}", fmt::join(left_out, ", ")));
+}
+
 Json convert_dataset(const ConvertOptions& o, const Parallel& parallel, LogSink& log) {
-  dataset::Dataset in = study::open_any_dataset(o.in, o.read, parallel);
-  for (const std::string& note : in.notes) log.info("note: " + note);
+  dataset::ReadOptions read = o.read;
+  read.all_sensors = read.imu_topic.empty();
+  dataset::Dataset in = study::open_any_dataset(o.in, read, parallel);
+  dataset::tell_opening(in, log);
+  tell_left_out(in, log);
+  dataset::read_whole_part(in);
   const dataset::CopySummary copied = dataset::copy_dataset(in, o.out, write_options(o));
-  return {{"kind", "dataset"},           {"scans", copied.scans},
-          {"points", copied.points},     {"imu_samples", copied.imu_samples},
-          {"truth_poses", copied.poses}, {"truth_scans", copied.truth_scans}};
+  Json done{{"kind", "dataset"},           {"scans", copied.scans},
+            {"points", copied.points},     {"imu_samples", copied.imu_samples},
+            {"truth_poses", copied.poses}, {"truth_scans", copied.truth_scans}};
+  if (!dataset::tell_reading(in, log)) done["ended"] = in.report->ended();
+  return done;
 }
 
 int convert_verb(const Common& common, const ConvertOptions& o) {
@@ -149,17 +169,18 @@ int convert_verb(const Common& common, const ConvertOptions& o) {
       break;
   }
   done["out"] = o.out;
+  const int exit_code = done.contains("ended") ? kWorkFailed : kDone;
   if (common.json) {
     print_json(done);
-    return kDone;
+    return exit_code;
   }
   std::string text;
   for (const auto& [key, value] : done.items()) {
-    if (key == "kind" || key == "out" || value == 0) continue;
+    if (key == "kind" || key == "out" || key == "ended" || value == 0) continue;
     text += fmt::format("{}{} {}", text.empty() ? "" : ", ", value.dump(), key);
   }
   fmt::print("{}: {}\n{}\n", done["kind"].get<std::string>(), text, o.out);
-  return kDone;
+  return exit_code;
 }
 
 }  // namespace
@@ -184,7 +205,9 @@ void add_convert(CLI::App& app, Common& common, int& exit_code) {
                    "Layouts and units of messages: si, or driver as in the sensors' own drivers")
       ->check(CLI::IsMember({"si", "driver"}))
       ->capture_default_str();
-  verb->add_option("--sensor", o->read.sensor, "Id of the only LiDAR to convert; default: all");
+  verb->add_option("--sensor", o->read.sensor,
+                   "Id or topic of the only LiDAR to convert; default: all");
+  verb->add_option("--imu-topic", o->read.imu_topic, "Topic of the only IMU to convert");
   verb->add_option("--layout", o->read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
   verb->add_option("--rate", o->read.rate_hz, "Sweeps or poses per second, for input without times")

@@ -69,6 +69,16 @@ dataset::FramedTrajectory in_body_of_truth(dataset::FramedTrajectory estimate,
   return estimate;
 }
 
+/// Says what was assumed about poses, and where their file ended too early.
+void warn_of_reading(const dataset::FramedTrajectory& poses, results::RunMetrics& metrics,
+                     LogSink& log) {
+  for (const std::string& text : {poses.note, poses.ended}) {
+    if (text.empty()) continue;
+    metrics.warnings.push_back(text);
+    log.warn(text);
+  }
+}
+
 /// Says of how many rows the first of equal times is used; nothing if no time is repeated.
 void warn_of_repeats(const dataset::FramedTrajectory& poses, const std::string& name,
                      results::RunMetrics& metrics, LogSink& log) {
@@ -94,7 +104,7 @@ class Files {
       throw InputError(o.truth, "contains a single pose; a truth needs at least two");
     }
     if (o.map.empty()) return;
-    map_ = dataset::read_cloud(o.map);
+    map_ = dataset::read_cloud(o.map, true);
     world_ = std::make_unique<world::World>(world::load_mesh(o.mesh), o.mesh);
   }
   const dataset::FramedTrajectory& truth() const { return truth_; }
@@ -104,7 +114,7 @@ class Files {
   results::ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
     dataset::RunFiles run;
     const dataset::FramedTrajectory read = estimate(file);
-    run.trajectory = read.trajectory;
+    run.trajectory = evaluation::moved_by(read.trajectory, -map_.origin);
     run.live = run.trajectory;
     run.map = map_;
     results::ScoredRun scored;
@@ -113,6 +123,9 @@ class Files {
     scored.metrics.frames = {truth_.body, o_.lever};
     warn_of_repeats(truth_, o_.truth, scored.metrics, log);
     warn_of_repeats(read, file, scored.metrics, log);
+    warn_of_reading(truth_, scored.metrics, log);
+    warn_of_reading(read, scored.metrics, log);
+    scored.is_cut = !truth_.ended.empty() || !read.ended.empty();
     return scored;
   }
 
@@ -232,7 +245,7 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
   const std::vector<results::ScoredRun> runs = score_all(o, Parallel(common.threads), console);
   print_runs(common, o, runs);
   for (const results::ScoredRun& run : runs) {
-    if (!run.metrics.is_ok()) return kWorkFailed;
+    if (!run.metrics.is_ok() || run.is_cut) return kWorkFailed;
   }
   return kDone;
 }

@@ -12,6 +12,7 @@
 #include "apps/lidarena/yaml_info.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
@@ -25,6 +26,7 @@ struct InfoOptions {
   std::size_t rays = 0;
   bool pattern = false;
   std::string out;
+  dataset::ReadOptions read{};
   scenes::WorldOptions world{};
 };
 
@@ -43,9 +45,24 @@ Json cloud_info(const fs::path& file) {
   return json;
 }
 
+Json recorded_topics(const dataset::Dataset& dataset) {
+  Json topics = Json::object();
+  for (const dataset::TopicSummary& topic : dataset.topics) {
+    Json& json = topics[topic.topic];
+    json = {{"type", topic.type},
+            {"messages", topic.messages},
+            {"rate_hz", topic.rate_hz},
+            {"read", topic.is_read}};
+    if (!topic.frame_id.empty()) json["frame"] = topic.frame_id;
+  }
+  return topics;
+}
+
 /// Reads the whole dataset, so that damage anywhere in it is reported.
-Json dataset_info(const fs::path& path) {
-  dataset::Dataset dataset = study::open_any_dataset(path, {}, Parallel());
+Json dataset_info(const fs::path& path, const dataset::ReadOptions& read, LogSink& log) {
+  dataset::Dataset dataset = study::open_any_dataset(path, read, Parallel());
+  dataset::tell_opening(dataset, log);
+  dataset::read_whole_part(dataset);
   struct Counts {
     std::size_t messages = 0, points = 0, untimed = 0;
     Time first{0}, last{0}, longest_gap{0};
@@ -63,7 +80,10 @@ Json dataset_info(const fs::path& path) {
     c.points += scan->points.size();
     c.untimed += scan->timed ? 0 : 1;
   }
+  dataset::tell_reading(dataset, log);
   Json json{{"kind", "dataset"}, {"rig", to_json(dataset.rig)}, {"topics", Json::object()}};
+  if (!dataset.topics.empty()) json["recorded_topics"] = recorded_topics(dataset);
+  if (!dataset.report->ended().empty()) json["ended"] = dataset.report->ended();
   for (const auto& [name, c] : topics) {
     const double seconds = to_seconds(c.last - c.first);
     json["topics"][name] = {
@@ -87,10 +107,10 @@ Json ply_info(const fs::path& file, LogSink& log) {
   }
 }
 
-Json folder_info(const fs::path& folder) {
+Json folder_info(const fs::path& folder, const dataset::ReadOptions& read, LogSink& log) {
   const fs::path file = folder / "manifest.json";
   Json manifest = fs::exists(file) ? dataset::read_json(file) : Json::object();
-  if (manifest.value("kind", "") != "run") return dataset_info(folder);
+  if (manifest.value("kind", "") != "run") return dataset_info(folder, read, log);
   if (fs::exists(folder / "metrics.json"))
     manifest["metrics"] = dataset::read_json(folder / "metrics.json");
   return manifest;
@@ -104,17 +124,18 @@ Json file_info(const fs::path& file, const study::ConfigFolder& configs, const I
   if (ending == ".yaml" || ending == ".yml") return yaml_info(file, configs, o.world, log);
   if (ending == ".ply") return ply_info(file, log);
   if (worlds.contains(ending)) return world_info(file, o.world, log);
-  if (ending == ".mcap" || ending == ".bag") return dataset_info(file);
+  if (dataset::is_recording(file) || ending == ".pcap") return dataset_info(file, o.read, log);
   if (ending == ".pcd") return cloud_info(file);
-  throw InputError(file.string(), "is of no kind that info describes",
-                   fmt::format("it describes .yaml, .mcap, .bag, .pcd, .ply, {}, and folders of "
-                               "datasets and runs",
-                               fmt::join(worlds, ", ")));
+  throw InputError(
+      file.string(), "is of no kind that info describes",
+      fmt::format("it describes .yaml, .mcap, .bag, .db3, .pcap, .pcd, .ply, {}, and folders of "
+                  "datasets and runs",
+                  fmt::join(worlds, ", ")));
 }
 
 /// Describes the file or folder `thing`, else what has this name in configs/.
 Json info_of(const study::ConfigFolder& configs, const InfoOptions& o, LogSink& log) {
-  if (fs::is_directory(o.thing)) return folder_info(o.thing);
+  if (fs::is_directory(o.thing)) return folder_info(o.thing, o.read, log);
   if (fs::exists(o.thing)) return file_info(o.thing, configs, o, log);
   std::vector<std::string> all;
   for (const char* kind : {"sensors", "worlds", "flights", "studies", "odometry"}) {
@@ -172,7 +193,7 @@ int info_verb(const Common& common, const InfoOptions& o) {
   } else {
     print_tree(json, 0);
   }
-  return kDone;
+  return json.contains("ended") ? kWorkFailed : kDone;
 }
 
 }  // namespace
@@ -187,6 +208,8 @@ void add_info(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--rays", o->rays, "Print the first N rays of a sensor as CSV");
   verb->add_flag("--pattern", o->pattern,
                  "Share of a sensor's field of view that its shots cover in 0.1, 0.5, 1 and 4 s");
+  verb->add_option("--sensor", o->read.sensor, "Id or topic of the only LiDAR to read");
+  verb->add_option("--imu-topic", o->read.imu_topic, "Topic of the IMU to read");
   verb->add_option("--out", o->out, "With --pattern: SVG file to write the drawing to");
   add_allow_missing(*verb, o->world.allow_missing);
   set_verb(

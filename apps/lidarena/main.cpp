@@ -150,14 +150,27 @@ int parse_and_do(int argc, char** argv) {
 }  // namespace
 }  // namespace lidarena
 
+namespace {
+
+/// Says why the program failed, unless standard error cannot be written.
+void complain(const char* what) {
+  const std::string text = fmt::format("lidarena: {}\n", what);
+  std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   try {
-    return lidarena::parse_and_do(argc, argv);
+    const int exit_code = lidarena::parse_and_do(argc, argv);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return exit_code;
+    complain("the output cannot be written to standard output; is the disk full?");
+    return lidarena::kWorkFailed;
   } catch (const lidarena::InputError& e) {
-    fmt::print(stderr, "lidarena: {}\n", e.what());
+    complain(e.what());
     return lidarena::kBadInput;
   } catch (const std::exception& e) {
-    fmt::print(stderr, "lidarena: {}\n", e.what());
+    complain(e.what());
     return lidarena::kWorkFailed;
   }
 }

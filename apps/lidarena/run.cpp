@@ -100,7 +100,7 @@ int run_verb(const Common& common, const RunOptions& o) {
     console.warn("the run diverged: " + s.reason);
     return kWorkFailed;
   }
-  return kDone;
+  return s.recording_ended.empty() ? kDone : kWorkFailed;
 }
 
 }  // namespace
@@ -116,7 +116,10 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
                    "Folder to write; default: DATASET-ALGORITHM in the working folder");
   verb->add_option("--preset", r.odometry.preset,
                    "One of the algorithm's presets; default: its first");
-  verb->add_option("--sensor", r.read.sensor, "Id of the LiDAR to use, if there are several");
+  verb->add_option("--sensor", r.read.sensor,
+                   "Id or topic of the LiDAR to use, if there are several");
+  verb->add_option("--imu-topic", r.read.imu_topic,
+                   "Topic of the IMU to use; default: the one that belongs to the LiDAR");
   verb->add_option("--config", r.odometry.config_file,
                    "YAML file that overrides values of the preset");
   verb->add_option("--set", r.odometry.overrides,
@@ -129,7 +132,8 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--layout", r.read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
   verb->add_option("--extrinsics", o->extrinsics,
-                   "Mounting of the LiDAR: body_from_lidar=x,y,z,qx,qy,qz,qw");
+                   "Mounting of the LiDAR: body_from_lidar=x,y,z,qx,qy,qz,qw; "
+                   "default: as the dataset states, or its /tf_static");
   verb->add_option("--rate", r.read.rate_hz, "Sweeps per second, for a folder without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();

@@ -78,6 +78,11 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
           ? simulate_live(options.live, request, out, parallel, console)
           : PublishedFlight{study::simulate_dataset(request, out, parallel, console), {}, {}};
   const study::SimulateSummary& s = flight.summary;
+  if (s.scans > 0 && s.points == 0) {
+    console.warn(
+        "no shot has a return: the world is out of range; is it in meters, and does the flight "
+        "pass through it? `lidarena info WORLD` prints its bounds");
+  }
   if (options.example_scans) study::write_example_scans(out, parallel);
   if (common.json) {
     Json told{{"dataset", out},

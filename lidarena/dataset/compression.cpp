@@ -12,11 +12,14 @@
 
 #include <algorithm>
 #include <cstring>
+#include <fstream>
 #include <functional>
 #include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
+
+#include "lidarena/base/error.hpp"
 
 namespace lidarena::dataset {
 namespace {
@@ -212,6 +215,43 @@ void decompress(std::string_view method, Bytes input, std::uint64_t size,
   if (method == "lz4") return decompress_lz4(input, size, output);
   if (method == "bz2") return decompress_bz2(input, size, output);
   throw std::runtime_error("is compressed with the unknown method '" + std::string(method) + "'");
+}
+
+bool is_zstd(Bytes bytes) {
+  constexpr std::uint32_t kMagic = 0xFD2FB528;
+  std::uint32_t beginning = 0;
+  if (bytes.size() >= sizeof beginning) std::memcpy(&beginning, bytes.data(), sizeof beginning);
+  return beginning == kMagic;
+}
+
+void decompress_zstd_frame(Bytes input, std::vector<std::byte>& output) {
+  const unsigned long long size = ZSTD_getFrameContentSize(input.data(), input.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN)
+    throw std::runtime_error("a compressed message does not state its size");
+  decompress_zstd(input, size, output);
+}
+
+void decompress_zstd_file(const std::filesystem::path& in, const std::filesystem::path& out) {
+  constexpr std::size_t kBlock = 1 << 20;  // bytes
+  std::ifstream from(in, std::ios::binary);
+  std::ofstream to(out, std::ios::binary);
+  const std::unique_ptr<ZSTD_DCtx, DeleteZstd> context(ZSTD_createDCtx());
+  std::vector<char> packed(kBlock), unpacked(kBlock);
+  std::size_t rest = 1;  // 0: a frame has ended
+  while (from.read(packed.data(), kBlock), from.gcount() > 0) {
+    ZSTD_inBuffer input{packed.data(), static_cast<std::size_t>(from.gcount()), 0};
+    ZSTD_outBuffer output{unpacked.data(), kBlock, kBlock};
+    while (input.pos < input.size || output.pos == output.size) {
+      output.pos = 0;
+      rest = ZSTD_decompressStream(context.get(), &output, &input);
+      if (ZSTD_isError(rest)) throw std::runtime_error(ZSTD_getErrorName(rest));
+      to.write(unpacked.data(), static_cast<std::streamsize>(output.pos));
+      if (rest == 0 && input.pos == input.size) break;
+    }
+  }
+  to.flush();
+  if (!to) throw Error(out.string() + ": cannot be written; set TMPDIR to a folder with space");
+  if (rest != 0) throw std::runtime_error("the compressed file is cut off");
 }
 
 }  // namespace lidarena::dataset

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -39,5 +40,15 @@ Bytes compress_lz4(Bytes input, std::vector<std::byte>& output);
 /// `size` bytes, or when the method is unknown or not built in.
 void decompress(std::string_view method, Bytes input, std::uint64_t size,
                 std::vector<std::byte>& output);
+
+/// Whether the bytes begin as a zstd frame.
+bool is_zstd(Bytes bytes);
+
+/// Decompresses a zstd frame that states its size. Throws std::runtime_error as decompress().
+void decompress_zstd_frame(Bytes input, std::vector<std::byte>& output);
+
+/// Decompresses the zstd file `in` to the file `out`. Throws std::runtime_error when `in` is
+/// damaged, Error when `out` cannot be written.
+void decompress_zstd_file(const std::filesystem::path& in, const std::filesystem::path& out);
 
 }  // namespace lidarena::dataset

@@ -12,15 +12,29 @@
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/point_truth.hpp"
+#include "lidarena/dataset/read_report.hpp"
 
 namespace lidarena::dataset {
 
 /// What to read, and values that the data themselves may not state.
 struct ReadOptions {
-  std::string sensor;  ///< id of the only LiDAR to read; empty = all
+  std::string sensor;     ///< id or topic of the only LiDAR to read; empty = all
+  std::string imu_topic;  ///< of a recording: the IMU to read; empty = the one of the LiDAR
+  /// Of a recording of others: read all LiDARs and IMUs, not only those of one odometry.
+  bool all_sensors = false;
   std::string layout;  ///< of raw .bin files: xyz, xyzi, xyzt, xyztr; empty = inferred
   std::optional<Pose> body_from_lidar;  ///< overrides the mounting in the dataset
   double rate_hz = 10.0;                ///< sweep rate, for folders without times
+};
+
+/// A topic of a recording, for the user.
+struct TopicSummary {
+  std::string topic;
+  std::string type;
+  std::string frame_id;  ///< of scans and IMU samples in recordings of others, else empty
+  std::uint64_t messages = 0;
+  double rate_hz = 0.0;  ///< 0: unknown
+  bool is_read = false;  ///< its messages become events
 };
 
 /// An opened dataset: all that an estimator may use. Ground truth is separate, see load_truth().
@@ -28,16 +42,24 @@ struct Dataset {
   std::filesystem::path path;
   Rig rig;
   std::optional<std::size_t> scan_count;  ///< of the chosen LiDAR, if known before reading
-  Json manifest;                   ///< manifest.json of the folder; null for third-party data
-  std::vector<std::string> notes;  ///< assumptions and damage, to be shown to the user
+  Json manifest;                      ///< manifest.json of the folder; null for third-party data
+  std::vector<std::string> notes;     ///< assumptions and damage, to be shown to the user
+  std::vector<std::string> warnings;  ///< what would spoil a run, likewise
+  /// Why the IMU of the recording cannot be used with its LiDAR (the rig is then without it).
+  std::string imu_fault;
+  std::vector<TopicSummary> topics;  ///< of a recording of messages
+  std::shared_ptr<void> unpacked;    ///< temporary files that the events are read from
   std::unique_ptr<EventSource> events;
+  /// Filled while the events are read; never null.
+  std::shared_ptr<ReadReport> report = std::make_shared<ReadReport>();
 };
 
-/// Opens a Lidarena dataset folder, a single .mcap or ROS 1 .bag, a rosbag2 folder with one .mcap,
-/// or a folder of PCD/PLY/bin sweeps. In third-party recordings,
-/// topics are found by type: the first topic with scans (PointCloud2, Livox CustomMsg), or the one
-/// named by `options.sensor` (topic or id), and the first Imu topic, whose accelerations may be in
-/// m/s^2 or g. Throws InputError naming file, place and remedy.
+/// Whether `path` is a recording of messages, or a folder with recordings.
+bool is_recording(const std::filesystem::path& path);
+
+/// Opens a Lidarena dataset folder, a recording (see open_recording()), or a folder of PCD/PLY/bin
+/// sweeps. What recordings of others do not state is inferred, and said: see guess_sensors.hpp.
+/// Throws InputError naming file, place and remedy.
 Dataset open_dataset(const std::filesystem::path& path, const ReadOptions& options = {});
 
 /// Ground-truth trajectory of the body if the dataset has one (truth.tum). For evaluation only:

@@ -35,15 +35,20 @@ std::string livox_topic_of(const std::string& lidar_id) { return "/" + lidar_id 
 
 Json to_json(const RecordedSensors& sensors) {
   Json json{{"lidars", inverted(sensors.lidars)}, {"imus", inverted(sensors.imus)}};
-  if (!sensors.imus_in_g.empty()) json["imus_in_g"] = sensors.imus_in_g;
+  for (const auto& [id, units] : sensors.imu_units)
+    if (units == kInG) json["imus_in_g"].push_back(id);
   return json;
 }
 
 RecordedSensors sensors_from_json(const Json& json, const std::string& place) {
   try {
     using Map = std::map<std::string, std::string>;
-    return {inverted(json.at("lidars").get<Map>()), inverted(json.at("imus").get<Map>()),
-            json.value("imus_in_g", std::set<std::string>{})};
+    RecordedSensors sensors;
+    sensors.lidars = inverted(json.at("lidars").get<Map>());
+    sensors.imus = inverted(json.at("imus").get<Map>());
+    for (const auto& id : json.value("imus_in_g", std::vector<std::string>{}))
+      sensors.imu_units[id] = kInG;
+    return sensors;
   } catch (const Json::exception&) {
     throw InputError(place, "the list of topics is not {\"lidars\": {id: topic}, \"imus\": {...}}");
   }

@@ -4,11 +4,14 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/dataset_layout.hpp"
+#include "lidarena/dataset/guess_sensors.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/packets/packet_capture.hpp"
 #include "lidarena/dataset/points/sweep_dataset.hpp"
 #include "lidarena/dataset/points/sweeps.hpp"
 #include "lidarena/dataset/recording.hpp"
+#include "lidarena/dataset/recording_parts.hpp"
 #include "lidarena/dataset/recording_source.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
@@ -29,6 +32,13 @@ void apply(const ReadOptions& options, const std::string& place, layout::Descrip
   choose_lidar(options, place, dataset.rig);
   std::erase_if(dataset.sensors.lidars,
                 [&](const auto& entry) { return dataset.rig.find_lidar(entry.second) == nullptr; });
+  if (options.imu_topic.empty()) return;
+  const auto chosen = dataset.sensors.imus.find(options.imu_topic);
+  if (chosen == dataset.sensors.imus.end())
+    throw InputError(place, "has no IMU topic '" + options.imu_topic + "'");
+  const std::string id = chosen->second;
+  std::erase_if(dataset.sensors.imus, [&](const auto& entry) { return entry.second != id; });
+  std::erase_if(dataset.rig.imus, [&](const ImuInfo& imu) { return imu.id != id; });
 }
 
 Dataset from_recording(const fs::path& path, const fs::path& file, const RecordingInfo& info,
@@ -41,7 +51,7 @@ Dataset from_recording(const fs::path& path, const fs::path& file, const Recordi
     dataset.scan_count = info.count_of(lidars.begin()->first);
   }
   if (!info.damage.empty()) dataset.notes.push_back(info.damage);
-  dataset.events = open_recorded_events(file, description.sensors, info);
+  dataset.events = open_recorded_events(file, description.sensors, info, dataset.report);
   dataset.rig = std::move(description.rig);
   return dataset;
 }
@@ -91,76 +101,47 @@ Dataset open_folder(const fs::path& folder, const ReadOptions& options) {
   return dataset;
 }
 
-/// "/os/points" becomes "os", "/livox/lidar" becomes "livox_lidar".
-std::string id_of_topic(std::string topic) {
-  constexpr std::string_view kPoints = "/points";
-  if (topic.starts_with('/')) topic.erase(0, 1);
-  if (topic.ends_with(kPoints)) topic.erase(topic.size() - kPoints.size());
-  std::ranges::replace(topic, '/', '_');
-  return topic;
-}
-
-std::string list_of(const std::vector<RecordedTopic>& topics) {
-  std::string text;
-  for (const RecordedTopic& topic : topics) {
-    text += (text.empty() ? "" : ", ") + topic.topic + " (" + topic.type + " in " +
-            topic.message_encoding + ")";
-  }
-  return text.empty() ? "nothing" : text;
-}
-
-/// Guesses the sensors of a third-party recording: the first topic with scans, or the one named by
-/// topic or id, and the first IMU topic. The mounting is unknown: body, LiDAR and IMU frames are
-/// assumed to coincide.
-layout::Description guess(const fs::path& file, const RecordingInfo& info,
-                          const ReadOptions& options, std::vector<std::string>& notes) {
-  layout::Description guessed;
+std::vector<TopicSummary> topics_of(const RecordingInfo& info, const RecordedSensors& sensors,
+                                    const Survey& survey) {
+  std::vector<TopicSummary> topics;
   for (const RecordedTopic& topic : info.topics) {
-    const std::string id = id_of_topic(topic.topic);
-    if (topic.topic.starts_with(layout::kTruthPrefix)) continue;
-    const bool is_wanted = options.sensor.empty()
-                               ? guessed.rig.lidars.empty()
-                               : topic.topic == options.sensor || id == options.sensor;
-    if (is_scan_type(topic) && is_wanted && topic.message_count > 0) {
-      guessed.sensors.lidars[topic.topic] = id;
-      guessed.rig.lidars.emplace_back().id = id;
-      notes.push_back("scans are read from " + topic.topic);
-    } else if (is_imu_type(topic) && guessed.rig.imus.empty() && topic.message_count > 0) {
-      guessed.sensors.imus[topic.topic] = id;
-      guessed.rig.imus.emplace_back().id = id;
-      notes.push_back("IMU samples are read from " + topic.topic);
-      if (is_in_g(file, topic.topic)) {
-        guessed.sensors.imus_in_g.insert(id);
-        notes.push_back(
-            "accelerations of the IMU are taken to be in g, judging by their magnitude");
-      }
-    }
+    TopicSummary& summary = topics.emplace_back();
+    summary = {topic.topic, topic.type, {}, topic.message_count};
+    summary.is_read = sensors.lidars.contains(topic.topic) || sensors.imus.contains(topic.topic);
+    const double seconds = to_seconds(info.end - info.start);
+    if (topic.message_count > 1 && seconds > 0.0)
+      summary.rate_hz = static_cast<double>(topic.message_count - 1) / seconds;
+    const auto seen = survey.topics.find(topic.topic);
+    if (seen == survey.topics.end()) continue;
+    summary.frame_id = seen->second.frame_id;
+    if (const Time period = seen->second.period(); period > Time{0})
+      summary.rate_hz = 1.0 / to_seconds(period);
   }
-  if (guessed.rig.lidars.empty()) {
-    const std::string wanted = options.sensor.empty() ? "" : " named '" + options.sensor + "'";
-    throw InputError(
-        file.string(), "holds no scans" + wanted + " that can be read",
-        "scans are PointCloud2 or Livox CustomMsg messages; it holds " + list_of(info.topics));
-  }
-  if (!options.body_from_lidar) {
-    notes.push_back(
-        "the file does not state how the LiDAR is mounted; its frame is taken to be the body "
-        "frame");
-  }
-  return guessed;
+  return topics;
 }
 
-Dataset open_recording_file(const fs::path& file, const ReadOptions& options) {
+Dataset open_recording_files(const fs::path& path, const ReadOptions& options) {
+  const auto unpacked = std::make_shared<UnpackedRecording>(path);
+  const fs::path& file = unpacked->path();
   const RecordingInfo info = read_recording_info(file);
   if (auto ours = layout::description_in(info, file.string())) {
-    return from_recording(file, file, info, *std::move(ours), options);
+    auto topics = topics_of(info, ours->sensors, {});
+    Dataset dataset = from_recording(path, file, info, *std::move(ours), options);
+    dataset.topics = std::move(topics);
+    dataset.unpacked = unpacked;
+    return dataset;
   }
-  std::vector<std::string> notes;
-  layout::Description guessed = guess(file, info, options, notes);
+  const Survey survey = survey_recording(file, info);
+  GuessedSensors guessed = guess_sensors(path, info, survey, options);
+  auto topics = topics_of(info, guessed.description.sensors, survey);
   ReadOptions mounting = options;
   mounting.sensor.clear();  // already chosen, possibly by its topic
-  Dataset dataset = from_recording(file, file, info, std::move(guessed), mounting);
-  dataset.notes.insert(dataset.notes.end(), notes.begin(), notes.end());
+  Dataset dataset = from_recording(path, file, info, std::move(guessed.description), mounting);
+  dataset.unpacked = unpacked;
+  dataset.topics = std::move(topics);
+  for (std::string& note : guessed.notes) dataset.notes.push_back(std::move(note));
+  dataset.warnings = std::move(guessed.warnings);
+  dataset.imu_fault = std::move(guessed.imu_fault);
   return dataset;
 }
 
@@ -169,24 +150,6 @@ bool is_unfinished(const fs::path& folder) {
   return is_there(layout::kManifestPart) || data_file(folder) ||
          is_there(std::string(layout::kData) + ".part") ||
          is_there(std::string(layout::kBag) + ".part");
-}
-
-/// The data file of a rosbag2 folder; empty for any other folder.
-std::optional<fs::path> rosbag_file(const fs::path& folder) {
-  if (!fs::exists(folder / layout::kRosbagMetadata)) return std::nullopt;
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.path().extension() == ".mcap") files.push_back(entry.path());
-  }
-  if (files.empty()) {
-    throw InputError(folder.string(), "is a bag without an MCAP file",
-                     "convert it with 'ros2 bag convert' to the storage mcap");
-  }
-  if (files.size() > 1) {
-    throw InputError(folder.string(), "is a bag split into several files",
-                     "join them with 'ros2 bag convert', or give one of them");
-  }
-  return files.front();
 }
 
 std::optional<Trajectory> truth_in_recording(const fs::path& file) {
@@ -252,15 +215,16 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
       throw InputError(path.string(), "is an unfinished dataset: it has no manifest.json",
                        "write it again, or give its data file alone");
     }
-    if (const auto bag = rosbag_file(path)) return open_recording_file(*bag, options);
+    if (is_recording(path)) return open_recording_files(path, options);
+    if (fs::exists(path / layout::kRosbagMetadata)) {
+      throw InputError(path.string(), "is a bag of rosbag2 without its data",
+                       "copy its .mcap or .db3 file into the folder");
+    }
     return open_sweep_folder(path, options);
   }
-  if (path.extension() == ".db3") {
-    throw InputError(path.string(), "is a bag in SQLite format, which is not supported",
-                     "convert it with 'ros2 bag convert' to the storage mcap");
-  }
-  return recording_format_of(path) ? open_recording_file(path, options)
-                                   : open_sweep_files({path}, options);
+  if (path.extension() == ".pcap") return open_packet_capture(path, options);
+  return is_recording(path) ? open_recording_files(path, options)
+                            : open_sweep_files({path}, options);
 }
 
 std::optional<Trajectory> load_truth(const fs::path& dataset) {
@@ -269,6 +233,10 @@ std::optional<Trajectory> load_truth(const fs::path& dataset) {
   }
   if (fs::exists(dataset / layout::kTruth)) return read_tum(dataset / layout::kTruth);
   return std::nullopt;
+}
+
+bool is_recording(const fs::path& path) {
+  return fs::is_directory(path) ? !recordings_in(path).empty() : is_recording_name(path);
 }
 
 bool has_measurements(const fs::path& folder) {

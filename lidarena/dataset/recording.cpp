@@ -7,14 +7,18 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/compression.hpp"
+#include "lidarena/dataset/damaged_file.hpp"
 #include "lidarena/dataset/mcap/mcap_info.hpp"
 #include "lidarena/dataset/mcap/mcap_reader.hpp"
 #include "lidarena/dataset/mcap/mcap_writer.hpp"
 #include "lidarena/dataset/mcap/rosbag2_metadata.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/part_file.hpp"
+#include "lidarena/dataset/recording_parts.hpp"
 #include "lidarena/dataset/ros1/bag_reader.hpp"
 #include "lidarena/dataset/ros1/bag_writer.hpp"
+#include "lidarena/dataset/sqlite/db3_reader.hpp"
 
 namespace lidarena::dataset {
 namespace {
@@ -25,12 +29,11 @@ constexpr const char* kMetadataFile = "metadata.yaml";
 /// End of the topic on which a bag, which has no metadata records, holds them as a string message.
 constexpr std::string_view kDescriptionEnding = "/description";
 
-RecordingFormat format_by_content(const fs::path& file) {
+bool is_bag_by_content(const fs::path& file) {
   std::string beginning(9, '\0');
   std::ifstream(file, std::ios::binary).read(beginning.data(), 9);
   const bool named_bag = recording_format_of(file) == RecordingFormat::kBag;
-  return is_bag(beginning) || (named_bag && beginning[0] != '\x89') ? RecordingFormat::kBag
-                                                                    : RecordingFormat::kMcap;
+  return is_bag(beginning) || (named_bag && beginning[0] != '\x89');
 }
 
 std::optional<Encoding> encoding_named(std::string_view name) {
@@ -58,6 +61,28 @@ class McapRecordingReader final : public RecordingReader {
  private:
   McapReader reader_;
   std::string type_;
+};
+
+/// Decompresses messages that rosbag2 compressed one by one (compression mode MESSAGE).
+class UnpackedMessages final : public RecordingReader {
+ public:
+  explicit UnpackedMessages(std::unique_ptr<RecordingReader> reader) : reader_(std::move(reader)) {}
+
+  std::optional<RecordedMessage> next() override {
+    auto message = reader_->next();
+    if (!message || !is_zstd(message->data)) return message;
+    try {
+      decompress_zstd_frame(message->data, unpacked_);
+    } catch (const std::runtime_error& error) {
+      throw DamagedFile(message->topic, error.what(), "copy the file again");
+    }
+    message->data = unpacked_;
+    return message;
+  }
+
+ private:
+  std::unique_ptr<RecordingReader> reader_;
+  std::vector<std::byte> unpacked_;
 };
 
 class McapRecordingWriter final : public RecordingWriter {
@@ -200,21 +225,26 @@ std::uint64_t RecordingInfo::count_of(const std::string& topic) const {
 }
 
 std::optional<RecordingFormat> recording_format_of(const fs::path& file) {
-  const fs::path whole = file.extension() == ".part" ? file.stem() : file.filename();
+  const bool is_open = file.extension() == ".part" || file.extension() == ".active";
+  const fs::path whole = is_open ? file.stem() : file.filename();
   if (whole.extension() == ".mcap") return RecordingFormat::kMcap;
   if (whole.extension() == ".bag") return RecordingFormat::kBag;
   return std::nullopt;
 }
 
-std::unique_ptr<RecordingReader> open_recording(const fs::path& file) {
-  if (format_by_content(file) == RecordingFormat::kBag) return std::make_unique<BagReader>(file);
-  return std::make_unique<McapRecordingReader>(file);
+std::unique_ptr<RecordingReader> open_recording(const fs::path& path) {
+  if (fs::is_directory(path)) return open_parts(recordings_in(path));
+  if (is_sqlite(path)) return std::make_unique<UnpackedMessages>(std::make_unique<Db3Reader>(path));
+  if (is_bag_by_content(path)) return std::make_unique<BagReader>(path);
+  return std::make_unique<UnpackedMessages>(std::make_unique<McapRecordingReader>(path));
 }
 
-RecordingInfo read_recording_info(const fs::path& file) {
-  if (format_by_content(file) == RecordingFormat::kMcap) return read_mcap_info(file);
-  RecordingInfo info = read_bag_info(file);
-  add_metadata(file, info);
+RecordingInfo read_recording_info(const fs::path& path) {
+  if (fs::is_directory(path)) return read_parts_info(recordings_in(path));
+  if (is_sqlite(path)) return read_db3_info(path);
+  if (!is_bag_by_content(path)) return read_mcap_info(path);
+  RecordingInfo info = read_bag_info(path);
+  add_metadata(path, info);
   return info;
 }
 

@@ -13,7 +13,7 @@
 #include "lidarena/base/time.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
 
-/// Recordings of ROS messages: one interface to MCAP files and ROS 1 bags.
+/// Recordings of ROS messages: one interface to MCAP files, ROS 1 bags and bags of rosbag2.
 namespace lidarena::dataset {
 
 using StringMap = std::map<std::string, std::string>;
@@ -80,14 +80,15 @@ class RecordingWriter {
 
 enum class RecordingFormat { kMcap, kBag };
 
-/// The format by the ending of the name, .mcap or .bag (a further ".part" is ignored); empty for
-/// others.
+/// The format by the ending of the name, .mcap or .bag (a further ".part" or ".active" is ignored);
+/// empty for others.
 std::optional<RecordingFormat> recording_format_of(const std::filesystem::path& file);
 
-/// Both detect the format by the first bytes of the file. They throw InputError when it is missing
-/// or has neither format.
-std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& file);
-RecordingInfo read_recording_info(const std::filesystem::path& file);
+/// `path` is an MCAP file, a ROS 1 bag, a .db3 of rosbag2, told apart by their first bytes, or a
+/// folder with such files: the parts of one take. Both throw InputError when the file is missing or
+/// has none of these formats.
+std::unique_ptr<RecordingReader> open_recording(const std::filesystem::path& path);
+RecordingInfo read_recording_info(const std::filesystem::path& path);
 
 /// Options of create_recording(). The description is found again in RecordingInfo::metadata, under
 /// `name`.

@@ -4,45 +4,42 @@
 #include <filesystem>
 #include <map>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 
 #include "lidarena/dataset/event.hpp"
+#include "lidarena/dataset/imu_units.hpp"
+#include "lidarena/dataset/messages/point_times.hpp"
+#include "lidarena/dataset/read_report.hpp"
 #include "lidarena/dataset/recording.hpp"
 
 namespace lidarena::dataset {
 
-/// The sensors of a recording by topic.
+/// The sensors of a recording by topic, and how their messages are read.
 struct RecordedSensors {
   std::map<std::string, std::string> lidars;  ///< topic -> sensor id
   std::map<std::string, std::string> imus;    ///< likewise
-  std::set<std::string> imus_in_g;            ///< ids of IMUs whose acceleration is in g (Livox)
+  std::map<std::string, ImuUnits> imu_units;  ///< by sensor id, of those that are not in SI
+  /// By topic, of recordings of others; empty for our own, whose times need no rule.
+  std::map<std::string, ros::PointTimes> point_times;
 };
 
 /// Whether messages of this type can be read as scans, or as IMU samples.
 bool is_scan_type(const RecordedTopic& topic);
 bool is_imu_type(const RecordedTopic& topic);
 
-/// The measurements in a file, in the order that EventSource guarantees. `info` is used to find the
-/// IMUs that have samples, so that no scan waits for an IMU without any. next() throws InputError
-/// where the file is cut off or damaged, after it returned everything before.
+/// The measurements in a recording, in the order that EventSource guarantees. `info` is used to
+/// find the IMUs that have samples, so that no scan waits for an IMU without any.
+///
+/// Recordings of others are read in the order of log times, within a look-ahead of 0.3 s. Where an
+/// IMU's samples come more than StreamMerge::kMaxGap behind the scans (topic after topic), they are
+/// read ahead by a second reader; an IMU that has ended holds up no scan. Measurements that are not
+/// later than the one before, and IMU samples that cannot be measurements, are left out. `report`
+/// counts all this. next() throws DamagedFile where the file is cut off or damaged, after it
+/// returned everything before.
 std::unique_ptr<EventSource> open_recorded_events(const std::filesystem::path& file,
                                                   const RecordedSensors& sensors,
-                                                  const RecordingInfo& info);
-
-/// The measurements in the messages that `reader` gives, likewise. `imus` are the ids of the IMUs
-/// that a scan waits for; `place` names the reader in messages.
-std::unique_ptr<EventSource> recorded_events(std::unique_ptr<RecordingReader> reader,
-                                             const std::string& place,
-                                             const RecordedSensors& sensors,
-                                             const std::vector<std::string>& imus);
-
-/// Whether the accelerations on `imu_topic` are in g: the mean magnitude of the first samples,
-/// dominated by gravity, lies between 0.5 and 2.
-bool is_in_g(const std::filesystem::path& file, const std::string& imu_topic);
-
-/// Standard gravity, m/s^2.
-inline constexpr double kStandardGravity = 9.80665;
+                                                  const RecordingInfo& info,
+                                                  std::shared_ptr<ReadReport> report);
 
 }  // namespace lidarena::dataset

@@ -44,7 +44,7 @@ RecordedSensors sensors_of(const Rig& rig, const WriteOptions& options) {
     sensors.lidars[layout::livox_topic_of(lidar.id)] = lidar.id;
   }
   for (const ImuInfo& imu : rig.imus) {
-    if (driver_of(imu.id, rig, options) == Driver::kLivox) sensors.imus_in_g.insert(imu.id);
+    if (driver_of(imu.id, rig, options) == Driver::kLivox) sensors.imu_units[imu.id] = kInG;
   }
   return sensors;
 }

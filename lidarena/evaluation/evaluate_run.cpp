@@ -34,7 +34,10 @@ Status status_of(const Trajectory& estimate, const Trajectory& truth) {
   if (estimate.size() == 1) return {"no_output", "the estimate has a single pose"};
   const std::string divergence = divergence_of(estimate, truth);
   if (!divergence.empty()) {
-    return {"diverged", with_suspicion(divergence, suspect_quaternion_order(estimate, truth))};
+    const std::string unit = suspect_length_unit(estimate, truth);
+    return {"diverged",
+            with_suspicion(divergence,
+                           unit.empty() ? suspect_quaternion_order(estimate, truth) : unit)};
   }
   if (matched_poses(estimate, truth).empty()) {
     return {"no_overlap", with_suspicion("no estimate lies inside the truth's time span",
@@ -59,8 +62,22 @@ results::TruthFacts facts_of(const Trajectory& truth) {
           to_seconds(truth.end_time() - truth.begin_time()), truth.path_length()};
 }
 
+/// Says that the truth is sampled more coarsely than the estimate.
+std::string warning_of_rates(const Trajectory& estimate, const Trajectory& truth) {
+  if (!is_coarser(truth, estimate)) return {};
+  return fmt::format(
+      "the truth has {:.3g} poses a second, the estimate {:.3g}: they are compared at the truth's "
+      "stamps only, and its path, a chord between them, is a lower bound of the length",
+      1.0 / to_seconds(median_period(truth)), 1.0 / to_seconds(median_period(estimate)));
+}
+
 std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajectory& truth) {
   std::vector<std::string> warnings;
+  if (const std::string rates = warning_of_rates(estimate, truth); !rates.empty()) {
+    warnings = warnings_of(at_truth_stamps(estimate, truth), truth);
+    warnings.push_back(rates);
+    return warnings;
+  }
   const Association found = associate(estimate, truth);
   if (found.coverage < kLowCoverage) {
     warnings.push_back(
@@ -84,7 +101,7 @@ std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajector
   const std::string quaternions = suspect_quaternion_order(estimate, truth);
   const std::optional<LeverArm> arm = find_lever_arm(estimate, truth);
   for (const std::string& warning :
-       {suspect_times(estimate, truth), quaternions,
+       {suspect_times(estimate, truth), suspect_length_unit(estimate, truth), quaternions,
         arm && quaternions.empty() ? warning_of(*arm) : std::string()}) {
     if (!warning.empty()) warnings.push_back(warning);
   }
@@ -168,6 +185,8 @@ std::string divergence_of(const Trajectory& estimate, const Trajectory& truth) {
 
 results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
                                                const Trajectory& truth) {
+  if (is_coarser(truth, estimate))
+    return evaluate_trajectory(at_truth_stamps(estimate, truth), truth);
   const Status status = status_of(estimate, truth);
   const bool ok = status.name == "ok";
   results::TrajectoryMetrics metrics;

@@ -26,9 +26,10 @@ struct RunSummary {
   std::size_t dropped = 0;       ///< not registered because the algorithm was late; paced runs only
   double longest_delay_s = 0.0;  ///< from a scan's last point to its estimate; paced runs only
   double sensor_seconds = 0.0;
-  double compute_seconds = 0.0;  ///< wall time inside the algorithm
-  bool diverged = false;         ///< a status was kDiverged, or a pose was not finite
-  std::string reason;            ///< why it diverged
+  double compute_seconds = 0.0;   ///< wall time inside the algorithm
+  bool diverged = false;          ///< a status was kDiverged, or a pose was not finite
+  std::string reason;             ///< why it diverged
+  std::string recording_ended{};  ///< where the input was cut off or damaged; empty if it was not
 };
 
 struct RunResult {

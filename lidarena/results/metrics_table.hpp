@@ -17,6 +17,7 @@ struct ScoredRun {
   std::string flight;     ///< dataset
   std::string seed;
   RunMetrics metrics;
+  bool is_cut = false;  ///< a recording of its poses was cut off or damaged
 };
 
 /// Diagnostics (association, offsets, gauge, warnings), then the figures, each with the coverage

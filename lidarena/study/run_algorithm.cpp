@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lidarena/base/machine.hpp"
+#include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/evaluation/map/return_store.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
@@ -37,6 +38,27 @@ std::string relative_path(const fs::path& dataset, const fs::path& run) {
   return relative.generic_string();
 }
 
+/// An IMU that cannot be used is an error of the methods that need one, and of no others.
+void refuse_faulty_imu(const dataset::Dataset& dataset, const odometry::OdometryRequest& request) {
+  if (dataset.imu_fault.empty()) return;
+  for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
+    if (info.name == request.algorithm && info.needs_imu)
+      throw InputError(request.algorithm, "needs the IMU", dataset.imu_fault);
+  }
+}
+
+/// A run in which no scan was ever tracked has no poses but that of the start.
+void judge_start(odometry::RunSummary& summary) {
+  constexpr std::size_t kInitializing = 10;  // scans; longer than any method needs
+  const auto initializing = summary.statuses.find(odometry::ScanStatus::kInitializing);
+  if (summary.diverged || summary.scans <= kInitializing) return;
+  if (initializing == summary.statuses.end() || initializing->second != summary.scans) return;
+  summary.diverged = true;
+  summary.reason =
+      "the method never left its initialization, all poses are that of the start; it waits for IMU "
+      "samples at the time of the scans, or for rest";
+}
+
 }  // namespace
 
 Json summary_json(const odometry::RunSummary& summary) {
@@ -64,7 +86,9 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
                                    const Parallel& parallel, LogSink& log) {
   const odometry::OdometryRequest chosen = odometry::with_default_preset(request.odometry);
   dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
-  for (const std::string& note : dataset.notes) log.info("note: " + note);
+  dataset::tell_opening(dataset, log);
+  refuse_faulty_imu(dataset, chosen);
+  dataset::read_whole_part(dataset);
   const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
   const odometry::MadeOdometry made =
       odometry::make_odometry(chosen, dataset.rig, lidar_id, parallel);
@@ -79,6 +103,9 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
                                   evaluation::scored_returns(dataset.scan_count.value_or(0)));
   odometry::RunResult result =
       odometry::run(*made.odometry, *returns.keep_from(*dataset.events), options, log);
+  dataset::tell_reading(dataset, log);
+  result.summary.recording_ended = dataset.report->ended();
+  judge_start(result.summary);
   if (!result.files.trajectory.empty()) {
     result.files.reprojected = evaluation::reproject(
         *returns.read(), lidar_id, dataset.rig.find_lidar(lidar_id)->body_from_lidar,
@@ -99,6 +126,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
       {"reason", result.summary.reason},
       {"made_on", made_on()},
       {"summary", summary_json(result.summary)}};
+  if (!result.summary.recording_ended.empty())
+    result.files.manifest["recording_ended"] = result.summary.recording_ended;
   if (!chosen.config_file.empty()) result.files.manifest["config_file"] = chosen.config_file;
   if (!chosen.overrides.empty()) result.files.manifest["overrides"] = chosen.overrides;
   dataset::write_run(out, result.files);

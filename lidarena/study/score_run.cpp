@@ -104,6 +104,16 @@ class ReturnsOfRun {
   std::vector<evaluation::ReturnOrigin> origins_;
 };
 
+/// Writes results; where the folder can only be read, that is said and the figures are still given.
+template <class Write>
+void store(const Write& write, LogSink& log) {
+  try {
+    write();
+  } catch (const Error& error) {
+    log.warn(std::string("the figures are not stored: ") + error.what());
+  }
+}
+
 }  // namespace
 
 results::RunMetrics score_run(const fs::path& folder, const Parallel& parallel, LogSink& log) {
@@ -131,10 +141,10 @@ results::RunMetrics score_run(const fs::path& folder, const Parallel& parallel, 
       evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe, &scored);
   const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
   if (world && mesh_from_map && !run.reprojected.points.empty()) {
-    dataset::write_ply(folder / "scored.ply",
-                       scored_cloud(run, *mesh_from_map, scored, *world, parallel));
+    const dataset::Cloud cloud = scored_cloud(run, *mesh_from_map, scored, *world, parallel);
+    store([&] { dataset::write_ply(folder / "scored.ply", cloud); }, log);
   }
-  results::write_metrics(folder, metrics);
+  store([&] { results::write_metrics(folder, metrics); }, log);
   return metrics;
 }
 

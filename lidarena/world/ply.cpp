@@ -10,6 +10,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/base/ply_reader.hpp"
+#include "lidarena/world/polygon.hpp"
 
 namespace lidarena::world {
 
@@ -71,6 +72,15 @@ void read_row(const PlyElement& element, PlyReader& reader, std::vector<std::uin
   reader.end_row();
 }
 
+void check_corners(const std::vector<std::uint32_t>& corners, const TriangleMesh& mesh,
+                   const std::string& name) {
+  for (const std::uint32_t corner : corners) {
+    if (corner < mesh.vertices.size()) continue;
+    throw InputError(name, fmt::format("a face has vertex index {}, number of vertices: {}", corner,
+                                       mesh.vertices.size()));
+  }
+}
+
 void read_faces(const PlyElement& element, PlyReader& reader, TriangleMesh& mesh,
                 const std::string& name) {
   std::vector<std::uint32_t> corners;
@@ -82,19 +92,10 @@ void read_faces(const PlyElement& element, PlyReader& reader, TriangleMesh& mesh
       throw InputError(name, "a face has material index " + std::to_string(material) +
                                  ", number of materials: " + std::to_string(mesh.palette.size()));
     }
-    for (std::size_t k = 2; k < corners.size(); ++k) {
-      mesh.triangles.push_back({corners[0], corners[k - 1], corners[k]});
+    check_corners(corners, mesh, name);
+    for (const Triangle& triangle : triangulate(corners, mesh.vertices)) {
+      mesh.triangles.push_back(triangle);
       if (!mesh.palette.empty()) mesh.material_ids.push_back(static_cast<std::uint8_t>(material));
-    }
-  }
-}
-
-void check_indices(const TriangleMesh& mesh, const std::string& name) {
-  for (const Triangle& triangle : mesh.triangles) {
-    const std::uint32_t largest = *std::ranges::max_element(triangle);
-    if (largest >= mesh.vertices.size()) {
-      throw InputError(name, "a face has vertex index " + std::to_string(largest) +
-                                 ", number of vertices: " + std::to_string(mesh.vertices.size()));
     }
   }
 }
@@ -123,7 +124,6 @@ TriangleMesh read_ply(const std::filesystem::path& file) {
       reader.skip(element);
     }
   }
-  check_indices(mesh, name);
   return mesh;
 }
 

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/world/primitives.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "lidarena/world/polygon.hpp"
 
 namespace lidarena::world {
 
@@ -93,6 +96,34 @@ TriangleMesh plane_shape(const Vector3d& normal, const Vector2d& size) {
     mesh.vertices.push_back(turn * Vector3d(x * size.x(), y * size.y(), 0.0));
   }
   mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+TriangleMesh prism_shape(std::vector<Eigen::Vector2d> outline, double height) {
+  if (outline.size() > 1 && outline.front() == outline.back()) outline.pop_back();
+  double area = 0.0;  // twice it, positive for a counterclockwise outline
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    const Eigen::Vector2d& next = outline[(i + 1) % outline.size()];
+    area += outline[i].x() * next.y() - outline[i].y() * next.x();
+  }
+  if (area < 0.0) std::ranges::reverse(outline);
+  const auto n = static_cast<std::uint32_t>(outline.size());
+  TriangleMesh mesh;
+  for (const double z : {0.0, height}) {
+    for (const Eigen::Vector2d& p : outline) mesh.vertices.emplace_back(p.x(), p.y(), z);
+  }
+  std::vector<std::uint32_t> top(n);
+  for (std::uint32_t i = 0; i < n; ++i) {
+    const std::uint32_t next = (i + 1) % n;
+    mesh.triangles.push_back({i, next, n + next});
+    mesh.triangles.push_back({i, n + next, n + i});
+    top[i] = n + i;
+  }
+  if (n < 3) return mesh;
+  for (const auto& [a, b, c] : triangulate(top, mesh.vertices)) {
+    mesh.triangles.push_back({a, b, c});
+    mesh.triangles.push_back({a - n, c - n, b - n});  // the bottom faces down
+  }
   return mesh;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "lidarena/world/triangle_mesh.hpp"
 
@@ -20,6 +21,8 @@ TriangleMesh sphere_shape(double radius);
 TriangleMesh ellipsoid_shape(const Eigen::Vector3d& radii);
 /// A cylinder of `length` between two half spheres; axis along z.
 TriangleMesh capsule_shape(double radius, double length);
+/// The solid between an outline in the plane z = 0 (a simple polygon) and the same at z = `height`.
+TriangleMesh prism_shape(std::vector<Eigen::Vector2d> outline, double height);
 /// A rectangle of the given size; SDF's unlimited planes are reduced to their `size`, too.
 TriangleMesh plane_shape(const Eigen::Vector3d& normal, const Eigen::Vector2d& size);
 

@@ -81,4 +81,55 @@ std::string without_non_geometric_elements(std::string sdf_text) {
   return sdf_text;
 }
 
+std::string_view Element::attribute(std::string_view attribute_name) const {
+  for (std::size_t at = tag.find(attribute_name); at != std::string_view::npos;
+       at = tag.find(attribute_name, at + 1)) {
+    const std::size_t equals = tag.find_first_not_of(" \t\r\n", at + attribute_name.size());
+    const bool is_name =
+        at > 0 && std::string_view(" \t\r\n").find(tag[at - 1]) != std::string_view::npos;
+    if (!is_name || equals == std::string_view::npos || tag[equals] != '=') continue;
+    const std::size_t quote = tag.find_first_of("\"'", equals);
+    if (quote == std::string_view::npos) return {};
+    const std::size_t end = tag.find(tag[quote], quote + 1);
+    return tag.substr(quote + 1, end - quote - 1);
+  }
+  return {};
+}
+
+std::optional<Element> next_element(std::string_view text, std::size_t from) {
+  for (auto tag = next_tag(text, from); tag; tag = next_tag(text, tag->end)) {
+    const bool is_declaration = tag->name.starts_with('?') || tag->name.starts_with('!');
+    if (!tag->opens || tag->name.empty() || is_declaration) continue;
+    Element element{tag->name, text.substr(tag->begin, tag->end - tag->begin), tag->end, tag->end,
+                    tag->end};
+    if (tag->closes) return element;
+    const auto end = end_of_element(text, *tag);
+    if (!end) continue;
+    element.end = *end;
+    element.content_end = text.rfind("</", *end - 1);
+    return element;
+  }
+  return std::nullopt;
+}
+
+std::vector<Element> all_elements(std::string_view text, std::string_view name) {
+  std::vector<Element> found;
+  std::size_t at = 0;
+  while (const auto element = next_element(text, at)) {
+    at = element->name == name ? element->end : element->content_begin;
+    if (element->name == name) found.push_back(*element);
+  }
+  return found;
+}
+
+std::optional<std::string_view> child_text(std::string_view content, std::string_view name) {
+  std::size_t at = 0;
+  while (const auto element = next_element(content, at)) {
+    at = element->end;
+    if (element->name == name)
+      return content.substr(element->content_begin, element->content_end - element->content_begin);
+  }
+  return std::nullopt;
+}
+
 }  // namespace lidarena::world

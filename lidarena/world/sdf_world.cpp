@@ -17,6 +17,7 @@
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/model_folders.hpp"
 #include "lidarena/world/primitives.hpp"
+#include "lidarena/world/sdf_state.hpp"
 #include "lidarena/world/sdf_text.hpp"
 #include "lidarena/world/standard_models.hpp"
 
@@ -68,7 +69,7 @@ class SdfLoader {
   TriangleMesh load() {
     const sdf::Root root = parse();
     if (!options_.allow_missing) report_missing();  // of models, before meshes are loaded
-    if (const sdf::Model* model = root.Model()) add_model(*model, to_eigen(model->RawPose()));
+    if (const sdf::Model* model = root.Model()) add_model(*model, pose_of(*model), "");
     for (std::uint64_t i = 0; i < root.WorldCount(); ++i) add_world(*root.WorldByIndex(i));
     report_missing();
     if (mesh_.empty()) {
@@ -84,13 +85,15 @@ class SdfLoader {
   sdf::Root parse();
   void check_errors(const sdf::Errors& errors);
   void add_world(const sdf::World& world);
-  void add_model(const sdf::Model& model, const Pose& world_from_model);
+  void add_model(const sdf::Model& model, const Pose& world_from_model, const std::string& scope);
+  Pose pose_of(const sdf::Model& model) const;
   void add_link(const sdf::Link& link, const Pose& world_from_link, const std::string& name);
   template <class Shape>
   void add_shape(const Shape& shape, const Pose& world_from_link, const std::string& name);
   void add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape, const std::string& name);
   const std::vector<MeshPart>& parts_of(const fs::path& mesh_file);
   Pose resolved(const sdf::SemanticPose& pose, const std::string& name) const;
+  void add_polyline(const sdf::ElementPtr& polyline, const Pose& world_from_shape);
   void add_missing(const std::string& what) { ++missing_[what]; }
   void report_missing();
 
@@ -101,6 +104,8 @@ class SdfLoader {
   TriangleMesh mesh_;
   std::map<fs::path, std::vector<MeshPart>> mesh_files_;  ///< each read once
   std::map<std::string, int> missing_;                    ///< what is missing, and how many times
+  std::vector<std::string> unsupported_;                  ///< shapes of kinds that are not read
+  SavedState state_;
 };
 
 sdf::Root SdfLoader::parse() {
@@ -109,6 +114,13 @@ sdf::Root SdfLoader::parse() {
   text << in.rdbuf();
   if (!in || !fs::is_regular_file(file_)) {
     throw InputError(file_.string(), "cannot be opened", "check the path and the permissions");
+  }
+  state_ = saved_state(text.str());
+  if (state_.has_scales)
+    log_.warn(file_.string() + ": its <state> scales models, which is not applied");
+  if (const auto left_out = unsupported_elements(text.str()); !left_out.empty()) {
+    log_.warn(fmt::format("{}: left out: {}; these are not supported, put models in their place",
+                          file_.string(), fmt::join(left_out, ", ")));
   }
   const GroundPlaneFile ground_plane;
   const FindFile find = [&](const std::string& uri) -> std::string {
@@ -167,19 +179,41 @@ void SdfLoader::add_world(const sdf::World& world) {
     const sdf::Model& model = *world.ModelByIndex(i);
     log_.progress("loading models", static_cast<double>(i),
                   static_cast<double>(world.ModelCount()));
-    add_model(model, resolved(model.SemanticPose(), model.Name()));
+    add_model(model, resolved(model.SemanticPose(), model.Name()), "");
   }
 }
 
-void SdfLoader::add_model(const sdf::Model& model, const Pose& world_from_model) {
+/// Pose of the model that is the root of a file: it places the frame named by placement_frame.
+Pose SdfLoader::pose_of(const sdf::Model& model) const {
+  const Pose placed = to_eigen(model.RawPose());
+  const std::string& frame = model.PlacementFrameName();
+  if (frame.empty()) return placed;
+  const sdf::Link* link = model.LinkByName(frame);
+  const sdf::Frame* other = model.FrameByName(frame);
+  if (link != nullptr) return placed * resolved(link->SemanticPose(), frame).inverse();
+  if (other != nullptr) return placed * resolved(other->SemanticPose(), frame).inverse();
+  throw InputError(file_.string(), "has no link or frame '" + frame + "', its placement_frame");
+}
+
+/// `scope` is the name of the model that this one is nested in, with "::", as in a saved state.
+void SdfLoader::add_model(const sdf::Model& model, const Pose& world_from_model,
+                          const std::string& scope) {
+  const std::string scoped = scope + model.Name();
+  const auto saved = state_.models.find(scoped);
+  const Pose& world_from_this = saved == state_.models.end() ? world_from_model : saved->second;
   for (std::uint64_t i = 0; i < model.LinkCount(); ++i) {
     const sdf::Link& link = *model.LinkByIndex(i);
     const std::string name = model.Name() + "/" + link.Name();
-    add_link(link, world_from_model * resolved(link.SemanticPose(), name), name);
+    const auto saved_link = state_.links.find(scoped + "::" + link.Name());
+    const Pose placed = saved_link == state_.links.end()
+                            ? world_from_this * resolved(link.SemanticPose(), name)
+                            : saved_link->second;
+    add_link(link, placed, name);
   }
   for (std::uint64_t i = 0; i < model.ModelCount(); ++i) {
     const sdf::Model& nested = *model.ModelByIndex(i);
-    add_model(nested, world_from_model * resolved(nested.SemanticPose(), nested.Name()));
+    add_model(nested, world_from_this * resolved(nested.SemanticPose(), nested.Name()),
+              scoped + "::");
   }
 }
 
@@ -218,11 +252,22 @@ void SdfLoader::add_shape(const Shape& shape, const Pose& world_from_link,
                  placement);
   } else if (const auto* mesh = geometry->MeshShape()) {
     add_mesh(*mesh, placement, name);
-  } else if (geometry->Element() && geometry->Element()->GetFirstElement() &&
-             geometry->Element()->GetFirstElement()->GetName() != "empty") {
-    add_missing("the <" + geometry->Element()->GetFirstElement()->GetName() + "> of " + name +
-                " (this kind of shape is not supported)");
+  } else if (geometry->Element() && geometry->Element()->GetFirstElement()) {
+    const sdf::ElementPtr kind = geometry->Element()->GetFirstElement();
+    const bool is_alone = !kind->GetNextElement();  // several polylines are holes in each other
+    if (kind->GetName() == "polyline" && is_alone) return add_polyline(kind, placement);
+    if (kind->GetName() != "empty")
+      unsupported_.push_back("the <" + kind->GetName() + "> of " + name);
   }
+}
+
+void SdfLoader::add_polyline(const sdf::ElementPtr& polyline, const Pose& world_from_shape) {
+  std::vector<Eigen::Vector2d> outline;
+  for (auto point = polyline->GetElement("point"); point; point = point->GetNextElement("point")) {
+    const auto p = point->Get<ignition::math::Vector2d>();
+    outline.emplace_back(p.X(), p.Y());
+  }
+  mesh_.append(prism_shape(outline, polyline->Get<double>("height")), world_from_shape);
 }
 
 const std::vector<MeshPart>& SdfLoader::parts_of(const fs::path& mesh_file) {
@@ -263,6 +308,16 @@ void SdfLoader::add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape,
 }
 
 void SdfLoader::report_missing() {
+  if (!unsupported_.empty()) {
+    const std::string list = fmt::format("{}", fmt::join(unsupported_, ", "));
+    if (!options_.allow_missing) {
+      throw InputError(file_.string(), "has shapes of kinds that are not read: " + list,
+                       "put a mesh of the same surface in their place (Blender, or the "
+                       "simulator's export), or load the world without them: --allow-missing");
+    }
+    log_.warn(file_.string() + ": loaded without shapes of kinds that are not read: " + list);
+    unsupported_.clear();
+  }
   if (missing_.empty()) return;
   std::string list;
   for (const auto& [what, times] : missing_) {

@@ -320,13 +320,6 @@ TEST_P(DriverDialect, HasTheTopicsAndTypesOfTheDrivers) {
   EXPECT_FALSE(types.contains("/os0/livox"));
 }
 
-TEST_P(DriverDialect, AccelerationsInGAreRecognizedInRecordingsOfOthers) {
-  const bool is_bag = GetParam() == DatasetFormat::kBag;
-  const auto file = path_ / (is_bag ? "data.bag" : "data.mcap");
-  EXPECT_TRUE(is_in_g(file, "/mid360/imu"));
-  EXPECT_FALSE(is_in_g(file, "/os0/imu"));
-}
-
 INSTANTIATE_TEST_SUITE_P(Formats, DriverDialect,
                          testing::Values(DatasetFormat::kMcap, DatasetFormat::kBag),
                          [](const auto& param) {

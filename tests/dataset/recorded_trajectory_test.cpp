@@ -129,15 +129,21 @@ class FramesOfText : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-TEST_F(FramesOfText, AreNamedByACommentBeforeTheFirstRow) {
+TEST_F(FramesOfText, AreNamedByTheCommentsThatLidarenaWrites) {
   const FramedTrajectory ours = read(
       "# final estimate: pose of the body in the world (world_from_body) at the stamped instant\n"
       "# time[s] x y z[m] qx qy qz qw\n1.0 0 0 0 0 0 0 1\n");
   EXPECT_EQ(ours.world, "world");
   EXPECT_EQ(ours.body, "body");
-  EXPECT_EQ(read("#map_from_os_lidar\n1.0 0 0 0 0 0 0 1\n").body, "os_lidar");
-  const FramedTrajectory unnamed = read("# time x y z\n1.0 0 0 0 0 0 0 1\n# a_from_b\n");
-  EXPECT_EQ(unnamed.world + unnamed.body, "");
+}
+
+TEST_F(FramesOfText, CommentsOfOthersAreNoFrames) {
+  for (const char* text : {"# converted_from_rosbag with my script\n1.0 0 0 0 0 0 0 1\n",
+                           "#poses_from_vicon\n1.0 0 0 0 0 0 0 1\n",
+                           "# time x y z\n1.0 0 0 0 0 0 0 1\n# a_from_b\n"}) {
+    const FramedTrajectory unnamed = read(text);
+    EXPECT_EQ(unnamed.world + unnamed.body, "") << text;
+  }
 }
 
 TEST_F(FramesOfText, StampsInOtherUnitsAreRecognized) {

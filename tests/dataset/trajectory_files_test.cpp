@@ -9,6 +9,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/dataset/trajectories/kitti.hpp"
+#include "lidarena/dataset/trajectories/pose_csv.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "tests/dataset/file_helpers.hpp"
@@ -211,20 +212,41 @@ constexpr const char* kEurocHeader =
     "q_RS_z [], v_RS_R_x [m s^-1]\r\n";
 
 TEST_F(Euroc, QuaternionsStartWithTheirRealPart) {
-  const auto t = read_euroc_csv(
+  const auto t = read_pose_csv(
       put(std::string(kEurocHeader) + "1403715274302142976,1,2,3,0.8,0,0,0.6,9\r\n", "d.csv"));
   EXPECT_EQ(t.begin_time(), Time{1403715274302142976});
   const Eigen::Vector3d x = t.poses()[0].world_from_body.linear() * Eigen::Vector3d::UnitX();
   EXPECT_LT((x - Eigen::Vector3d(0.28, 0.96, 0)).norm(), 1e-15);
 }
 
+TEST_F(Euroc, ColumnsAreFoundByTheirNamesInAnyOrder) {
+  const Eigen::Quaterniond rotation(0.8, 0.0, 0.0, 0.6);
+  for (const char* text :
+       {"#timestamp, p_wb_x, p_wb_y, p_wb_z, q_wb_x, q_wb_y, q_wb_z, q_wb_w\n"
+        "1700000000500000000,1,2,3,0,0,0.6,0.8\n",
+        "timestamp,qw,qx,qy,qz,x,y,z\n1700000000.5,0.8,0,0,0.6,1,2,3\n",
+        "\xEF\xBB\xBF#timestamp [ms],world_p_x,world_p_y,world_p_z,world_qx,world_qy,world_qz,"
+        "world_qw\n1700000000500,1,2,3,0,0,0.6,0.8\n",
+        "%time,field.header.seq,field.pose.pose.position.x,field.pose.pose.position.y,"
+        "field.pose.pose.position.z,field.pose.pose.orientation.x,field.pose.pose.orientation.y,"
+        "field.pose.pose.orientation.z,field.pose.pose.orientation.w,field.pose.covariance.x,"
+        "field.twist.twist.linear.x\n1700000000500000000,7,1,2,3,0,0,0.6,0.8,9,9\n"}) {
+    const auto read = read_pose_csv(put(text, "p.csv"));
+    const StampedPose& pose = read.poses()[0];
+    EXPECT_EQ(pose.stamp, Time{1'700'000'000'500'000'000}) << text;
+    EXPECT_TRUE(pose.world_from_body.isApprox(make_pose(rotation, {1.0, 2.0, 3.0}), 1e-12)) << text;
+  }
+}
+
 TEST_F(Euroc, BrokenRowsAreNamed) {
   const auto error = [&](const std::string& rows) {
-    return input_error([&] { read_euroc_csv(put(rows, "d.csv")); });
+    return input_error([&] { read_pose_csv(put(rows, "d.csv")); });
   };
   EXPECT_THAT(error("1403715274302142976,1,2,3,0.8,0,0,0.6\n"),
               HasSubstr("d.csv:1: is not the he"));
-  EXPECT_THAT(error("time,x,y,z,qx,qy,qz,qw\n1,0,0,0,0,0,0,1\n"), HasSubstr("not the header"));
+  EXPECT_THAT(error("time,x,y,z,roll,pitch,yaw\n1,0,0,0,0,0,0\n"), HasSubstr("no column is 'qw'"));
+  EXPECT_THAT(error("time,x,y,z,x,qx,qy,qz,qw\n"), HasSubstr("two columns are 'x'"));
+  EXPECT_THAT(error("frame,x,y,z,qx,qy,qz,qw\n"), HasSubstr("no column is a time"));
   EXPECT_THAT(error(kEurocHeader), HasSubstr("holds no pose"));
   EXPECT_THAT(error(""), HasSubstr("not the header"));
   EXPECT_THAT(error(std::string(kEurocHeader) + "1,2,3\n"), HasSubstr("d.csv:2: holds 3 columns"));
@@ -244,6 +266,18 @@ TEST_F(TrajectoryFile, TheFormatIsToldByTheContent) {
       read_trajectory(put(std::string(kEurocHeader) + "9,0,0,0,1,0,0,0\n", "c.csv")).begin_time(),
       Time{9});
   EXPECT_THAT(input_error([&] { read_trajectory(put("", "d.txt")); }), HasSubstr("no pose"));
+}
+
+TEST_F(TrajectoryFile, TimesThatLostTheirDigitsAreNamedAsThat) {
+  std::string rows;
+  for (int i = 0; i < 20; ++i) rows += "1.7e+09 " + std::to_string(i) + " 0 0 0 0 0 1\n";
+  EXPECT_THAT(input_error([&] { read_framed_trajectory(put(rows)); }),
+              AllOf(HasSubstr("19 of 20 rows have the time"), HasSubstr("lost their digits")));
+}
+
+TEST_F(TrajectoryFile, TimesThatAreAssumedAreSaid) {
+  const auto kitti = put("1 0 0 0 0 1 0 0 0 0 1 0\n1 0 0 1 0 1 0 0 0 0 1 0\n", "b.txt");
+  EXPECT_THAT(read_framed_trajectory(kitti).note, HasSubstr("taken to come at 10 Hz"));
 }
 
 TEST_F(TrajectoryFile, CutAnywhereItIsReadInPartOrRefused) {
@@ -307,7 +341,7 @@ TEST(RealTrajectoryTimes, ScientificStampsOfEurocKeepTheirNanoseconds) {
 TEST(RealTrajectoryTimes, ASpreadsheetIsRefusedWithAReason) {
   const auto file = shared_data("trajectories/boreas/boreas-2021-08-05-13-34_lidar_poses.csv");
   LIDARENA_NEEDS(file);
-  EXPECT_THAT(input_error([&] { read_trajectory(file); }), HasSubstr("is not the header of EuRoC"));
+  EXPECT_THAT(input_error([&] { read_trajectory(file); }), HasSubstr("no column is 'x'"));
 }
 
 }  // namespace

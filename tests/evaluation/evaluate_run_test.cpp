@@ -151,6 +151,18 @@ TEST_F(EvaluateRun, PosesTooSeldomForTheMotionAreWarnedOf) {
   EXPECT_THAT(m["warnings"].dump(), HasSubstr("give poses more often"));
 }
 
+TEST_F(EvaluateRun, ATruthThatIsCoarserThanTheEstimateIsNoErrorOfIt) {
+  for (const Time period : {125ms, 200ms, 500ms, 1000ms}) {
+    truth_ = sample(tour, period, 30s);
+    run_.trajectory = sample(tour, 25ms, 30s);  // has a pose at each stamp of the truth
+    const Json m = evaluate();
+    EXPECT_LT(m["final"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"], 1e-9);
+    EXPECT_LT(m["final"]["rpe"]["1m"]["translation"]["rmse_m"], 1e-9);
+    EXPECT_LT(m["final"]["ate"]["se3"]["translation"]["rmse_m"], 1e-9);
+    EXPECT_THAT(m["warnings"].dump(), HasSubstr("compared at the truth's stamps only"));
+  }
+}
+
 TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
   const Trajectory whole = run_.trajectory;
   run_.trajectory = sample(tour, 100ms, 50ms);

@@ -32,6 +32,22 @@ Trajectory misread(const Trajectory& trajectory) {
   });
 }
 
+TEST(SuspectLengthUnit, NamesTheUnitThatThePositionsSeemToBeIn) {
+  const Trajectory truth = sample(tour, 10ms, 20s);
+  const auto scaled = [&](double scale) {
+    return mapped(sample(tour, 100ms, 20s), [&](const StampedPose& pose) {
+      return make_pose(Eigen::Quaterniond(pose.world_from_body.linear()),
+                       scale * pose.world_from_body.translation());
+    });
+  };
+  EXPECT_EQ(suspect_length_unit(scaled(1.0), truth), "");
+  EXPECT_EQ(suspect_length_unit(scaled(1.3), truth), "");
+  EXPECT_THAT(suspect_length_unit(scaled(1000.0), truth),
+              HasSubstr("the estimate's positions look like millimeters"));
+  EXPECT_THAT(suspect_length_unit(scaled(0.01), truth),
+              HasSubstr("the truth's positions look like centimeters"));
+}
+
 TEST(SuspectTimes, NamesTheUnitThatTheTimesSeemToBeIn) {
   const Trajectory truth = sample(tour, 10ms, 20s);
   const Trajectory estimate = sample(tour, 100ms, 18s);

@@ -36,6 +36,16 @@ TEST(Ply, WhatIsSavedIsReadBackToTheLastBitEvenInMapCoordinates) {
   EXPECT_FALSE(std::filesystem::exists(folder.path() / "soup.ply.part"));
 }
 
+TEST(Ply, AConcaveFaceHasItsArea) {
+  const TemporaryFolder folder;
+  const auto file = folder.write(
+      "u.ply",
+      "ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float "
+      "z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n3 0 0\n3 3 0\n2 3 0\n2 1 0\n1 1 0\n1 3 0\n0 3 0\n8 3 4 5 6 7 0 1 2\n");
+  EXPECT_DOUBLE_EQ(read_ply(file).area(), 7.0);
+}
+
 TEST(Ply, MaterialsAreKept) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "boxes.ply";

@@ -19,6 +19,7 @@ using Eigen::Vector3d;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using testing::input_error_of;
+using ::testing::Not;
 
 std::string world_with(const std::string& content) {
   return "<?xml version='1.0'?><sdf version='1.6'><world name='w'>" + content + "</world></sdf>";
@@ -275,10 +276,56 @@ TEST_F(SdfWorld, AShapeThatIsNotSupportedIsNoSilentHole) {
               AllOf(HasSubstr("heightmap"), HasSubstr("hill")));
   EXPECT_EQ(load(text, {ShapeKind::kVisual, {}, true}).triangles.size(), 12U);
   EXPECT_THAT(log_.warnings, HasSubstr("heightmap"));
-  const std::string polyline = world_of(
-      "<polyline><point>0 0</point><point>1 0</point><point>0 1</point><height>1</height>"
-      "</polyline>");
-  EXPECT_THAT(input_error_of([&] { load(polyline); }), HasSubstr("polyline"));
+  EXPECT_THAT(input_error_of([&] { load(text); }), Not(HasSubstr("GAZEBO_MODEL_PATH")));
+}
+
+TEST_F(SdfWorld, APolylineIsAPrism) {
+  const TriangleMesh prism = load(
+      world_of("<polyline><point>0 0</point><point>3 0</point><point>3 3</point><point>2 3</point>"
+               "<point>2 1</point><point>1 1</point><point>1 3</point><point>0 3</point>"
+               "<height>2</height></polyline>"));
+  expect_bounds(prism, {0, 0, 0}, {3, 3, 2});
+  EXPECT_NEAR(prism.area(), 2 * 7 + 2 * 16, 1e-12);
+  EXPECT_NEAR(testing::signed_volume(prism), 14.0, 1e-12);
+}
+
+TEST_F(SdfWorld, ModelsAreWhereTheSavedStateHasThem) {
+  const std::string text = world_with(
+      "<model name='box'><pose>0 0 0.5 0 0 0</pose><link name='l'>" + visual(kUnitBox) +
+      "</link></model>"
+      "<state world_name='w'><sim_time>12 0</sim_time><model name='box'>"
+      "<pose>5 3 0.5 0 0 0</pose><scale>1 1 1</scale>"
+      "<link name='l'><pose>5 3 0.5 0 0 0</pose><velocity>0 0 0 0 0 0</velocity></link></model>"
+      "</state>");
+  expect_bounds(load(text), {4.5, 2.5, 0}, {5.5, 3.5, 1});
+  EXPECT_EQ(log_.warnings, "");
+}
+
+TEST_F(SdfWorld, ASavedStateMovesLinksAndNestedModels) {
+  const std::string text = world_with(
+      "<model name='door'><link name='frame'>" + visual(kUnitBox) + "</link><link name='leaf'>" +
+      visual(kUnitBox) +
+      "</link></model>"
+      "<state world_name='w'><model name='door'><pose>10 0 0 0 0 0</pose>"
+      "<link name='leaf'><pose>12 0 0 0 0 1.5707963267948966</pose></link></model></state>");
+  expect_bounds(load(text), {9.5, -0.5, -0.5}, {12.5, 0.5, 0.5});
+}
+
+TEST_F(SdfWorld, ThePlacementFrameOfAModelFileIsPlaced) {
+  const std::string text =
+      "<?xml version='1.0'?><sdf version='1.9'><model name='m' placement_frame='l'>"
+      "<pose>10 0 0 0 0 0</pose><link name='l'><pose>1 0 0 0 0 0</pose>" +
+      visual(kUnitBox) + "</link></model></sdf>";
+  expect_bounds(load(text), {9.5, -0.5, -0.5}, {10.5, 0.5, 0.5});
+}
+
+TEST_F(SdfWorld, WhatIsNotPlacedIsNamed) {
+  load(world_with(
+      "<model name='m'><link name='l'>" + visual(kUnitBox) +
+      "</link></model><!-- <road/> --><road name='r'><width>3</width><point>0 0 0</point></road>"
+      "<population name='p'><model_count>4</model_count></population>"
+      "<actor name='a'><skin><filename>walk.dae</filename></skin></actor>"));
+  EXPECT_THAT(log_.warnings, HasSubstr("left out: 1 <actor>, 1 <population>, 1 <road>"));
 }
 
 TEST_F(SdfWorld, AColorOutOfRangeOrAMasslessLinkDoesNotMatter) {

@@ -9,6 +9,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/compression.hpp"
+#include "lidarena/dataset/damaged_file.hpp"
 
 namespace lidarena::dataset {
 
@@ -89,16 +90,16 @@ void McapReader::Impl::cut_off() {
   const bool has_end = file_size > 2 * end.size() && std::ranges::equal(end, mcap::magic());
   if (has_end && offset < file_size)
     damaged("the length of a record reaches beyond the end of the file");
-  throw InputError(at(file_size),
-                   fmt::format("the file is cut off after {} messages", counted.message_count),
-                   "the messages before this byte are intact; the recording was stopped, copied in "
-                   "part, or the disk was full");
+  throw DamagedFile(
+      at(file_size), fmt::format("the file is cut off after {} messages", counted.message_count),
+      "the messages before this byte are intact; the recording was stopped, copied in "
+      "part, or the disk was full");
 }
 
 void McapReader::Impl::damaged(std::string_view what) const {
-  throw InputError(at(record_offset),
-                   fmt::format("{} (after {} messages)", what, counted.message_count),
-                   "the messages before this byte are intact; copy the file again");
+  throw DamagedFile(at(record_offset),
+                    fmt::format("{} (after {} messages)", what, counted.message_count),
+                    "the messages before this byte are intact; copy the file again");
 }
 
 void McapReader::Impl::read(std::span<std::byte> bytes) {

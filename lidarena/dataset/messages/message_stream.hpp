@@ -69,6 +69,8 @@ class MessageReader {
   }
   std::string get_string();
   Bytes get_octets();
+  /// An array of bytes of fixed size (without a length).
+  Bytes get_bytes(std::size_t size) { return take(size); }
   /// Length of a sequence; each of its elements takes at least `element_bytes`, so that a damaged
   /// length is detected before memory is allocated.
   std::uint32_t get_length(std::size_t element_bytes);

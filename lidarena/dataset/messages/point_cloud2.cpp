@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <initializer_list>
 #include <limits>
-#include <optional>
+#include <tuple>
+#include <utility>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/dataset/firing_order.hpp"
 
 namespace lidarena::dataset::ros {
 namespace {
@@ -95,6 +95,15 @@ const PointField* find(const PointCloud2& cloud, std::initializer_list<std::stri
   return nullptr;
 }
 
+/// The field of times; another name that holds "time" is used only where the usual ones lack.
+const PointField* find_times(const PointCloud2& cloud) {
+  if (const auto* usual = find(cloud, {"t", "offset_time", "time", "timestamp", "time_stamp"}))
+    return usual;
+  const auto named = std::ranges::find_if(
+      cloud.fields, [](const PointField& field) { return is_time_name(field.name); });
+  return named == cloud.fields.end() ? nullptr : &*named;
+}
+
 std::string list_of_fields(const PointCloud2& cloud) {
   std::string names;
   for (const PointField& field : cloud.fields) names += (names.empty() ? "" : " ") + field.name;
@@ -110,80 +119,16 @@ Scan own_scan(Time stamp, const PointCloud2& cloud, bool timed) {
   return scan;
 }
 
-/// Unit and origin of a float time field.
-struct TimeUnit {
-  std::int64_t ns = 1;    ///< nanoseconds per unit
-  bool absolute = false;  ///< true: since the epoch; false: since header.stamp
-};
-
-/// ns since header.stamp. Whole units are converted as integers: an absolute time in ns exceeds the
-/// 53 bits of a double.
-std::int64_t since_stamp(double value, const TimeUnit& unit, Time stamp) {
-  auto whole = static_cast<std::int64_t>(value);
-  if (static_cast<double>(whole) > value) --whole;
-  const double rest = value - static_cast<double>(whole);
-  std::int64_t ns = whole * unit.ns;
-  if (rest > 0.0) ns += std::llround(rest * static_cast<double>(unit.ns));
-  return unit.absolute ? ns - stamp.count() : ns;
-}
-
-/// Units (ns) in which `duration` can be that of a sweep; all units if all returns have the same
-/// time.
-std::vector<std::int64_t> units_of(double duration) {
-  constexpr std::int64_t kSecond = 1'000'000'000;
-  if (duration == 0.0) return {kSecond, 1'000, 1};
-  if (duration < 10.0) return {kSecond};
-  if (duration >= 1e3 && duration < 1e6) return {1'000};
-  if (duration >= 1e6 && duration < 10e9) return {1};
-  return {};
-}
-
-/// Unit and origin of a float time field with values `low` to `high` in one scan. A sweep takes
-/// between 1 ms and 10 s, so its duration determines the unit; times since the stamp are then
-/// small, and absolute times are close to the stamp.
-std::optional<TimeUnit> guess_unit(const PointField& field, double low, double high, Time stamp) {
-  constexpr double kNearNs = 10e9;
-  for (const std::int64_t unit_ns : units_of(high - low)) {
-    const auto ns = static_cast<double>(unit_ns);
-    const bool may_be_relative = std::max(std::abs(low), std::abs(high)) * ns < kNearNs;
-    const bool may_be_absolute = std::abs(low * ns - static_cast<double>(stamp.count())) < kNearNs;
-    if (!may_be_relative && !may_be_absolute) continue;
-    // Both are possible only near time 0; there the name of the field decides.
-    const bool absolute = may_be_absolute && (!may_be_relative || field.name == "timestamp");
-    return TimeUnit{unit_ns, absolute};
-  }
-  return std::nullopt;
-}
-
-/// Lowest and highest of the values of a scan's time field.
-struct TimeRange {
-  double low = 0.0;
-  double high = 0.0;
-};
-
-/// The range of `values`, which must be finite; none if the scan is untimed.
-std::optional<TimeRange> range_of(const PointField* field, const std::vector<double>& values,
-                                  std::string_view place) {
-  if (field == nullptr || values.empty()) return std::nullopt;
-  if (is_float(field->type) &&
-      !std::ranges::all_of(values, [](double value) { return std::isfinite(value); })) {
-    throw InputError(place, fmt::format("field '{}' of a return is not finite", field->name));
-  }
+/// The range of the values of a sweep's time field. Values of a counter of 32 bits that wraps
+/// within the sweep are replaced: those before the wrap are negative.
+SweepTimes range_of(const PointField& field, Time stamp, std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax(values);
-  if (low == 0.0 && high == 0.0) return std::nullopt;
-  return TimeRange{low, high};
-}
-
-TimeUnit unit_of(const PointField& field, const TimeRange& range, Time stamp,
-                 std::string_view place) {
-  if (!is_float(field.type)) return {};  // ns since header.stamp
-  const std::optional<TimeUnit> unit = guess_unit(field, range.low, range.high, stamp);
-  if (unit) return *unit;
-  throw InputError(place,
-                   fmt::format("field '{}' runs from {} to {} in one scan, which is not a time "
-                               "near the stamp {} ns in s, us or ns",
-                               field.name, range.low, range.high, stamp.count()),
-                   "record with a driver that writes times in s, us or ns");
+  SweepTimes range{field.name, is_float(field.type), stamp, low, high};
+  constexpr double kHalf = 2147483648.0;
+  if (field.type != FieldType::kUint32 || high - low <= kHalf) return range;
+  for (double& value : values) value -= value >= kHalf ? 2.0 * kHalf : 0.0;
+  std::tie(range.low, range.high) = std::pair(std::ranges::min(values), std::ranges::max(values));
+  return range;
 }
 
 std::uint16_t as_ring(float value) {
@@ -209,8 +154,7 @@ PointFields fields_of(const PointCloud2& cloud, std::string_view place) {
         "name another topic");
   }
   return {position, find(cloud, {"intensity", "reflectivity", "signal"}),
-          find(cloud, {"ring", "line", "channel"}),
-          find(cloud, {"t", "offset_time", "time", "timestamp"})};
+          find(cloud, {"ring", "line", "channel"}), find_times(cloud)};
 }
 
 /// A driver writes zeros or NaN where nothing came back. A difference of a float to itself is 0 if
@@ -254,20 +198,24 @@ void read_returns(const PointCloud2& cloud, const PointFields& fields, std::vect
   }
 }
 
-/// Sets stamp and dt_ns by the `values` of the time field, so that no point is earlier than the
-/// stamp, and sorts by time.
-void set_times(Scan& scan, const std::vector<double>& values, const TimeRange& range,
-               const TimeUnit& unit, std::string_view place) {
-  const Time stamp = scan.stamp;
-  const std::int64_t shift = std::min<std::int64_t>(since_stamp(range.low, unit, stamp), 0);
-  if (since_stamp(range.high, unit, stamp) - shift > std::numeric_limits<std::int32_t>::max()) {
-    throw InputError(place, "a scan is longer than 2.1 s", "split it into shorter scans");
+/// Leaves out the points whose time is not finite; returns their number.
+std::size_t drop_undated(std::vector<Point>& points, std::vector<double>& times) {
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    if (!std::isfinite(times[i])) continue;
+    points[kept] = points[i];
+    times[kept++] = times[i];
   }
-  scan.stamp += Time{shift};
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    scan.points[i].dt_ns = static_cast<std::int32_t>(since_stamp(values[i], unit, stamp) - shift);
-  }
-  sort_in_firing_order(scan.points);
+  const std::size_t dropped = times.size() - kept;
+  points.resize(kept);
+  times.resize(kept);
+  return dropped;
+}
+
+/// Kept from sweep to sweep, because new memory costs more.
+std::vector<double>& time_buffer() {
+  static thread_local std::vector<double> times;
+  return times;
 }
 
 const std::vector<PointField>& truth_fields() {
@@ -333,6 +281,25 @@ std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_v
   return points;
 }
 
+namespace {
+
+/// Where rows are longer than their points, copies the points one row after the other.
+void without_row_padding(PointCloud2& cloud) {
+  const std::uint64_t used = std::uint64_t{cloud.width} * cloud.point_step;
+  const bool is_padded = cloud.height > 0 && used > 0 && cloud.row_step > used &&
+                         cloud.data.size() / cloud.height == cloud.row_step &&
+                         cloud.data.size() % cloud.height == 0;
+  if (!is_padded) return;
+  cloud.unpadded.reserve(used * cloud.height);
+  for (std::size_t row = 0; row < cloud.height; ++row) {
+    const Bytes points = cloud.data.subspan(row * cloud.row_step, used);
+    cloud.unpadded.insert(cloud.unpadded.end(), points.begin(), points.end());
+  }
+  cloud.data = cloud.unpadded;
+}
+
+}  // namespace
+
 PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
   PointCloud2 cloud;
   cloud.height = in.get<std::uint32_t>();
@@ -361,6 +328,7 @@ PointCloud2 get_cloud(MessageReader& in, std::string_view place) {
     }
   }
   const std::uint64_t rows = std::uint64_t{cloud.height} * cloud.width;
+  without_row_padding(cloud);
   // Divided, not multiplied: the product of three damaged numbers may overflow.
   const bool fits = rows == 0 ? cloud.data.empty()
                               : cloud.point_step > 0 && cloud.data.size() % rows == 0 &&
@@ -379,14 +347,50 @@ Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_vi
     if (cloud.fields == own_fields(false)) return own_scan(header_stamp, cloud, false);
   }
   const PointFields fields = fields_of(cloud, place);
-  Scan scan{header_stamp, {}, true};
-  static thread_local std::vector<double> times;  // kept, because new memory costs more
+  Scan scan{header_stamp, {}, false};
+  std::vector<double>& times = time_buffer();
   read_returns(cloud, fields, scan.points, times);
-  const std::optional<TimeRange> range = range_of(fields.time, times, place);
-  scan.timed = range.has_value();
-  if (range)
-    set_times(scan, times, *range, unit_of(*fields.time, *range, header_stamp, place), place);
+  if (fields.time == nullptr || times.empty()) return scan;
+  if (!std::ranges::all_of(times, [](double value) { return std::isfinite(value); })) {
+    throw InputError(place, fmt::format("field '{}' of a return is not finite", fields.time->name));
+  }
+  const SweepTimes sweep = range_of(*fields.time, header_stamp, times);
+  scan.timed = sweep.low != 0.0 || sweep.high != 0.0;
+  if (scan.timed) set_point_times(scan, times, sweep, guess_point_times(sweep, place), place);
   return scan;
+}
+
+Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place,
+                     const PointTimes& rule, TimeFaults& faults) {
+  PointFields fields = fields_of(cloud, place);
+  if (rule.field.empty() || fields.time == nullptr || fields.time->name != rule.field)
+    fields.time = nullptr;
+  Scan scan{header_stamp, {}, false};
+  std::vector<double>& times = time_buffer();
+  read_returns(cloud, fields, scan.points, times);
+  if (fields.time == nullptr) return scan;
+  faults.undated_points = drop_undated(scan.points, times);
+  if (times.empty()) return scan;
+  const SweepTimes sweep = range_of(*fields.time, header_stamp, times);
+  scan.timed = are_plausible(sweep, rule, times.size());
+  faults.implausible = !scan.timed;
+  if (scan.timed) set_point_times(scan, times, sweep, rule, place);
+  return scan;
+}
+
+SweepTimes times_in(Time header_stamp, const PointCloud2& cloud, std::string_view place) {
+  const PointFields fields = fields_of(cloud, place);
+  if (fields.time == nullptr) return {{}, false, header_stamp};
+  std::vector<Point> points;
+  std::vector<double>& times = time_buffer();
+  read_returns(cloud, fields, points, times);
+  drop_undated(points, times);
+  if (times.empty()) return {fields.time->name, is_float(fields.time->type), header_stamp};
+  return range_of(*fields.time, header_stamp, times);
+}
+
+bool has_rings(const PointCloud2& cloud) {
+  return find(cloud, {"ring", "line", "channel"}) != nullptr;
 }
 
 }  // namespace lidarena::dataset::ros

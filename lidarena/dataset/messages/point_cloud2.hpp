@@ -8,6 +8,7 @@
 
 #include "lidarena/base/scan.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
+#include "lidarena/dataset/messages/point_times.hpp"
 #include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena::dataset::ros {
@@ -39,6 +40,12 @@ struct PointCloud2 {
   std::uint32_t point_step = 0;
   std::uint32_t row_step = 0;
   Bytes data;
+  std::vector<std::byte> unpadded;  ///< what `data` refers to where rows of the message are padded
+  PointCloud2() = default;
+  PointCloud2(const PointCloud2&) = delete;  // `data` may refer to `unpadded`
+  PointCloud2& operator=(const PointCloud2&) = delete;
+  PointCloud2(PointCloud2&&) = default;  // the buffer keeps its address
+  PointCloud2& operator=(PointCloud2&&) = default;
 };
 
 /// Appends a cloud of `height` x `width` points of `step` bytes, its data set to zero. Returns a
@@ -63,13 +70,30 @@ std::vector<PointTruth> truth_from_cloud(const PointCloud2& cloud, std::string_v
 ///   x, y, z        float32 or float64, required
 ///   intensity      any type; else reflectivity, signal; else 0
 ///   ring           any integer; else line, channel; else 0
-///   time           integer t, time, offset_time, timestamp: ns since header.stamp;
-///                  float t, time, offset_time, timestamp: s, us or ns, since header.stamp or
+///   time           t, offset_time, time, timestamp, time_stamp, or another name with "time" in it:
+///                  integers in ns since header.stamp; floats in s, us or ns, since header.stamp or
 ///                  absolute (distinguished by the scan's duration and distance from the stamp)
 /// Points without a return (not finite, or 0 0 0) are dropped, the others sorted in firing order.
 /// If points are earlier than header.stamp (drivers that stamp the last packet), the scan's stamp
 /// is the first point's time. Without a time field, or if all times are 0, the scan is untimed.
 /// Throws InputError when the layout is not supported.
 Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place);
+
+/// What was wrong with the times of a cloud's points.
+struct TimeFaults {
+  std::size_t undated_points = 0;  ///< without a finite time, left out
+  bool implausible = false;        ///< not those of the other sweeps: the scan is untimed
+};
+
+/// The same where the times are known to be read by `rule`, see judge_point_times(): whatever a
+/// single cloud has for times, it gives a scan.
+Scan scan_from_cloud(Time header_stamp, const PointCloud2& cloud, std::string_view place,
+                     const PointTimes& rule, TimeFaults& faults);
+
+/// The range of the times of a cloud's returns, for judge_point_times().
+SweepTimes times_in(Time header_stamp, const PointCloud2& cloud, std::string_view place);
+
+/// Whether a cloud states the rings (lines, channels) of its points.
+bool has_rings(const PointCloud2& cloud);
 
 }  // namespace lidarena::dataset::ros

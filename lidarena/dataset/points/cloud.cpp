@@ -17,6 +17,18 @@ void append_float(std::string& bytes, float value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
+/// Whether coordinates are written as double.
+bool is_far(const Cloud& cloud) { return !cloud.origin.isZero(0.0); }
+
+void append_position(std::string& bytes, const Cloud& cloud, std::size_t i) {
+  if (is_far(cloud)) {
+    const Eigen::Vector3d p = cloud.origin + cloud.points[i].cast<double>();
+    bytes.append(reinterpret_cast<const char*>(p.data()), 3 * sizeof(double));
+  } else {
+    for (int axis = 0; axis < 3; ++axis) append_float(bytes, cloud.points[i][axis]);
+  }
+}
+
 /// Writes a file of `header` and one binary float32 row x y z [intensity] [distance] per point.
 void write_rows(const std::filesystem::path& file, const Cloud& cloud, std::string_view header) {
   assert(cloud.intensity.empty() || cloud.intensity.size() == cloud.points.size());
@@ -26,7 +38,7 @@ void write_rows(const std::filesystem::path& file, const Cloud& cloud, std::stri
   constexpr std::size_t kBlock = 1 << 16;  // bytes per write
   std::string rows;
   for (std::size_t i = 0; i < cloud.points.size(); ++i) {
-    for (int axis = 0; axis < 3; ++axis) append_float(rows, cloud.points[i][axis]);
+    append_position(rows, cloud, i);
     if (!cloud.intensity.empty()) append_float(rows, cloud.intensity[i]);
     if (!cloud.distance.empty()) append_float(rows, cloud.distance[i]);
     if (rows.size() < kBlock) continue;
@@ -37,9 +49,21 @@ void write_rows(const std::filesystem::path& file, const Cloud& cloud, std::stri
   out.commit();
 }
 
+/// The first finite point, in whole meters, if it is far from the origin; else the origin.
+template <class PointAt>
+Eigen::Vector3d origin_of(std::size_t size, const PointAt& point) {
+  constexpr double kFar = 1e4;  // m; float has a resolution of 1 mm there
+  for (std::size_t i = 0; i < size; ++i) {
+    const Eigen::Vector3d p = point(i);
+    if (!p.allFinite()) continue;
+    return p.norm() > kFar ? Eigen::Vector3d(p.array().round()) : Eigen::Vector3d::Zero();
+  }
+  return Eigen::Vector3d::Zero();
+}
+
 }  // namespace
 
-Cloud read_cloud(const std::filesystem::path& file) {
+Cloud read_cloud(const std::filesystem::path& file, bool keep_origin) {
   const PointTable table = read_point_table(file);
   const Column& x = table.require("x");
   const Column& y = table.require("y");
@@ -50,10 +74,12 @@ Cloud read_cloud(const std::filesystem::path& file) {
   cloud.points.reserve(table.size);
   if (intensity != nullptr) cloud.intensity.reserve(table.size);
   if (distance != nullptr) cloud.distance.reserve(table.size);
+  const auto point = [&](std::size_t i) {
+    return Eigen::Vector3d(table.number(x, i), table.number(y, i), table.number(z, i));
+  };
+  if (keep_origin) cloud.origin = origin_of(table.size, point);
   for (std::size_t i = 0; i < table.size; ++i) {
-    cloud.points.emplace_back(static_cast<float>(table.number(x, i)),
-                              static_cast<float>(table.number(y, i)),
-                              static_cast<float>(table.number(z, i)));
+    cloud.points.push_back((point(i) - cloud.origin).cast<float>());
     if (intensity != nullptr) {
       cloud.intensity.push_back(static_cast<float>(table.number(*intensity, i)));
     }
@@ -65,7 +91,8 @@ Cloud read_cloud(const std::filesystem::path& file) {
 }
 
 void write_ply(const std::filesystem::path& file, const Cloud& cloud) {
-  std::string fields = "property float x\nproperty float y\nproperty float z\n";
+  const char* type = is_far(cloud) ? "double" : "float";
+  std::string fields = fmt::format("property {0} x\nproperty {0} y\nproperty {0} z\n", type);
   if (!cloud.intensity.empty()) fields += "property float intensity\n";
   if (!cloud.distance.empty()) fields += "property float distance\n";
   write_rows(file, cloud,
@@ -81,7 +108,7 @@ void write_pcd(const std::filesystem::path& file, const Cloud& cloud) {
   std::string types;
   std::string counts;
   for (std::size_t i = 0; i < split_words(fields).size(); ++i) {
-    sizes += " 4";
+    sizes += i < 3 && is_far(cloud) ? " 8" : " 4";
     types += " F";
     counts += " 1";
   }

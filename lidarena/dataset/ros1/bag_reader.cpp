@@ -12,6 +12,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/compression.hpp"
+#include "lidarena/dataset/damaged_file.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/ros1/bag_records.hpp"
 
@@ -98,16 +99,16 @@ BagReader::Impl::Impl(const std::filesystem::path& file)
 }
 
 void BagReader::Impl::cut_off() const {
-  throw InputError(at(file_size),
-                   fmt::format("the bag is cut off after {} messages", contents.message_count),
-                   "the messages before this byte are intact; the recording was stopped, copied in "
-                   "part, or the disk was full");
+  throw DamagedFile(
+      at(file_size), fmt::format("the bag is cut off after {} messages", contents.message_count),
+      "the messages before this byte are intact; the recording was stopped, copied in "
+      "part, or the disk was full");
 }
 
 void BagReader::Impl::damaged(std::string_view what) const {
-  throw InputError(at(record_offset),
-                   fmt::format("{} (after {} messages)", what, contents.message_count),
-                   "the messages before this byte are intact; copy the file again");
+  throw DamagedFile(at(record_offset),
+                    fmt::format("{} (after {} messages)", what, contents.message_count),
+                    "the messages before this byte are intact; copy the file again");
 }
 
 void BagReader::Impl::read(std::span<std::byte> bytes) {
@@ -218,11 +219,11 @@ std::optional<RecordedMessage> BagReader::Impl::take(const Fields& fields, Bytes
 
 void BagReader::Impl::check_end() const {
   if (index_position == 0) {
-    throw InputError(at(file_size),
-                     fmt::format("the bag was never closed: it has no index and may lack messages "
-                                 "after the {} it holds",
-                                 contents.message_count),
-                     "these messages are intact; 'rosbag reindex' makes a complete bag of them");
+    throw DamagedFile(at(file_size),
+                      fmt::format("the bag was never closed: it has no index and may lack messages "
+                                  "after the {} it holds",
+                                  contents.message_count),
+                      "these messages are intact; 'rosbag reindex' makes a complete bag of them");
   }
   if (chunk_infos < chunk_count || connections.size() < connection_count) cut_off();
   if (contents.chunk_count != chunk_count || messages_indexed != contents.message_count) {

@@ -58,18 +58,6 @@ Trajectory read_kitti_rows(const std::filesystem::path& file, const TimeOfFrame&
   return poses.finish(file.string());
 }
 
-/// Throws InputError unless the header's fifth column is qw.
-void check_euroc_header(std::string_view row, const std::string& place) {
-  const auto names = split_commas(row);
-  if (names.size() < 8 || names[4].find('w') == std::string_view::npos) {
-    throw InputError(place, "is not the header of EuRoC ground truth",
-                     "the first row names the columns: timestamp, p x y z, q w x y z");
-  }
-}
-
-/// TextRows skips the header row as a comment, so it is taken from the text itself.
-std::string_view first_line(std::string_view text) { return text.substr(0, text.find('\n')); }
-
 }  // namespace
 
 std::vector<Time> read_times(const std::filesystem::path& file) {
@@ -122,33 +110,6 @@ void write_times(const std::filesystem::path& file, const std::vector<Time>& tim
   std::string text;
   for (const Time time : times) text += format_seconds(time) + "\n";
   write_text_file(file, text);
-}
-
-Trajectory read_euroc_csv(const std::filesystem::path& file, std::vector<StampedPose>* repeated) {
-  std::string text = read_bytes(file);
-  const std::string name = file.string();
-  check_euroc_header(first_line(text), name + ":1");
-  if (text.front() != '#') text.insert(text.begin(), '#');
-  TextRows rows(std::move(text), name);
-  TrajectoryRows poses(repeated);
-  while (const auto row = rows.next()) {
-    const auto parts = split_commas(*row);
-    const std::string place = rows.place();
-    if (parts.size() < 8) {
-      throw InputError(place, fmt::format("holds {} columns, fewer than 8", parts.size()),
-                       "rows are ns, px, py, pz, qw, qx, qy, qz, ...");
-    }
-    const auto stamp = parse_integer(parts[0]);
-    if (!stamp) {
-      throw InputError(place, fmt::format("'{}' is not a time in nanoseconds", parts[0]),
-                       "EuRoC times are integer nanoseconds");
-    }
-    const auto number = [&](std::size_t i) { return finite_number(parts[i], place); };
-    const Eigen::Vector3d position(number(1), number(2), number(3));
-    const Eigen::Quaterniond rotation(number(4), number(5), number(6), number(7));
-    poses.add(Time{*stamp}, pose_from_row(position, rotation, place), place);
-  }
-  return poses.finish(name);
 }
 
 }  // namespace lidarena::dataset

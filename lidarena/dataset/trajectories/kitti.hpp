@@ -25,10 +25,4 @@ void write_kitti_poses(const std::filesystem::path& file, const Trajectory& traj
 /// Writes seconds with 9 decimals, one per row.
 void write_times(const std::filesystem::path& file, const std::vector<Time>& times);
 
-/// Reads EuRoC ground truth: a header row naming the columns, then comma-separated rows: ns,
-/// position (m), quaternion w x y z, and further columns, which are ignored. Throws InputError
-/// naming file and line.
-Trajectory read_euroc_csv(const std::filesystem::path& file,
-                          std::vector<StampedPose>* repeated = nullptr);
-
 }  // namespace lidarena::dataset

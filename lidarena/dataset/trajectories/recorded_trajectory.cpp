@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/damaged_file.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/trajectory_rows.hpp"
@@ -73,7 +74,15 @@ FramedTrajectory read_recorded_trajectory(const std::filesystem::path& file,
   const auto reader = open_recording(file);
   FramedTrajectory read;
   TrajectoryRows rows(&read.repeated);
-  for (std::size_t number = 1; const auto message = reader->next();) {
+  const auto next = [&]() -> std::optional<RecordedMessage> {
+    try {
+      return reader->next();
+    } catch (const DamagedFile& error) {
+      read.ended = error.what();
+      return std::nullopt;
+    }
+  };
+  for (std::size_t number = 1; const auto message = next();) {
     if (message->topic != topic) continue;
     const std::string place = fmt::format("{}: {} message {}", file.string(), topic, number++);
     const PoseType* type = pose_type(message->type);

@@ -26,7 +26,8 @@ void TrajectoryRows::add(Time stamp, const Pose& pose, const std::string& place)
                      fmt::format("the time {} {} the previous row ({})", format_seconds(stamp),
                                  same ? "repeats that of" : "is earlier than that of",
                                  format_seconds(poses_.back().stamp)),
-                     "sort the rows by time and remove duplicates");
+                     "sort the rows by time and remove duplicates; where times are seconds and "
+                     "nanoseconds, write the latter with nine digits (5.005000000, not 5.5000000)");
   }
   poses_.push_back({stamp, pose});
 }

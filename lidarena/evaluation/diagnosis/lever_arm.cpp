@@ -117,6 +117,12 @@ Trajectory moved_to_body(const Trajectory& estimate, const Pose& body_from_estim
   return Trajectory(std::move(poses));
 }
 
+Trajectory moved_by(const Trajectory& trajectory, const Eigen::Vector3d& offset) {
+  std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
+  for (StampedPose& pose : poses) pose.world_from_body.pretranslate(offset);
+  return Trajectory(std::move(poses));
+}
+
 std::optional<LeverArm> find_lever_arm(const Trajectory& estimate, const Trajectory& truth) {
   const std::vector<MotionPair> motions = motion_pairs(estimate, truth);
   if (motions.size() < kMinMotions || rms_rotation(motions) < kMinRotation_rad) return std::nullopt;

@@ -15,6 +15,9 @@ namespace lidarena::evaluation {
 /// arm.
 Trajectory moved_to_body(const Trajectory& estimate, const Pose& body_from_estimate);
 
+/// The same poses in a world frame whose origin lies at -`offset`, m.
+Trajectory moved_by(const Trajectory& trajectory, const Eigen::Vector3d& offset);
+
 /// Estimated pose of the estimate's body frame in the truth's body frame: a diagnostic, never
 /// applied.
 struct LeverArm {

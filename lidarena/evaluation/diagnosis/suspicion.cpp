@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lidarena/base/so3.hpp"
+#include "lidarena/evaluation/trajectory/association.hpp"
 #include "lidarena/evaluation/trajectory/motion_pairs.hpp"
 
 namespace lidarena::evaluation {
@@ -96,6 +97,37 @@ std::string suspect_times(const Trajectory& estimate, const Trajectory& truth) {
       "the estimate begins {:.9g} s {} the truth: their clocks count from different instants",
       std::abs(to_seconds(estimate.begin_time() - truth.begin_time())),
       estimate.begin_time() > truth.begin_time() ? "after" : "before");
+}
+
+std::string suspect_length_unit(const Trajectory& estimate, const Trajectory& truth) {
+  struct LengthUnit {
+    double per_meter;
+    const char* name;
+  };
+  constexpr std::array kLengthUnits{LengthUnit{1e3, "millimeters"}, LengthUnit{1e2, "centimeters"},
+                                    LengthUnit{3.28084, "feet"}, LengthUnit{1e-3, "kilometers"}};
+  constexpr double kSame = 1.1;  // an estimate that is scored at all has this accuracy
+  double estimated = 0.0, real = 0.0;
+  const std::vector<PosePair> pairs = matched_poses(estimate, truth);
+  for (std::size_t i = 1; i < pairs.size(); ++i) {
+    const auto moved = [&](Pose PosePair::*which) {
+      return ((pairs[i].*which).translation() - (pairs[i - 1].*which).translation()).norm();
+    };
+    estimated += moved(&PosePair::estimate);
+    real += moved(&PosePair::truth);
+  }
+  if (estimated <= 0.0 || real <= 0.0) return {};
+  for (const LengthUnit& unit : kLengthUnits) {
+    for (const bool in_estimate : {true, false}) {
+      const double ratio = (in_estimate ? estimated / real : real / estimated) / unit.per_meter;
+      if (ratio > kSame || ratio < 1.0 / kSame) continue;
+      return fmt::format(
+          "the path is {:.4g} m long in the estimate and {:.4g} m in the truth: the "
+          "{}'s positions look like {}",
+          estimated, real, in_estimate ? "estimate" : "truth", unit.name);
+    }
+  }
+  return {};
 }
 
 std::string suspect_quaternion_order(const Trajectory& estimate, const Trajectory& truth) {

@@ -70,6 +70,22 @@ Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& trut
   return Trajectory(std::move(poses), "truth at the estimates");
 }
 
+bool is_coarser(const Trajectory& truth, const Trajectory& estimate) {
+  constexpr double kFactor = 1.1;  // of periods; stamps jitter
+  const Time period = median_period(estimate);
+  return period > Time{0} && to_seconds(median_period(truth)) > kFactor * to_seconds(period);
+}
+
+Trajectory at_truth_stamps(const Trajectory& estimate, const Trajectory& truth) {
+  const Time gap_limit = gap_limit_of(estimate);
+  std::vector<StampedPose> poses;
+  for (const StampedPose& pose : truth.poses()) {
+    const std::optional<Pose> estimated = pose_between(estimate, pose.stamp, gap_limit);
+    if (estimated) poses.push_back({pose.stamp, *estimated});
+  }
+  return Trajectory(std::move(poses), "estimate at the truth's stamps");
+}
+
 Association associate(const Trajectory& estimate, const Trajectory& truth) {
   Association found;
   found.estimates = estimate.size();

@@ -45,6 +45,12 @@ struct PosePair {
 /// time span or in one of its gaps are left out.
 std::vector<PosePair> matched_poses(const Trajectory& estimate, const Trajectory& truth);
 
+/// Whether the truth has longer periods than the estimate: interpolating it would be an error of a
+/// perfect estimate.
+bool is_coarser(const Trajectory& truth, const Trajectory& estimate);
+/// The estimate interpolated at the stamps of the truth, outside its own gaps.
+Trajectory at_truth_stamps(const Trajectory& estimate, const Trajectory& truth);
+
 /// The poses of a perfect estimate at the same instants: the truth at the matched poses.
 Trajectory truth_at_estimates(const Trajectory& estimate, const Trajectory& truth);
 
