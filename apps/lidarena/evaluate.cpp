@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/evaluate_cloud.hpp"
 #include "apps/lidarena/evaluate_evo.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/dataset.hpp"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 struct EvaluateOptions {
   std::vector<std::string> runs;
   std::vector<std::string> trajectories;
-  std::string truth, map, mesh;
+  std::string truth, map, mesh, reference;
   std::string topic, truth_topic, lever;
   double rate_hz = 10.0;
   bool csv = false, markdown = false, latex = false;
@@ -94,8 +95,8 @@ class Files {
  public:
   explicit Files(const EvaluateOptions& o) : o_(o) {
     if (o.truth.empty()) throw InputError("--trajectory", "needs --truth FILE");
-    if (o.map.empty() != o.mesh.empty())
-      throw InputError("--map, --mesh", "must be given together");
+    if (o.map.empty() && !(o.mesh + o.reference).empty())
+      throw InputError("--mesh, --reference", "need a map to score", "add --map CLOUD");
     if (!o.map.empty() && o.trajectories.size() > 1) {
       throw InputError("--map", "needs exactly one --trajectory, in whose frame the map is");
     }
@@ -105,12 +106,13 @@ class Files {
     }
     if (o.map.empty()) return;
     map_ = dataset::read_cloud(o.map, true);
-    world_ = std::make_unique<world::World>(world::load_mesh(o.mesh), o.mesh);
+    if (!o.mesh.empty()) world_ = std::make_unique<world::World>(world::load_mesh(o.mesh), o.mesh);
   }
   const dataset::FramedTrajectory& truth() const { return truth_; }
   dataset::FramedTrajectory estimate(const std::string& file) const {
     return in_body_of_truth(read_poses(file, o_.topic, o_.rate_hz), truth_, file, o_.lever);
   }
+  const dataset::Cloud& map() const { return map_; }
   results::ScoredRun score(const std::string& file, const Parallel& parallel, LogSink& log) const {
     dataset::RunFiles run;
     const dataset::FramedTrajectory read = estimate(file);
@@ -180,6 +182,22 @@ results::ScoredRun score_folder(const fs::path& folder, bool alone, const Parall
   return run;
 }
 
+/// Scores a map without a mesh, in the frame that the alignment of the poses gives it.
+Json score_map_alone(const EvaluateOptions& o, const Parallel& parallel, LogSink& log) {
+  if (o.trajectories.empty())
+    return cloud_scores(dataset::read_cloud(o.map, true), o.reference, Pose::Identity(), parallel);
+  const Files files(o);
+  const results::ScoredRun run = files.score(o.trajectories.front(), parallel, log);
+  const auto truth_from_map = results::truth_from_estimate(run.metrics);
+  if (!o.reference.empty() && !truth_from_map)
+    throw InputError(o.trajectories.front(), "cannot be aligned with the truth",
+                     "leave out both, with map and reference in one frame");
+  return cloud_scores(
+      files.map(), o.reference,
+      truth_from_map.value_or(Pose::Identity()) * Eigen::Translation3d(-files.map().origin),
+      parallel);
+}
+
 std::vector<results::ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel,
                                           LogSink& log) {
   std::vector<results::ScoredRun> runs;
@@ -230,7 +248,20 @@ int evaluate_as_evo(const Common& common, const EvaluateOptions& o) {
   return kDone;
 }
 
+/// A map without a mesh: against a reference cloud, or by itself.
+int evaluate_map_alone(const Common& common, const EvaluateOptions& o) {
+  Console console(common.quiet);
+  const Json scores = score_map_alone(o, Parallel(common.threads), console);
+  if (common.json) {
+    print_json(scores);
+  } else {
+    fmt::print("{}\n{}", o.map, cloud_text(scores));
+  }
+  return kDone;
+}
+
 int evaluate_verb(const Common& common, const EvaluateOptions& o) {
+  if (o.runs.empty() && !o.map.empty() && o.mesh.empty()) return evaluate_map_alone(common, o);
   if (o.runs.empty() == o.trajectories.empty()) {
     throw InputError("evaluate", "needs either RUN folders or --trajectory and --truth");
   }
@@ -270,6 +301,10 @@ void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
                    "Pose of the estimate's body frame in the truth's: x,y,z,qx,qy,qz,qw");
   verb->add_option("--map", o->map, "Point cloud in the estimate's frame: PLY or PCD");
   verb->add_option("--mesh", o->mesh, "Mesh to score the map against");
+  verb->add_option("--reference", o->reference,
+                   "Point cloud to score the map against, in the truth's frame (without "
+                   "--trajectory: in the map's); without mesh and reference, the map's agreement "
+                   "with itself");
   verb->add_flag("--csv", o->csv, "Print CSV, one row per metric");
   verb->add_flag("--markdown", o->markdown, "Print a Markdown table, one row per run");
   verb->add_flag("--latex", o->latex, "Print that table for LaTeX (booktabs)");

@@ -122,6 +122,7 @@ int parse_and_do(int argc, char** argv) {
   int exit_code = kDone;
   add_list(app, common, exit_code);
   add_info(app, common, exit_code);
+  add_check(app, common, exit_code);
   add_simulate(app, common, exit_code);
   add_run(app, common, exit_code);
   add_evaluate(app, common, exit_code);

@@ -87,8 +87,9 @@ int run_verb(const Common& common, const RunOptions& o) {
   if (o.out.empty()) console.info("writes to " + out);
   const Parallel parallel(common.threads);
   const auto run = [&] {
-    if (o.live.asked)
-      return run_live(o.live, request, common.config_folder(), out, parallel, console);
+    LiveRun live = o.live;
+    live.imu_topic = request.read.imu_topic;
+    if (live.asked) return run_live(live, request, common.config_folder(), out, parallel, console);
     if (o.external.empty()) return study::run_algorithm(request, out, parallel, console);
     const auto program = load_config<study::ExternalProgram>(o.external);
     if (program.node.is_used()) return run_node(program, request, out, parallel, console);
@@ -119,7 +120,8 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--sensor", r.read.sensor,
                    "Id or topic of the LiDAR to use, if there are several");
   verb->add_option("--imu-topic", r.read.imu_topic,
-                   "Topic of the IMU to use; default: the one that belongs to the LiDAR");
+                   "Topic of the IMU to use; default: the one that belongs to the LiDAR (live: "
+                   "/SENSOR/imu)");
   verb->add_option("--config", r.odometry.config_file,
                    "YAML file that overrides values of the preset");
   verb->add_option("--set", r.odometry.overrides,

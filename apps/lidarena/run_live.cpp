@@ -125,7 +125,6 @@ void add_live_run(CLI::App& verb, LiveRun& run) {
   verb.add_flag("--live", run.asked,
                 "Run on live topics of --sensor (a name of list sensors) and publish the poses");
   verb.add_option("--points-topic", run.points_topic, "With --live; default: /SENSOR/points");
-  verb.add_option("--imu-topic", run.imu_topic, "With --live; default: /SENSOR/imu");
   verb.add_option("--idle", run.idle_s,
                   "With --live: ends when nothing came for so many seconds after the first message")
       ->check(CLI::NonNegativeNumber);

@@ -38,6 +38,7 @@ void add_allow_missing(CLI::App& verb, bool& allow_missing);
 std::string free_name(const std::string& wanted);
 
 void add_list(CLI::App& app, Common& common, int& exit_code);
+void add_check(CLI::App& app, Common& common, int& exit_code);
 void add_info(CLI::App& app, Common& common, int& exit_code);
 void add_simulate(CLI::App& app, Common& common, int& exit_code);
 void add_run(CLI::App& app, Common& common, int& exit_code);

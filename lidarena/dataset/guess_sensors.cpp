@@ -8,6 +8,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/point_cloud2.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
 
 namespace lidarena::dataset {
 namespace {
@@ -243,14 +244,6 @@ void Guesser::mount() {
 }
 
 }  // namespace
-
-std::string id_of_topic(std::string topic) {
-  constexpr std::string_view kPoints = "/points";
-  if (topic.starts_with('/')) topic.erase(0, 1);
-  if (topic.ends_with(kPoints)) topic.erase(topic.size() - kPoints.size());
-  std::ranges::replace(topic, '/', '_');
-  return topic;
-}
 
 GuessedSensors guess_sensors(const fs::path& file, const RecordingInfo& info, const Survey& survey,
                              const ReadOptions& options) {

@@ -33,7 +33,4 @@ struct GuessedSensors {
 GuessedSensors guess_sensors(const std::filesystem::path& file, const RecordingInfo& info,
                              const Survey& survey, const ReadOptions& options);
 
-/// "/os/points" becomes "os", "/livox/lidar" becomes "livox_lidar".
-std::string id_of_topic(std::string topic);
-
 }  // namespace lidarena::dataset

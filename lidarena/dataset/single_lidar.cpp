@@ -3,9 +3,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::dataset {
+
+std::string id_of_topic(std::string topic) {
+  constexpr std::string_view kPoints = "/points";
+  if (topic.starts_with('/')) topic.erase(0, 1);
+  if (topic.ends_with(kPoints)) topic.erase(topic.size() - kPoints.size());
+  std::ranges::replace(topic, '/', '_');
+  return topic;
+}
 
 Rig single_lidar_rig(const std::filesystem::path& path, const ReadOptions& options) {
   LidarInfo lidar;
@@ -25,7 +36,8 @@ void choose_lidar(const ReadOptions& options, const std::string& place, Rig& rig
   if (!options.sensor.empty()) {
     std::string known;
     for (const LidarInfo& lidar : lidars) known += (known.empty() ? "" : ", ") + lidar.id;
-    std::erase_if(lidars, [&](const LidarInfo& lidar) { return lidar.id != options.sensor; });
+    std::erase_if(lidars,
+                  [&](const LidarInfo& lidar) { return lidar.id != id_of_topic(options.sensor); });
     if (lidars.empty()) {
       throw InputError(place, "has no LiDAR '" + options.sensor + "'", "it has: " + known);
     }

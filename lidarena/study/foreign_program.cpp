@@ -2,6 +2,7 @@
 #include "lidarena/study/foreign_program.hpp"
 
 #include "lidarena/base/shell_word.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/study/simulate_dataset.hpp"
 
@@ -55,7 +56,8 @@ Recording record_for(const ExternalProgram& program, const RunRequest& request,
                      const fs::path& folder, const Parallel& parallel) {
   dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
   Recording recording;
-  recording.rig = rig_of_one(dataset.rig, request.read.sensor, request.dataset.string());
+  recording.rig =
+      rig_of_one(dataset.rig, dataset::id_of_topic(request.read.sensor), request.dataset.string());
   dataset::DatasetWriter writer(folder, recording.rig, {program.input, program.dialect});
   while (const auto event = dataset.events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "lidarena/base/machine.hpp"
+#include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
 #include "lidarena/evaluation/map/return_store.hpp"
@@ -89,7 +90,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   dataset::tell_opening(dataset, log);
   refuse_faulty_imu(dataset, chosen);
   dataset::read_whole_part(dataset);
-  const std::string lidar_id = chosen_lidar(dataset, request.read.sensor);
+  const std::string lidar_id = chosen_lidar(dataset, dataset::id_of_topic(request.read.sensor));
   const odometry::MadeOdometry made =
       odometry::make_odometry(chosen, dataset.rig, lidar_id, parallel);
   odometry::RunOptions options;

@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/imu_sample.hpp"
+#include "lidarena/base/rig.hpp"
+#include "lidarena/base/scan.hpp"
+#include "lidarena/base/trajectory.hpp"
+#include "lidarena/evaluation/diagnosis/imu_alignment.hpp"
+
+/// What in a recording would spoil a SLAM, found without a ground truth.
+namespace lidarena::evaluation {
+
+enum class Severity {
+  kNote,     ///< worth knowing
+  kWarning,  ///< costs accuracy
+  kFault,    ///< spoils a run
+};
+const char* to_string(Severity severity);
+
+struct Finding {
+  Severity severity = Severity::kNote;
+  std::string key;   ///< kind of the finding, e.g. "imu_saturated"
+  std::string text;  ///< what was found, with its figures
+  double value = 0.0;
+  std::string unit;
+  double from_s = 0.0;  ///< stretch of time, since the first measurement; both 0: all of it
+  double to_s = 0.0;
+  std::string remedy;
+  std::map<std::string, std::string> settings{};  ///< the remedy as keys of programs
+};
+
+/// Looks at the measurements one by one and keeps what the findings need.
+class RecordingCheck {
+ public:
+  void add(const Scan& scan);
+  void add(const ImuSample& sample);
+
+  const std::vector<ImuSample>& samples() const { return samples_; }
+  /// Rates, gaps and jitter of stamps; the IMU's range, vibration, bias and the motion at the
+  /// start; fast turns; sweeps of few points or without times.
+  std::vector<Finding> findings() const;
+
+ private:
+  double since_start(Time time) const;
+  void check_scans(std::vector<Finding>& found) const;
+  void check_gaps(const std::vector<Time>& stamps, const char* what, double longest_s,
+                  std::vector<Finding>& found) const;
+  void check_range(std::vector<Finding>& found) const;
+  void check_vibration(std::vector<Finding>& found) const;
+  void check_start(std::vector<Finding>& found) const;
+  void check_turns(std::vector<Finding>& found) const;
+
+  std::vector<Time> scans_;
+  std::vector<std::size_t> points_;
+  std::size_t untimed_ = 0;
+  std::vector<ImuSample> samples_;
+  std::vector<Time> sample_stamps_;
+};
+
+/// Findings of the IMU's clock and axes against the LiDAR's, as motion shows them, beside what the
+/// rig states.
+std::vector<Finding> check_alignment(const ImuAlignment& alignment, const LidarInfo& lidar,
+                                     const ImuInfo& imu);
+
+}  // namespace lidarena::evaluation
