@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/damaged_file.hpp"
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/dataset_layout.hpp"
 #include "lidarena/dataset/guess_sensors.hpp"
@@ -152,13 +153,18 @@ bool is_unfinished(const fs::path& folder) {
          is_there(std::string(layout::kBag) + ".part");
 }
 
+/// The poses before the damage of a damaged file.
 std::optional<Trajectory> truth_in_recording(const fs::path& file) {
   const auto reader = open_recording(file);
   std::vector<StampedPose> poses;
-  while (const auto message = reader->next()) {
-    if (message->topic != layout::kTruthTopic) continue;
-    poses.push_back(
-        ros::decode_odometry(message->data, file.string() + ": truth", message->encoding));
+  try {
+    while (const auto message = reader->next()) {
+      if (message->topic != layout::kTruthTopic) continue;
+      poses.push_back(
+          ros::decode_odometry(message->data, file.string() + ": truth", message->encoding));
+    }
+  } catch (const DamagedFile&) {
+    // The events end there too, and say so.
   }
   if (poses.empty()) return std::nullopt;
   return Trajectory(std::move(poses), file.string() + ": " + layout::kTruthTopic);

@@ -101,7 +101,8 @@ std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajector
   const std::string quaternions = suspect_quaternion_order(estimate, truth);
   const std::optional<LeverArm> arm = find_lever_arm(estimate, truth);
   for (const std::string& warning :
-       {suspect_times(estimate, truth), suspect_length_unit(estimate, truth), quaternions,
+       {suspect_times(estimate, truth), suspect_length_unit(estimate, truth),
+        suspect_constant_rotation(estimate, truth), quaternions,
         arm && quaternions.empty() ? warning_of(*arm) : std::string()}) {
     if (!warning.empty()) warnings.push_back(warning);
   }

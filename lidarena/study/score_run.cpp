@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/score_run.hpp"
 
+#include <unistd.h>
+
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
@@ -51,6 +53,11 @@ class ScansInMemory : public dataset::ScanTruthSource {
   std::size_t next_ = 0;
 };
 
+/// The folder, or the one for temporary files where it can only be read.
+fs::path writable(const fs::path& folder) {
+  return access(folder.c_str(), W_OK) == 0 ? folder : fs::temp_directory_path();
+}
+
 /// The returns of a run's LiDAR, read from its dataset once.
 class ReturnsOfRun {
  public:
@@ -58,7 +65,7 @@ class ReturnsOfRun {
   ReturnsOfRun(const fs::path& folder, const fs::path& dataset, const dataset::RunFiles& run,
                const Parallel& parallel)
       : lidar_id_(run.manifest.value("sensor", "")),
-        store_(folder, lidar_id_, evaluation::kScoredReturns) {
+        store_(writable(folder), lidar_id_, evaluation::kScoredReturns) {
     dataset::ReadOptions read;
     read.sensor = lidar_id_;
     dataset::Dataset source = open_scored_returns(dataset, read, parallel, &hits_);

@@ -10,6 +10,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
+#include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
@@ -397,6 +398,7 @@ dataset::Dataset open_scored_returns(const fs::path& dataset, const dataset::Rea
   dataset::Dataset scored = recorded
                                 ? dataset::open_dataset(dataset, options)
                                 : open_simulated(dataset, manifest, options.sensor, parallel, hits);
+  dataset::read_whole_part(scored);
   const std::size_t max_returns = evaluation::scored_returns(scored.scan_count.value_or(0));
   scored.events = std::make_unique<ScoredReturns>(std::move(scored.events), max_returns);
   if (recorded && hits != nullptr) *hits = recorded_hits(dataset, options.sensor, max_returns);

@@ -439,6 +439,26 @@ TEST_F(ForeignRecordings, OfACutFileTheWholePartIsReadAndTheEndIsReported) {
   }
 }
 
+TEST_F(ForeignRecordings, OfACutFileTheWholePartIsCopied) {
+  ForeignRecording out(file());
+  write_by_time(take_of(1000, 100.1), out);
+  out.close();
+  fs::resize_file(file(), fs::file_size(file()) * 6 / 10);
+  Dataset in = open_dataset(file());
+  read_whole_part(in);
+  EXPECT_GT(copy_dataset(in, file("copy.mcap")).scans, 500U);
+  EXPECT_THAT(in.report->ended(), HasSubstr("is cut off after"));
+  EXPECT_EQ(open_dataset(file("copy.mcap")).scan_count.value_or(0),
+            read(file("copy.mcap")).scans.size());
+}
+
+TEST_F(ForeignRecordings, AnEmptyFileIsCalledEmpty) {
+  for (const char* name : {"a.mcap", "a.bag"}) {
+    folder_.write(name, "");
+    EXPECT_THAT(input_error([&] { open_dataset(file(name)); }), HasSubstr("is empty"));
+  }
+}
+
 TEST_F(ForeignRecordings, AFolderOfBagsIsOneTakeInTheOrderOfTime) {
   fs::create_directory(file("takes"));
   // the names are in another order than the times

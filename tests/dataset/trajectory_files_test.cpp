@@ -243,7 +243,8 @@ TEST_F(Euroc, BrokenRowsAreNamed) {
     return input_error([&] { read_pose_csv(put(rows, "d.csv")); });
   };
   EXPECT_THAT(error("1403715274302142976,1,2,3,0.8,0,0,0.6\n"),
-              HasSubstr("d.csv:1: is not the he"));
+              HasSubstr("d.csv:1: begins with numbers"));
+  EXPECT_THAT(error("1,5 2,0 3,0 4,0 0,0 0,0 0,0 1,0\n"), HasSubstr("write decimals with points"));
   EXPECT_THAT(error("time,x,y,z,roll,pitch,yaw\n1,0,0,0,0,0,0\n"), HasSubstr("no column is 'qw'"));
   EXPECT_THAT(error("time,x,y,z,x,qx,qy,qz,qw\n"), HasSubstr("two columns are 'x'"));
   EXPECT_THAT(error("frame,x,y,z,qx,qy,qz,qw\n"), HasSubstr("no column is a time"));

@@ -12,12 +12,12 @@
 namespace lidarena::evaluation {
 namespace {
 
-/// A floor of 2 x 2 m with a point each 5 cm, at a height.
+/// A floor of 1.6 x 1.6 m with a point each 4 cm, at a height.
 std::vector<Eigen::Vector3f> floor_at(float z, int columns = 40) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < columns; ++i) {
     for (int k = 0; k < 40; ++k)
-      points.emplace_back(0.05F * static_cast<float>(i), 0.05F * static_cast<float>(k), z);
+      points.emplace_back(0.04F * static_cast<float>(i), 0.04F * static_cast<float>(k), z);
   }
   return points;
 }
@@ -38,10 +38,11 @@ TEST(CompareClouds, HalfAMapIsAccurateButNotComplete) {
   const CloudComparison found =
       compare_clouds(floor_at(0.0F, 20), floor_at(0.0F), "test", Parallel(1));
   EXPECT_EQ(found.accuracy_m, 0.0);
-  // rows 21 to 40 are 5 cm, 10 cm ... 1 m from the last row of the map
-  EXPECT_NEAR(found.completeness_m, 0.05 * (20.0 * 21.0 / 2.0) / 40.0, 1e-6);
-  const double recall = 22.0 / 40.0;  // within 10 cm, but for rounding: 20 rows and two more
-  EXPECT_NEAR(found.f_score_10cm, 2.0 * recall / (1.0 + recall), 0.02);
+  // rows 21 to 40 are 4 cm, 8 cm ... 80 cm from the last row of the map
+  EXPECT_NEAR(found.completeness_m, 0.04 * (20.0 * 21.0 / 2.0) / 40.0, 1e-6);
+  const auto f_score = [](double recall) { return 2.0 * recall / (1.0 + recall); };
+  EXPECT_NEAR(found.f_score_5cm, f_score(21.0 / 40.0), 1e-12);
+  EXPECT_NEAR(found.f_score_10cm, f_score(22.0 / 40.0), 1e-12);
 }
 
 TEST(CompareClouds, PointsThatAreNotFiniteAreLeftOut) {

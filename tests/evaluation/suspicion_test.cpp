@@ -48,6 +48,17 @@ TEST(SuspectLengthUnit, NamesTheUnitThatThePositionsSeemToBeIn) {
               HasSubstr("the truth's positions look like centimeters"));
 }
 
+TEST(SuspectConstantRotation, NamesTheFileThatHoldsPositionsOnly) {
+  const Trajectory truth = sample(tour, 10ms, 20s);
+  const Trajectory positions = mapped(sample(tour, 100ms, 20s), [](const StampedPose& pose) {
+    return make_pose(Eigen::Quaterniond::Identity(), pose.world_from_body.translation());
+  });
+  EXPECT_THAT(suspect_constant_rotation(positions, truth), HasSubstr("the estimate's rotations"));
+  EXPECT_THAT(suspect_constant_rotation(truth, positions), HasSubstr("the truth's rotations"));
+  EXPECT_EQ(suspect_constant_rotation(sample(tour, 100ms, 20s), truth), "");
+  EXPECT_EQ(suspect_constant_rotation(positions, positions), "");
+}
+
 TEST(SuspectTimes, NamesTheUnitThatTheTimesSeemToBeIn) {
   const Trajectory truth = sample(tour, 10ms, 20s);
   const Trajectory estimate = sample(tour, 100ms, 18s);

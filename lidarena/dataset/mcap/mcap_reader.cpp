@@ -70,6 +70,7 @@ McapReader::Impl::Impl(const std::filesystem::path& file)
   std::error_code error;
   file_size = std::filesystem::file_size(file, error);
   if (!in || error) throw InputError(place, "cannot be opened", "check the path");
+  if (file_size == 0) throw InputError(place, "is empty", "nothing was recorded; record it again");
   std::array<std::byte, mcap::kMagic.size()> start{};
   in.read(reinterpret_cast<char*>(start.data()), start.size());
   if (!std::ranges::equal(start, mcap::magic())) {

@@ -81,6 +81,7 @@ BagReader::Impl::Impl(const std::filesystem::path& file)
   std::error_code error;
   file_size = std::filesystem::file_size(file, error);
   if (!in || error) throw InputError(place, "cannot be opened", "check the path");
+  if (file_size == 0) throw InputError(place, "is empty", "nothing was recorded; record it again");
   std::string magic(bag::kMagic.size(), '\0');
   in.read(magic.data(), static_cast<std::streamsize>(magic.size()));
   if (magic != bag::kMagic) {

@@ -85,7 +85,7 @@ class Query {
   Query(const Database& database, const char* sql) : database_(database) {
     const int result = sqlite3_prepare_v2(database.get(), sql, -1, &statement_, nullptr);
     if (result == SQLITE_OK) return;
-    if (result == SQLITE_ERROR) {  // no such table or column
+    if (result == SQLITE_ERROR || result == SQLITE_NOTADB) {  // no such table, no pages
       throw InputError(database.place(),
                        std::string("is no bag of rosbag2: ") + sqlite3_errmsg(database.get()),
                        "give a file that 'ros2 bag record' wrote");

@@ -100,6 +100,11 @@ std::int64_t unit_in(std::string_view name) {
 }
 
 Columns columns_of(std::string_view header, const std::string& place) {
+  if (parse_double(header.substr(0, header.find_first_of(" ,\t")))) {
+    throw InputError(place, "begins with numbers separated by commas, without names of columns",
+                     "name the columns in the first row, e.g. timestamp,x,y,z,qx,qy,qz,qw; write "
+                     "decimals with points");
+  }
   const std::vector<std::string_view> names = split_commas(header);
   std::optional<std::size_t> time;
   std::array<std::optional<std::size_t>, 7> numbers;

@@ -130,6 +130,28 @@ std::string suspect_length_unit(const Trajectory& estimate, const Trajectory& tr
   return {};
 }
 
+std::string suspect_constant_rotation(const Trajectory& estimate, const Trajectory& truth) {
+  constexpr double kTurn = 0.17;  // rad
+  constexpr double kSame = 1e-6;  // rad, rounding
+  const auto turn_of = [](const Trajectory& trajectory) {
+    double most = 0.0;
+    for (const StampedPose& pose : trajectory.poses()) {
+      const auto& first = trajectory.poses().front().world_from_body;
+      most = std::max(most, so3::angle(first.linear().transpose() * pose.world_from_body.linear()));
+    }
+    return most;
+  };
+  const double estimated = turn_of(estimate), real = turn_of(truth);
+  const bool in_estimate = estimated < kSame && real > kTurn;
+  const bool in_truth = real < kSame && estimated > kTurn;
+  if (!in_estimate && !in_truth) return {};
+  return fmt::format(
+      "the {}'s rotations are all the same: it holds positions only, figures that need rotations "
+      "(all "
+      "but the ATE's translation) mean nothing",
+      in_estimate ? "estimate" : "truth");
+}
+
 std::string suspect_quaternion_order(const Trajectory& estimate, const Trajectory& truth) {
   const double as_read = misfit_as_read(estimate, truth);
   if (as_read < kMinMisfit_rad) return {};

@@ -18,6 +18,10 @@ std::string suspect_times(const Trajectory& estimate, const Trajectory& truth);
 /// many times as long as the other's, over the time that both cover.
 std::string suspect_length_unit(const Trajectory& estimate, const Trajectory& truth);
 
+/// Rotations that are all the same in one file while the other turns by more than 10 degrees: a
+/// file of positions with made-up quaternions.
+std::string suspect_constant_rotation(const Trajectory& estimate, const Trajectory& truth);
+
 /// Quaternions written w x y z and read as x y z w: with the columns of one trajectory in the other
 /// order, the rotations of both over a second differ by half as much or less. No warning if they
 /// differ by less than 2 deg RMS as read, or after a constant mounting rotation is removed.
