@@ -54,7 +54,8 @@ void add_readers_words(const dataset::Dataset& dataset, std::vector<Finding>& fo
   const auto add = [&](Severity severity, const char* key, const std::string& text) {
     found.push_back({severity, key, text, 0.0, "", 0.0, 0.0, ""});
   };
-  for (const std::string& note : dataset.notes) add(Severity::kNote, "reading", note);
+  for (const std::string& note : dataset.notes)
+    if (note != dataset.report->ended()) add(Severity::kNote, "reading", note);
   for (const std::string& warning : dataset.warnings) {
     const bool is_fault = warning == dataset.imu_fault;
     add(is_fault ? Severity::kFault : Severity::kWarning, is_fault ? "clocks" : "reading", warning);
@@ -105,13 +106,14 @@ std::vector<Finding> findings_of(const CheckOptions& o, const Parallel& parallel
     while (events.next()) {  // after a divergence
     }
     if (run.files.events) add_stretches(*run.files.events, found);
-    const auto alignment = imu == nullptr
+    const bool is_comparable = imu != nullptr && !run.summary.diverged;
+    const auto alignment = !is_comparable
                                ? std::nullopt
                                : evaluation::align_imu(run.files.trajectory, check.samples());
     if (alignment) {
       for (Finding& finding : evaluation::check_alignment(*alignment, *lidar, *imu))
         found.push_back(std::move(finding));
-    } else if (imu != nullptr) {
+    } else if (is_comparable) {
       found.push_back({Severity::kNote, "imu_alignment",
                        "the body turns too little, or for too short a time, to compare the IMU's "
                        "clock and axes with the LiDAR's",

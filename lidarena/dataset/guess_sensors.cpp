@@ -16,9 +16,9 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Transport delays and bursts of a driver are shorter.
-constexpr Time kMaxClockOffset = std::chrono::seconds(1);
+constexpr double kMaxClockOffset_s = 1.0;
 /// Topics begin within hours of each other.
-constexpr Time kMaxStartOffset = std::chrono::hours(24);
+constexpr double kMaxStartOffset_s = 86400.0;
 
 std::string list_of(const std::vector<RecordedTopic>& topics) {
   std::string text;
@@ -167,15 +167,15 @@ class Guesser {
     const SurveyedTopic& a = surveyed(imu);
     const SurveyedTopic& b = surveyed(lidar);
     if (a.stamps.empty() || b.stamps.empty()) return {};
-    Time offset = a.clock_offset() - b.clock_offset();
-    const Time start = a.stamps.front() - b.stamps.front();
-    if (std::chrono::abs(offset) <= kMaxClockOffset) offset = start;
-    const Time limit = offset == start ? kMaxStartOffset : kMaxClockOffset;
-    if (std::chrono::abs(offset) <= limit) return {};
+    const double by_log_s = a.clock_offset_s() - b.clock_offset_s();
+    const double start_s = to_seconds(a.stamps.front()) - to_seconds(b.stamps.front());
+    const bool differ_by_log = std::abs(by_log_s) > kMaxClockOffset_s;
+    if (!differ_by_log && std::abs(start_s) <= kMaxStartOffset_s) return {};
+    const double offset_s = differ_by_log ? by_log_s : start_s;
     return fmt::format(
         "{}: the clocks of {} and {} differ by {:.6g} s; the IMU cannot be used: synchronize the "
         "clocks, or stamp both topics when they arrive",
-        file_.string(), imu, lidar, std::abs(to_seconds(offset)));
+        file_.string(), imu, lidar, std::abs(offset_s));
   }
 
   /// Says that the IMU begins long after the LiDAR.
@@ -183,10 +183,10 @@ class Guesser {
     const SurveyedTopic& a = surveyed(imu);
     const SurveyedTopic& b = surveyed(lidar);
     if (a.stamps.empty() || b.stamps.empty()) return {};
-    const Time late = a.stamps.front() - b.stamps.front();
-    if (late <= kMaxClockOffset || late > kMaxStartOffset) return {};
-    return fmt::format("{} begins {:.3g} s after {}: what needs the IMU begins there", imu,
-                       to_seconds(late), lidar);
+    const double late_s = to_seconds(a.stamps.front() - b.stamps.front());
+    if (late_s <= kMaxClockOffset_s || late_s > kMaxStartOffset_s) return {};
+    return fmt::format("{} begins {:.3g} s after {}: what needs the IMU begins there", imu, late_s,
+                       lidar);
   }
 
   static void tell(const std::string& text, std::vector<std::string>& list) {

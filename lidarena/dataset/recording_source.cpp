@@ -161,6 +161,9 @@ class RecordedEvents final : public EventSource {
 
   void give_up(const std::string& imu) {
     const Time until = merge_.give_up(imu);
+    if (until == Time::min())
+      return report_->count(fmt::format("'{}': the IMU has no sample that can be used", imu),
+                            Time{0});
     report_->count(
         fmt::format("'{}': the IMU has no sample from here to the end of the scans", imu), until);
   }

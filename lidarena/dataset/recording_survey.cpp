@@ -19,10 +19,11 @@ constexpr std::size_t kSweeps = 12;     // a second: periods and spans have a me
 constexpr std::size_t kSamples = 1000;  // 5 s at 200 Hz: motion, not only the rest before it
 constexpr std::size_t kFrames = 10;     // messages of /tf_static, which come first
 
-Time median(std::vector<Time> times) {
-  if (times.empty()) return Time{0};
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
+template <class T>
+T median(std::vector<T> values) {
+  if (values.empty()) return T{0};
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
   return *middle;
 }
 
@@ -106,9 +107,10 @@ class Surveyor {
 
 }  // namespace
 
-Time SurveyedTopic::clock_offset() const {
-  std::vector<Time> offsets;
-  for (std::size_t i = 0; i < stamps.size(); ++i) offsets.push_back(stamps[i] - log_times[i]);
+double SurveyedTopic::clock_offset_s() const {
+  std::vector<double> offsets;
+  for (std::size_t i = 0; i < stamps.size(); ++i)
+    offsets.push_back(to_seconds(stamps[i]) - to_seconds(log_times[i]));
   return median(std::move(offsets));
 }
 

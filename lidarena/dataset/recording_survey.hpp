@@ -24,8 +24,8 @@ struct SurveyedTopic {
   std::string fault;               ///< why a message cannot be read; empty if all can
   std::vector<ImuSample> samples;  ///< of an Imu topic, as stored
 
-  /// Median of header stamp minus log time; 0 without messages.
-  Time clock_offset() const;
+  /// Median of header stamp minus log time, s; 0 without messages.
+  double clock_offset_s() const;
   /// Median time between stamps; 0 with less than two.
   Time period() const;
 };

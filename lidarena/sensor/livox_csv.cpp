@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/sensor/livox_csv.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
 #include <fstream>
+#include <initializer_list>
 #include <numbers>
 #include <numeric>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -40,15 +45,61 @@ std::optional<Row> parse(std::string_view line) {
   return row;
 }
 
-Eigen::Vector3f direction(const Row& row, const std::string& place) {
-  const auto [time, azimuth, zenith] = row;
-  if (!std::isfinite(time) || !(std::abs(azimuth) <= 360.0) ||
-      !(zenith >= 0.0 && zenith <= 180.0)) {
+/// What the columns of the two angles hold, by the header.
+struct Angles {
+  std::size_t azimuth = 1;
+  std::size_t polar = 2;
+  double azimuth_unit = kDegree;  ///< in rad
+  double polar_unit = kDegree;
+  bool polar_is_elevation = false;  ///< from the xy plane upwards; else from z downwards
+};
+
+/// The unit that a column's name states, in rad. Throws InputError where it states none.
+double unit_of(const std::string& name, const std::string& place) {
+  if (name.find("deg") != std::string::npos) return kDegree;
+  if (name.find("rad") != std::string::npos) return 1.0;
+  throw InputError(place, "the column '" + name + "' states no unit",
+                   "name the columns with units, as Time/s,Azimuth/deg,Zenith/deg");
+}
+
+/// Throws InputError unless the line names three columns, two of them an azimuth and a zenith angle
+/// (or elevation) with their units.
+Angles angles_of(std::string header, const std::string& place) {
+  std::ranges::transform(header, header.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::array<std::string, 3> names;
+  std::istringstream columns(header);
+  for (std::string& name : names) std::getline(columns, name, ',');
+  const auto find = [&](std::initializer_list<const char*> words) -> std::optional<std::size_t> {
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      for (const char* word : words)
+        if (names[i].find(word) != std::string::npos) return i;
+    }
+    return std::nullopt;
+  };
+  const auto azimuth = find({"azimuth"});
+  const auto zenith = find({"zenith"});
+  const auto elevation = find({"elevation", "altitude"});
+  if (!azimuth || (!zenith && !elevation)) {
+    throw InputError(place, "is not a header with an azimuth and a zenith angle",
+                     "begin the table with Time/s,Azimuth/deg,Zenith/deg");
+  }
+  const std::size_t polar = zenith ? *zenith : *elevation;
+  return {*azimuth, polar, unit_of(names[*azimuth], place), unit_of(names[polar], place), !zenith};
+}
+
+Eigen::Vector3f direction(const Row& row, const Angles& angles, const std::string& place) {
+  constexpr double kTurn = 2.0 * std::numbers::pi, kRounding = 1e-6;
+  const double a = row[angles.azimuth] * angles.azimuth_unit;
+  const double polar = row[angles.polar] * angles.polar_unit;
+  const double z = angles.polar_is_elevation ? 0.5 * std::numbers::pi - polar : polar;
+  const bool is_in_range =
+      std::abs(a) <= kTurn + kRounding && z >= -1e-12 && z <= std::numbers::pi + kRounding;
+  if (!std::ranges::all_of(row, [](double value) { return std::isfinite(value); }) ||
+      !is_in_range) {
     throw InputError(place, "an angle is out of range or not finite",
                      "azimuth must be within +-360 deg, the zenith angle within 0..180 deg");
   }
-  const double a = azimuth * kDegree;
-  const double z = zenith * kDegree;
   return Eigen::Vector3d(std::sin(z) * std::cos(a), std::sin(z) * std::sin(a), std::cos(z))
       .cast<float>();
 }
@@ -59,19 +110,23 @@ std::vector<Eigen::Vector3f> read_livox_csv(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in) throw InputError(file.string(), "cannot be opened", "check pattern_file");
   std::vector<Eigen::Vector3f> rays;
+  std::optional<Angles> angles;
   std::size_t line_number = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;
     if (!line.empty() && line.back() == '\r') line.pop_back();
     if (line.find_first_not_of(" \t") == std::string::npos) continue;
     const std::string place = file.string() + ":" + std::to_string(line_number);
-    const auto row = parse(line);
-    if (row) {
-      rays.push_back(direction(*row, place));
-    } else if (line_number > 1 || number(line.substr(0, line.find(',')))) {
-      throw InputError(place, "is not a row of three numbers",
-                       "write index or time, azimuth in deg, zenith angle in deg");
+    if (!angles) {
+      angles = angles_of(line, place);
+      continue;
     }
+    const auto row = parse(line);
+    if (!row) {
+      throw InputError(place, "is not a row of three numbers",
+                       "write index or time, azimuth, zenith angle, as the header says");
+    }
+    rays.push_back(direction(*row, *angles, place));
   }
   if (rays.empty()) throw InputError(file.string(), "has no rows");
   return rays;

@@ -11,11 +11,13 @@
 
 namespace lidarena::sensor {
 
-/// Reads the unit directions of a table in Livox's format: rows of index or time, azimuth in deg
-/// (from x towards y), zenith angle in deg (from z); the first line may hold column names. Rows are
-/// taken as evenly spaced in time; the first column must be a number but is not used. Throws
-/// InputError naming file and line if a row does not have three numbers, a number is not finite or
-/// out of range, or the file is missing or has no rows.
+/// Reads the unit directions of a table in Livox's format: a first line that names three columns
+/// with units, Time/s,Azimuth/deg,Zenith/deg, then rows of numbers. The azimuth counts from x
+/// towards y, the zenith angle from z; also read are columns in another order, radians, and
+/// elevations (from the xy plane). Rows are taken as evenly spaced in time; the column of times
+/// must hold numbers but is not used. Throws InputError naming file and line if the header does not
+/// state the meaning and unit of both angles, a row does not have three numbers, a number is not
+/// finite or out of range, or the file is missing or has no rows.
 std::vector<Eigen::Vector3f> read_livox_csv(const std::filesystem::path& file);
 
 /// Fires the rays of a table at `row_rate_hz` rows per second and starts over at its end; ring is

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "lidarena/base/error.hpp"
+#include "tests/dataset/packed.hpp"
 
 namespace lidarena::dataset {
 
@@ -25,14 +26,6 @@ inline std::string file_text(const std::filesystem::path& file) {
   std::ostringstream text;
   text << std::ifstream(file, std::ios::binary).rdbuf();
   return text.str();
-}
-
-/// The bytes of values, one after the other.
-template <class... T>
-std::string packed(T... values) {
-  std::string bytes;
-  (bytes.append(reinterpret_cast<const char*>(&values), sizeof(values)), ...);
-  return bytes;
 }
 
 /// The message of the InputError that `action` throws; the test fails if it throws none.

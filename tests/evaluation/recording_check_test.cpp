@@ -102,6 +102,20 @@ TEST(RecordingCheck, TheEndOfTheRangeOfAnImuIsFoundAndAPeakIsNone) {
   EXPECT_NEAR(saturated->from_s, 10.0, 0.01);
 }
 
+TEST(RecordingCheck, AnImuThatDoesNotCoverTheSweepsOrLacksGravityIsAFault) {
+  std::vector<ImuSample> part = samples_of(20.0);
+  std::erase_if(part, [](const ImuSample& s) {
+    return s.stamp < std::chrono::seconds(3) || s.stamp > std::chrono::seconds(15);
+  });
+  const std::vector<Finding> found = check_of(part).findings();
+  EXPECT_THAT(keys_of(found),
+              testing::AllOf(Contains("imu_begins_late"), Contains("imu_ends_early")));
+  EXPECT_NEAR(found[0].value, 3.0, 0.01);
+  std::vector<ImuSample> free = samples_of(20.0);
+  for (ImuSample& sample : free) sample.accel.z() -= 9.80665;
+  EXPECT_THAT(keys_of(check_of(free).findings()), Contains("no_gravity"));
+}
+
 TEST(RecordingCheck, VibrationIsMeasured) {
   std::vector<ImuSample> samples = samples_of(20.0);
   SequentialRandom random(3);

@@ -71,7 +71,8 @@ TEST(LivoxCsv, TheMid360WrittenOutAndReadBackLooksTheSameWay) {
 }
 
 TEST(LivoxCsv, BeginsAnewWhenItEnds) {
-  const auto rays = read_livox_csv(written("0,0,90\n1,90,90\n2,0,0"));
+  const auto rays =
+      read_livox_csv(written("Time/s,Azimuth/deg,Zenith/deg\n0,0,90\n1,90,90\n2,0,0"));
   const RayTablePattern table(rays, 40.0, 2, 10.0, "test");  // 4 rows a scan of a table of 3
   std::vector<Beam> beams;
   table.beams(2, beams);  // rows 8 to 11, which are 2, 0, 1, 2
@@ -85,6 +86,14 @@ TEST(LivoxCsv, BeginsAnewWhenItEnds) {
   EXPECT_EQ(table.repeats_after(), 3U);
 }
 
+TEST(LivoxCsv, TheHeaderSaysWhatTheColumnsHold) {
+  const auto expected = read_livox_csv(written("Time/s,Azimuth/deg,Zenith/deg\n0,30,60\n"));
+  for (const char* text : {"elevation [deg],azimuth [deg],time\n30,30,0\n",
+                           "t,azimuth_rad,zenith_rad\n0,0.5235987755982988,1.0471975511965976\n"}) {
+    EXPECT_LT((read_livox_csv(written(text)).at(0) - expected.at(0)).norm(), 1e-6F) << text;
+  }
+}
+
 std::string csv_failure(const std::string& csv) {
   try {
     read_livox_csv(written(csv));
@@ -95,8 +104,8 @@ std::string csv_failure(const std::string& csv) {
 }
 
 TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
-  EXPECT_EQ(csv_failure("0, 1.5,\t88\n\n"), "no failure");
-  const std::string good = "time,azimuth,zenith\n0,1,2\n";
+  EXPECT_EQ(csv_failure("Time/s,Azimuth/deg,Zenith/deg\n0, 1.5,\t88\n\n"), "no failure");
+  const std::string good = "time,azimuth/deg,zenith/deg\n0,1,2\n";
   EXPECT_THAT(csv_failure(good + "1,nan,2\n"), HasSubstr("pattern_under_test.csv:3: an angle"));
   EXPECT_THAT(csv_failure(good + "1,inf,2\n"), HasSubstr("csv:3: an angle"));
   EXPECT_THAT(csv_failure(good + "1,361,2\n"), HasSubstr("csv:3: an angle"));
@@ -107,9 +116,10 @@ TEST(LivoxCsv, ErrorsNameTheFileAndTheLine) {
   EXPECT_THAT(csv_failure(good + "1,1,2x\n"), HasSubstr("csv:3: is not a row of three"));
   EXPECT_THAT(csv_failure(good + "1,,2\n"), HasSubstr("csv:3: is not a row of three"));
   EXPECT_THAT(csv_failure(good + "a,b,c\n"), HasSubstr("csv:3: is not a row of three"));
-  EXPECT_THAT(csv_failure("0;1;2\n"), HasSubstr("has no rows"));  // one line that may be a header
-  EXPECT_THAT(csv_failure("1,2\n"), HasSubstr("csv:1: is not a row of three"));
-  EXPECT_THAT(csv_failure("time,azimuth,zenith\n"), HasSubstr("has no rows"));
+  EXPECT_THAT(csv_failure("0,1,2\n"), HasSubstr("csv:1: is not a header"));
+  EXPECT_THAT(csv_failure("time,azimuth,zenith\n"),
+              HasSubstr("csv:1: the column 'azimuth' states"));
+  EXPECT_THAT(csv_failure("time,azimuth/deg,zenith/deg\n"), HasSubstr("has no rows"));
   EXPECT_THAT(csv_failure(""), HasSubstr("has no rows"));
   EXPECT_THROW(read_livox_csv("no_such.csv"), InputError);
 }

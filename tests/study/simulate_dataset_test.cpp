@@ -18,6 +18,7 @@ TEST(SimulateDataset, TakesASensorsOwnTableAlongSoThatItCanBeFlownElsewhere) {
   const TemporaryFolder temporary;
   const fs::path& folder = temporary.path();
   std::ofstream table(folder / "table.csv");
+  table << "Time/s,Azimuth/deg,Zenith/deg\n";
   for (int i = 0; i < 500; ++i) table << i << ',' << i % 360 << ',' << 60 + i % 60 << '\n';
   table.close();
   temporary.write("sensor.yaml",

@@ -152,11 +152,12 @@ double mean_rate(const std::vector<Time>& stamps, double fallback) {
 class SweepSource : public EventSource {
  public:
   SweepSource(std::vector<fs::path> files, std::vector<Time> stamps, std::string layout,
-              std::string sensor_id)
+              std::string sensor_id, std::shared_ptr<ReadReport> report)
       : files_(std::move(files)),
         stamps_(std::move(stamps)),
         layout_(std::move(layout)),
-        sensor_id_(std::move(sensor_id)) {}
+        sensor_id_(std::move(sensor_id)),
+        report_(std::move(report)) {}
 
   std::optional<Event> next() override {
     if (next_ == files_.size()) return std::nullopt;
@@ -166,6 +167,8 @@ class SweepSource : public EventSource {
           files_[next_].string(), "its stamp is not later than that of the previous sweep",
           "check the file names, times.txt, and that 64-bit times of points are absolute");
     }
+    if (!scan.timed)
+      report_->count("sweep without times of its points, not de-skewed by time", scan.stamp);
     last_stamp_ = scan.stamp;
     ++next_;
     return Event{sensor_id_, std::move(scan)};
@@ -176,6 +179,7 @@ class SweepSource : public EventSource {
   std::vector<Time> stamps_;
   std::string layout_;
   std::string sensor_id_;
+  std::shared_ptr<ReadReport> report_;
   std::size_t next_ = 0;
   Time last_stamp_{0};
 };
@@ -199,7 +203,7 @@ Dataset open_files(const fs::path& place, const std::vector<fs::path>& files,
   dataset.rig.lidars.front().rate_hz = mean_rate(stamps, options.rate_hz);
   dataset.scan_count = files.size();
   dataset.events = std::make_unique<SweepSource>(files, std::move(stamps), layout,
-                                                 dataset.rig.lidars.front().id);
+                                                 dataset.rig.lidars.front().id, dataset.report);
   return dataset;
 }
 

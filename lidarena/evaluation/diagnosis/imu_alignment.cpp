@@ -139,7 +139,7 @@ std::optional<ImuAlignment> align_imu(const Trajectory& trajectory,
   if (best.pairs < kMinPairs || best.rate < kMinRate) return std::nullopt;
   ImuAlignment alignment{late_s, 0.0, best.body_from_imu, best.rate, best.misfit, best.axes_known};
   const std::span all(intervals);
-  if (intervals.size() >= 4 * kMinPairs) {
+  if (intervals.size() >= 3 * kMinPairs) {
     const std::size_t half = intervals.size() / 2;
     alignment.drift_s = best_offset(all.subspan(half), gyro) - best_offset(all.first(half), gyro);
   }

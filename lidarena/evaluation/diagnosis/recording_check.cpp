@@ -129,6 +129,46 @@ void RecordingCheck::check_scans(std::vector<Finding>& found) const {
   }
 }
 
+/// The IMU must have samples from the first sweep to the last.
+void RecordingCheck::check_coverage(std::vector<Finding>& found) const {
+  constexpr Time kMissing = std::chrono::seconds(1);
+  if (scans_.empty()) return;
+  const Time begin = samples_.front().stamp, end = samples_.back().stamp;
+  if (begin > scans_.front() + kMissing) {
+    found.push_back(
+        {Severity::kFault, "imu_begins_late",
+         fmt::format("the IMU begins {:.3g} s after the LiDAR", to_seconds(begin - scans_.front())),
+         to_seconds(begin - scans_.front()), "s", 0.0, since_start(begin),
+         "begin the recording there"});
+  }
+  if (end + kMissing < scans_.back()) {
+    found.push_back(
+        {Severity::kFault, "imu_ends_early",
+         fmt::format("the IMU ends {:.3g} s before the LiDAR", to_seconds(scans_.back() - end)),
+         to_seconds(scans_.back() - end), "s", since_start(end), since_start(scans_.back()),
+         "cut the recording there"});
+  }
+}
+
+void RecordingCheck::check_gravity(std::vector<Finding>& found) const {
+  constexpr double kMin = 6.5, kMax = 14.7;  // m/s^2, two thirds and one and a half of gravity
+  std::vector<double> sizes;
+  for (const ImuSample& sample : samples_) sizes.push_back(sample.accel.norm());
+  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+  std::nth_element(sizes.begin(), middle, sizes.end());
+  if (*middle > kMin && *middle < kMax) return;
+  found.push_back(
+      {Severity::kFault,
+       "no_gravity",
+       fmt::format("the accelerations have a median of {:.3g} m/s^2, not of gravity", *middle),
+       *middle,
+       "m/s^2",
+       0.0,
+       0.0,
+       "record the raw accelerations, +9.8 m/s^2 upwards at rest",
+       {{"LIO-SAM", "imuGravity is that of the raw accelerations"}}});
+}
+
 void RecordingCheck::check_range(std::vector<Finding>& found) const {
   struct Quantity {
     Eigen::Vector3d ImuSample::*member;
@@ -148,17 +188,12 @@ void RecordingCheck::check_range(std::vector<Finding>& found) const {
       }
       constexpr std::size_t kOften = 3;  // a peak has one sample, a limit has many
       if (at_limit.size() < kOften) continue;
-      found.push_back({Severity::kFault,
-                       "imu_saturated",
+      found.push_back({Severity::kFault, "imu_saturated",
                        fmt::format("the {} about axis {} is at {:.4g} {} in {} samples: the end of "
                                    "the sensor's range",
                                    q.name, "xyz"[axis], most, q.unit, at_limit.size()),
-                       most,
-                       q.unit,
-                       since_start(at_limit.front()),
-                       since_start(at_limit.back()),
-                       "set a larger range of the IMU, or damp its mount",
-                       {{"FAST-LIO2", "common/acc_cov up; satu_acc, satu_gyro in forks"}}});
+                       most, q.unit, since_start(at_limit.front()), since_start(at_limit.back()),
+                       "set a larger range of the IMU, or damp its mount"});
     }
   }
 }
@@ -251,6 +286,8 @@ std::vector<Finding> RecordingCheck::findings() const {
                      fmt::format("the IMU has {:.3g} samples a second", rate_hz), rate_hz, "Hz",
                      0.0, 0.0, "set the IMU to 100 Hz or more"});
   }
+  check_coverage(found);
+  check_gravity(found);
   check_range(found);
   check_vibration(found);
   check_start(found);

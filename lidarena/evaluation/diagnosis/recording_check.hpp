@@ -49,6 +49,8 @@ class RecordingCheck {
   void check_scans(std::vector<Finding>& found) const;
   void check_gaps(const std::vector<Time>& stamps, const char* what, double longest_s,
                   std::vector<Finding>& found) const;
+  void check_coverage(std::vector<Finding>& found) const;
+  void check_gravity(std::vector<Finding>& found) const;
   void check_range(std::vector<Finding>& found) const;
   void check_vibration(std::vector<Finding>& found) const;
   void check_start(std::vector<Finding>& found) const;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "tests/dataset/fuzz/fuzz_targets.hpp"
 
+#ifdef LIDARENA_TEST_SQLITE
+#include <sqlite3.h>
+#endif
+
 #include <filesystem>
 #include <fstream>
 #include <sstream>
@@ -14,12 +18,14 @@
 #include "lidarena/dataset/messages/driver_layouts.hpp"
 #include "lidarena/dataset/messages/livox_message.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/packets/velodyne_packets.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/points/sweep_file.hpp"
 #include "lidarena/dataset/ros1/bag_writer.hpp"
 #include "lidarena/dataset/trajectories/kitti.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
+#include "tests/dataset/packet_samples.hpp"
 #include "tests/dataset/sample_events.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -170,13 +176,86 @@ Target trajectories() {
   corpus.push_back(
       "#timestamp, p x, p y, p z, q w, q x, q y, q z\n1403636580838555648,1,2,3,1,0,"
       "0,0\n1403636580843555648,1,2,3.5,0.9999,0.01,0,0\n");
+  corpus.push_back(
+      "%time,field.pose.pose.position.x,y,z,field.pose.pose.orientation.x,qy,qz,qw,v.x\n"
+      "1403636580838555648,1,2,3,0,0,0,1,5\n1403636580.9,1,2,3.5,0,0.01,0,0.9999,5\n");
   return {"trajectory", corpus, [file](std::string_view bytes) {
             written(file, bytes);
             ignore_input_errors([&] { read_trajectory(file); });
+            ignore_input_errors([&] { read_framed_trajectory(file); });
             ignore_input_errors([&] { read_times(file); });
             ignore_input_errors([&] { read_imu_text(file); });
           }};
 }
+
+/// Captures of an Ouster of two beams and of a Velodyne, with the metadata beside them.
+Target captures() {
+  const fs::path folder = scratch() / "capture";
+  written(folder / "a.json",
+          R"({"prod_line": "OS-1-2", "udp_profile_lidar": "RNG15_RFL8_NIR8", "lidar_mode": "4x10",
+              "columns_per_frame": 4, "columns_per_packet": 2, "beam_altitude_angles": [10, -10],
+              "beam_azimuth_angles": [0, 0],
+              "lidar_to_sensor_transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1],
+              "imu_to_sensor_transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]})");
+  std::vector<std::string> ouster;
+  for (std::uint16_t k = 0; k < 4; ++k) {
+    const std::string packet =
+        ouster_packet(OusterProfile::kLowRate, k / 2, static_cast<std::uint16_t>(2 * (k % 2)),
+                      packed(std::uint16_t{500}, std::uint8_t{9}, std::uint8_t{9}));
+    ouster.push_back(ip_frame(udp(packet, 7502), k, 0, false));
+    ouster.push_back(ip_frame(udp(std::string(48, '\x3f'), 7503), k, 0, false));
+  }
+  std::string velodyne(1206, '\x11');
+  for (std::size_t block = 0; block < 12; ++block)
+    velodyne.replace(100 * block, 4, packed(std::uint16_t{0xEEFF}, std::uint16_t{3000}));
+  velodyne.replace(1200, 6, packed(0U, std::uint8_t{0x39}, std::uint8_t{0x22}));
+  const std::string frame = ip_frame(udp(velodyne, 2368), 1, 0, false);
+  const auto alone = scratch() / "velodyne" / "b.pcap";
+  return {"pcap",
+          {pcap(ouster), pcap({frame, frame}),
+           pcap({ip_frame(udp(velodyne, 2368).substr(0, 800), 1, 0, true),
+                 ip_frame(udp(velodyne, 2368).substr(800), 1, 800, false)})},
+          [folder, alone](std::string_view bytes) {
+            ignore_input_errors(
+                [&] { drain(*open_dataset(written(folder / "a.pcap", bytes)).events); });
+            ignore_input_errors([&] { drain(*open_dataset(written(alone, bytes)).events); });
+          }};
+}
+
+#ifdef LIDARENA_TEST_SQLITE
+/// A bag of rosbag2 in SQLite storage.
+Target databases() {
+  const fs::path file = scratch() / "a.db3";
+  sqlite3* db = nullptr;
+  sqlite3_open(file.c_str(), &db);
+  const auto run = [&](const std::string& sql) {
+    sqlite3_exec(db, sql.c_str(), nullptr, nullptr, nullptr);
+  };
+  run("CREATE TABLE topics(id INTEGER PRIMARY KEY, name TEXT, type TEXT,"
+      "serialization_format TEXT, offered_qos_profiles TEXT)");
+  run("CREATE TABLE messages(id INTEGER PRIMARY KEY, topic_id INTEGER, timestamp INTEGER,"
+      "data BLOB)");
+  run("INSERT INTO topics VALUES(1,'/imu','sensor_msgs/msg/Imu','cdr','')");
+  run("INSERT INTO topics VALUES(2,'/points','sensor_msgs/msg/PointCloud2','cdr','')");
+  MessageWriter message;
+  for (int i = 0; i < 3; ++i) {
+    for (const int topic : {1, 2}) {
+      topic == 1 ? ros::encode_imu(sample::imu(i), "imu", message)
+                 : ros::encode_scan(sample::scan(i, 4), "lidar", message);
+      std::string hex;
+      for (const std::byte byte : message.bytes())
+        hex += "0123456789abcdef"[std::to_integer<int>(byte) >> 4],
+            hex += "0123456789abcdef"[std::to_integer<int>(byte) & 15];
+      run("INSERT INTO messages(topic_id, timestamp, data) VALUES(" + std::to_string(topic) + "," +
+          std::to_string(i) + ", x'" + hex + "')");
+    }
+  }
+  sqlite3_close(db);
+  return {"db3", {text_of(file)}, [file](std::string_view bytes) {
+            read_dataset(written(file, bytes));
+          }};
+}
+#endif
 
 /// Dataset folders with a damaged manifest.json.
 Target manifests() {
@@ -243,6 +322,7 @@ Target messages() {
               ignore_input_errors([&] { ros::decode_scan_truth(bytes, "fuzz", encoding); });
               ignore_input_errors([&] { ros::decode_string(bytes, "fuzz", encoding); });
               ignore_input_errors([&] { decode_livox(bytes, "fuzz", encoding); });
+              ignore_input_errors([&] { decode_velodyne(bytes, "fuzz", encoding); });
             }
           }};
 }
@@ -258,6 +338,10 @@ const std::vector<Target>& targets() {
       clouds("ply"),
       raw_sweeps(),
       trajectories(),
+      captures(),
+#ifdef LIDARENA_TEST_SQLITE
+      databases(),
+#endif
       manifests(),
       configurations(),
       messages()};

@@ -92,12 +92,20 @@ TEST_P(Readers, RefuseBrokenInputOrReadItButNeverFail) {
   EXPECT_GT(count, 0);
 }
 
+#ifdef LIDARENA_TEST_SQLITE
+constexpr std::size_t kTargets = 11;
+INSTANTIATE_TEST_SUITE_P(Sqlite, Readers, testing::Values("db3"),
+                         [](const auto& param) { return std::string(param.param); });
+#else
+constexpr std::size_t kTargets = 10;
+#endif
+
 INSTANTIATE_TEST_SUITE_P(All, Readers,
-                         testing::Values("mcap", "bag", "pcd", "ply", "bin", "trajectory",
+                         testing::Values("mcap", "bag", "pcd", "ply", "bin", "trajectory", "pcap",
                                          "manifest", "yaml", "messages"),
                          [](const auto& param) { return std::string(param.param); });
 
-TEST(Targets, AreAllTried) { EXPECT_EQ(targets().size(), 9U); }
+TEST(Targets, AreAllTried) { EXPECT_EQ(targets().size(), kTargets); }
 
 }  // namespace
 }  // namespace lidarena::dataset::fuzz
