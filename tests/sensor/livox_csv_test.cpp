@@ -135,7 +135,7 @@ std::string sensor_failure(const std::string& yaml) {
 }
 
 TEST(LivoxCsv, IsASensorsPatternOnceItsRowRateIsTold) {
-  const fs::path table = written("0,0,90\n1,90,90\n");
+  const fs::path table = written("Time/s,Azimuth/deg,Zenith/deg\n0,0,90\n1,90,90\n");
   const std::string file = "pattern_file: " + table.filename().string() + "\n";
   EXPECT_EQ(sensor_failure(file + "row_rate_hz: 1000\nlines: 2\n"), "no failure");
   EXPECT_THAT(sensor_failure(file), HasSubstr("set row_rate_hz"));
