@@ -95,7 +95,7 @@ void write_scans(benchmark::State& state, Sensor (*make)(), dataset::DatasetForm
     Scan scan = sensor.scan;
     for (int i = 0; i < kScans; ++i) {
       scan.stamp = i * std::chrono::milliseconds(100);
-      out.write(dataset::Event{"lidar", scan});
+      out.write(Event{"lidar", scan});
       points += scan.points.size();
     }
     out.close();
@@ -145,10 +145,10 @@ void ten_minutes(benchmark::State& state, dataset::DatasetFormat format) {
       const Time now = std::chrono::milliseconds(ms);
       out.write_truth({now, Pose::Identity()});
       if (ms % 5 == 0) {
-        out.write(dataset::Event{"lidar", ImuSample{now, Eigen::Vector3d::Zero(), {0, 0, 9.8}}});
+        out.write(Event{"lidar", ImuSample{now, Eigen::Vector3d::Zero(), {0, 0, 9.8}}});
       }
       if (ms % 100 == 99) {
-        out.write(dataset::Event{"lidar", scan});
+        out.write(Event{"lidar", scan});
         scan.stamp += std::chrono::milliseconds(100);
       }
       if (ms == 10'000) after_ten_seconds = resident_mb();

@@ -18,8 +18,8 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/odometry/process_memory.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/process_memory.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 namespace lidarena {
 namespace {
@@ -81,10 +81,11 @@ void print_state(const std::vector<double>& scan_ms, const odometry::Odometry& o
   if (last.empty()) return;
   fmt::print("scan {}: CPU ms of the last {}: median {:.2f}, P99 {:.2f}, max {:.2f}; rss {:.1f} MB",
              scan_ms.size(), count, percentile(last, 0.5), percentile(last, 0.99),
-             percentile(last, 1.0), 1e-6 * static_cast<double>(odometry::resident_bytes()));
-  for (const auto& [part, bytes] : odometry.memory()) {
-    fmt::print(", {} {:.3f}", part, 1e-6 * static_cast<double>(bytes));
-  }
+             percentile(last, 1.0), 1e-6 * static_cast<double>(stages::resident_bytes()));
+  const odometry::MemoryUse memory = odometry.memory();
+  fmt::print(", map {:.3f}, scan buffer {:.3f}, backlog {:.3f}, other {:.3f}",
+             1e-6 * static_cast<double>(memory.map), 1e-6 * static_cast<double>(memory.scan_buffer),
+             1e-6 * static_cast<double>(memory.backlog), 1e-6 * static_cast<double>(memory.other));
   fmt::print("\n");
   std::fflush(stdout);
 }
@@ -93,7 +94,7 @@ int measure(const Arguments& a) {
   const Parallel parallel(a.threads);
   dataset::ReadOptions read;
   read.sensor = a.sensor;
-  dataset::Dataset dataset = study::open_any_dataset(a.dataset, read, parallel);
+  dataset::Dataset dataset = stages::open_any_dataset(a.dataset, read, parallel);
   const LidarInfo* lidar = dataset.rig.find_lidar(a.sensor);
   if (lidar == nullptr) throw InputError(a.dataset, "has several LiDARs", "choose with --sensor");
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
@@ -102,7 +103,7 @@ int measure(const Arguments& a) {
           .odometry;
   std::vector<double> scan_ms;
   std::optional<Time> first;
-  odometry::ScanCounters last;
+  odometry::ScanDetails last;
   double between = 0.0;  // CPU time of the IMU calls before the next scan, s
   std::map<std::string, std::size_t> statuses;
   std::map<std::string, double> sums;
@@ -123,16 +124,10 @@ int measure(const Arguments& a) {
     scan_ms.push_back(1e3 * (between + cpu_seconds() - start));
     between = 0.0;
     ++statuses[odometry::to_string(result.status)];
-    const odometry::ScanCounters& counters = result.counters;
-    last = counters;
-    odometry::ScanCounters::visit(counters, [&](const char* name, const auto& value) {
-      if (value) sums[name] += static_cast<double>(*value);
-    });
-    if (counters.near_planes.value_or(0) > 0) {
-      min_inlier_share =
-          std::min(min_inlier_share, static_cast<double>(counters.matches.value_or(0)) /
-                                         static_cast<double>(*counters.near_planes));
-    }
+    last = result.details;
+    for (const auto& [name, value] : last) sums[name] += value;
+    if (const double near = result.detail("near_planes").value_or(0.0); near > 0.0)
+      min_inlier_share = std::min(min_inlier_share, result.detail("matches").value_or(0.0) / near);
     if (scan_ms.size() % kStateEvery == 0) print_state(scan_ms, *odometry);
   }
   odometry->finish();
@@ -147,9 +142,7 @@ int measure(const Arguments& a) {
   for (const auto& [name, sum] : sums) fmt::print(" {} {:.4g}", name, sum / count);
   fmt::print("\nminimum agreement of a scan with the map: {:.3f}\n", min_inlier_share);
   fmt::print("last scan:");
-  odometry::ScanCounters::visit(last, [](const char* name, const auto& value) {
-    if (value) fmt::print(" {} {}", name, *value);
-  });
+  for (const auto& [name, value] : last) fmt::print(" {} {}", name, value);
   fmt::print("\n");
   const Trajectory estimated = odometry->trajectory();
   std::vector<StampedPose> poses(estimated.poses().begin(), estimated.poses().end());

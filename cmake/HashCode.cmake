@@ -6,12 +6,11 @@
 cmake_policy(SET CMP0057 NEW)
 
 # What each part consists of: modules, or files with their headers.
-set(simulator base world scenes flight sensor dataset study/simulate_dataset study/example_scan)
+set(simulator base world scenes flight sensor dataset stages/simulate_dataset stages/example_scan)
 set(method base dataset map estimation loop odometry evaluation/map/reproject
-    study/simulate_dataset study/run_algorithm study/run_external
-    study/foreign_program)
-set(scorer base dataset world estimation map results evaluation study/simulate_dataset
-    study/run_algorithm)
+    stages/simulate_dataset stages/run_algorithm stages/run_external
+    stages/foreign_program stages/recorder stages/event_record stages/motion_record)
+set(scorer base dataset world estimation map results evaluation stages/score_run)
 
 # The names under which a file of a module belongs to a part. A file in a folder of odometry/ is of
 # that method alone.

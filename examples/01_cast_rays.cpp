@@ -6,13 +6,13 @@
 #include <vector>
 
 #include "lidarena/scenes/load_world.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 #include "lidarena/world/world.hpp"
 
 int main() {
   using namespace lidarena;
   LogSink silent;
-  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  const stages::ConfigFolder configs = stages::ConfigFolder::find(".");
   const world::World world(scenes::load_world(configs.resolve("worlds", "house"), {}, silent).mesh,
                            "house");
 

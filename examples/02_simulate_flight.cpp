@@ -2,20 +2,21 @@
 // Fly a Mid-360 through the House and write its data. usage: example_02_simulate_flight [FOLDER]
 #include <cstdio>
 
-#include "lidarena/study/config_folder.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/config_folder.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 int main(int argc, char** argv) {
   using namespace lidarena;
   const std::string folder = argc > 1 ? argv[1] : "out/house_flight";
-  const study::ConfigFolder configs = study::ConfigFolder::find(".");
-  study::SimulateRequest request;
+  const stages::ConfigFolder configs = stages::ConfigFolder::find(".");
+  stages::SimulateRequest request;
   request.world = configs.resolve("worlds", "house");
   request.flight = configs.resolve("flights", "house");
   request.sensors = {configs.resolve("sensors", "livox_mid360")};
   request.seconds = 2.0;
   LogSink silent;
-  const study::SimulateSummary done = study::simulate_dataset(request, folder, Parallel(), silent);
+  const stages::SimulateSummary done =
+      stages::simulate_dataset(request, folder, Parallel(), silent);
   std::printf("%zu scans, %zu points, %zu IMU samples along %.2f m, in %s\n", done.scans,
               done.points, done.imu_samples, done.path_m, folder.c_str());
 

@@ -35,7 +35,7 @@ int main() {
 
   const world::World room(world::box_shape({6.0, 6.0, 6.0}), "room");
   const sensor::Lidar lidar(sensor, sensor::make_pattern(sensor), sensor.name, 1, true);
-  std::vector<dataset::PointTruth> truth;
+  std::vector<PointTruth> truth;
   const Scan scan = lidar.measure(room, StaticFlight(), 0, Parallel(), &truth);
   double squares = 0.0;
   for (std::size_t i = 0; i < truth.size(); ++i) {

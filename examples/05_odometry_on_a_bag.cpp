@@ -7,11 +7,11 @@
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/odometry/run.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
-#include "lidarena/study/config_folder.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/config_folder.hpp"
+#include "lidarena/stages/recorder.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 namespace {
 
@@ -19,7 +19,7 @@ using namespace lidarena;
 
 void record(const std::filesystem::path& bag) {
   LogSink silent;
-  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  const stages::ConfigFolder configs = stages::ConfigFolder::find(".");
   world::WorldModel model = scenes::load_world(configs.resolve("worlds", "house"), {}, silent);
   const world::World world(std::move(model.mesh), model.name);
   const auto flight =
@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   request.algorithm = argc > 2 ? argv[2] : "kiss_icp";
   const odometry::MadeOdometry made = odometry::make_odometry(request, dataset.rig, "", Parallel());
   LogSink silent;
-  const odometry::RunResult result = odometry::run(*made.odometry, *dataset.events, {}, silent);
+  const stages::RunResult result = stages::record_run(*made.odometry, *dataset.events, {}, silent);
   std::printf("%s: %zu scans, %.2f m, %.1f times real time, a map of %zu points\n",
               request.algorithm.c_str(), result.summary.scans,
               result.files.trajectory.path_length(),

@@ -25,7 +25,7 @@ int main(int argc, char** argv) {
   spec.algorithms = {"kiss_icp"};
 
   LogSink silent;
-  const study::ConfigFolder configs = study::ConfigFolder::find(".");
+  const stages::ConfigFolder configs = stages::ConfigFolder::find(".");
   const study::StudyOutcome outcome = study::run_study(spec, configs, folder, {}, silent);
   for (const study::PlannedRun& planned : study::planned_cells(spec, configs)) {
     const auto metrics = results::read_metrics(folder / "runs" / planned.name);

@@ -11,8 +11,8 @@
 
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/odometry/odometry.hpp"
-#include "lidarena/odometry/run.hpp"
 #include "lidarena/sensor/simulate.hpp"
+#include "lidarena/stages/recorder.hpp"
 #include "lidarena/world/primitives.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -58,8 +58,8 @@ std::map<Key, Cell> cells_of(const std::vector<Eigen::Vector3d>& points,
 class CellPlanes : public odometry::Odometry {
  public:
   explicit CellPlanes(const LidarInfo& lidar) : body_from_lidar_(lidar.body_from_lidar) {}
-  odometry::OdometryTraits traits() const override { return {.publishes_scans = false}; }
-  odometry::ScanResult register_scan(const Scan& scan) override {
+  odometry::OdometryTraits traits() const override { return {}; }
+  odometry::ScanResult track(const Scan& scan) override {
     std::vector<Eigen::Vector3d> points;
     for (const Point& p : scan.points)
       points.push_back(body_from_lidar_ * p.position.cast<double>());
@@ -80,8 +80,8 @@ class CellPlanes : public odometry::Odometry {
     for (const auto& [key, cell] : reference_) points.push_back(cell.mean().cast<float>());
     return points;
   }
-  std::map<std::string, std::uint64_t> memory() const override {
-    return {{"map", reference_.size() * (sizeof(Key) + sizeof(Cell))}};
+  odometry::MemoryUse memory() const override {
+    return {.map = reference_.size() * (sizeof(Key) + sizeof(Cell))};
   }
 
  private:
@@ -128,7 +128,7 @@ int main() {
   const auto events = sensor::simulate(room, flight, {sensor}, {}, Parallel());
   CellPlanes odometry(sensor::make_rig({sensor}).lidars[0]);
   LogSink silent;
-  const odometry::RunResult result = odometry::run(odometry, *events, {}, silent);
+  const stages::RunResult result = stages::record_run(odometry, *events, {}, silent);
   const auto poses = result.files.trajectory.poses();
   const Eigen::Vector3d moved = poses.back().world_from_body.translation();
   const Eigen::Vector3d expected = flight.at(poses.back().stamp).world_from_body.translation();

@@ -8,8 +8,8 @@
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/evaluation/diagnosis/recording_check.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/odometry/run.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/recorder.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 namespace lidarena {
 namespace {
@@ -26,13 +26,13 @@ struct CheckOptions {
 };
 
 /// Shows the events to the check on their way to the odometry.
-class Watched final : public dataset::EventSource {
+class Watched final : public EventSource {
  public:
-  Watched(dataset::EventSource& events, std::string lidar, std::string imu,
+  Watched(EventSource& events, std::string lidar, std::string imu,
           evaluation::RecordingCheck& check)
       : events_(events), lidar_(std::move(lidar)), imu_(std::move(imu)), check_(check) {}
 
-  std::optional<dataset::Event> next() override {
+  std::optional<Event> next() override {
     auto event = events_.next();
     if (!event) return event;
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
@@ -44,7 +44,7 @@ class Watched final : public dataset::EventSource {
   }
 
  private:
-  dataset::EventSource& events_;
+  EventSource& events_;
   std::string lidar_, imu_;
   evaluation::RecordingCheck& check_;
 };
@@ -87,7 +87,7 @@ void add_stretches(const std::vector<dataset::RunEvent>& events, std::vector<Fin
 
 /// Runs an odometry on the recording, and lists what was found on the way.
 std::vector<Finding> findings_of(const CheckOptions& o, const Parallel& parallel, LogSink& log) {
-  dataset::Dataset dataset = study::open_any_dataset(o.recording, o.read, parallel);
+  dataset::Dataset dataset = stages::open_any_dataset(o.recording, o.read, parallel);
   dataset::read_whole_part(dataset);
   const LidarInfo* lidar = dataset.rig.find_lidar("");
   if (lidar == nullptr) {
@@ -102,7 +102,7 @@ std::vector<Finding> findings_of(const CheckOptions& o, const Parallel& parallel
     odometry::RunOptions options;
     options.lidar_id = lidar->id;
     options.scan_count = dataset.scan_count;
-    const odometry::RunResult run = odometry::run(*made.odometry, events, options, log);
+    const stages::RunResult run = stages::record_run(*made.odometry, events, options, log);
     while (events.next()) {  // after a divergence
     }
     if (run.files.events) add_stretches(*run.files.events, found);
@@ -129,7 +129,7 @@ std::vector<Finding> findings_of(const CheckOptions& o, const Parallel& parallel
   return found;
 }
 
-Json to_json(const std::vector<Finding>& found) {
+Json findings_json(const std::vector<Finding>& found) {
   Json list = Json::array();
   for (const Finding& finding : found) {
     list.push_back({{"severity", evaluation::to_string(finding.severity)},
@@ -161,7 +161,7 @@ int check_verb(const Common& common, const CheckOptions& o) {
   const auto faults = std::ranges::count(found, Severity::kFault, &Finding::severity);
   const auto warnings = std::ranges::count(found, Severity::kWarning, &Finding::severity);
   if (common.json) {
-    print_json(to_json(found));
+    print_json(findings_json(found));
   } else {
     print_findings(found);
     fmt::print("{} faults, {} warnings\n", faults, warnings);

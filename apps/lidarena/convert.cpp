@@ -13,7 +13,7 @@
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/scenes/load_world.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 #include "lidarena/world/export_world.hpp"
 #include "lidarena/world/ply.hpp"
 
@@ -41,7 +41,7 @@ bool has_extension(const fs::path& file, const std::array<const char*, N>& exten
 }
 
 /// False for a .ply without faces, which is a point cloud.
-bool has_faces(const fs::path& file) {
+bool is_mesh(const fs::path& file) {
   if (file.extension() != ".ply") return true;
   try {
     return !world::read_ply(file).empty();
@@ -59,7 +59,7 @@ Kind kind_of(const fs::path& in, const fs::path& out) {
   if (has_extension(in, kWorlds)) return Kind::kWorld;
   if (has_extension(in, kTrajectories) || has_extension(out, kPoses)) return Kind::kTrajectory;
   if (in.extension() == ".pcd") return Kind::kCloud;
-  if (in.extension() == ".ply") return has_faces(in) ? Kind::kWorld : Kind::kCloud;
+  if (in.extension() == ".ply") return is_mesh(in) ? Kind::kWorld : Kind::kCloud;
   return Kind::kDataset;
 }
 
@@ -137,7 +137,7 @@ void tell_left_out(const dataset::Dataset& in, LogSink& log) {
 Json convert_dataset(const ConvertOptions& o, const Parallel& parallel, LogSink& log) {
   dataset::ReadOptions read = o.read;
   read.all_sensors = read.imu_topic.empty();
-  dataset::Dataset in = study::open_any_dataset(o.in, read, parallel);
+  dataset::Dataset in = stages::open_any_dataset(o.in, read, parallel);
   dataset::tell_opening(in, log);
   tell_left_out(in, log);
   dataset::read_whole_part(in);

@@ -6,14 +6,15 @@
 #include "apps/lidarena/evaluate_evo.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/dataset_manifest.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/evaluation/diagnosis/lever_arm.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/results/metrics_table.hpp"
 #include "lidarena/results/run_statistics.hpp"
-#include "lidarena/study/score_run.hpp"
+#include "lidarena/stages/score_run.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct EvaluateOptions {
+  std::vector<std::string> score;  ///< parts
   std::vector<std::string> runs;
   std::vector<std::string> trajectories;
   std::string truth, map, mesh, reference;
@@ -140,46 +142,50 @@ class Files {
 
 /// Fills in algorithm, flight and seed from the manifests of the run and of its dataset.
 void describe(const fs::path& folder, results::ScoredRun& run) {
-  if (!fs::exists(folder / "manifest.json")) return;
-  const Json manifest = dataset::read_json(folder / "manifest.json");
-  const std::string preset = manifest.value("preset", "");
-  run.algorithm = fmt::format("{}{}{} on {}", manifest.value("algorithm", "?"),
-                              preset.empty() ? "" : ":", preset, manifest.value("sensor", "?"));
-  const fs::path dataset = folder / manifest.value("dataset", "");
+  if (!dataset::is_run(folder)) return;
+  const dataset::RunManifest manifest = dataset::read_run_manifest(folder);
+  run.algorithm = fmt::format("{}{}{} on {}", manifest.algorithm,
+                              manifest.preset.empty() ? "" : ":", manifest.preset, manifest.sensor);
+  const fs::path dataset = folder / manifest.dataset;
   run.flight = dataset.filename().string();
-  if (!fs::exists(dataset / "manifest.json")) return;
-  const Json simulation =
-      dataset::read_json(dataset / "manifest.json").value("simulation", Json::object());
-  if (!simulation.contains("seed")) return;
-  run.seed = simulation.at("seed").dump();
-  run.flight = fmt::format("{} {}", fs::path(simulation.value("world", "")).stem().string(),
-                           fs::path(simulation.value("flight_source", "")).stem().string());
+  const auto flown = dataset::read_dataset_manifest(dataset);
+  if (!flown || !flown->simulation) return;
+  run.seed = std::to_string(flown->simulation->seed);
+  run.flight = fmt::format("{} {}", fs::path(flown->simulation->world).stem().string(),
+                           fs::path(flown->simulation->flight_source).stem().string());
 }
 
 /// Why a run of a study failed; empty if it did not.
 std::string failure_of(const fs::path& folder) {
-  if (!fs::exists(folder / "manifest.json")) return {};
-  const Json manifest = dataset::read_json(folder / "manifest.json");
-  return manifest.contains("failed") ? manifest.at("failed").get<std::string>() : std::string();
+  if (!dataset::is_run(folder)) return {};
+  const dataset::RunManifest manifest = dataset::read_run_manifest(folder);
+  return manifest.status == dataset::RunStatus::kFailed ? manifest.reason : std::string();
 }
 
 /// Scores a RUN folder. If that is impossible, throws if it is the only folder (`alone`), else
 /// returns the status "failed" with the reason.
-results::ScoredRun score_folder(const fs::path& folder, bool alone, const Parallel& parallel,
-                                LogSink& log) {
+results::ScoredRun score_folder(const fs::path& folder, const stages::ScoreParts& parts, bool alone,
+                                const Parallel& parallel, LogSink& log) {
   results::ScoredRun run;
   const bool ends_with_slash = folder.filename().empty();  // "run/"
   run.name = (ends_with_slash ? folder.parent_path() : folder).filename().string();
   try {
     describe(folder, run);
     const std::string failure = failure_of(folder);
-    run.metrics = failure.empty() ? study::score_run(folder, parallel, log)
+    run.metrics = failure.empty() ? stages::score_run(folder, parts, parallel, log)
                                   : results::failed_metrics(failure);
   } catch (const InputError& error) {
     if (alone) throw;
     run.metrics = results::failed_metrics(error.what());
   }
   return run;
+}
+
+stages::ScoreParts score_parts_of(const std::vector<std::string>& names) {
+  stages::ScoreParts parts;
+  for (const std::string& name : names)
+    read_value(ConfigNode::parse(name, "--score"), parts.emplace_back(), {});
+  return parts;
 }
 
 /// Scores a map without a mesh, in the frame that the alignment of the poses gives it.
@@ -201,8 +207,9 @@ Json score_map_alone(const EvaluateOptions& o, const Parallel& parallel, LogSink
 std::vector<results::ScoredRun> score_all(const EvaluateOptions& o, const Parallel& parallel,
                                           LogSink& log) {
   std::vector<results::ScoredRun> runs;
+  const stages::ScoreParts parts = score_parts_of(o.score);
   for (const std::string& folder : o.runs) {
-    runs.push_back(score_folder(folder, o.runs.size() == 1, parallel, log));
+    runs.push_back(score_folder(folder, parts, o.runs.size() == 1, parallel, log));
   }
   if (o.trajectories.empty()) return runs;
   const Files files(o);
@@ -288,6 +295,11 @@ void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
       "evaluate", "Score runs, or trajectories and a map of any program, against truth and mesh");
   auto o = std::make_shared<EvaluateOptions>();
   verb->add_option("runs", o->runs, "RUN folders; metrics.json is written into each");
+  verb->add_option("--score", o->score,
+                   "What of a RUN is scored: trajectory, map; default: both. A map takes most of "
+                   "the time")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"trajectory", "map"}));
   verb->add_option("--trajectory", o->trajectories,
                    "Estimate: TUM, KITTI or EuRoC csv, .mcap or .bag; several may be given");
   verb->add_option("--truth", o->truth,

@@ -12,9 +12,10 @@
 #include "apps/lidarena/yaml_info.hpp"
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 namespace lidarena {
 namespace {
@@ -60,7 +61,7 @@ Json recorded_topics(const dataset::Dataset& dataset) {
 
 /// Reads the whole dataset, so that damage anywhere in it is reported.
 Json dataset_info(const fs::path& path, const dataset::ReadOptions& read, LogSink& log) {
-  dataset::Dataset dataset = study::open_any_dataset(path, read, Parallel());
+  dataset::Dataset dataset = stages::open_any_dataset(path, read, Parallel());
   dataset::tell_opening(dataset, log);
   dataset::read_whole_part(dataset);
   struct Counts {
@@ -108,15 +109,14 @@ Json ply_info(const fs::path& file, LogSink& log) {
 }
 
 Json folder_info(const fs::path& folder, const dataset::ReadOptions& read, LogSink& log) {
-  const fs::path file = folder / "manifest.json";
-  Json manifest = fs::exists(file) ? dataset::read_json(file) : Json::object();
-  if (manifest.value("kind", "") != "run") return dataset_info(folder, read, log);
+  if (!dataset::is_run(folder)) return dataset_info(folder, read, log);
+  Json manifest = to_json(dataset::read_run_manifest(folder));
   if (fs::exists(folder / "metrics.json"))
     manifest["metrics"] = dataset::read_json(folder / "metrics.json");
   return manifest;
 }
 
-Json file_info(const fs::path& file, const study::ConfigFolder& configs, const InfoOptions& o,
+Json file_info(const fs::path& file, const stages::ConfigFolder& configs, const InfoOptions& o,
                LogSink& log) {
   static const std::set<std::string> worlds{".obj", ".stl", ".dae",  ".gltf",
                                             ".glb", ".sdf", ".world"};
@@ -134,7 +134,7 @@ Json file_info(const fs::path& file, const study::ConfigFolder& configs, const I
 }
 
 /// Describes the file or folder `thing`, else what has this name in configs/.
-Json info_of(const study::ConfigFolder& configs, const InfoOptions& o, LogSink& log) {
+Json info_of(const stages::ConfigFolder& configs, const InfoOptions& o, LogSink& log) {
   if (fs::is_directory(o.thing)) return folder_info(o.thing, o.read, log);
   if (fs::exists(o.thing)) return file_info(o.thing, configs, o, log);
   std::vector<std::string> all;
@@ -178,7 +178,7 @@ void print_tree(const Json& json, int depth) {
 
 int info_verb(const Common& common, const InfoOptions& o) {
   Console console(common.quiet);
-  const study::ConfigFolder configs = common.config_folder();
+  const stages::ConfigFolder configs = common.config_folder();
   if (o.rays > 0) {
     print_rays(configs.load_sensor(o.thing), o.rays);
     return kDone;

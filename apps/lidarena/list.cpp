@@ -118,7 +118,7 @@ double points_per_second(const sensor::SensorConfig& sensor) {
 /// Prints one line per sensor within the limits, or the error if its file is invalid. Says which
 /// sensors could not be judged.
 int list_sensors(const Common& common, const SensorFilter& filter) {
-  const study::ConfigFolder configs = common.config_folder();
+  const stages::ConfigFolder configs = common.config_folder();
   if (!common.json) {
     fmt::print(kSensorRow, "sensor", "FOV, deg", "points/s", "range", "weight", "power", "price");
   }
@@ -153,7 +153,7 @@ int list_sensors(const Common& common, const SensorFilter& filter) {
 }
 
 int list_configs(const Common& common, const std::string& kind) {
-  const study::ConfigFolder configs = common.config_folder();
+  const stages::ConfigFolder configs = common.config_folder();
   Json list = Json::array();
   for (const std::string& name : configs.names(kind)) {
     const std::string summary = first_comment(configs.resolve(kind, name));

@@ -14,12 +14,13 @@
 
 namespace lidarena {
 
-study::ConfigFolder Common::config_folder() const {
-  if (!configs.empty()) return study::ConfigFolder(configs);
+stages::ConfigFolder Common::config_folder() const {
+  if (!configs.empty()) return stages::ConfigFolder(configs);
   try {
-    return study::ConfigFolder::find(std::filesystem::current_path());
+    return stages::ConfigFolder::find(std::filesystem::current_path());
   } catch (const InputError&) {
-    return study::ConfigFolder::find(std::filesystem::read_symlink("/proc/self/exe").parent_path());
+    return stages::ConfigFolder::find(
+        std::filesystem::read_symlink("/proc/self/exe").parent_path());
   }
 }
 

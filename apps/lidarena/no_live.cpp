@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "apps/lidarena/run_live.hpp"
-#include "apps/lidarena/run_node.hpp"
-#include "apps/lidarena/simulate_live.hpp"
+#include "adapters/live/run_node.hpp"
+#include "apps/lidarena/live_options.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena {
@@ -11,23 +10,27 @@ constexpr const char* kNoLiveTopics = "this build has no live topics (it needs C
 
 }  // namespace
 
-void add_live_run(CLI::App&, LiveRun&) {}
+void add_live_run(CLI::App&, live::LiveRun&) {}
 
-odometry::RunSummary run_live(const LiveRun&, const study::RunRequest&, const study::ConfigFolder&,
-                              const std::filesystem::path&, const Parallel&, LogSink&) {
+void add_live_simulation(CLI::App&, live::LiveSimulation&) {}
+
+namespace live {
+
+odometry::RunSummary run_live(const LiveRun&, const stages::RunRequest&,
+                              const stages::ConfigFolder&, const std::filesystem::path&,
+                              const Parallel&, LogSink&) {
   throw Error(kNoLiveTopics);
 }
 
-odometry::RunSummary run_node(const study::ExternalProgram& program, const study::RunRequest&,
+odometry::RunSummary run_node(const stages::ExternalProgram& program, const stages::RunRequest&,
                               const std::filesystem::path&, const Parallel&, LogSink&) {
   throw InputError(program.name, kNoLiveTopics);
 }
 
-void add_live_simulation(CLI::App&, LiveSimulation&) {}
-
-PublishedFlight simulate_live(const LiveSimulation&, study::SimulateRequest,
+PublishedFlight simulate_live(const LiveSimulation&, stages::SimulateRequest,
                               const std::filesystem::path&, const Parallel&, LogSink&) {
   throw Error(kNoLiveTopics);
 }
 
+}  // namespace live
 }  // namespace lidarena

@@ -4,9 +4,10 @@
 #include <memory>
 #include <optional>
 
+#include "adapters/live/interrupt.hpp"
+#include "adapters/live/player.hpp"
 #include "apps/lidarena/console.hpp"
-#include "apps/lidarena/live.hpp"
-#include "apps/lidarena/player.hpp"
+#include "apps/lidarena/live_topics.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
 
@@ -19,11 +20,11 @@ struct PlayRequest {
   double wait_s = 1.0;
   bool sensors_only = false;
   std::string points_topic;
-  FeedOptions feed;  ///< lock-step if it names a topic of answers
+  live::FeedOptions feed;  ///< lock-step if it names a topic of answers
   dds::LiveOptions live;
 };
 
-int report_played(const Common& common, const PacedWriter& out) {
+int report_played(const Common& common, const live::PacedWriter& out) {
   if (common.json) {
     print_json(out.summary());
   } else {
@@ -34,24 +35,24 @@ int report_played(const Common& common, const PacedWriter& out) {
 
 int play(const Common& common, const PlayRequest& request) {
   Console log(common.quiet || common.json);
-  const std::filesystem::path file = recording_in(request.input);
-  const auto stopped = end_on_interrupt();
+  const std::filesystem::path file = live::recording_in(request.input);
+  const auto stopped = live::end_on_interrupt();
   const bool in_lock_step = !request.feed.answer.empty();
-  const Pace pace{request.rate.value_or(in_lock_step ? 0.0 : 1.0), request.wait_s,
-                  request.sensors_only};
+  const live::Pace pace{request.rate.value_or(in_lock_step ? 0.0 : 1.0), request.wait_s,
+                        request.sensors_only};
   if (!in_lock_step) {
-    PacedWriter out(request.live, pace, stopped);
-    play_recording(file, out, stopped, log);
+    live::PacedWriter out(request.live, pace, stopped);
+    live::play_recording(file, out, stopped, log);
     out.close();
     return report_played(common, out);
   }
-  const std::string scans = scan_topic_of(file, request.points_topic);
-  Answers answers(request.live, request.feed.answer);
-  NodeFeed feed(request.feed, answers, stopped);
-  PacedWriter out(request.live, pace, stopped, &feed, scans);
+  const std::string scans = live::scan_topic_of(file, request.points_topic);
+  live::Answers answers(request.live, request.feed.answer);
+  live::NodeFeed feed(request.feed, answers, stopped);
+  live::PacedWriter out(request.live, pace, stopped, &feed, scans);
   log.info("waits for a node that subscribes to " + scans + " and publishes " +
            request.feed.answer);
-  play_recording(file, out, stopped, log);
+  live::play_recording(file, out, stopped, log);
   out.close();
   return report_played(common, out);
 }

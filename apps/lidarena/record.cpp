@@ -5,9 +5,10 @@
 #include <map>
 
 #include "adapters/dds/live_reader.hpp"
+#include "adapters/live/interrupt.hpp"
+#include "adapters/live/record_run.hpp"
 #include "apps/lidarena/console.hpp"
-#include "apps/lidarena/live.hpp"
-#include "apps/lidarena/record_run.hpp"
+#include "apps/lidarena/live_topics.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
@@ -25,7 +26,7 @@ struct RecordRequest {
   double idle_s = 2.0;
   bool compress = false;
   dds::LiveOptions live;
-  RunToRecord run;  ///< instead of a file, if it names a dataset
+  live::RunToRecord run;  ///< instead of a file, if it names a dataset
 };
 
 /// Writes live messages into a file as they come, with the times at which they were sent.
@@ -83,8 +84,8 @@ class Recorder {
 
 int record_results(const Common& common, const RecordRequest& request) {
   Console log(common.quiet);
-  const std::size_t poses = record_run(request.run, request.live, request.idle_s, request.out,
-                                       Parallel(common.threads), log);
+  const std::size_t poses = live::record_run(request.run, request.live, request.idle_s, request.out,
+                                             Parallel(common.threads), log);
   if (common.json) {
     print_json({{"poses", poses}, {"run", request.out}});
   } else {
@@ -103,7 +104,7 @@ int record(const Common& common, const RecordRequest& request) {
   dds::LiveReaderOptions reading;
   reading.topics = {request.topics.begin(), request.topics.end()};
   reading.idle = std::chrono::milliseconds(static_cast<int>(1e3 * request.idle_s));
-  reading.stopped = end_on_interrupt();
+  reading.stopped = live::end_on_interrupt();
   dds::LiveReader live(request.live, reading);
   Recorder recorder(request.out, request.compress, log);
   while (const auto message = live.next()) recorder.add(*message);

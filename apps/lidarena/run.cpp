@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <fmt/format.h>
 
+#include "adapters/live/run_live.hpp"
+#include "adapters/live/run_node.hpp"
 #include "apps/lidarena/console.hpp"
-#include "apps/lidarena/run_live.hpp"
-#include "apps/lidarena/run_node.hpp"
+#include "apps/lidarena/live_options.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/study/run_algorithm.hpp"
-#include "lidarena/study/run_external.hpp"
+#include "lidarena/stages/run_algorithm.hpp"
+#include "lidarena/stages/run_external.hpp"
 
 namespace lidarena {
 namespace {
@@ -27,9 +29,10 @@ Pose parse_extrinsics(const std::string& text) {
 
 /// Options of `run` as given.
 struct RunOptions {
-  study::RunRequest request;
+  stages::RunRequest request;
   std::string dataset, extrinsics, external, out;
-  LiveRun live;
+  std::string maps = "on";
+  live::LiveRun live;
 };
 
 /// Checks first what is given, then whether all is given.
@@ -47,7 +50,7 @@ void check_options(const RunOptions& o) {
 }
 
 /// DATASET-ALGORITHM[-PRESET], in the working folder.
-std::string default_output(const study::RunRequest& request) {
+std::string default_output(const stages::RunRequest& request) {
   const fs::path dataset =
       request.dataset.empty() ? fs::path("live") : fs::weakly_canonical(request.dataset);
   const fs::path name = fs::is_directory(dataset) ? dataset.filename() : dataset.stem();
@@ -60,7 +63,7 @@ void print_summary(const Common& common, const odometry::RunSummary& s, bool pac
                    const std::string& out) {
   if (common.json) {
     Json json{{"run", out}};
-    json.update(study::summary_json(s));
+    json.update(to_json(dataset::read_run_manifest(out).summary));
     json["reason"] = s.reason;
     return print_json(json);
   }
@@ -79,21 +82,23 @@ void print_summary(const Common& common, const odometry::RunSummary& s, bool pac
 
 int run_verb(const Common& common, const RunOptions& o) {
   check_options(o);
-  study::RunRequest request = o.request;
+  stages::RunRequest request = o.request;
   request.dataset = o.dataset;
+  request.maps = o.maps == "on";
   if (!o.extrinsics.empty()) request.read.body_from_lidar = parse_extrinsics(o.extrinsics);
   const std::string out = o.out.empty() ? default_output(request) : o.out;
   Console console(common.quiet);
   if (o.out.empty()) console.info("writes to " + out);
   const Parallel parallel(common.threads);
   const auto run = [&] {
-    LiveRun live = o.live;
-    live.imu_topic = request.read.imu_topic;
-    if (live.asked) return run_live(live, request, common.config_folder(), out, parallel, console);
-    if (o.external.empty()) return study::run_algorithm(request, out, parallel, console);
-    const auto program = load_config<study::ExternalProgram>(o.external);
-    if (program.node.is_used()) return run_node(program, request, out, parallel, console);
-    return study::run_external(program, request, out, parallel, console);
+    live::LiveRun on_topics = o.live;
+    on_topics.imu_topic = request.read.imu_topic;
+    if (on_topics.asked)
+      return live::run_live(on_topics, request, common.config_folder(), out, parallel, console);
+    if (o.external.empty()) return stages::run_algorithm(request, out, parallel, console);
+    const auto program = load_config<stages::ExternalProgram>(o.external);
+    if (program.node.is_used()) return live::run_node(program, request, out, parallel, console);
+    return stages::run_external(program, request, out, parallel, console);
   };
   const odometry::RunSummary s = run();
   print_summary(common, s, request.paced, out);
@@ -109,7 +114,7 @@ int run_verb(const Common& common, const RunOptions& o) {
 void add_run(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand("run", "Run an algorithm on a dataset, bag or folder of sweeps");
   auto o = std::make_shared<RunOptions>();
-  study::RunRequest& r = o->request;
+  stages::RunRequest& r = o->request;
   verb->add_option("algorithm", r.odometry.algorithm, "Name (see: list algorithms); required");
   verb->add_option("dataset", o->dataset,
                    "Dataset folder, .mcap, .bag or folder of sweeps; required");
@@ -130,6 +135,9 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--external", o->external,
                    "YAML file of an external program (name, command, ...) to run as ALGORITHM");
+  verb->add_option("--maps", o->maps, "Write the maps, which take most of the space: on or off")
+      ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
   verb->add_flag("--paced", r.paced, "Drop scans when the algorithm is late, as on a live robot");
   verb->add_option("--layout", r.read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));

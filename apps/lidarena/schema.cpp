@@ -5,7 +5,9 @@
 
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/base/config_schema.hpp"
+#include "lidarena/dataset/dataset_manifest.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/results/run_metrics.hpp"
@@ -23,8 +25,11 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"beams",
        [] { return schema_document<sensor::SpinningHead>("The beams of a spinning head"); }},
       {"external",
-       [] { return schema_document<study::ExternalProgram>("A SLAM program of others"); }},
+       [] { return schema_document<stages::ExternalProgram>("A SLAM program of others"); }},
       {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }},
+      {"run", [] { return schema_document<dataset::RunManifest>("manifest.json of a run"); }},
+      {"dataset",
+       [] { return schema_document<dataset::DatasetManifest>("manifest.json of a dataset"); }},
       {"metrics",
        [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }}};
   for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
@@ -59,8 +64,9 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
       "JSON Schema of a kind of YAML file or of metrics.json: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
-  verb->add_option("kind", *kind,
-                   "world, flight, sensor, beams, study, external, metrics, or an algorithm");
+  verb->add_option(
+      "kind", *kind,
+      "world, flight, sensor, beams, study, external, run, dataset, metrics, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 
 #include <fmt/format.h>
 
+#include "adapters/live/simulate_live.hpp"
 #include "apps/lidarena/console.hpp"
-#include "apps/lidarena/simulate_live.hpp"
+#include "apps/lidarena/live_options.hpp"
 #include "apps/lidarena/verbs.hpp"
-#include "lidarena/study/example_scan.hpp"
+#include "lidarena/stages/example_scan.hpp"
 
 namespace lidarena {
 namespace {
@@ -16,21 +17,22 @@ namespace fs = std::filesystem;
 struct SimulateOptions {
   std::string world, flight, out;
   std::vector<std::string> sensors;
-  study::SimulateRequest request;
+  stages::SimulateRequest request;
   std::string noise = "on";
+  std::string hits;
   std::string mode;
   std::string format = "mcap";
   std::string dialect = "si";
   bool compress = false;
   bool no_data = false;
   bool example_scans = false;
-  LiveSimulation live;
+  live::LiveSimulation live;
 };
 
 /// Finds the files of sensors, world and flight. What is given is judged first, then what is
 /// missing is named.
-void find_files(const study::ConfigFolder& configs, const SimulateOptions& options,
-                study::SimulateRequest& request) {
+void find_files(const stages::ConfigFolder& configs, const SimulateOptions& options,
+                stages::SimulateRequest& request) {
   for (const std::string& sensor : options.sensors) {
     request.sensors.push_back(configs.resolve("sensors", sensor));
     configs.load_sensor(sensor);
@@ -50,7 +52,7 @@ void find_files(const study::ConfigFolder& configs, const SimulateOptions& optio
 }
 
 /// WORLD-FLIGHT-SENSOR, in the working folder.
-std::string default_output(const study::SimulateRequest& request) {
+std::string default_output(const stages::SimulateRequest& request) {
   std::string name = request.world.stem().string();
   if (request.flight.stem() != request.world.stem()) name += "-" + request.flight.stem().string();
   for (const fs::path& sensor : request.sensors) name += "-" + sensor.stem().string();
@@ -58,10 +60,11 @@ std::string default_output(const study::SimulateRequest& request) {
 }
 
 int simulate_verb(const Common& common, const SimulateOptions& options) {
-  study::SimulateRequest request = options.request;
+  stages::SimulateRequest request = options.request;
   find_files(common.config_folder(), options, request);
   request.noise = options.noise == "on";
   request.data = !options.no_data;
+  if (!options.hits.empty()) request.hits = options.hits == "on";
   if (!options.mode.empty()) {
     request.mode.emplace();
     read_value(ConfigNode::parse(options.mode, "--mode"), *request.mode, {});
@@ -73,17 +76,17 @@ int simulate_verb(const Common& common, const SimulateOptions& options) {
   Console console(common.quiet);
   if (options.out.empty()) console.info("writes to " + out);
   const Parallel parallel(common.threads);
-  const PublishedFlight flight =
-      options.live.asked
-          ? simulate_live(options.live, request, out, parallel, console)
-          : PublishedFlight{study::simulate_dataset(request, out, parallel, console), {}, {}};
-  const study::SimulateSummary& s = flight.summary;
+  const live::PublishedFlight flight =
+      options.live.asked ? live::simulate_live(options.live, request, out, parallel, console)
+                         : live::PublishedFlight{
+                               stages::simulate_dataset(request, out, parallel, console), {}, {}};
+  const stages::SimulateSummary& s = flight.summary;
   if (s.scans > 0 && s.points == 0) {
     console.warn(
         "no shot has a return: the world is out of range; is it in meters, and does the flight "
         "pass through it? `lidarena info WORLD` prints its bounds");
   }
-  if (options.example_scans) study::write_example_scans(out, parallel);
+  if (options.example_scans) stages::write_example_scans(out, parallel);
   if (common.json) {
     Json told{{"dataset", out},
               {"triangles", s.triangles},
@@ -145,8 +148,11 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
       ->capture_default_str();
   verb->add_flag("--truth", o->request.truth,
                  "Also write what each point hit: surface point, range, normal, triangle");
-  verb->add_flag("--scored-truth", o->request.scored_truth,
-                 "The same, of the points that scoring uses alone: at most 20,000 of a scan");
+  verb->add_option(
+          "--hits", o->hits,
+          "Write what the scored points hit, at most 20,000 of a scan, for scores of maps; "
+          "default: on, with --no-data off")
+      ->check(CLI::IsMember({"on", "off"}));
   verb->add_flag("--example-scans", o->example_scans,
                  "Also write one scan of each LiDAR, placed by the true motion, for pictures");
   verb->add_flag(

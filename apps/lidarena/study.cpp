@@ -61,7 +61,7 @@ void listen_to_signals() {
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
 /// Sensors and algorithms are judged before anything is said to be missing.
 study::StudySpec spec_of_one_world(const StudyRequest& request,
-                                   const study::ConfigFolder& configs) {
+                                   const stages::ConfigFolder& configs) {
   for (const std::string& sensor : request.sensors) configs.resolve("sensors", sensor);
   for (const std::string& algorithm : request.algorithms) {
     if (algorithm != "all") odometry::check_algorithm(study::parse_algorithm(algorithm));
@@ -91,7 +91,7 @@ study::StudySpec spec_of_one_world(const StudyRequest& request,
 /// The runs of a shard, with estimated time and disk space; what is simulated once, and what anew
 /// for each run.
 void print_plan(const study::StudyPlan& plan, const study::Shard& shard,
-                const study::ConfigFolder& configs, std::uint64_t budget) {
+                const stages::ConfigFolder& configs, std::uint64_t budget) {
   double seconds = 0.0, disk_mb = 0.0;
   std::size_t runs = 0;
   std::string datasets;
@@ -236,7 +236,7 @@ void need_folder(const StudyRequest& request) {
 }
 
 int study_verb(const Common& common, const StudyRequest& request) {
-  const study::ConfigFolder configs = common.config_folder();
+  const stages::ConfigFolder configs = common.config_folder();
   const study::StudyOptions options = options_of(common, request);
   Console console(common.quiet);
   if (request.worker) {

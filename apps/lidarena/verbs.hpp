@@ -6,7 +6,7 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 
 namespace lidarena {
 
@@ -24,7 +24,7 @@ struct Common {
   int threads = 0;
   std::string configs;  ///< folder given with --configs; empty = search
 
-  study::ConfigFolder config_folder() const;
+  stages::ConfigFolder config_folder() const;
 };
 
 /// Adds --json, --quiet, --threads, --configs to `verb`. When the verb is parsed, runs `action` and

@@ -8,11 +8,11 @@
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "apps/lidarena/view_server.hpp"
-#include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/report/scene_files.hpp"
 #include "lidarena/report/web_page.hpp"
 #include "lidarena/scenes/load_world.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena {
@@ -29,11 +29,6 @@ struct ViewOptions {
   scenes::WorldOptions world{};
   dataset::ReadOptions read;
 };
-
-bool is_run(const fs::path& folder) {
-  const fs::path manifest = folder / "manifest.json";
-  return fs::exists(manifest) && dataset::read_json(manifest).value("kind", "") == "run";
-}
 
 /// Whether the header of a .ply declares faces; a .ply without faces is a point cloud.
 bool has_faces(const fs::path& file) {
@@ -63,10 +58,10 @@ void add_item(report::Scene& scene, const Common& common, const ViewOptions& o,
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   const bool is_cloud = ending == ".pcd" || (ending == ".ply" && !has_faces(path));
-  if (fs::is_directory(path) && is_run(path)) {
+  if (fs::is_directory(path) && dataset::is_run(path)) {
     report::add_run(scene, path, options, log);
   } else if (fs::is_directory(path) || ending == ".mcap" || ending == ".bag") {
-    dataset::Dataset dataset = study::open_any_dataset(path, o.read, parallel);
+    dataset::Dataset dataset = stages::open_any_dataset(path, o.read, parallel);
     for (const std::string& note : dataset.notes) log.info("note: " + note);
     report::add_dataset(scene, std::move(dataset), options, log);
   } else if (is_cloud) {

@@ -37,7 +37,7 @@ std::vector<std::string> nearest_kinds(const ConfigNode& node) {
   std::vector<std::string> nearest;
   std::ptrdiff_t most = 1;
   for (const auto& [kind, make] : schemas()) {
-    if (kind == "metrics") continue;  // of a JSON file
+    if (kind == "metrics" || kind == "run" || kind == "dataset") continue;  // JSON files
     const Json schema = make();
     const auto count = std::ranges::count_if(
         node.keys(), [&](const std::string& key) { return has_place_for(schema, node, key); });
@@ -67,7 +67,7 @@ Json beams_info(const sensor::SpinningHead& head) {
           {"column_period_us", head.column_period_us}};
 }
 
-Json study_info(const fs::path& file, const study::ConfigFolder& configs) {
+Json study_info(const fs::path& file, const stages::ConfigFolder& configs) {
   const study::StudySpec spec = study::load_study(file);
   return {{"kind", "study"},
           {"runs", study::planned_cells(spec, configs).size()},
@@ -114,7 +114,7 @@ Json world_info(const fs::path& file, const scenes::WorldOptions& options, LogSi
           {"routes", routes}};
 }
 
-Json yaml_info(const fs::path& file, const study::ConfigFolder& configs,
+Json yaml_info(const fs::path& file, const stages::ConfigFolder& configs,
                const scenes::WorldOptions& options, LogSink& log) {
   const ConfigNode node = ConfigNode::load(file);
   if (!node.is_map()) throw InputError(file.string(), "holds no keys (key: value)");
@@ -130,7 +130,7 @@ Json yaml_info(const fs::path& file, const study::ConfigFolder& configs,
   if (kind == "flight")
     return {{"kind", kind}, {"flight", to_json(load_config<flight::FlightConfig>(file))}};
   return {{"kind", "external program"},
-          {"program", to_json(load_config<study::ExternalProgram>(file))}};
+          {"program", to_json(load_config<stages::ExternalProgram>(file))}};
 }
 
 }  // namespace lidarena

@@ -7,7 +7,7 @@
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/base/log.hpp"
 #include "lidarena/scenes/load_world.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 
 namespace lidarena {
 
@@ -21,7 +21,7 @@ Json world_info(const std::filesystem::path& file, const scenes::WorldOptions& o
 /// settings of an odometry. That follows from its keys: the kind of file that has most of them.
 /// Throws InputError if no kind has any of them, or several have equally many, and as the reader of
 /// that kind of file does.
-Json yaml_info(const std::filesystem::path& file, const study::ConfigFolder& configs,
+Json yaml_info(const std::filesystem::path& file, const stages::ConfigFolder& configs,
                const scenes::WorldOptions& options, LogSink& log);
 
 }  // namespace lidarena

@@ -40,7 +40,7 @@ class CellPlanes(lidarena.Odometry):
         self.position = np.zeros(3)
         self.reference = None
 
-    def register_scan(self, scan):
+    def track(self, scan):
         rotation, offset = self.body_from_lidar[:3, :3], self.body_from_lidar[:3, 3]
         points = scan.positions.astype(float) @ rotation.T + offset
         if self.reference is None:

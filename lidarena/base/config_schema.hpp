@@ -3,6 +3,8 @@
 
 #include <cmath>
 #include <limits>
+#include <map>
+#include <string>
 
 #include "lidarena/base/config_json.hpp"
 
@@ -41,6 +43,11 @@ template <class T>
 struct IsVector : std::false_type {};
 template <class T>
 struct IsVector<std::vector<T>> : std::true_type {};
+
+template <class T>
+struct IsMap : std::false_type {};
+template <class T>
+struct IsMap<std::map<std::string, T>> : std::true_type {};
 
 template <class T>
 struct IsArray : std::false_type {};
@@ -96,6 +103,11 @@ Json schema_of_value(const T& value, const Limits& limits) {
     return schema::numbers(3, limits);
   } else if constexpr (std::is_same_v<T, Pose>) {
     return schema::numbers(7, {});
+  } else if constexpr (std::is_same_v<T, Json>) {
+    return Json::object();  // anything
+  } else if constexpr (schema::IsMap<T>::value) {
+    return {{"type", "object"},
+            {"additionalProperties", schema_of_value(typename T::mapped_type{}, limits)}};
   } else {
     static_assert(std::is_convertible_v<T, std::string>);
     return {{"type", "string"}};

@@ -50,4 +50,10 @@ double Trajectory::path_length() const {
   return length;
 }
 
+Trajectory transformed(const Pose& new_from_old, const Trajectory& trajectory) {
+  std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
+  for (StampedPose& pose : poses) pose.world_from_body = new_from_old * pose.world_from_body;
+  return Trajectory(std::move(poses));
+}
+
 }  // namespace lidarena

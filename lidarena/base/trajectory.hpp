@@ -42,4 +42,7 @@ class Trajectory {
   std::vector<StampedPose> poses_;
 };
 
+/// The same poses in another world.
+Trajectory transformed(const Pose& new_from_old, const Trajectory& trajectory);
+
 }  // namespace lidarena

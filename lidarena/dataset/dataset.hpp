@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/base/event.hpp"
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/event.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/dataset/read_report.hpp"
 
 namespace lidarena::dataset {

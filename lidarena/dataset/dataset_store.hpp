@@ -6,10 +6,10 @@
 #include <string>
 
 #include "lidarena/base/config_json.hpp"
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/dataset.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena::dataset {
 

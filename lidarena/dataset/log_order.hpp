@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 
 namespace lidarena::dataset {
 

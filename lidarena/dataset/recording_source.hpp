@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 #include "lidarena/dataset/imu_units.hpp"
 #include "lidarena/dataset/messages/point_times.hpp"
 #include "lidarena/dataset/read_report.hpp"

@@ -114,7 +114,7 @@ class RecordingStore final : public DatasetStore {
       tf_ = recording_->add_topic("/tf", ros::kTfMessage);
     }
     write_mounting(pose.stamp);
-    ros::encode_odometry(pose, kWorldFrame, rig_.body_frame, message_);
+    ros::encode_odometry(pose, {kWorldFrame, rig_.body_frame}, message_);
     write_message(*odometry_, pose.stamp);
     const ros::StampedTransform transform{pose.stamp, kWorldFrame, rig_.body_frame,
                                           pose.world_from_body};

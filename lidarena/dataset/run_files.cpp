@@ -76,41 +76,46 @@ std::vector<ResourceRow> read_resources(const fs::path& file) {
   return resources;
 }
 
-void write_run(const fs::path& folder, const RunFiles& run) {
+void begin_run(const fs::path& folder) {
   std::error_code error;
   fs::create_directories(folder, error);
   if (error) throw Error(folder.string() + ": cannot be created: " + error.message());
   // files of an earlier run must not be taken for files of this one while it is being written
-  for (const char* stale :
-       {"manifest.json", "metrics.json", "resources.json", "motion.tum", "events.csv"})
+  for (const char* stale : {"manifest.json", "metrics.json", "resources.json", "motion.tum",
+                            "events.csv", "map.ply", "reprojected.ply"})
     fs::remove(folder / stale, error);
+}
+
+void write_run(const fs::path& folder, const RunFiles& run) {
+  if (!run.maps_on_disk) begin_run(folder);
   write_tum(folder / "trajectory.tum", run.trajectory, std::string(kFinalHeader));
   write_tum(folder / "live.tum", run.live, std::string(kLiveHeader));
   if (!run.motion.empty()) write_tum(folder / "motion.tum", run.motion, std::string(kMotionHeader));
-  write_ply(folder / "map.ply", run.map);
-  write_ply(folder / "reprojected.ply", run.reprojected);
+  if (!run.maps_on_disk) {
+    write_ply(folder / "map.ply", run.map);
+    write_ply(folder / "reprojected.ply", run.reprojected);
+  }
   write_text_file(folder / "resources.csv", resource_rows(run.resources));
   if (run.events) write_events(folder / "events.csv", *run.events);
-  write_json(folder / "manifest.json", run.manifest);
+  write_run_manifest(folder, run.manifest);
 }
 
-RunFiles read_run(const fs::path& folder) {
-  const fs::path manifest = folder / "manifest.json";
-  if (!fs::exists(manifest)) {
-    throw InputError(folder.string(), "is not a finished run: it has no manifest.json",
-                     "run the algorithm again");
-  }
-  if (!fs::exists(folder / "map.ply")) {
-    throw InputError(folder.string(), "has no map.ply: a study with 'keep_maps: false' removes it",
+RunFiles read_run(const fs::path& folder, ReadMaps maps) {
+  RunFiles run;
+  run.manifest = read_run_manifest(folder);
+  if (maps == ReadMaps::kYes && !fs::exists(folder / "map.ply")) {
+    throw InputError(folder.string(),
+                     "has no map.ply: a study with 'keep_maps: false' removes it, and 'run --maps "
+                     "off' writes none",
                      "the scores are in metrics.json; run it again to get the maps");
   }
-  RunFiles run;
-  run.manifest = read_json(manifest);
   run.trajectory = read_tum(folder / "trajectory.tum", EmptyTrajectory::kAllowed);
   run.live = read_tum(folder / "live.tum", EmptyTrajectory::kAllowed);
   if (fs::exists(folder / "motion.tum")) run.motion = read_tum(folder / "motion.tum");
-  run.map = read_cloud(folder / "map.ply");
-  run.reprojected = read_cloud(folder / "reprojected.ply");
+  if (maps == ReadMaps::kYes) {
+    run.map = read_cloud(folder / "map.ply");
+    run.reprojected = read_cloud(folder / "reprojected.ply");
+  }
   run.resources = read_resources(folder / "resources.csv");
   if (fs::exists(folder / "events.csv")) run.events = read_events(folder / "events.csv");
   return run;

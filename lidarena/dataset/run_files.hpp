@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/base/config_json.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_events.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 
 namespace lidarena::dataset {
 
@@ -33,17 +33,23 @@ struct RunFiles {
   Trajectory trajectory;  ///< after finish()
   Trajectory live;        ///< pose at each scan as estimated at that time
   Trajectory motion;      ///< final, with the motion within the scans; empty: the method tells none
-  Cloud map;              ///< the map that the program publishes
-  Cloud reprojected;      ///< scored returns placed by the estimated motion, first per 2 cm voxel
+  /// The map that the program publishes, and the scored returns placed by the estimated motion,
+  /// first per 2 cm voxel. Not written if they are already on the disk.
+  Cloud map, reprojected;
+  bool maps_on_disk = false;
   std::vector<ResourceRow> resources;
   std::optional<std::vector<RunEvent>> events{};  ///< empty: not known
-  Json manifest;
+  RunManifest manifest;
 };
 
+/// Creates the folder, or removes from it what would make it look like a finished run.
+void begin_run(const std::filesystem::path& folder);
 /// Writes the folder; manifest.json last, so that a folder without it is incomplete.
 void write_run(const std::filesystem::path& folder, const RunFiles& run);
-/// Reads it back; throws InputError when manifest.json is missing or a file is damaged.
-RunFiles read_run(const std::filesystem::path& folder);
+enum class ReadMaps { kYes, kNo };
+/// Reads it back; throws InputError when manifest.json or a map that is wanted is missing, or a
+/// file is damaged.
+RunFiles read_run(const std::filesystem::path& folder, ReadMaps maps = ReadMaps::kYes);
 /// Reads a resources.csv alone; throws InputError naming file and line.
 std::vector<ResourceRow> read_resources(const std::filesystem::path& file);
 

@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/time.hpp"
-#include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/read_report.hpp"
 
 namespace lidarena::dataset {

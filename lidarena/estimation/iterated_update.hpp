@@ -53,8 +53,9 @@ StateEstimate zero_velocity_update(const StateEstimate& prior, double sigma);
 StateEstimate pose_update(const StateEstimate& prior, const Pose& world_from_imu,
                           double position_sigma, double rotation_sigma);
 
-/// Covariance of the (translation, rotation) of a body that is fixed to the IMU, in a frame whose
-/// axes are those of the state's world rotated by `frame_from_world`.
+/// Covariance of the (translation, rotation) of a body that is fixed to the IMU: m along the axes
+/// of a frame, which are those of the state's world rotated by `frame_from_world`; rad about the
+/// body's axes.
 Eigen::Matrix<double, 6, 6> body_covariance(const StateEstimate& estimate,
                                             const Eigen::Matrix3d& frame_from_world,
                                             const Pose& imu_from_body);

@@ -48,12 +48,9 @@ Status status_of(const Trajectory& estimate, const Trajectory& truth) {
 
 /// The status of the manifest unless it is "ok", else that of the poses.
 Status status_of(const dataset::RunFiles& run, const Trajectory& truth) {
-  if (run.manifest.is_object()) {
-    const std::string manifest_status = run.manifest.value("status", "ok");
-    if (manifest_status != "ok")
-      return {manifest_status, run.manifest.value("reason", "its manifest gives no reason")};
-  }
-  return status_of(run.trajectory, truth);
+  if (run.manifest.status == dataset::RunStatus::kOk) return status_of(run.trajectory, truth);
+  return {value_to_json(run.manifest.status).get<std::string>(),
+          run.manifest.reason.empty() ? "its manifest gives no reason" : run.manifest.reason};
 }
 
 results::TruthFacts facts_of(const Trajectory& truth) {

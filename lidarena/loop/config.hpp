@@ -19,16 +19,6 @@ struct LoopConfig {
   double translation_drift_m_per_m = 0.02;
   double rotation_drift_rad_per_m = 0.002;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"least_gap_s", "min_time_gap_s"},
-      {"least_way_m", "min_path_length_m"},
-      {"appearance_candidates", "descriptor_candidates"},
-      {"appearance_range_m", "descriptor_range_m"},
-      {"least_overlap", "min_overlap"},
-      {"drift_per_metre", "translation_drift_m_per_m"},
-      {"turn_drift_rad_per_metre", "rotation_drift_rad_per_m"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("min_time_gap_s", self.min_time_gap_s, "s", "minimum time between the two visits of a place",

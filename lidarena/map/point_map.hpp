@@ -3,63 +3,40 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <cstdint>
 #include <span>
 #include <vector>
 
-#include "lidarena/map/voxel_key.hpp"
+#include "lidarena/map/occupied_voxels.hpp"
 
 namespace lidarena::map {
 
 /// A point cloud with at most one point per voxel, in insertion order: the first point of a voxel
-/// is kept, later ones are rejected. Nothing is averaged, so noise stays visible. Occupied voxels
-/// are kept as bits, in blocks of 4 x 4 x 4 voxels in a hash table: neighbors in a scan are
-/// neighbors in memory, and a surface takes about 3 bytes per voxel besides the 12 of its point.
+/// is kept, later ones are rejected. Nothing is averaged, so noise stays visible.
 class PointMap {
  public:
   /// `voxel_size` in m; memory for `expected` points is reserved at once.
-  explicit PointMap(double voxel_size, std::size_t expected = 0);
+  explicit PointMap(double voxel_size, std::size_t expected = 0) : voxels_(voxel_size) {
+    points_.reserve(expected);
+  }
 
   /// Adds `point` (m) if it is finite and the first of its voxel; returns whether it was added.
   bool insert(const Eigen::Vector3f& point);
-  /// The same for many points, several times faster: most of the time goes into waiting for memory,
-  /// which is fetched ahead here. `added`, if given, receives the indices of the points that were
-  /// added.
-  void insert(std::span<const Eigen::Vector3f> points, std::vector<std::uint32_t>* added = nullptr);
+  /// The same for many points, several times faster.
+  void insert(std::span<const Eigen::Vector3f> points);
 
   std::span<const Eigen::Vector3f> points() const { return points_; }
   /// Returns the points and leaves the map empty.
   std::vector<Eigen::Vector3f> take();
 
   std::size_t size() const { return points_.size(); }
-  std::size_t memory_bytes() const;
+  std::size_t memory_bytes() const {
+    return points_.capacity() * sizeof(Eigen::Vector3f) + voxels_.memory_bytes();
+  }
 
  private:
-  /// Which of a block's 64 voxels are occupied; none: the slot of the table is free.
-  struct Block {
-    VoxelKey key = 0;
-    std::uint64_t taken = 0;
-  };
-  /// Place of a point: its block and the bit of its voxel; no bit: the point is not finite.
-  struct Place {
-    VoxelKey block = 0;
-    std::uint64_t bit = 0;
-  };
-
-  Place place_of(const Eigen::Vector3f& point) const;
-  /// Index of the slot at which the search for a block begins.
-  std::size_t first_slot(VoxelKey block) const {
-    return VoxelKeyHash{}(block) & (blocks_.size() - 1);
-  }
-  /// Marks the voxel; returns whether it was free. The table has a free slot.
-  bool take_voxel(const Place& place);
-  /// Grows the table so that it is at most half full after `more` blocks.
-  void reserve_blocks(std::size_t more);
-
-  float inverse_size_;
+  OccupiedVoxels voxels_;
   std::vector<Eigen::Vector3f> points_;
-  std::vector<Block> blocks_;  ///< open addressing with linear probing; the size is a power of two
-  std::size_t used_ = 0;       ///< slots that are not free
+  std::vector<std::uint32_t> added_;  ///< of the last call
 };
 
 }  // namespace lidarena::map

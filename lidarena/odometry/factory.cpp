@@ -153,24 +153,12 @@ std::vector<std::string> preset_names() {
   return names;
 }
 
-/// What a former preset of a published method is now.
+/// What a preset of version 0.1.0 is today.
 std::string successor_of(const std::string& algorithm, const std::string& preset) {
-  if (preset == "original") {
-    if (algorithm.starts_with("kiss_icp"))
-      return "nearest to it is the preset published, whose de-skewing is off as shipped";
-    return "its settings are those of the preset " +
-           std::string(algorithm.starts_with("fast_lio2") ? "published" : "indoor");
-  }
-  if (preset != "improved") return "";
-  if (algorithm.starts_with("fast_lio2")) return "that method is arena_lio now";
-  if (algorithm.starts_with("lio_sam")) return "it was removed; arena_lio+loop is more accurate";
-  if (algorithm.starts_with("ct_icp")) return "that method is arena_lo now";
-  return "it was removed; arena_lo is more accurate";
-}
-
-/// What to use instead of a former algorithm.
-std::string successor_of(const std::string& algorithm) {
-  return algorithm == "arena_slam" ? "it was removed; use arena_lio+loop" : "";
+  if (!algorithm.starts_with("kiss_icp")) return "";
+  if (preset == "original")
+    return "nearest to it is the preset published, whose de-skewing is off as shipped";
+  return preset == "improved" ? "it was removed; arena_lo is more accurate" : "";
 }
 
 template <class Maker>
@@ -265,11 +253,9 @@ std::vector<Algorithm> algorithms() {
 }
 
 InputError no_such_algorithm(const std::string& name, const std::vector<std::string>& names) {
-  std::string remedy = successor_of(name);
   const std::string nearest = nearest_word(name, names);
-  if (remedy.empty() && !nearest.empty()) remedy = "did you mean '" + nearest + "'?";
-  if (remedy.empty()) remedy = "use one of " + listed(names);
-  return {"algorithm", "there is no '" + name + "'", remedy};
+  return {"algorithm", "there is no '" + name + "'",
+          nearest.empty() ? "use one of " + listed(names) : "did you mean '" + nearest + "'?"};
 }
 
 /// The algorithm that is asked for, which has the preset that is asked for.

@@ -7,10 +7,6 @@ estimation::ScanTimes LidarPath::times_of(const Scan& scan) const {
   return estimation::times_of(scan, scan_duration_);
 }
 
-bool LidarPath::is_out_of_order(Time instant) const {
-  return !poses_.empty() && instant <= poses_.back().stamp;
-}
-
 Pose LidarPath::body_pose(const Pose& map_from_lidar) const {
   return body_from_lidar_ * map_from_lidar * body_from_lidar_.inverse();
 }

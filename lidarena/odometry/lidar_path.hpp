@@ -18,8 +18,6 @@ class LidarPath {
 
   /// An empty scan counts as lasting as long as the last one that had times.
   estimation::ScanTimes times_of(const Scan& scan) const;
-  /// Whether a pose at `instant` would not be later than the last one.
-  bool is_out_of_order(Time instant) const;
   /// Adds the pose of a scan at `times`; it holds at `instant`.
   void add(const Pose& map_from_lidar, Time instant, const estimation::ScanTimes& times);
 

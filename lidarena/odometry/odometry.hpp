@@ -3,10 +3,11 @@
 
 #include <Eigen/Core>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
@@ -21,92 +22,82 @@ enum class ScanStatus {
   kDegenerate,    ///< at least one direction was not observable
   kTooFewPoints,  ///< nothing usable in the scan; the estimate is a prediction
   kDiverged,      ///< the estimate must not be used
+  kRefused,       ///< the scan is not later than the one before; nothing changed
 };
 const char* to_string(ScanStatus status);
 
-/// What a method counted in one scan. A method leaves unset what it does not have.
+/// What a run records as events, see stages::EventRecord. A method leaves unset what it lacks.
 struct ScanCounters {
   using Count = std::optional<std::uint64_t>;
   Count points{};                 ///< within the range limits
-  Count keypoints{};              ///< points or features that were registered
-  Count matches{};                ///< of these, with a counterpart in the map
-  Count near_planes{};            ///< of these, with a plane nearby, whether they lie on it or not
-  Count edges{};                  ///< edge features found
-  Count surfaces{};               ///< surface features found
-  Count iterations{};             ///< of the registration or the filter's update
   Count degenerate_directions{};  ///< of 6 that the scan does not determine
-  Count map_points{};
-  Count keyframes{};
-  Count loops{};                   ///< accepted so far
-  Count loops_tried{};             ///< verified so far, accepted or not
-  Count imu_saturated{};           ///< intervals of this scan with a sample at the end of its range
-  Count imu_refused{};             ///< samples so far that were out of order or not finite
-  Count imu_restarts{};            ///< of the inertial estimate so far
-  Count scans_refused{};           ///< so far, out of order
-  std::optional<bool> inserted{};  ///< the scan was added to the map
-  std::optional<bool> standing{};  ///< the sensor stands still
-  std::optional<double> threshold_m{};    ///< scale of the prediction's error
-  std::optional<double> imu_gap_s{};      ///< longest time without samples in this scan
-  std::optional<double> imu_delay_s{};    ///< by how much the IMU's stamps are late, by the LiDAR's
-  std::optional<double> lidar_moved_m{};  ///< of the LiDAR, from where it is told to be, by the IMU
-  std::optional<double> lidar_turned_rad{};  ///< likewise
-  std::optional<double> accel_scale{};       ///< factor from the IMU's accelerations to m/s^2
+  Count imu_saturated{};          ///< intervals of this scan with a sample at the end of its range
+  Count imu_restarts{};           ///< of the inertial estimate so far
+  Count loops{};                  ///< accepted so far
 
   /// Calls v(name, field) for each field.
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("points", self.points);
-    v("keypoints", self.keypoints);
-    v("matches", self.matches);
-    v("near_planes", self.near_planes);
-    v("edges", self.edges);
-    v("surfaces", self.surfaces);
-    v("iterations", self.iterations);
     v("degenerate_directions", self.degenerate_directions);
-    v("map_points", self.map_points);
-    v("keyframes", self.keyframes);
-    v("loops", self.loops);
-    v("loops_tried", self.loops_tried);
     v("imu_saturated", self.imu_saturated);
-    v("imu_refused", self.imu_refused);
     v("imu_restarts", self.imu_restarts);
-    v("scans_refused", self.scans_refused);
-    v("inserted", self.inserted);
-    v("standing", self.standing);
-    v("threshold_m", self.threshold_m);
-    v("imu_gap_s", self.imu_gap_s);
-    v("imu_delay_s", self.imu_delay_s);
-    v("lidar_moved_m", self.lidar_moved_m);
-    v("lidar_turned_rad", self.lidar_turned_rad);
-    v("accel_scale", self.accel_scale);
+    v("loops", self.loops);
   }
 };
 
-/// Result of one scan.
+/// What else a method says of a scan: names and values, see the method's README.
+using ScanDetails = std::vector<std::pair<std::string, double>>;
+
+/// What is known of the vertical.
+struct UpDirection {
+  Eigen::Vector3d direction = Eigen::Vector3d::UnitZ();  ///< unit vector, world frame
+  double sigma_rad = 0.0;                                ///< standard deviation of its angle
+};
+
+/// Result of one scan. All poses are in the run's world.
 struct ScanResult {
   StampedPose estimate;  ///< world_from_body and the instant at which it holds
   ScanStatus status = ScanStatus::kTracked;
-  std::optional<Eigen::Matrix<double, 6, 6>> covariance;  ///< of (translation, rotation), if known
-  ScanCounters counters;
+  /// Of (translation, rotation), if known: m along the world's axes, rad about the body's.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance{};
+  ScanCounters counters{};
   /// Poses within the scan, if the method estimates or assumes them; for de-skewing by others.
-  std::vector<StampedPose> motion;
+  std::vector<StampedPose> motion{};
   /// Such poses of the scan before, given this scan as well, if the method revises them: the last
   /// one is its pose in trajectory() from now on.
   std::vector<StampedPose> revised{};
+  std::optional<UpDirection> up{};  ///< by this scan, of a gravity_aligned method
+  /// By how much loops have moved the estimate: world_from_odom^-1 * world_from_body is continuous
+  /// from scan to scan.
+  Pose world_from_odom = Pose::Identity();
+  ScanDetails details{};
+
+  /// The detail of this name, if the method gave it.
+  std::optional<double> detail(std::string_view name) const;
 };
 
 struct OdometryTraits {
   bool needs_imu = false;
   bool revises_past = false;     ///< trajectory() after finish() differs from the live estimates
-  bool gravity_aligned = false;  ///< its world frame has z up
+  bool gravity_aligned = false;  ///< its world has z up, as far as known at the initialization
   /// True: the map is made of the published scans, see registered_scan(); false: it is map().
-  bool publishes_scans = true;
+  bool publishes_scans = false;
   std::string pose_frame = "body";
 };
 
+/// Bytes that a method holds, by part.
+struct MemoryUse {
+  std::uint64_t map = 0;
+  std::uint64_t scan_buffer = 0;
+  std::uint64_t backlog = 0;  ///< measurements that wait to be used
+  std::uint64_t other = 0;
+};
+
 /// A LiDAR(-inertial) odometry. Built from configuration and rig by the factory. It receives only
-/// events and has no access to the world, the flight or the ground truth. Its world frame is the
-/// body frame at the start (leveled, so that z points up, if gravity_aligned).
+/// events and has no access to the world, the flight or the ground truth. Its world frame stands
+/// still during a run: the body frame at the start, leveled at the initialization by what is known
+/// then, if it is gravity_aligned.
 class Odometry {
  public:
   virtual ~Odometry() = default;
@@ -114,7 +105,10 @@ class Odometry {
   /// Samples come in time order, and before the scan during which they were taken. LiDAR-only
   /// methods ignore them.
   virtual void register_imu(const ImuSample&) {}
-  virtual ScanResult register_scan(const Scan& scan) = 0;
+  /// Registers a scan, unless its first or its last point is not later than that of the scan
+  /// before. Such a scan is refused and counted; the result is the estimate before, kRefused.
+  ScanResult register_scan(const Scan& scan);
+  std::uint64_t scans_refused() const { return scans_refused_; }
   /// Call after the last event: flushes smoothers and closes the last loops.
   virtual void finish() {}
   /// Best estimate of all poses so far.
@@ -124,12 +118,19 @@ class Odometry {
   /// The last scan as the method publishes it: de-skewed, world frame, m. Valid until the next
   /// call.
   virtual std::span<const Eigen::Vector3f> registered_scan() const { return {}; }
-  /// From the body's frame at the start to the world frame of the last result. It changes while a
-  /// gravity_aligned method learns where up is; trajectory(), map() and registered_scan() are in
-  /// the last world.
-  virtual Pose world_from_start() const { return Pose::Identity(); }
-  /// Bytes held by part: "map", "scan_buffer", "backlog", "other".
-  virtual std::map<std::string, std::uint64_t> memory() const = 0;
+  /// A rotation that levels the world by all that is known of up; after finish(). The runner
+  /// applies it to the final trajectory and to the map.
+  virtual Pose leveled_from_world() const { return Pose::Identity(); }
+  virtual MemoryUse memory() const = 0;
+
+ protected:
+  /// Estimates the pose of a scan that is later than the one before.
+  virtual ScanResult track(const Scan& scan) = 0;
+
+ private:
+  std::optional<Time> last_begin_, last_end_;  ///< first and last point of the last scan
+  StampedPose last_estimate_;
+  std::uint64_t scans_refused_ = 0;
 };
 
 }  // namespace lidarena::odometry

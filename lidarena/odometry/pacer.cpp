@@ -7,7 +7,7 @@
 
 namespace lidarena::odometry {
 
-void Pacer::offer(dataset::Event event) {
+void Pacer::offer(Event event) {
   const auto* scan = std::get_if<Scan>(&event.data);
   if (scan == nullptr) {
     waiting_.push_back(std::move(event));

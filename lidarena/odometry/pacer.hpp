@@ -5,7 +5,7 @@
 #include <deque>
 #include <functional>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 
 namespace lidarena::odometry {
 
@@ -15,11 +15,11 @@ namespace lidarena::odometry {
 class Pacer {
  public:
   /// Processes one event and returns the time that this took, s.
-  using Process = std::function<double(const dataset::Event&)>;
+  using Process = std::function<double(const Event&)>;
   explicit Pacer(Process process) : process_(std::move(process)) {}
 
   /// Takes the next event of the algorithm's own sensors, in the order of EventSource.
-  void offer(dataset::Event event);
+  void offer(Event event);
   /// Call after the last event: hands over the events that still wait.
   void flush();
 
@@ -32,8 +32,8 @@ class Pacer {
   void drop_waiting_scan();
 
   Process process_;
-  std::deque<dataset::Event> waiting_;  ///< at most one scan, which then is the first element
-  Time free_{Time::min()};              ///< when the algorithm has processed what it was handed
+  std::deque<Event> waiting_;  ///< at most one scan, which then is the first element
+  Time free_{Time::min()};     ///< when the algorithm has processed what it was handed
   std::size_t dropped_ = 0;
   double longest_delay_s_ = 0.0;
 };

@@ -18,30 +18,40 @@ OdometryTraits WithLoop::traits() const {
   return traits;
 }
 
-ScanResult WithLoop::register_scan(const Scan& scan) {
+ScanResult WithLoop::track(const Scan& scan) {
   ScanResult result = odometry_->register_scan(scan);
   if (result.status == ScanStatus::kDiverged) return result;
   const Time stamp = result.estimate.stamp;
-  const Pose upright = odometry_->world_from_start();
-  const Pose odom_from_body = upright.inverse() * result.estimate.world_from_body;
+  const Pose odom_from_body = result.estimate.world_from_body;
   if (!result.revised.empty()) {
     const StampedPose& before = result.revised.back();
-    poses_.revise(before.stamp, in_keyframe(upright.inverse() * before.world_from_body));
+    poses_.revise(before.stamp, in_keyframe(before.world_from_body));
   }
   const bool usable = result.status != ScanStatus::kTooFewPoints &&
                       result.status != ScanStatus::kInitializing &&
                       !odometry_->registered_scan().empty();
   if (usable && is_keyframe(odom_from_body)) keep(stamp, odom_from_body);
   poses_.add(stamp, in_keyframe(odom_from_body));
-  const Pose corrected = upright * world_from_odom_ * upright.inverse();
-  result.estimate.world_from_body = orthonormalized(corrected * result.estimate.world_from_body);
-  for (std::vector<StampedPose>* poses : {&result.motion, &result.revised}) {
-    for (StampedPose& pose : *poses)
-      pose.world_from_body = orthonormalized(corrected * pose.world_from_body);
-  }
-  result.counters.keyframes = clouds_.size();
   result.counters.loops = closer_.accepted();
-  result.counters.loops_tried = closer_.records().size();
+  result.details.emplace_back("keyframes", clouds_.size());
+  result.details.emplace_back("loops_tried", closer_.records().size());
+  return corrected(std::move(result));
+}
+
+ScanResult WithLoop::corrected(ScanResult result) const {
+  const auto move = [this](Pose& pose) { pose = orthonormalized(world_from_odom_ * pose); };
+  move(result.estimate.world_from_body);
+  for (std::vector<StampedPose>* poses : {&result.motion, &result.revised}) {
+    for (StampedPose& pose : *poses) move(pose.world_from_body);
+  }
+  const Eigen::Matrix3d rotation = world_from_odom_.linear();
+  if (result.covariance) {
+    auto turned = Eigen::Matrix<double, 6, 6>::Identity().eval();
+    turned.topLeftCorner<3, 3>() = rotation;
+    result.covariance = turned * *result.covariance * turned.transpose();
+  }
+  if (result.up) result.up->direction = rotation * result.up->direction;
+  result.world_from_odom = world_from_odom_ * result.world_from_odom;
   return result;
 }
 
@@ -57,18 +67,16 @@ bool WithLoop::is_keyframe(const Pose& odom_from_body) const {
 }
 
 void WithLoop::take_first_poses(Time until) {
-  const Pose start_from_world = odometry_->world_from_start().inverse();
   const Trajectory revised = odometry_->trajectory();
   poses_ = {};
   for (const StampedPose& pose : revised.poses())
-    if (pose.stamp < until) poses_.add(pose.stamp, start_from_world * pose.world_from_body);
+    if (pose.stamp < until) poses_.add(pose.stamp, pose.world_from_body);
 }
 
 void WithLoop::keep(Time stamp, const Pose& odom_from_body) {
   if (clouds_.empty()) take_first_poses(stamp);
-  const Pose body_from_world = (odometry_->world_from_start() * odom_from_body).inverse();
   const std::vector<Eigen::Vector3f> cloud =
-      transformed(body_from_world, odometry_->registered_scan());
+      transformed(odom_from_body.inverse(), odometry_->registered_scan());
   const Pose previous_from_this = in_keyframe(odom_from_body);
   clouds_.push_back(map::voxel_means(cloud, config_.cloud_voxel_size_m));
   poses_.add_anchor(stamp, previous_from_this);
@@ -96,23 +104,20 @@ void WithLoop::retire_revisit() {
 }
 
 Trajectory WithLoop::trajectory() const {
-  std::vector<StampedPose> poses = poses_.placed(closer_.poses());
-  for (StampedPose& pose : poses)
-    pose.world_from_body = odometry_->world_from_start() * pose.world_from_body;
-  return Trajectory(std::move(poses), "with_loop");
+  return Trajectory(poses_.placed(closer_.poses()), "with_loop");
 }
 
 std::vector<Eigen::Vector3f> WithLoop::map() const {
   std::vector<Eigen::Vector3f> points;
   for (std::size_t i = 0; i < clouds_.size(); ++i)
-    append_transformed(odometry_->world_from_start() * closer_.poses()[i], clouds_[i], points);
+    append_transformed(closer_.poses()[i], clouds_[i], points);
   return points;
 }
 
-std::map<std::string, std::uint64_t> WithLoop::memory() const {
-  std::map<std::string, std::uint64_t> memory = odometry_->memory();
-  for (const auto& cloud : clouds_) memory["map"] += cloud.capacity() * sizeof(Eigen::Vector3f);
-  memory["other"] += closer_.memory_bytes() + poses_.memory_bytes();
+MemoryUse WithLoop::memory() const {
+  MemoryUse memory = odometry_->memory();
+  for (const auto& cloud : clouds_) memory.map += cloud.capacity() * sizeof(Eigen::Vector3f);
+  memory.other += closer_.memory_bytes() + poses_.memory_bytes();
   return memory;
 }
 

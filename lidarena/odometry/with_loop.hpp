@@ -18,11 +18,6 @@ struct WithLoopConfig {
   double cloud_voxel_size_m = 0.1;
   loop::LoopConfig loop;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {{"keyframe_distance_m", "keyframe_translation_m"},
-                                                {"keyframe_angle_rad", "keyframe_rotation_rad"},
-                                                {"cloud_leaf_m", "cloud_voxel_size_m"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("keyframe_translation_m", self.keyframe_translation_m, "m",
@@ -47,18 +42,22 @@ class WithLoop : public Odometry {
 
   OdometryTraits traits() const override;
   void register_imu(const ImuSample& sample) override { odometry_->register_imu(sample); }
-  ScanResult register_scan(const Scan& scan) override;
   void finish() override { odometry_->finish(); }
   /// Poses corrected by all loops, including those found later than the pose.
   Trajectory trajectory() const override;
   /// Points of the keyframes at their corrected poses, m, world frame.
   std::vector<Eigen::Vector3f> map() const override;
-  Pose world_from_start() const override { return odometry_->world_from_start(); }
-  std::map<std::string, std::uint64_t> memory() const override;
+  Pose leveled_from_world() const override { return odometry_->leveled_from_world(); }
+  MemoryUse memory() const override;
 
   const loop::LoopCloser& loops() const { return closer_; }
 
+ protected:
+  ScanResult track(const Scan& scan) override;
+
  private:
+  /// With all that is in the world moved by the loops.
+  ScanResult corrected(ScanResult result) const;
   /// Relative to the last keyframe; as it is, as long as there is none.
   Pose in_keyframe(const Pose& odom_from_body) const;
   bool is_keyframe(const Pose& odom_from_body) const;
@@ -73,7 +72,7 @@ class WithLoop : public Odometry {
   std::unique_ptr<Odometry> odometry_;
   WithLoopConfig config_;
   loop::LoopCloser closer_;
-  // The odometry's frame at the start is `odom` here.
+  // The odometry's world, in which loops change nothing, is `odom` here.
   Pose world_from_odom_ = Pose::Identity();
   Pose odom_from_keyframe_ = Pose::Identity();  ///< of the last keyframe
   std::vector<std::vector<Eigen::Vector3f>> clouds_;

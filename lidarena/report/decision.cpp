@@ -47,8 +47,7 @@ TableCell fact_of(const RunRecord& run, const std::string& key) {
 std::optional<bool> is_real_time(const RunRecord& run) {
   if (!run.metrics || run.metrics->resources.empty()) return std::nullopt;
   const results::ResourceMetrics& used = run.metrics->resources;
-  if (run.manifest.is_object() && run.manifest.value("paced", false))
-    return used.late_scans <= kLateShare;
+  if (run.manifest && run.manifest->paced) return used.late_scans <= kLateShare;
   if (!used.cpu_late_scans) return std::nullopt;
   return *used.cpu_late_scans <= kLateShare;
 }

@@ -181,13 +181,13 @@ Table sensor_table(const StudyResults& results) {
               {}};
   for (const std::string& sensor : StudyCells(results, "").sensors()) {
     const auto row = std::ranges::find_if(results.rows, [&](const results::RunRecord& r) {
-      return r.sensor == sensor && r.lidar.is_object();
+      return r.sensor == sensor && r.lidar.has_value();
     });
     if (row == results.rows.end()) continue;
-    const auto fact = [&](const char* key) { return row->lidar.value(key, 0.0); };
-    const double rate = fact("rate_hz");
-    std::vector<TableCell> cells{word(sensor), number(fact("rows") * fact("columns") * rate / 1e6),
-                                 number(fact("max_range_m")), number(fact("rows")), number(rate)};
+    const LidarInfo& lidar = *row->lidar;
+    std::vector<TableCell> cells{
+        word(sensor), number(lidar.rows * lidar.columns * lidar.rate_hz / 1e6),
+        number(lidar.max_range_m), number(lidar.rows), number(lidar.rate_hz)};
     const auto known = [&](const char* key) {
       return published(results::reference_of(results, "", sensor, "", key));
     };
@@ -208,9 +208,8 @@ std::optional<Table> increase_table(const StudyResults& results, const StudyCell
   Table table{
       "increase-" + variant,
       fmt::format("Increase of the drift from {} to {}, %: {}", a, b, variant),
-      fmt::format("({1} - {0}) / {1}, as Vultaggio et al. 2023 define it; \"usual\": ({1} - {0}) / "
-                  "{0}. In brackets: published figures.",
-                  a, b),
+      fmt::format(
+          "({1} - {0}) / {1}; \"usual\": ({1} - {0}) / {0}. In brackets: published figures.", a, b),
       {"sensor"},
       {}};
   for (const std::string& algorithm : cells.algorithms()) {

@@ -9,15 +9,13 @@
 
 namespace lidarena::report {
 
-/// The growth of the drift from world `a` to world `b` in percent of the larger one that is named
-/// last, (b - a) / b, as Vultaggio et al. 2023 define it in their Table 3 (found by computing that
-/// table from their Table 2 in both ways).
+/// The growth of the drift from world `a` to world `b` in percent of the last one: (b - a) / b.
 double increase_of_last(double a, double b);
 /// The usual definition: (b - a) / a, in percent.
 double increase(double a, double b);
 
-/// Drift (final, and live where that differs), own map and map of sampled returns, CPU time of the runs
-/// of one variant by sensor and algorithm, for each world; the growth of the drift between the
+/// Drift (final, and live where that differs), own map and map of sampled returns, CPU time of the
+/// runs of one variant by sensor and algorithm, for each world; the growth of the drift between the
 /// worlds of a study of two; the sensors as simulated. Published figures of the study's `reference`
 /// stand beside.
 std::vector<results::Table> figure_tables(const results::StudyResults& results,

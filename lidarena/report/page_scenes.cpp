@@ -51,7 +51,7 @@ std::vector<const results::RunRecord*> shown_rows(const results::StudyResults& r
 void add_scans(Scene& scene, const results::RunRecord& row) {
   SceneOptions options;
   options.max_points = kPointsOfScan;
-  const fs::path dataset = row.folder / row.manifest.value("dataset", "");
+  const fs::path dataset = row.folder / row.manifest->dataset;
   for (const auto& [name, ending] :
        {std::pair{"scan ", "_scan.ply"}, {"skewed ", "_scan_skewed.ply"}}) {
     const fs::path file = dataset / (row.sensor + ending);
@@ -91,7 +91,8 @@ Scene scene_of(const results::StudyResults& results, const std::string& world,
   }
   std::set<std::string> sensors;
   for (const results::RunRecord& row : results.rows) {
-    if (row.world == world && row.manifest.contains("dataset") && sensors.insert(row.sensor).second)
+    if (row.world == world && row.manifest && !row.manifest->dataset.empty() &&
+        sensors.insert(row.sensor).second)
       add_scans(scene, row);
   }
   return scene;

@@ -98,7 +98,7 @@ Json histogram(const std::optional<results::MapMetrics>& map) {
 }
 
 std::string dataset_of(const RunRecord& row) {
-  const std::string folder = row.manifest.is_object() ? row.manifest.value("dataset", "") : "";
+  const std::string folder = row.manifest ? row.manifest->dataset : "";
   return fs::path(folder).lexically_normal().filename().string();
 }
 
@@ -128,8 +128,8 @@ Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
     if (reading.is_share && reading.used < reading.total)
       run["sampled"][figure.key] = {*reading.used, *reading.total};
   }
-  const Json::json_pointer statuses("/summary/statuses");
-  if (row.manifest.contains(statuses)) run["statuses"] = row.manifest.at(statuses);
+  if (row.manifest && row.manifest->summary.scans > 0)
+    run["statuses"] = row.manifest->summary.statuses;
   if (!row.metrics) return run;
   const results::RunMetrics& m = *row.metrics;
   run["coverage_percent"] = rounded(results::coverage_of(m));
@@ -149,7 +149,9 @@ Json figures_json() {
     list.push_back({{"key", figure.key},
                     {"label", figure.label},
                     {"unit", figure.unit},
-                    {"more_is_better", figure.better == results::Better::kMore}});
+                    {"more_is_better", figure.better == results::Better::kMore},
+                    {"in_runs", figure.table == results::FigureTable::kMain ||
+                                    figure.table == results::FigureTable::kRuns}});
   }
   return list;
 }
@@ -160,9 +162,11 @@ Json sensors_json(const results::StudyResults& results) {
   for (const std::string& name : results::StudyCells(results, "").sensors()) {
     Json sensor{{"name", name}, {"lidar", nullptr}, {"facts", nullptr}};
     for (const RunRecord& row : results.rows) {
-      if (row.sensor != name || !row.lidar.is_object()) continue;
-      for (const char* key : {"rows", "columns", "rate_hz", "max_range_m"})
-        sensor["lidar"][key] = row.lidar.value(key, 0.0);
+      if (row.sensor != name || !row.lidar) continue;
+      sensor["lidar"] = {{"rows", row.lidar->rows},
+                         {"columns", row.lidar->columns},
+                         {"rate_hz", row.lidar->rate_hz},
+                         {"max_range_m", row.lidar->max_range_m}};
       sensor["facts"] = facts_of(row);
       break;
     }
@@ -242,11 +246,10 @@ Json claims_json(const results::StudyResults& results) {
 std::set<std::string> made_on(const results::StudyResults& results) {
   std::set<std::string> machines;
   for (const RunRecord& row : results.rows) {
-    if (!row.manifest.is_object() || !row.manifest.contains("made_on")) continue;
-    const Json& on = row.manifest.at("made_on");
-    machines.insert(fmt::format("{}, {} cores, {} GiB, lidarena {}", on.value("processor", ""),
-                                on.value("cores", 0), on.value("memory_gib", 0.0),
-                                on.value("lidarena", "")));
+    if (!row.manifest || row.manifest->made_on.empty()) continue;
+    const dataset::MachineFacts& on = row.manifest->made_on;
+    machines.insert(fmt::format("{}, {} cores, {} GiB, lidarena {}", on.processor, on.cores,
+                                on.memory_gib, on.lidarena));
   }
   return machines;
 }

@@ -14,44 +14,35 @@ std::string option(const char* name, const std::string& value) {
   return value.empty() ? "" : fmt::format(" {} {}", name, shell_word(value));
 }
 
-std::string text_in(const Json& json, const char* key) {
-  return json.contains(key) && json.at(key).is_string() ? json.at(key).get<std::string>() : "";
-}
-
 /// Whether the run was made of live topics.
-bool is_live(const results::RunRecord& row) {
-  return row.manifest.is_object() && row.manifest.value("live", false);
-}
+bool is_live(const results::RunRecord& row) { return row.manifest && row.manifest->live; }
 
 std::string simulate_command(const results::RunRecord& row) {
-  const Json& made = row.simulation;
+  const dataset::SimulationRecord& made = *row.simulation;
   std::string command = "lidarena simulate" + option("--world", row.sources.world) +
                         option("--flight", row.sources.flight);
   for (const std::string& sensor : row.sources.sensors) command += option("--sensor", sensor);
-  if (made.contains("seed")) command += option("--seed", made.at("seed").dump());
-  if (made.value("new_scene", false)) command += " --new-scene";
-  if (made.contains("seconds")) command += option("--seconds", made.at("seconds").dump());
-  command += option("--mode", row.mode.empty() ? text_in(made, "mode") : row.mode);
-  if (!made.value("noise", true)) command += " --noise off";
-  if (made.value("allow_missing", false)) command += " --allow-missing";
-  return command + (is_live(row) ? " --out data" : " --no-data --out data");
+  command += option("--seed", std::to_string(made.seed));
+  if (made.new_scene) command += " --new-scene";
+  if (made.seconds > 0.0) command += option("--seconds", Json(made.seconds).dump());
+  command += option("--mode", row.mode.empty() ? made.mode : row.mode);
+  if (!made.noise) command += " --noise off";
+  if (made.allow_missing) command += " --allow-missing";
+  return command + (is_live(row) ? " --out data" : " --no-data --hits on --out data");
 }
 
 /// What was set beside the preset.
 std::string settings_of(const results::RunRecord& row) {
-  const Json& manifest = row.manifest;
-  if (!manifest.is_object()) return option("--preset", row.preset);
-  const Json::json_pointer program("/config/command");
-  if (row.preset == "external" && manifest.contains(program)) {
+  if (!row.manifest) return option("--preset", row.preset);
+  const dataset::RunManifest& manifest = *row.manifest;
+  if (row.preset == "external") {
     const fs::path in_study = row.folder / "external.json";
     return option("--external",
                   fs::exists(in_study) ? in_study.generic_string() : row.algorithm + ".yaml");
   }
-  std::string settings =
-      option("--preset", row.preset) + option("--config", text_in(manifest, "config_file"));
-  for (const Json& set : manifest.value("overrides", Json::array()))
-    settings += option("--set", set.get<std::string>());
-  if (manifest.value("paced", false)) settings += " --paced";
+  std::string settings = option("--preset", row.preset) + option("--config", manifest.config_file);
+  for (const std::string& set : manifest.overrides) settings += option("--set", set);
+  if (manifest.paced) settings += " --paced";
   return settings;
 }
 
@@ -70,10 +61,10 @@ std::string live_command(const results::RunRecord& row, const std::string& datas
 }  // namespace
 
 std::string command_of(const results::RunRecord& row) {
-  const bool is_simulated = row.simulation.is_object();
+  const bool is_simulated = row.simulation.has_value();
   std::string dataset = "data";
-  if (!is_simulated && row.manifest.is_object()) {
-    dataset = (row.folder / row.manifest.value("dataset", "")).lexically_normal().generic_string();
+  if (!is_simulated && row.manifest) {
+    dataset = (row.folder / row.manifest->dataset).lexically_normal().generic_string();
   }
   const std::string simulate = is_simulated ? simulate_command(row) + " && " : "";
   if (is_live(row)) return simulate + live_command(row, shell_word(dataset));

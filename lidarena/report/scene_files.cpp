@@ -10,8 +10,8 @@
 #include <map>
 
 #include "lidarena/base/random.hpp"
-#include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/points/point_table.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/dataset/trajectories/trajectory_io.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/world/mesh_io.hpp"
@@ -224,12 +224,10 @@ class ScanCollector {
   SceneCloud cloud_;
 };
 
-std::string run_label(const fs::path& folder, const Json& manifest) {
-  const std::string algorithm = manifest.value("algorithm", folder.filename().string());
-  const std::string preset = manifest.value("preset", "");
-  const std::string sensor = manifest.value("sensor", "");
-  return algorithm + (preset.empty() ? "" : " (" + preset + ")") +
-         (sensor.empty() ? "" : ", " + sensor);
+std::string run_label(const fs::path& folder, const dataset::RunManifest& manifest) {
+  return (manifest.algorithm.empty() ? folder.filename().string() : manifest.algorithm) +
+         (manifest.preset.empty() ? "" : " (" + manifest.preset + ")") +
+         (manifest.sensor.empty() ? "" : ", " + manifest.sensor);
 }
 
 }  // namespace
@@ -270,14 +268,9 @@ void add_dataset(Scene& scene, dataset::Dataset dataset, const SceneOptions& opt
 }
 
 void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, LogSink& log) {
-  const fs::path manifest_file = folder / "manifest.json";
-  if (!fs::exists(manifest_file)) {
-    throw InputError(folder.string(), "is not a finished run: it has no manifest.json",
-                     "run the algorithm again");
-  }
-  const Json manifest = dataset::read_json(manifest_file);
+  const dataset::RunManifest manifest = dataset::read_run_manifest(folder);
   const std::string label = run_label(folder, manifest);
-  const auto truth = add_truth(scene, folder / manifest.value("dataset", ""), options, log);
+  const auto truth = add_truth(scene, folder / manifest.dataset, options, log);
   const auto gauge = fs::exists(folder / "metrics.json")
                          ? results::truth_from_estimate(results::read_metrics(folder))
                          : std::nullopt;

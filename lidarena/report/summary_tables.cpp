@@ -39,15 +39,15 @@ TableCell figure_cell(const results::RunRecord& run, const results::Figure& figu
 }  // namespace
 
 Json facts_of(const results::RunRecord& row) {
-  if (!row.simulation.is_object()) return nullptr;
-  for (const Json& made : row.simulation.value("sensors", Json::array())) {
+  if (!row.simulation) return nullptr;
+  for (const Json& made : row.simulation->sensors) {
     if (made.value("name", "") == row.sensor) return made.value("facts", Json());
   }
   return nullptr;
 }
 
 bool has_mean_map(const results::RunRecord& run) {
-  return run.manifest.is_object() && run.manifest.value("own_map", "") == "means";
+  return run.manifest && run.manifest->own_map == dataset::OwnMap::kMeans;
 }
 
 bool is_bent_by_interpolation(const results::RunRecord& run) {

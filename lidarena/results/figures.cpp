@@ -175,6 +175,10 @@ Reading time_of_scan(const RunMetrics& m) {
 Reading cpu_load(const RunMetrics& m) {
   return {m.resources.cpu_load_percent, "", "", "", {}, {}, ""};
 }
+Reading late_scans(const RunMetrics& m) {
+  if (m.resources.empty()) return {};
+  return {m.resources.late_scans, "", "", "", {}, {}, ""};
+}
 template <MemoryMetrics ResourceMetrics::*memory>
 Reading peak(const RunMetrics& m) {
   if (m.resources.empty()) return {};
@@ -204,6 +208,7 @@ constexpr auto kOfRun = Subject::kResources;
 constexpr auto kNone = FigureTable::kNone;
 constexpr auto kMain = FigureTable::kMain;
 constexpr auto kMapTable = FigureTable::kMap;
+constexpr auto kRuns = FigureTable::kRuns;
 
 constexpr std::array kFigures{
     Figure{"rpe_1m_at_poses_translation", "RPE cm/m", 100, "cm", "RPE per meter, pose to pose",
@@ -237,13 +242,13 @@ constexpr std::array kFigures{
     Figure{"kitti_short_translation", nullptr, 1, "%", "KITTI's rule, 1 to 50 m", kOfPath,
            kitti_of<&TrajectoryMetrics::kitti_short>},
     Figure{"live_rpe_1m_at_poses_translation", nullptr, 100, "cm", "RPE per meter, live", kOfLive,
-           rpe<kLive, kAtPoses, translation>},
+           rpe<kLive, kAtPoses, translation>, kRuns},
     Figure{"live_ate_se3_translation", nullptr, 100, "cm", "ATE, SE(3) gauge, live", kOfLive,
            ate<kLive, &AteByGauge::se3, translation>},
     Figure{"own_map_rmse", "own map cm", 100, "cm", "own map, RMSE", kOfMap, map_of<kOwn, rmse>,
            kMain},
     Figure{"own_map_outliers", nullptr, 1, "%", "own map, beyond 20 cm", kOfMap,
-           map_of<kOwn, outliers>},
+           map_of<kOwn, outliers>, kRuns},
     Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust gauge", kOfMap,
            robust_map_of<kOwn, rmse>},
     Figure{"own_map_rmse_vertices", nullptr, 100, "cm", "own map, RMSE to vertices", kOfMap,
@@ -286,11 +291,13 @@ constexpr std::array kFigures{
     Figure{"latency_median", nullptr, 1e3, "ms", "latency, median", kOfRun,
            time_of_scan<&ResourceMetrics::latency, &Summary::median>},
     Figure{"latency_p95", nullptr, 1e3, "ms", "latency, P95", kOfRun,
-           time_of_scan<&ResourceMetrics::latency, &Summary::p95>},
+           time_of_scan<&ResourceMetrics::latency, &Summary::p95>, kRuns},
     Figure{"latency_p99", nullptr, 1e3, "ms", "latency, P99", kOfRun,
            time_of_scan<&ResourceMetrics::latency, &Summary::p99>},
     Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun,
            time_of_scan<&ResourceMetrics::latency, &Summary::max>},
+    Figure{"late_scans", nullptr, 100, "%", "scans not done when the next one came", kOfRun,
+           late_scans, kRuns},
     Figure{"cpu_p95", "CPU P95 ms", 1e3, "ms", "CPU time of a scan, P95", kOfRun,
            time_of_scan<&ResourceMetrics::cpu, &Summary::p95>, kMain},
     Figure{"cpu_load", "CPU %", 1, "%", "CPU time, share of one core", kOfRun, cpu_load, kMain},
@@ -325,7 +332,6 @@ const Figure& kOwnMapRmseToVertices = known("own_map_rmse_vertices");
 const Figure& kOwnMapBeyondVertices = known("own_map_outliers_vertices");
 const Figure& kMapRmse = known("reprojected_map_rmse");
 const Figure& kMapOutliers = known("reprojected_map_outliers");
-const Figure& kLatencyP95 = known("latency_p95");
 const Figure& kCpuP95 = known("cpu_p95");
 const Figure& kCpuLoad = known("cpu_load");
 const Figure& kLiveDrift = known("live_rpe_1m_at_poses_translation");

@@ -18,8 +18,9 @@ enum class Better { kLess, kMore };
 /// What a figure says about.
 enum class Subject { kLiveTrajectory, kTrajectory, kMap, kResources };
 
-/// The tables of metrics_table.hpp in which a figure may be a column.
-enum class FigureTable { kNone, kMain, kMap };
+/// The tables of metrics_table.hpp in which a figure may be a column; the report's list of runs has
+/// those of kMain and of kRuns.
+enum class FigureTable { kNone, kMain, kMap, kRuns };
 
 /// A number of a run with what it is based on.
 struct Reading {
@@ -54,8 +55,8 @@ struct Figure {
 // Those that tables and reports name; drift is the RPE per meter from pose to pose, maps are scored
 // in the gauge of scores_of().
 extern const Figure &kDrift, &kDriftRotation, &kAte, &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
-    &kMapOutliers, &kLatencyP95, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift,
-    &kOwnMapRmseToVertices, &kOwnMapBeyondVertices;
+    &kMapOutliers, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift, &kOwnMapRmseToVertices,
+    &kOwnMapBeyondVertices;
 
 /// All of them, in the order in which they are shown.
 std::span<const Figure> figures();

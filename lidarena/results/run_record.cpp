@@ -21,25 +21,21 @@ std::string name_of(const std::string& file) {
 }
 
 /// From what the manifest of a dataset says; it has the names of the files without their folders.
-Sources sources_of(const Json& simulation) {
-  Sources sources;
-  sources.world = name_of(simulation.value("world", ""));
-  sources.flight = name_of(simulation.value("flight_source", ""));
-  for (const Json& file : simulation.value("sensor_sources", Json::array()))
-    sources.sensors.push_back(name_of(file.get<std::string>()));
+Sources sources_of(const dataset::SimulationRecord& simulation) {
+  Sources sources{name_of(simulation.world), name_of(simulation.flight_source), {}};
+  for (const std::string& file : simulation.sensor_sources)
+    sources.sensors.push_back(name_of(file));
   return sources;
 }
 
 /// Reads the description of the LiDAR and of the simulation from the manifest of the row's dataset.
 void read_dataset_manifest(RunRecord& row) {
-  const fs::path file = row.folder / row.manifest.value("dataset", "") / "manifest.json";
-  if (!row.manifest.contains("dataset") || !fs::exists(file)) return;
-  const Json manifest = dataset::read_json(file);
-  row.simulation = manifest.value("simulation", Json());
-  const Json::json_pointer lidars("/rig/lidars");
-  if (!manifest.contains(lidars)) return;
-  for (const Json& lidar : manifest.at(lidars)) {
-    if (lidar.value("id", "") == row.sensor) row.lidar = lidar;
+  if (row.manifest->dataset.empty()) return;
+  const auto manifest = dataset::read_dataset_manifest(row.folder / row.manifest->dataset);
+  if (!manifest) return;
+  row.simulation = manifest->simulation;
+  for (const LidarInfo& lidar : manifest->rig.lidars) {
+    if (lidar.id == row.sensor) row.lidar = lidar;
   }
 }
 
@@ -49,14 +45,17 @@ void read_row(RunRecord& row) {
     row.reason = "the run has no results yet";
     return;
   }
-  row.manifest = dataset::read_json(row.folder / "manifest.json");
-  row.algorithm = row.manifest.value("algorithm", row.algorithm);
-  row.preset = row.manifest.value("preset", row.preset);
-  row.sensor = row.manifest.value("sensor", row.sensor);
+  row.manifest = dataset::read_run_manifest(row.folder);
+  const auto take = [](std::string& known, const std::string& read) {
+    if (!read.empty()) known = read;
+  };
+  take(row.algorithm, row.manifest->algorithm);
+  take(row.preset, row.manifest->preset);
+  take(row.sensor, row.manifest->sensor);
   read_dataset_manifest(row);
-  if (row.manifest.contains("failed")) {
+  if (row.manifest->status == dataset::RunStatus::kFailed) {
     row.status = "failed";
-    row.reason = row.manifest.at("failed").get<std::string>();
+    row.reason = row.manifest->reason;
     return;
   }
   if (!fs::exists(row.folder / "metrics.json")) {
@@ -115,14 +114,13 @@ StudyResults read_results(const fs::path& folder) {
       read_row(row);
       results.rows.push_back(std::move(row));
     }
-  } else if (fs::exists(folder / "manifest.json") &&
-             dataset::read_json(folder / "manifest.json").value("kind", "") == "run") {
+  } else if (dataset::is_run(folder)) {
     RunRecord row;
     row.name = folder.filename().string();
     row.folder = folder;
     read_row(row);
-    row.world = fs::path(row.manifest.value("dataset", "")).filename().string();
-    if (row.simulation.is_object()) row.sources = sources_of(row.simulation);
+    row.world = fs::path(row.manifest->dataset).filename().string();
+    if (row.simulation) row.sources = sources_of(*row.simulation);
     results.title = row.name;
     results.rows.push_back(std::move(row));
   } else {

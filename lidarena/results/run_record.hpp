@@ -6,7 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/base/config_json.hpp"
+#include "lidarena/dataset/dataset_manifest.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/figures.hpp"
 #include "lidarena/results/run_metrics.hpp"
@@ -30,9 +31,9 @@ struct RunRecord {
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;
   std::optional<RunMetrics> metrics;  ///< empty if the run was not scored
-  Json manifest;                      ///< manifest.json, null if there is none
-  Json lidar;       ///< the LiDAR's entry in its dataset's rig, null if that is not known
-  Json simulation;  ///< how its dataset was simulated, null if it was not
+  std::optional<dataset::RunManifest> manifest;
+  std::optional<LidarInfo> lidar;                       ///< in its dataset's rig
+  std::optional<dataset::SimulationRecord> simulation;  ///< how its dataset was simulated
   Sources sources;
 };
 

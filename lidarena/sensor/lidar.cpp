@@ -74,10 +74,10 @@ void close_gaps(std::vector<T>& values, std::size_t stride,
 /// Working data of a block of shots of a scan.
 struct Lidar::Block {
   std::span<const Beam> shots;
-  std::uint64_t first_ray = 0;           ///< number of the first shot since the sensor's start
-  Point* points = nullptr;               ///< space for the maximum number of points
-  dataset::PointTruth* truth = nullptr;  ///< same size, or nullptr
-  std::size_t count = 0;                 ///< number of points so far
+  std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
+  Point* points = nullptr;      ///< space for the maximum number of points
+  PointTruth* truth = nullptr;  ///< same size, or nullptr
+  std::size_t count = 0;        ///< number of points so far
   // Reused from block to block to avoid reallocation.
   std::vector<std::uint32_t> places;  ///< index in `rays` of each shot's first sub-ray
   std::vector<world::Ray> rays;       ///< in casting order
@@ -281,7 +281,7 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
 void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
                       std::span<const Beam> shots, std::uint64_t first_ray,
                       const Parallel& parallel, std::vector<Point>& points,
-                      std::vector<dataset::PointTruth>* truth) const {
+                      std::vector<PointTruth>* truth) const {
   const auto max_points = static_cast<std::size_t>(config_.returns.count);  // max. points per shot
   points.resize(shots.size() * max_points);
   if (truth != nullptr) truth->resize(points.size());
@@ -305,7 +305,7 @@ void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lid
 }
 
 Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
-                    const Parallel& parallel, std::vector<dataset::PointTruth>* truth) const {
+                    const Parallel& parallel, std::vector<PointTruth>* truth) const {
   std::vector<Beam> storage;
   const std::span<const Beam> shots = beams(index, storage);
   const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
@@ -326,10 +326,9 @@ Scan Lidar::empty_scan(std::uint64_t index) const {
 
 void Lidar::measure_part(const world::Surfaces& world, const PoseAt& world_from_lidar,
                          std::span<const Beam> shots, std::uint64_t first_ray,
-                         std::vector<Point>& points,
-                         std::vector<dataset::PointTruth>* truth) const {
+                         std::vector<Point>& points, std::vector<PointTruth>* truth) const {
   std::vector<Point> more;
-  std::vector<dataset::PointTruth> more_truth;
+  std::vector<PointTruth> more_truth;
   shoot_all(world, world_from_lidar, shots, first_ray, Parallel(1), more,
             truth == nullptr ? nullptr : &more_truth);
   points.insert(points.end(), more.begin(), more.end());

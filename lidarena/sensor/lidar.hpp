@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/scan.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/beam_table.hpp"
 #include "lidarena/sensor/cast_order.hpp"
@@ -48,15 +48,14 @@ class Lidar {
   /// the direction. `truth`, if given, receives what each point really hit, in point order; for a
   /// mixed echo, what the sub-ray with the strongest signal hit.
   Scan measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
-               const Parallel& parallel, std::vector<dataset::PointTruth>* truth = nullptr) const;
+               const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
   /// Appends the points of some shots of a scan to `points` (and `truth`). `first_ray` is the
   /// number of the first of `shots`, counted from the sensor's start. With this a scan can be
   /// simulated piece by piece while the world moves.
   void measure_part(const world::Surfaces& world, const PoseAt& world_from_lidar,
                     std::span<const Beam> shots, std::uint64_t first_ray,
-                    std::vector<Point>& points,
-                    std::vector<dataset::PointTruth>* truth = nullptr) const;
+                    std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
 
   /// Scan `index` with its stamp, without points.
   Scan empty_scan(std::uint64_t index) const;
@@ -82,7 +81,7 @@ class Lidar {
   void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
   void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
-                 std::vector<Point>& points, std::vector<dataset::PointTruth>* truth) const;
+                 std::vector<Point>& points, std::vector<PointTruth>* truth) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   void draw_noise(Block& block) const;
   double range_noise(std::size_t shot, std::size_t number, const Block& block) const;

@@ -46,7 +46,7 @@ std::optional<Row> parse(std::string_view line) {
 }
 
 /// What the columns of the two angles hold, by the header.
-struct Angles {
+struct AngleColumns {
   std::size_t azimuth = 1;
   std::size_t polar = 2;
   double azimuth_unit = kDegree;  ///< in rad
@@ -64,7 +64,7 @@ double unit_of(const std::string& name, const std::string& place) {
 
 /// Throws InputError unless the line names three columns, two of them an azimuth and a zenith angle
 /// (or elevation) with their units.
-Angles angles_of(std::string header, const std::string& place) {
+AngleColumns angles_of(std::string header, const std::string& place) {
   std::ranges::transform(header, header.begin(),
                          [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   std::array<std::string, 3> names;
@@ -88,7 +88,7 @@ Angles angles_of(std::string header, const std::string& place) {
   return {*azimuth, polar, unit_of(names[*azimuth], place), unit_of(names[polar], place), !zenith};
 }
 
-Eigen::Vector3f direction(const Row& row, const Angles& angles, const std::string& place) {
+Eigen::Vector3f direction(const Row& row, const AngleColumns& angles, const std::string& place) {
   constexpr double kTurn = 2.0 * std::numbers::pi, kRounding = 1e-6;
   const double a = row[angles.azimuth] * angles.azimuth_unit;
   const double polar = row[angles.polar] * angles.polar_unit;
@@ -110,7 +110,7 @@ std::vector<Eigen::Vector3f> read_livox_csv(const std::filesystem::path& file) {
   std::ifstream in(file);
   if (!in) throw InputError(file.string(), "cannot be opened", "check pattern_file");
   std::vector<Eigen::Vector3f> rays;
-  std::optional<Angles> angles;
+  std::optional<AngleColumns> angles;
   std::size_t line_number = 0;
   for (std::string line; std::getline(in, line);) {
     ++line_number;

@@ -21,7 +21,7 @@ struct LidarStream {
   std::uint64_t scans = 0;  ///< number of complete scans in the flight
 };
 
-class Simulation final : public dataset::EventSource {
+class Simulation final : public EventSource {
  public:
   Simulation(const world::World& world, const flight::Flight& flight,
              const std::vector<SensorConfig>& sensors, const SimulationOptions& options,
@@ -48,21 +48,21 @@ class Simulation final : public dataset::EventSource {
     }
   }
 
-  std::optional<dataset::Event> next() override {
+  std::optional<Event> next() override {
     ImuStream* imu = next_imu();
     LidarStream* lidar = next_lidar();
     if (imu != nullptr && (lidar == nullptr || imu->imu.next_stamp() <= due(*lidar))) {
-      return dataset::Event{imu->id, imu->imu.measure(flight_)};
+      return Event{imu->id, imu->imu.measure(flight_)};
     }
     if (lidar == nullptr) return std::nullopt;
-    return dataset::Event{lidar->id, measure(*lidar)};
+    return Event{lidar->id, measure(*lidar)};
   }
 
  private:
   Scan measure(LidarStream& stream) {
     const std::uint64_t index = stream.next++;
     if (truth_ == nullptr) return stream.lidar.measure(world_, flight_, index, parallel_);
-    dataset::ScanTruth truth{stream.id, stream.lidar.stamp(index), {}};
+    ScanTruth truth{stream.id, stream.lidar.stamp(index), {}};
     Scan scan = stream.lidar.measure(world_, flight_, index, parallel_, &truth.points);
     truth_->write(truth);
     return scan;
@@ -100,7 +100,7 @@ class Simulation final : public dataset::EventSource {
   const world::World& world_;
   const flight::Flight& flight_;
   Parallel parallel_;
-  dataset::ScanTruthSink* truth_;
+  ScanTruthSink* truth_;
   Time end_;
   std::vector<ImuStream> imus_;
   std::vector<LidarStream> lidars_;
@@ -108,11 +108,9 @@ class Simulation final : public dataset::EventSource {
 
 }  // namespace
 
-std::unique_ptr<dataset::EventSource> simulate(const world::World& world,
-                                               const flight::Flight& flight,
-                                               const std::vector<SensorConfig>& sensors,
-                                               const SimulationOptions& options,
-                                               const Parallel& parallel) {
+std::unique_ptr<EventSource> simulate(const world::World& world, const flight::Flight& flight,
+                                      const std::vector<SensorConfig>& sensors,
+                                      const SimulationOptions& options, const Parallel& parallel) {
   return std::make_unique<Simulation>(world, flight, sensors, options, parallel);
 }
 

@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/dataset/event.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/world/world.hpp"
@@ -21,9 +21,8 @@ struct SimulationOptions {
   std::uint64_t seed = 1;
   Time duration{0};  ///< 0 = the whole flight
   bool noise = true;
-  std::string lidar{};  ///< id of the only LiDAR to simulate, with all IMUs; empty = all
-  dataset::ScanTruthSink* truth =
-      nullptr;  ///< receives a scan's truth just before next() returns the scan
+  std::string lidar{};             ///< id of the only LiDAR to simulate, with all IMUs; empty = all
+  ScanTruthSink* truth = nullptr;  ///< receives a scan's truth just before next() returns the scan
 };
 
 /// The rig of these sensors on one body (each LiDAR with its IMU, if it has one). Ids are the
@@ -36,10 +35,8 @@ Rig make_rig(const std::vector<SensorConfig>& sensors);
 /// `flight`. Times count from the flight's start: scan k begins at k * period, and only complete
 /// scans are simulated. A scan is delivered once every IMU has delivered a sample at or after the
 /// scan's last firing (or has ended).
-std::unique_ptr<dataset::EventSource> simulate(const world::World& world,
-                                               const flight::Flight& flight,
-                                               const std::vector<SensorConfig>& sensors,
-                                               const SimulationOptions& options,
-                                               const Parallel& parallel);
+std::unique_ptr<EventSource> simulate(const world::World& world, const flight::Flight& flight,
+                                      const std::vector<SensorConfig>& sensors,
+                                      const SimulationOptions& options, const Parallel& parallel);
 
 }  // namespace lidarena::sensor

@@ -42,7 +42,7 @@ void SteppedSensor::start_at(Time start) {
 }
 
 void SteppedSensor::step(const world::Surfaces& world, const StampedPose& pose,
-                         std::vector<dataset::Event>& events) {
+                         std::vector<Event>& events) {
   if (!poses_.empty() && pose.stamp <= poses_.back().stamp) {
     if (pose.stamp == poses_.back().stamp) return;
     start_at(pose.stamp);
@@ -95,7 +95,7 @@ void SteppedSensor::finish_scan() {
 }
 
 /// Appends the IMU samples up to the middle one of the three poses.
-void SteppedSensor::sample(std::vector<dataset::Event>& events) {
+void SteppedSensor::sample(std::vector<Event>& events) {
   const StepFlight flight({poses_[0], poses_[1], poses_[2]});
   while (imu_->next_stamp() <= poses_[1].stamp) {
     const bool is_old = imu_->next_stamp() < poses_[0].stamp;  // before the sensor's start
@@ -107,7 +107,7 @@ void SteppedSensor::sample(std::vector<dataset::Event>& events) {
 }
 
 /// Delivers a scan once an IMU sample at or after its last firing has been delivered.
-void SteppedSensor::deliver(std::vector<dataset::Event>& events) {
+void SteppedSensor::deliver(std::vector<Event>& events) {
   const auto is_covered = [&](const Scan& scan) {
     const auto index = static_cast<std::uint64_t>(scan.stamp / lidar_.pattern().period());
     return !imu_ || imu_->next_stamp() > imu_->first_stamp_from(lidar_.last_firing(index));

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/event.hpp"
 #include "lidarena/sensor/imu.hpp"
 #include "lidarena/sensor/lidar.hpp"
 
@@ -31,8 +31,7 @@ class SteppedSensor {
   /// the measurements that are complete, in the order of EventSource: IMU samples one step late
   /// (see StepFlight), a scan after the samples that cover it. A step back in time restarts the
   /// sensor.
-  void step(const world::Surfaces& world, const StampedPose& pose,
-            std::vector<dataset::Event>& events);
+  void step(const world::Surfaces& world, const StampedPose& pose, std::vector<Event>& events);
 
   const Lidar& lidar() const { return lidar_; }
   std::uint64_t rays() const { return rays_; }  ///< cast so far
@@ -42,8 +41,8 @@ class SteppedSensor {
   void cast(const world::Surfaces& world, const StampedPose& pose);
   void cast_frozen(const world::Surfaces& world, const PoseAt& world_from_lidar);
   void finish_scan();
-  void sample(std::vector<dataset::Event>& events);
-  void deliver(std::vector<dataset::Event>& events);
+  void sample(std::vector<Event>& events);
+  void deliver(std::vector<Event>& events);
 
   std::string id_;
   std::uint64_t seed_;

@@ -29,8 +29,8 @@ class Digests {
   std::map<fs::path, std::string> known_;
 };
 
-Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFolder& configs,
-                   const ProgramCode& code, Digests& digests) {
+Json key_of_flight(const StudySpec& spec, const PlannedRun& cell,
+                   const stages::ConfigFolder& configs, const ProgramCode& code, Digests& digests) {
   Json sensors = Json::array();
   for (const std::string& sensor : spec.sensors) {
     for (const fs::path& file : configs.sensor_files(sensor)) sensors.push_back(digests.of(file));
@@ -43,15 +43,17 @@ Json key_of_flight(const StudySpec& spec, const PlannedRun& cell, const ConfigFo
           {"new_scene", spec.new_scenes},
           {"seconds", cell.seconds},
           {"allow_missing", cell.allow_missing},
+          {"hits", stages::scores_maps(spec.score)},
           {"mode", value_to_json(cell.mode)}};
 }
 
 /// Makes the path of a file absolute; a name in `configs` stays a name.
-void make_absolute(std::string& name, const std::string& kind, const ConfigFolder& configs) {
+void make_absolute(std::string& name, const std::string& kind,
+                   const stages::ConfigFolder& configs) {
   if (configs.resolve(kind, name) == fs::path(name)) name = fs::absolute(name).string();
 }
 
-void make_paths_absolute(StudySpec& spec, const ConfigFolder& configs) {
+void make_paths_absolute(StudySpec& spec, const stages::ConfigFolder& configs) {
   for (StudyScene& scene : spec.scenes) {
     make_absolute(scene.world, "worlds", configs);
     make_absolute(scene.flight, "flights", configs);
@@ -61,7 +63,7 @@ void make_paths_absolute(StudySpec& spec, const ConfigFolder& configs) {
 
 /// Expected seconds of each cell; cells of the same flight and sensor take the same.
 std::vector<double> expected_seconds(const std::vector<PlannedRun>& cells,
-                                     const ConfigFolder& configs) {
+                                     const stages::ConfigFolder& configs) {
   std::map<std::tuple<std::string, double, std::string>, double> known;
   std::vector<double> seconds;
   for (const PlannedRun& cell : cells) {
@@ -73,7 +75,7 @@ std::vector<double> expected_seconds(const std::vector<PlannedRun>& cells,
 }
 
 /// The units of the plan's cells, longest first.
-std::vector<PlanUnit> units_of_cells(const StudyPlan& plan, const ConfigFolder& configs,
+std::vector<PlanUnit> units_of_cells(const StudyPlan& plan, const stages::ConfigFolder& configs,
                                      const ProgramCode& code) {
   Digests digests;
   std::map<std::pair<std::string, double>, std::uint64_t> data;  // by flight and its length
@@ -109,7 +111,7 @@ void assign_shards(StudyPlan& plan) {
 
 }  // namespace
 
-StudyPlan make_plan(StudySpec spec, const ConfigFolder& configs, const ProgramCode& code,
+StudyPlan make_plan(StudySpec spec, const stages::ConfigFolder& configs, const ProgramCode& code,
                     int shards) {
   planned_cells(spec, configs);  // names every mistake in the user's own words
   make_paths_absolute(spec, configs);
@@ -125,7 +127,7 @@ StudyPlan make_plan(StudySpec spec, const ConfigFolder& configs, const ProgramCo
   return plan;
 }
 
-Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const ConfigFolder& configs) {
+Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const stages::ConfigFolder& configs) {
   Digests digests;
   return key_of_flight(plan.spec, plan.cells[unit.cells.front()], configs, ProgramCode(plan.code),
                        digests);

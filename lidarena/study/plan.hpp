@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "lidarena/base/config_json.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/study_spec.hpp"
 
@@ -20,7 +20,7 @@ struct PlanUnit {
   double seconds = 0.0;            ///< expected, of all its cells on two cores
   std::uint64_t data_bytes = 0;    ///< expected size of its measurements
   int shard = 1;                   ///< 1 to StudyPlan::shards
-  Json flight;                     ///< all that the dataset depends on, see Stages
+  Json flight;                     ///< all that the dataset depends on, see Tasks
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -60,11 +60,11 @@ struct StudyPlan {
 
 /// Plans a study; paths in the specification become absolute. Throws InputError as
 /// planned_cells() does.
-StudyPlan make_plan(StudySpec spec, const ConfigFolder& configs, const ProgramCode& code,
+StudyPlan make_plan(StudySpec spec, const stages::ConfigFolder& configs, const ProgramCode& code,
                     int shards = 1);
 
 /// All that the unit's dataset depends on, from the configuration files as they are here.
-Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const ConfigFolder& configs);
+Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const stages::ConfigFolder& configs);
 
 /// Indices of the units of a shard; of all units if `shard.of` is 1.
 std::vector<std::size_t> units_of(const StudyPlan& plan, const Shard& shard);

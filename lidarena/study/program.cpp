@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "lidarena/base/error.hpp"
-#include "lidarena/study/process.hpp"
+#include "lidarena/stages/process.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -34,9 +34,9 @@ fs::path find_program(const fs::path& given) {
 }
 
 ProgramCode ProgramCode::ask(const fs::path& program) {
-  Command ask;
+  stages::Command ask;
   ask.arguments = {program.string(), "--version", "--json"};
-  const Answer answer = answer_of(ask);
+  const stages::Answer answer = stages::answer_of(ask);
   if (answer.end.exit_code < 0) {
     throw Error(program.string() + " --version --json: " + answer.end.reason);
   }

@@ -8,7 +8,7 @@
 
 namespace lidarena::study {
 
-/// The program `lidarena` that does the stages of a study: `given`, else the one beside this
+/// The program `lidarena` that does the tasks of a study: `given`, else the one beside this
 /// process's own program, else the one in PATH. Throws InputError if there is none.
 std::filesystem::path find_program(const std::filesystem::path& given);
 

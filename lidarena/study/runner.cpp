@@ -11,11 +11,12 @@
 #include <thread>
 
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/study/process.hpp"
-#include "lidarena/study/run_algorithm.hpp"
-#include "lidarena/study/run_external.hpp"
-#include "lidarena/study/score_run.hpp"
-#include "lidarena/study/stages.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
+#include "lidarena/stages/process.hpp"
+#include "lidarena/stages/run_algorithm.hpp"
+#include "lidarena/stages/run_external.hpp"
+#include "lidarena/stages/score_run.hpp"
+#include "lidarena/study/tasks.hpp"
 #include "lidarena/study/unit_queue.hpp"
 
 namespace lidarena::study {
@@ -24,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr const char* kLog = "lidarena.log";  ///< in the folder of each stage
+constexpr const char* kLog = "lidarena.log";  ///< in the folder of each task
 constexpr int kWorkFailed =
     1;  ///< exit code of a program whose results may be written, e.g. diverged
 
@@ -35,18 +36,18 @@ double seconds_since(Clock::time_point begin) {
 /// One of the jobs that run at the same time.
 struct Slot {
   int threads = 1;
-  Command command;
+  stages::Command command;
   std::shared_ptr<OpenUnit> unit;
-  Stage stage;
-  std::size_t step = 0;  ///< of the stage, the one that runs
+  Task task;
+  std::size_t step = 0;  ///< of the task, the one that runs
   Clock::time_point begin;
-  std::unique_ptr<Process> process;
+  std::unique_ptr<stages::Process> process;
 };
 
 /// Processor cores for one job of several, or none for all.
 std::vector<int> cores_of_job(int job, int jobs, int threads) {
   if (jobs == 1) return {};
-  const std::vector<int> usable = usable_cores();
+  const std::vector<int> usable = stages::usable_cores();
   std::vector<int> cores;
   for (int i = 0; i < threads; ++i)
     cores.push_back(usable[static_cast<std::size_t>(job * threads + i) % usable.size()]);
@@ -55,7 +56,7 @@ std::vector<int> cores_of_job(int job, int jobs, int threads) {
 
 class Runner {
  public:
-  Runner(const StudyPlan& plan, const ConfigFolder& configs, const fs::path& study,
+  Runner(const StudyPlan& plan, const stages::ConfigFolder& configs, const fs::path& study,
          const StudyOptions& options, LogSink& log)
       : plan_(plan),
         configs_(configs),
@@ -64,7 +65,7 @@ class Runner {
         queue_(plan, configs, study, options, log),
         published_(plan, study) {
     const int jobs = std::max(1, options.jobs);
-    const int cores = static_cast<int>(usable_cores().size());
+    const int cores = static_cast<int>(stages::usable_cores().size());
     const int all = options.threads > 0 ? options.threads : cores;
     const bool owns_cores = all >= cores;  // else others may use the same ones
     slots_.resize(static_cast<std::size_t>(jobs));
@@ -85,7 +86,7 @@ class Runner {
       }
       log_.progress("study", queue_.seconds_done(), queue_.seconds_of_all());
       if (!is_busy() && (stop != Stop::kNo || queue_.is_finished())) break;
-      std::this_thread::sleep_for(kPollPeriod);
+      std::this_thread::sleep_for(stages::kPollPeriod);
     }
     done_.is_interrupted = queue_.has_work();
     if (!done_.is_interrupted) log_.progress("study", 1.0, 1.0);
@@ -112,7 +113,7 @@ class Runner {
     return done_;
   }
 
-  /// Starts the first stage that may start, of a unit that is open or of another one.
+  /// Starts the first task that may start, of a unit that is open or of another one.
   void start_next(Slot& slot) {
     do {
       for (const auto& unit : queue_.open()) {
@@ -126,36 +127,36 @@ class Runner {
     if (!unit->has_flown && unit->is_flying) return false;
     slot.unit = unit;
     if (unit->has_flown) {
-      slot.stage = std::move(unit->waiting.front());
+      slot.task = std::move(unit->waiting.front());
       unit->waiting.pop_front();
     } else {
-      slot.stage = unit->stages.flight(unit->unit, configs_);
+      slot.task = unit->tasks.flight(unit->unit, configs_);
       unit->is_flying = true;
     }
     ++unit->running;
-    slot.step = slot.stage.cell == nullptr ? 0 : slot.stage.first_open_step();
-    if (slot.step == 0) fs::remove_all(slot.stage.folder);
-    fs::create_directories(slot.stage.folder);
-    slot.command.log = slot.stage.folder / kLog;
+    slot.step = slot.task.cell == nullptr ? 0 : slot.task.first_open_step();
+    if (slot.step == 0) fs::remove_all(slot.task.folder);
+    fs::create_directories(slot.task.folder);
+    slot.command.log = slot.task.folder / kLog;
     slot.begin = Clock::now();
     start_step(slot);
     return true;
   }
 
   void start_step(Slot& slot) {
-    const Step& step = slot.stage.steps[slot.step];
-    log_.info(slot.step == 0 ? slot.stage.name : step.name + " " + slot.stage.cell->name);
+    const Step& step = slot.task.steps[slot.step];
+    log_.info(slot.step == 0 ? slot.task.name : step.name + " " + slot.task.cell->name);
     fs::remove(step.product);
     std::vector<std::string> call = step.arguments();
-    if (slot.stage.cell == nullptr)
-      call.emplace_back(slot.unit->keeps_data ? "--scored-truth" : "--no-data");
+    if (slot.task.cell == nullptr && !slot.unit->keeps_data) call.emplace_back("--no-data");
     call.insert(call.begin(), options_.program.string());
     call.insert(call.end(), {"--threads", std::to_string(slot.threads)});
     slot.command.arguments = std::move(call);
     const RunLimits& limits = plan_.spec.limits;
-    slot.process = std::make_unique<Process>(
-        slot.command, ProcessLimits{60.0 * limits.minutes, limits.memory_mb, limits.stall_seconds});
-    slot.unit->place.tell(slot.stage.name);
+    slot.process = std::make_unique<stages::Process>(
+        slot.command,
+        stages::ProcessLimits{60.0 * limits.minutes, limits.memory_mb, limits.stall_seconds});
+    slot.unit->place.tell(slot.task.name);
   }
 
   void poll(Slot& slot) {
@@ -163,16 +164,16 @@ class Runner {
     if (!end) return;
     slot.process.reset();
     // A run that diverged ends so, too, and is whole; a flight is not without its example scans.
-    const bool whole_run = slot.stage.cell != nullptr && end->exit_code == kWorkFailed &&
-                           fs::exists(slot.stage.steps[slot.step].product);
+    const bool whole_run = slot.task.cell != nullptr && end->exit_code == kWorkFailed &&
+                           fs::exists(slot.task.steps[slot.step].product);
     const bool done = end->exit_code == 0 || whole_run;
-    const bool is_last = slot.step + 1 == slot.stage.steps.size();
+    const bool is_last = slot.step + 1 == slot.task.steps.size();
     if (done && !is_last) {
-      slot.stage.record(slot.step, 0.0);
+      slot.task.record(slot.step, 0.0);
       ++slot.step;
       return start_step(slot);
     }
-    pass_on_warnings(slot.stage);
+    pass_on_warnings(slot.task);
     const std::shared_ptr<OpenUnit> unit = std::move(slot.unit);
     --unit->running;
     if (!queue_.holds(*unit)) {
@@ -188,17 +189,17 @@ class Runner {
 
   void finish(OpenUnit& unit, const Slot& slot, const std::string& reason) {
     try {
-      slot.stage.cell == nullptr ? finish_flight(unit, slot, reason)
-                                 : finish_cell(unit, slot, reason);
+      slot.task.cell == nullptr ? finish_flight(unit, slot, reason)
+                                : finish_cell(unit, slot, reason);
     } catch (const fs::filesystem_error& error) {
       throw Error(
           fmt::format("{}: the results of {} cannot be stored ({}); call again when that is "
                       "mended",
-                      error.path1().string(), slot.stage.name, error.code().message()));
+                      error.path1().string(), slot.task.name, error.code().message()));
     }
   }
 
-  /// Throws if a stage failed because the disk is full: its cells have no result then.
+  /// Throws if a task failed because the disk is full: its cells have no result then.
   void check_disk(const OpenUnit& unit, const std::string& reason) const {
     if (!disk_is_full(unit.place.root())) return;
     throw Error(
@@ -210,7 +211,7 @@ class Runner {
   void finish_flight(OpenUnit& unit, const Slot& slot, const std::string& reason) {
     unit.is_flying = false;
     if (reason.empty()) {
-      slot.stage.record(0, seconds_since(slot.begin));
+      slot.task.record(0, seconds_since(slot.begin));
       unit.has_flown = true;
       ++done_.flights;
       if (published_.flight(unit.unit, configs_).first_open_step() == 0)
@@ -221,13 +222,13 @@ class Runner {
     if (unit.keeps_data) {
       // Perhaps its data were larger than expected and the disk is full.
       log_.warn(
-          fmt::format("{} failed ({}): trying without keeping its data", slot.stage.name, reason));
+          fmt::format("{} failed ({}): trying without keeping its data", slot.task.name, reason));
       unit.keeps_data = false;
       return;
     }
     check_disk(unit, reason);
     unit.has_flown = true;
-    for (Stage& run : std::exchange(unit.waiting, {})) {
+    for (Task& run : std::exchange(unit.waiting, {})) {
       fs::create_directories(run.folder);
       fs::copy_file(slot.command.log, run.folder / kLog, fs::copy_options::overwrite_existing);
       publish_failure(unit, run, "flight: " + reason, seconds_since(slot.begin));
@@ -238,36 +239,38 @@ class Runner {
     const double seconds = seconds_since(slot.begin);
     if (!reason.empty()) {
       check_disk(unit, reason);
-      publish_failure(unit, slot.stage, reason, seconds);
+      publish_failure(unit, slot.task, reason, seconds);
     } else {
-      if (!plan_.spec.keep_maps) remove_maps(slot.stage.folder);
-      const Json manifest = dataset::read_json(slot.stage.folder / "manifest.json");
-      slot.stage.record(slot.step, seconds, manifest.at("summary").at("diverged").get<bool>());
-      unit.place.publish_run(slot.stage.cell->name);
-      count_run(slot.stage);
+      if (!plan_.spec.keep_maps) stages::remove_maps(slot.task.folder);
+      const dataset::RunManifest manifest = dataset::read_run_manifest(slot.task.folder);
+      slot.task.record(slot.step, seconds, manifest.summary.diverged);
+      unit.place.publish_run(slot.task.cell->name);
+      count_run(slot.task);
     }
     log_time_left();
   }
 
   /// The folder of a failed cell holds the reason and the logs alone.
-  void publish_failure(OpenUnit& unit, const Stage& stage, const std::string& reason,
+  void publish_failure(OpenUnit& unit, const Task& task, const std::string& reason,
                        double seconds) {
-    for (const auto& entry : fs::directory_iterator(stage.folder)) {
+    for (const auto& entry : fs::directory_iterator(task.folder)) {
       const fs::path name = entry.path().filename();
-      if (name != kLog && name != kProgramLog) fs::remove_all(entry.path());
+      if (name != kLog && name != stages::kProgramLog) fs::remove_all(entry.path());
     }
-    dataset::write_json(stage.folder / "manifest.json", {{"kind", "run"},
-                                                         {"algorithm", stage.cell->algorithm},
-                                                         {"preset", stage.cell->preset},
-                                                         {"failed", reason}});
-    stage.record_failure(seconds, plan_.attempt);
-    unit.place.publish_run(stage.cell->name);
-    log_.warn(fmt::format("{} failed: {}", stage.name, reason));
-    count_run(stage);
+    dataset::RunManifest manifest;
+    manifest.algorithm = task.cell->algorithm;
+    manifest.preset = task.cell->preset;
+    manifest.status = dataset::RunStatus::kFailed;
+    manifest.reason = reason;
+    dataset::write_run_manifest(task.folder, manifest);
+    task.record_failure(seconds, plan_.attempt);
+    unit.place.publish_run(task.cell->name);
+    log_.warn(fmt::format("{} failed: {}", task.name, reason));
+    count_run(task);
   }
 
-  void count_run(const Stage& stage) {
-    queue_.count_done(stage.weight);
+  void count_run(const Task& task) {
+    queue_.count_done(task.weight);
     ++done_.runs;
   }
 
@@ -278,21 +281,21 @@ class Runner {
                           std::ceil(seconds_since(begin_) * left / done / 60.0)));
   }
 
-  /// Passes on the warnings of the stage's programs.
-  void pass_on_warnings(const Stage& stage) {
+  /// Passes on the warnings of the task's programs.
+  void pass_on_warnings(const Task& task) {
     constexpr std::string_view kWarning = "warning: ";
-    std::ifstream file(stage.folder / kLog);
+    std::ifstream file(task.folder / kLog);
     for (std::string line; std::getline(file, line);) {
-      if (line.starts_with(kWarning)) log_.warn(stage.name + ": " + line.substr(kWarning.size()));
+      if (line.starts_with(kWarning)) log_.warn(task.name + ": " + line.substr(kWarning.size()));
     }
   }
 
   const StudyPlan& plan_;
-  const ConfigFolder& configs_;
+  const stages::ConfigFolder& configs_;
   const StudyOptions& options_;
   LogSink& log_;
   UnitQueue queue_;
-  Stages published_;         // in the study's folder
+  Tasks published_;          // in the study's folder
   std::vector<Slot> slots_;  // end before the folders that they work in
   Clock::time_point begin_ = Clock::now();
   std::optional<Clock::time_point> stop_seen_;
@@ -301,7 +304,7 @@ class Runner {
 
 }  // namespace
 
-WorkDone work_on(const StudyPlan& plan, const ConfigFolder& configs, const fs::path& study,
+WorkDone work_on(const StudyPlan& plan, const stages::ConfigFolder& configs, const fs::path& study,
                  const StudyOptions& options, LogSink& log) {
   return Runner(plan, configs, study, options, log).run();
 }

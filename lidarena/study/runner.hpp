@@ -20,7 +20,7 @@ struct WorkDone {
 /// Takes units of the plan that nobody has, one after the other, and does what is missing in them,
 /// until none is left. Throws Error if a disk is full, InputError if a configuration file differs
 /// from the one that was planned.
-WorkDone work_on(const StudyPlan& plan, const ConfigFolder& configs,
+WorkDone work_on(const StudyPlan& plan, const stages::ConfigFolder& configs,
                  const std::filesystem::path& study, const StudyOptions& options, LogSink& log);
 
 }  // namespace lidarena::study

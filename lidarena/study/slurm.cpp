@@ -7,7 +7,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/part_file.hpp"
-#include "lidarena/study/process.hpp"
+#include "lidarena/stages/process.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -76,10 +76,10 @@ fs::path write_script(const fs::path& file, const std::string& text) {
 
 /// Calls sbatch; returns the number of the job.
 std::string submit_one(const std::vector<std::string>& arguments) {
-  Command command;
+  stages::Command command;
   command.arguments = {"/bin/sh", "-c", "exec sbatch --parsable \"$@\" 2>&1", "sh"};
   command.arguments.insert(command.arguments.end(), arguments.begin(), arguments.end());
-  Answer answer = answer_of(command);
+  stages::Answer answer = stages::answer_of(command);
   while (answer.text.ends_with('\n')) answer.text.pop_back();
   if (answer.end.exit_code != 0) {
     throw InputError(

@@ -6,8 +6,9 @@
 #include <map>
 
 #include "lidarena/dataset/json_file.hpp"
-#include "lidarena/study/claim.hpp"
-#include "lidarena/study/stages.hpp"
+#include "lidarena/dataset/run_manifest.hpp"
+#include "lidarena/study/lease.hpp"
+#include "lidarena/study/tasks.hpp"
 #include "lidarena/study/workplace.hpp"
 
 namespace lidarena::study {
@@ -19,26 +20,26 @@ std::vector<Worker> workers_of(const fs::path& study) {
   using Seconds = std::chrono::duration<double>;
   const double now = Seconds(std::chrono::system_clock::now().time_since_epoch()).count();
   std::vector<Worker> workers;
-  for (const ClaimSeen& claim : all_claims(study / "claims")) {
-    const ClaimOwner& owner = claim.owner;
+  for (const LeaseSeen& lease : all_leases(study / "leases")) {
+    const LeaseOwner& owner = lease.owner;
     workers.push_back({.host = owner.host,
                        .process = owner.process,
                        .job = owner.job,
-                       .dataset = claim.unit,
+                       .dataset = lease.unit,
                        .doing = told_by(study, owner.token),
                        .since_s = std::max(0.0, now - owner.since),
-                       .silent_s = claim.silent_s,
-                       .dead = claim.dead});
+                       .silent_s = lease.silent_s,
+                       .dead = lease.dead});
   }
   std::ranges::sort(workers, {}, &Worker::dataset);
   return workers;
 }
 
-FailedCell failure_of(const Stage& stage) {
-  FailedCell failed{stage.cell->name, "", (stage.folder / "lidarena.log").string()};
+FailedCell failure_of(const Task& task) {
+  FailedCell failed{task.cell->name, "", (task.folder / "lidarena.log").string()};
   if (!fs::exists(failed.log)) failed.log.clear();
   try {
-    failed.reason = dataset::read_json(stage.folder / "manifest.json").value("failed", "");
+    failed.reason = dataset::read_run_manifest(task.folder).reason;
   } catch (const Error&) {
     failed.reason = "its manifest.json cannot be read";
   }
@@ -53,15 +54,15 @@ struct Work {
 };
 
 /// Counts a cell that has a state.
-void count_result(const Stage& stage, const StageResult& result, StudyStatus& status, Work& work) {
-  work.done += stage.weight;
+void count_result(const Task& task, const TaskResult& result, StudyStatus& status, Work& work) {
+  work.done += task.weight;
   work.took += result.seconds;
-  if (result.state == StageState::kFailed) {
+  if (result.state == TaskState::kFailed) {
     ++status.failed;
-    status.failures.push_back(failure_of(stage));
+    status.failures.push_back(failure_of(task));
   } else {
     ++status.done;
-    status.diverged += result.state == StageState::kDiverged ? 1 : 0;
+    status.diverged += result.state == TaskState::kDiverged ? 1 : 0;
   }
 }
 
@@ -69,7 +70,7 @@ void count_result(const Stage& stage, const StageResult& result, StudyStatus& st
 
 StudyStatus read_status(const fs::path& study) {
   const StudyPlan plan = read_plan(study);
-  const Stages stages(plan, study);
+  const Tasks tasks(plan, study);
   StudyStatus status;
   status.title = plan.spec.title;
   status.workers = workers_of(study);
@@ -78,14 +79,14 @@ StudyStatus read_status(const fs::path& study) {
   Work work;
   for (const PlanUnit& unit : plan.units) {
     for (const std::size_t cell : unit.cells) {
-      const Stage stage = stages.run(unit, cell);
-      const StageResult result = stage.result();
+      const Task task = tasks.run(unit, cell);
+      const TaskResult result = task.result();
       ++status.cells;
-      if (result.state == StageState::kMissing) {
+      if (result.state == TaskState::kMissing) {
         ++(workers[unit.dataset] > 0 ? status.running : status.missing);
-        work.left += stage.weight;
+        work.left += task.weight;
       } else {
-        count_result(stage, result, status, work);
+        count_result(task, result, status, work);
       }
     }
   }

@@ -28,9 +28,9 @@ struct Worker {
   std::string host;
   int process = 0;
   std::string job;        ///< number of its Slurm job; empty outside of Slurm
-  std::string dataset;    ///< the unit that it has claimed
-  std::string doing;      ///< the stage that it began last
-  double since_s = 0.0;   ///< age of its claim
+  std::string dataset;    ///< the unit that it has leased
+  std::string doing;      ///< the task that it began last
+  double since_s = 0.0;   ///< age of its lease
   double silent_s = 0.0;  ///< since its last sign of life
   bool dead = false;
 
@@ -75,7 +75,7 @@ struct StudyStatus {
   }
 };
 
-/// Reads the plan, the results and the claims in a study's folder. Throws InputError if it holds no
+/// Reads the plan, the results and the leases in a study's folder. Throws InputError if it holds no
 /// plan.
 StudyStatus read_status(const std::filesystem::path& study);
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 
 #include "lidarena/dataset/existing_folder.hpp"
-#include "lidarena/study/claim.hpp"
+#include "lidarena/study/lease.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/runner.hpp"
-#include "lidarena/study/stages.hpp"
+#include "lidarena/study/tasks.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -40,14 +40,14 @@ bool is_same(const StudyPlan& a, StudyPlan b) {
 StudyOutcome outcome_of(const StudyPlan& plan, const fs::path& out, const Shard& shard,
                         const WorkDone& done) {
   StudyOutcome outcome;
-  const Stages stages(plan, out);
+  const Tasks tasks(plan, out);
   for (const std::size_t i : units_of(plan, shard)) {
     for (const std::size_t cell : plan.units[i].cells) {
-      const StageState state = stages.run(plan.units[i], cell).result().state;
+      const TaskState state = tasks.run(plan.units[i], cell).result().state;
       ++outcome.cells;
-      outcome.runs += state == StageState::kMissing ? 0 : 1;
-      outcome.failed += state == StageState::kFailed ? 1 : 0;
-      outcome.diverged += state == StageState::kDiverged ? 1 : 0;
+      outcome.runs += state == TaskState::kMissing ? 0 : 1;
+      outcome.failed += state == TaskState::kFailed ? 1 : 0;
+      outcome.diverged += state == TaskState::kDiverged ? 1 : 0;
     }
   }
   outcome.reused = outcome.runs - std::min(outcome.runs, done.runs);
@@ -63,7 +63,7 @@ void check_shards(const StudyPlan& plan, const fs::path& out, const Shard& shard
                    "give the same N in --shard K/N to all parts, or another folder");
 }
 
-StudyOutcome work(const StudyPlan& plan, const fs::path& out, const ConfigFolder& configs,
+StudyOutcome work(const StudyPlan& plan, const fs::path& out, const stages::ConfigFolder& configs,
                   const StudyOptions& options, LogSink& log) {
   check_shards(plan, out, options.shard);
   return outcome_of(plan, out, options.shard, work_on(plan, configs, out, options, log));
@@ -71,16 +71,16 @@ StudyOutcome work(const StudyPlan& plan, const fs::path& out, const ConfigFolder
 
 }  // namespace
 
-StudyPlan plan_study(const StudySpec& spec, const ConfigFolder& configs, const fs::path& out,
-                     const StudyOptions& options) {
+StudyPlan plan_study(const StudySpec& spec, const stages::ConfigFolder& configs,
+                     const fs::path& out, const StudyOptions& options) {
   const ProgramCode code = ProgramCode::ask(find_program(options.program));
   fs::create_directories(out);
   const std::optional<StudyPlan> known = existing_plan(out);
   const bool has_shards = known && known->shards > 1;
   if (has_shards) check_shards(*known, out, options.shard);
   StudyPlan plan = make_plan(spec, configs, code, has_shards ? known->shards : options.shard.of);
-  if (std::ranges::any_of(all_claims(out / "claims"),
-                          [](const ClaimSeen& claim) { return !claim.dead; })) {
+  if (std::ranges::any_of(all_leases(out / "leases"),
+                          [](const LeaseSeen& lease) { return !lease.dead; })) {
     if (known && is_same(*known, plan)) return *known;
     throw InputError(out.string(), "another study is running in this folder",
                      "wait until it ends, or give another folder with --out");
@@ -90,7 +90,7 @@ StudyPlan plan_study(const StudySpec& spec, const ConfigFolder& configs, const f
   return plan;
 }
 
-StudyOutcome work_on_study(const fs::path& out, const ConfigFolder& configs,
+StudyOutcome work_on_study(const fs::path& out, const stages::ConfigFolder& configs,
                            const StudyOptions& options, LogSink& log) {
   const StudyOptions found = with_absolute_paths(options);
   const StudyPlan plan = read_plan(out);
@@ -101,8 +101,8 @@ StudyOutcome work_on_study(const fs::path& out, const ConfigFolder& configs,
   return work(plan, fs::absolute(out), configs, found, log);
 }
 
-StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs, const fs::path& out,
-                       const StudyOptions& options, LogSink& log) {
+StudyOutcome run_study(const StudySpec& spec, const stages::ConfigFolder& configs,
+                       const fs::path& out, const StudyOptions& options, LogSink& log) {
   const StudyOptions found = with_absolute_paths(options);
   return work(plan_study(spec, configs, out, found), fs::absolute(out), configs, found, log);
 }

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "lidarena/base/log.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 #include "lidarena/study/plan.hpp"
 #include "lidarena/study/study_spec.hpp"
 
@@ -48,7 +48,7 @@ struct StudyOutcome {
 /// Plans the study in the folder `out`: writes plan.json. Cells that failed in an earlier call will
 /// be run again. Throws InputError if another study is running in `out`, or the folder was planned
 /// for another number of shards.
-StudyPlan plan_study(const StudySpec& spec, const ConfigFolder& configs,
+StudyPlan plan_study(const StudySpec& spec, const stages::ConfigFolder& configs,
                      const std::filesystem::path& out, const StudyOptions& options);
 
 /// Does what is missing in a planned study, together with any other process that works in the same
@@ -60,11 +60,11 @@ StudyPlan plan_study(const StudySpec& spec, const ConfigFolder& configs,
 /// missing or has changed. A failed cell is recorded with its reason and does not stop the others.
 /// Throws InputError if the folder holds no plan, or the program or a configuration file is not the
 /// one that was planned with; Error if a disk is full.
-StudyOutcome work_on_study(const std::filesystem::path& out, const ConfigFolder& configs,
+StudyOutcome work_on_study(const std::filesystem::path& out, const stages::ConfigFolder& configs,
                            const StudyOptions& options, LogSink& log);
 
 /// Plans the study and does all of it.
-StudyOutcome run_study(const StudySpec& spec, const ConfigFolder& configs,
+StudyOutcome run_study(const StudySpec& spec, const stages::ConfigFolder& configs,
                        const std::filesystem::path& out, const StudyOptions& options, LogSink& log);
 
 /// Half of the disk space that is free below `folder`, bytes.

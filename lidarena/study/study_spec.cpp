@@ -26,7 +26,7 @@ void check_algorithm(const StudySpec& spec, const std::string& text) {
 }
 
 void check_external(const StudySpec& spec) {
-  for (const ExternalProgram& program : spec.external) {
+  for (const stages::ExternalProgram& program : spec.external) {
     if (program.name.empty() || program.command.empty()) {
       throw InputError("study", "has an external program without a name or a command");
     }
@@ -78,7 +78,7 @@ void check_names_differ(const std::vector<PlannedRun>& cells) {
 }
 
 /// Length of the cell's flight, s; a guess if the flight's file gives no duration.
-double expected_seconds(const PlannedRun& cell, const ConfigFolder& configs) {
+double expected_seconds(const PlannedRun& cell, const stages::ConfigFolder& configs) {
   constexpr double kUnknown = 120.0;
   double seconds = cell.seconds;
   const fs::path flight = configs.resolve("flights", cell.flight);
@@ -97,7 +97,7 @@ results::CellFilter names_of(const StudySpec& spec) {
   return names;
 }
 
-double shots_per_second(const std::string& sensor, const ConfigFolder& configs) {
+double shots_per_second(const std::string& sensor, const stages::ConfigFolder& configs) {
   const auto pattern = sensor::make_pattern(configs.load_sensor(sensor));
   return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
 }
@@ -112,8 +112,8 @@ odometry::OdometryRequest parse_algorithm(const std::string& text) {
   return odometry::with_default_preset(std::move(request));
 }
 
-const ExternalProgram* find_external(const StudySpec& spec, const std::string& name) {
-  const auto found = std::ranges::find(spec.external, name, &ExternalProgram::name);
+const stages::ExternalProgram* find_external(const StudySpec& spec, const std::string& name) {
+  const auto found = std::ranges::find(spec.external, name, &stages::ExternalProgram::name);
   return found == spec.external.end() ? nullptr : &*found;
 }
 
@@ -130,7 +130,7 @@ StudySpec load_study(const fs::path& file) {
 }
 
 std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
-                                                     const ConfigFolder& configs) {
+                                                     const stages::ConfigFolder& configs) {
   if (spec.reference.empty()) return {};
   constexpr std::string_view kHeader = "world,sensor,algorithm,figure,value";
   const fs::path beside = configs.root() / "studies" / spec.reference;
@@ -150,7 +150,7 @@ std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
   return figures;
 }
 
-std::vector<PlannedRun> planned_cells(const StudySpec& spec, const ConfigFolder& configs) {
+std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::ConfigFolder& configs) {
   const auto need = [](bool there, const char* what) {
     if (!there) throw InputError("study", std::string("names no ") + what);
   };
@@ -200,7 +200,7 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
+CellEstimate estimate(const PlannedRun& cell, const stages::ConfigFolder& configs) {
   // Measured on flights of 20, 60 and 300 s; at 60 s, algorithms differ by a factor of about 3.
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
@@ -212,7 +212,7 @@ CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs) {
 }
 
 std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
-                         const ConfigFolder& configs) {
+                         const stages::ConfigFolder& configs) {
   constexpr double kBytesOfShot = 24.0;     // of a point, see formats.md
   constexpr double kBytesOfSecond = 1.5e6;  // the true trajectory and the IMUs
   constexpr double kBytesOfHits = 6.4e6;    // 20,000 of 32 bytes, ten times a second

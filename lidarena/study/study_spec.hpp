@@ -11,7 +11,9 @@
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
+#include "lidarena/stages/external_program.hpp"
+#include "lidarena/stages/score_run.hpp"
 
 namespace lidarena::study {
 
@@ -29,61 +31,6 @@ struct StudyScene {
     v("seconds", self.seconds, "s", "length of the flight, 0 = all of it", at_least(0));
     v("allow_missing", self.allow_missing, "",
       "load an SDF world without the models and meshes that cannot be found");
-  }
-};
-
-/// The frame whose poses a program gives.
-enum class PoseOf { kBody, kLidar, kImu };
-constexpr auto enum_names(PoseOf) {
-  return std::array{std::pair{"body", PoseOf::kBody}, std::pair{"lidar", PoseOf::kLidar},
-                    std::pair{"imu", PoseOf::kImu}};
-}
-
-/// How a program that is a ROS 2 node is fed, and where its results are read: live topics. A node
-/// has `odometry` or `path`, or both: then its live poses come from the first and its final ones
-/// from the second. See docs/ros2.md.
-struct NodeTopics {
-  std::string odometry, path, points;
-  double rate = 0.0;
-  double answer_limit_s = 5.0;
-  double start_limit_s = 60.0;
-
-  bool is_used() const { return !odometry.empty() || !path.empty(); }
-  /// The topic whose messages answer scans.
-  const std::string& answer() const { return odometry.empty() ? path : odometry; }
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("odometry", self.odometry, "", "topic of nav_msgs/msg/Odometry with a pose for each scan");
-    v("path", self.path, "", "topic of nav_msgs/msg/Path, whose last message is the final one");
-    v("points", self.points, "", "topic of the registered clouds, in the frame of the poses");
-    v("rate", self.rate, "",
-      "speed, times that of the sensor; 0 = each scan after the answer "
-      "to the one before",
-      at_least(0));
-    v("answer_limit_s", self.answer_limit_s, "s", "how long an answer is waited for", above(0));
-    v("start_limit_s", self.start_limit_s, "s", "how long the node's topics are waited for",
-      above(0));
-  }
-};
-
-/// A SLAM program that is not part of lidarena, run by a command line. See docs/external_slam.md.
-struct ExternalProgram {
-  std::string name;
-  std::string command;
-  dataset::DatasetFormat input = dataset::DatasetFormat::kMcap;
-  dataset::Dialect dialect = dataset::Dialect::kSi;
-  PoseOf pose_of = PoseOf::kLidar;
-  NodeTopics node{};
-
-  template <class Self, class V>
-  static void visit(Self& self, V&& v) {
-    v("name", self.name, "", "name in the tables");
-    v("command", self.command, "", "command line, with {input}, {output}, {sensor}, {threads}");
-    v("input", self.input, "", "format in which it gets the dataset");
-    v("dialect", self.dialect, "", "units and layouts: SI or those of the sensors' drivers");
-    v("pose_of", self.pose_of, "", "frame of its poses: of the body, the LiDAR or the IMU");
-    v("node", self.node, "", "topics of a ROS 2 node; none = a program that reads files");
   }
 };
 
@@ -111,11 +58,12 @@ struct StudySpec {
   std::vector<std::uint64_t> seeds = {1};
   bool new_scenes = false;
   std::vector<sensor::ScanMode> modes;  ///< of all sensors; empty = as in their files
-  std::vector<ExternalProgram> external;
+  std::vector<stages::ExternalProgram> external;
   std::string reference;  ///< CSV of published figures, see load_reference(); may be empty
   std::vector<results::Expectation> expect;
   RunLimits limits;
   bool keep_maps = true;
+  stages::ScoreParts score;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -134,6 +82,7 @@ struct StudySpec {
     v("expect", self.expect, "", "what the figures should show");
     v("limits", self.limits, "", "limits of one run");
     v("keep_maps", self.keep_maps, "", "off: delete a run's maps after scoring; metrics stay");
+    v("score", self.score, "", "trajectory, map; none = both. A map takes most of the time");
   }
 };
 
@@ -167,7 +116,7 @@ struct PlannedRun {
 odometry::OdometryRequest parse_algorithm(const std::string& text);
 
 /// The external program of this name, or null.
-const ExternalProgram* find_external(const StudySpec& spec, const std::string& name);
+const stages::ExternalProgram* find_external(const StudySpec& spec, const std::string& name);
 
 /// Reads a study's file, over the values of its base if it names one. Throws InputError also if the
 /// base has a base.
@@ -175,13 +124,13 @@ StudySpec load_study(const std::filesystem::path& file);
 
 /// All cells, in the order of scenes, seeds, modes, sensors, algorithms. Throws InputError if the
 /// study is incomplete or contradictory, or a name in it does not exist.
-std::vector<PlannedRun> planned_cells(const StudySpec& spec, const ConfigFolder& configs);
+std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::ConfigFolder& configs);
 
 /// The published figures that a study names: a file, or a name in configs/studies. Columns world,
 /// sensor, algorithm, figure, value; empty names stand for all. None without a name. Throws
 /// InputError naming file and line.
 std::vector<results::ReferenceFigure> load_reference(const StudySpec& spec,
-                                                     const ConfigFolder& configs);
+                                                     const stages::ConfigFolder& configs);
 
 /// Part K of N of a plan, 1 <= K <= N.
 struct Shard {
@@ -196,11 +145,11 @@ struct CellEstimate {
   double record_mb = 0.0;  ///< trajectories, metrics, its share of the flight
   double maps_mb = 0.0;    ///< in addition, if they are kept
 };
-CellEstimate estimate(const PlannedRun& cell, const ConfigFolder& configs);
+CellEstimate estimate(const PlannedRun& cell, const stages::ConfigFolder& configs);
 
 /// Expected size of the measurements of a cell's flight, of all sensors of the study, with what
 /// scoring needs, bytes.
 std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
-                         const ConfigFolder& configs);
+                         const stages::ConfigFolder& configs);
 
 }  // namespace lidarena::study

@@ -11,20 +11,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kScanPeriod = std::chrono::seconds(1);  ///< between looks at the claims of others
-/// A claim untouched for this long may be that of a dead process: worth waiting for.
+constexpr auto kScanPeriod = std::chrono::seconds(1);  ///< between looks at the leases of others
+/// A lease untouched for this long may be that of a dead process: worth waiting for.
 constexpr double kSuspiciousSilence_s = 15.0;
 
 }  // namespace
 
-UnitQueue::UnitQueue(const StudyPlan& plan, const ConfigFolder& configs, const fs::path& study,
-                     const StudyOptions& options, LogSink& log)
+UnitQueue::UnitQueue(const StudyPlan& plan, const stages::ConfigFolder& configs,
+                     const fs::path& study, const StudyOptions& options, LogSink& log)
     : plan_(plan),
       configs_(configs),
       study_(study),
       options_(options),
       log_(log),
-      claims_(study / "claims", options.scratch.string()),
+      leases_(study / "leases", options.scratch.string()),
       published_(plan, study) {
   for (const std::size_t i : units_of(plan, options.shard)) {
     todo_.push_back(&plan.units[i]);
@@ -36,10 +36,9 @@ UnitQueue::UnitQueue(const StudyPlan& plan, const ConfigFolder& configs, const f
 std::vector<std::size_t> UnitQueue::open_cells(const PlanUnit& unit) const {
   std::vector<std::size_t> open;
   for (const std::size_t cell : unit.cells) {
-    const StageResult result = published_.run(unit, cell).result();
-    const bool has_state = result.state == StageState::kFailed
-                               ? result.attempt == plan_.attempt
-                               : result.state != StageState::kMissing;
+    const TaskResult result = published_.run(unit, cell).result();
+    const bool has_state = result.state == TaskState::kFailed ? result.attempt == plan_.attempt
+                                                              : result.state != TaskState::kMissing;
     if (!has_state) open.push_back(cell);
   }
   return open;
@@ -56,7 +55,7 @@ bool UnitQueue::open_next() {
     }
     const bool has_room = has_room_for(unit);
     if (!has_room && !open_.empty()) break;
-    const std::optional<Claims::Taken> taken = claims_.take(unit.dataset);
+    const std::optional<Leases::Taken> taken = leases_.take(unit.dataset);
     if (taken) {
       next = todo_.erase(next);
       open(unit, *taken, has_room);
@@ -69,14 +68,14 @@ bool UnitQueue::open_next() {
   return false;
 }
 
-void UnitQueue::open(const PlanUnit& unit, const Claims::Taken& taken, bool has_room) {
+void UnitQueue::open(const PlanUnit& unit, const Leases::Taken& taken, bool has_room) {
   if (const auto& dead = taken.taken_from) {
     log_.info(fmt::format("{} is taken over from process {} on {}, which has ended", unit.dataset,
                           dead->process, dead->host));
     clear_workplace(study_, dead->scratch, dead->token);
   }
   if (flight_key(plan_, unit, configs_) != unit.flight) {
-    claims_.release(unit.dataset);
+    leases_.release(unit.dataset);
     throw InputError(configs_.root().string(),
                      "differs, here, from the files with which " + unit.dataset + " was planned",
                      "plan the study again, or install the same files on all machines");
@@ -85,7 +84,7 @@ void UnitQueue::open(const PlanUnit& unit, const Claims::Taken& taken, bool has_
   OpenUnit& opened = *open_.back();
   opened.keeps_data = has_room;
   for (const std::size_t cell : open_cells(unit)) {
-    opened.waiting.push_back(opened.stages.run(unit, cell));
+    opened.waiting.push_back(opened.tasks.run(unit, cell));
     if (published_.run(unit, cell).first_open_step() > 0)
       opened.place.fetch_run(plan_.cells[cell].name);
     seconds_of_all_ += plan_.seconds[cell];
@@ -112,7 +111,7 @@ void UnitQueue::close_finished() {
     if (!unit->waiting.empty() || unit->running > 0) return false;
     const std::string dataset = unit->unit.dataset;
     unit.reset();
-    claims_.release(dataset);
+    leases_.release(dataset);
     next_scan_ = Clock::now();
     return true;
   });
@@ -122,7 +121,7 @@ void UnitQueue::give_up() {
   while (!open_.empty()) {
     const std::string dataset = open_.back()->unit.dataset;
     open_.pop_back();
-    claims_.release(dataset);
+    leases_.release(dataset);
   }
 }
 
@@ -132,8 +131,8 @@ bool UnitQueue::is_finished() {
   if (!std::exchange(has_scanned_, false)) return false;
   if (options_.waits_for_others) return tell_waiting(), false;
   const bool leaves = std::ranges::none_of(todo_, [&](const PlanUnit* unit) {
-    const std::optional<ClaimSeen> claim = claims_.look(unit->dataset);
-    return !claim || claim->silent_s > kSuspiciousSilence_s;
+    const std::optional<LeaseSeen> lease = leases_.look(unit->dataset);
+    return !lease || lease->silent_s > kSuspiciousSilence_s;
   });
   if (leaves) todo_.clear();
   return leaves;

@@ -9,42 +9,42 @@
 #include <vector>
 
 #include "lidarena/base/log.hpp"
-#include "lidarena/study/claim.hpp"
-#include "lidarena/study/stages.hpp"
+#include "lidarena/study/lease.hpp"
 #include "lidarena/study/study.hpp"
+#include "lidarena/study/tasks.hpp"
 #include "lidarena/study/workplace.hpp"
 
 namespace lidarena::study {
 
-/// A claimed unit.
+/// A leased unit.
 struct OpenUnit {
   OpenUnit(const PlanUnit& planned, const StudyPlan& plan, const std::filesystem::path& study,
            const std::filesystem::path& scratch, const std::string& token)
-      : unit(planned), place(study, scratch, token), stages(plan, place.root()) {}
+      : unit(planned), place(study, scratch, token), tasks(plan, place.root()) {}
 
   const PlanUnit& unit;
   Workplace place;
-  Stages stages;
-  std::deque<Stage> waiting;  ///< cells to run or to score
-  bool keeps_data = true;     ///< false: its dataset is simulated anew for each run
+  Tasks tasks;
+  std::deque<Task> waiting;  ///< cells to run or to score
+  bool keeps_data = true;    ///< false: its dataset is simulated anew for each run
   bool is_flying = false, has_flown = false;
   int running = 0;
 };
 
-/// The units that a worker has claimed, and those that it may claim.
+/// The units that a worker has leased, and those that it may lease.
 class UnitQueue {
  public:
   /// The arguments must outlive this.
-  UnitQueue(const StudyPlan& plan, const ConfigFolder& configs, const std::filesystem::path& study,
-            const StudyOptions& options, LogSink& log);
+  UnitQueue(const StudyPlan& plan, const stages::ConfigFolder& configs,
+            const std::filesystem::path& study, const StudyOptions& options, LogSink& log);
 
-  /// The claimed units that are not done.
+  /// The leased units that are not done.
   const std::vector<std::shared_ptr<OpenUnit>>& open() const { return open_; }
-  /// Claims the first unit with work that nobody has; false if there is none, or no room for it.
+  /// Leases the first unit with work that nobody has; false if there is none, or no room for it.
   /// Throws InputError if the configuration files are not those of the plan.
   bool open_next();
   /// Whether the unit is still this worker's: another one may have taken it for dead.
-  bool holds(const OpenUnit& unit) const { return claims_.holds(unit.unit.dataset); }
+  bool holds(const OpenUnit& unit) const { return leases_.holds(unit.unit.dataset); }
   /// Deletes the folders of finished units, and releases them.
   void close_finished();
   /// The same with all units, finished or not.
@@ -60,7 +60,7 @@ class UnitQueue {
   void count_done(double expected_seconds) { seconds_done_ += expected_seconds; }
 
  private:
-  void open(const PlanUnit& unit, const Claims::Taken& taken, bool has_room);
+  void open(const PlanUnit& unit, const Leases::Taken& taken, bool has_room);
   std::vector<std::size_t> open_cells(const PlanUnit& unit) const;
   bool has_room_for(const PlanUnit& unit) const;
   void tell_waiting();
@@ -68,12 +68,12 @@ class UnitQueue {
   using Clock = std::chrono::steady_clock;
 
   const StudyPlan& plan_;
-  const ConfigFolder& configs_;
+  const stages::ConfigFolder& configs_;
   const std::filesystem::path study_;
   const StudyOptions& options_;
   LogSink& log_;
-  Claims claims_;     // outlives the units, whose folders are deleted before their claims
-  Stages published_;  // in the study's folder
+  Leases leases_;    // outlives the units, whose folders are deleted before their leases
+  Tasks published_;  // in the study's folder
   std::vector<std::shared_ptr<OpenUnit>> open_;
   std::deque<const PlanUnit*> todo_;
   Clock::time_point next_scan_ = Clock::now();

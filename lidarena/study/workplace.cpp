@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/study/workplace.hpp"
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <thread>
+#include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/dataset/hits_file.hpp"
 #include "lidarena/dataset/md5.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
@@ -19,6 +22,12 @@ constexpr const char* kData = "data.mcap";
 constexpr const char* kWorld = "world.ply";
 constexpr const char* kTold = "doing.txt";
 constexpr std::array kDataFiles{"data.mcap", "data.mcap.part", "metadata.yaml"};
+
+/// Whether a file of a dataset is large and is needed only while its cells are run and scored.
+bool is_data(const fs::path& file) {
+  return std::ranges::find(kDataFiles, file) != kDataFiles.end() ||
+         file.string().find(dataset::kHitsEnding) != std::string::npos;
+}
 
 fs::path staging_of(const fs::path& study, const std::string& token) {
   return study / "work" / token;
@@ -78,8 +87,7 @@ void Workplace::publish_dataset(const std::string& name) const {
   fs::copy(root_ / place, ready, fs::copy_options::recursive | fs::copy_options::directories_only);
   for (const auto& entry : fs::recursive_directory_iterator(root_ / place)) {
     const fs::path file = entry.path().lexically_relative(root_ / place);
-    const bool is_data = std::ranges::find(kDataFiles, file) != kDataFiles.end();
-    if (entry.is_regular_file() && !is_data) fs::copy_file(entry.path(), ready / file);
+    if (entry.is_regular_file() && !is_data(file)) fs::copy_file(entry.path(), ready / file);
   }
   if (fs::exists(ready / kWorld)) store_world(ready / kWorld);
   replace(ready, study_ / place);
@@ -113,7 +121,12 @@ void Workplace::replace(const fs::path& ready, const fs::path& place) const {
 }
 
 void Workplace::drop_data(const std::string& dataset) const {
-  for (const char* file : kDataFiles) fs::remove(root_ / "datasets" / dataset / file);
+  const fs::path folder = root_ / "datasets" / dataset;
+  if (!fs::exists(folder)) return;
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  for (const fs::path& file : files)
+    if (is_data(file.filename())) fs::remove(file);
 }
 
 std::uint64_t Workplace::data_bytes(const std::string& dataset) const {
@@ -126,7 +139,7 @@ void Workplace::tell(const std::string& what) const {
   try {
     dataset::write_text_file(staging_ / kTold, what);
   } catch (const Error&) {
-    // It is for people to look at; a worker that has lost its claim learns that elsewhere.
+    // It is for people to look at; a worker that has lost its lease learns that elsewhere.
   }
 }
 

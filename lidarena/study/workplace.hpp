@@ -7,13 +7,13 @@
 
 namespace lidarena::study {
 
-/// The folder in which one claimed unit is worked on. It is laid out as the study's own folder
+/// The folder in which one leased unit is worked on. It is laid out as the study's own folder
 /// (datasets/, runs/), to which finished folders are published: each appears there whole or not at
 /// all, because it is renamed into its place. All is deleted at the end. Functions throw Error or
 /// filesystem_error if a disk is full or the folder was deleted by another process.
 class Workplace {
  public:
-  /// `scratch`: folder on any disk; empty = in the study's folder. `token`: of the claim.
+  /// `scratch`: folder on any disk; empty = in the study's folder. `token`: of the lease.
   Workplace(std::filesystem::path study, const std::filesystem::path& scratch,
             const std::string& token);
   ~Workplace();
@@ -43,7 +43,7 @@ class Workplace {
   std::filesystem::path root_;
 };
 
-/// What the owner of a claim told last; empty if nothing.
+/// What the owner of a lease told last; empty if nothing.
 std::string told_by(const std::filesystem::path& study, const std::string& token);
 
 /// Deletes what a process that has died left in the study's folder and, if that is on this machine,

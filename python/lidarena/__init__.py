@@ -24,7 +24,7 @@ import numpy as _numpy
 from . import _core
 from ._core import (  # noqa: F401
     POINT, ConfigFolder, Dataset, DatasetWriter, Error, EventSource, Flight, ImuInfo, ImuSample,
-    InputError, Lidar, LidarInfo, Motion, Odometry, OdometryTraits, Rig, RunResult, Scan,
+    InputError, Lidar, LidarInfo, MemoryUse, Motion, Odometry, OdometryTraits, Rig, RunResult, Scan,
     ScanResult, Sensor, Trajectory, World, __version__, evaluate, list_algorithms, load_truth,
     make_odometry, make_rig, map_error, open_dataset, read_cloud, read_trajectory, replay, run,
     run_algorithm, score_run, simulate, write_cloud)

@@ -5,7 +5,7 @@
     import lidarena, lidarena.external
 
     class Mine(lidarena.Odometry):
-        def register_scan(self, scan):
+        def track(self, scan):
             ...
             return lidarena.ScanResult(scan.stamp, world_from_body)
 

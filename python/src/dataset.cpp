@@ -3,7 +3,7 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 #include "python/src/events.hpp"
 
 namespace lidarena::python {
@@ -18,14 +18,14 @@ std::variant<ImuSample, Scan> measurement_of(const py::handle& data) {
 }
 
 /// Any Python iterable of (sensor id, measurement).
-class IterableSource : public dataset::EventSource {
+class IterableSource : public EventSource {
  public:
   explicit IterableSource(const py::object& iterable) : rows_(py::iter(iterable)) {}
-  std::optional<dataset::Event> next() override {
+  std::optional<Event> next() override {
     const py::gil_scoped_acquire gil;
     if (rows_ == py::iterator::sentinel()) return std::nullopt;
     const auto row = rows_->cast<std::pair<std::string, py::object>>();
-    dataset::Event event{row.first, measurement_of(row.second)};
+    Event event{row.first, measurement_of(row.second)};
     ++rows_;
     return event;
   }
@@ -55,7 +55,7 @@ void bind_writer(py::module_& m) {
       .def(
           "write",
           [](dataset::DatasetWriter& w, const std::string& id, const py::object& data) {
-            w.write(dataset::Event{id, measurement_of(data)});
+            w.write(Event{id, measurement_of(data)});
           },
           py::arg("sensor_id"), py::arg("data"),
           "Writes a measurement, in order of time; a scan after its IMU samples.")
@@ -78,7 +78,7 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
                      double seconds, bool noise, const std::string& mode, bool truth, bool data,
                      const std::string& format, const std::string& dialect, int threads,
                      const fs::path& shipped_sensors) {
-  study::SimulateRequest request;
+  stages::SimulateRequest request;
   request.shipped_sensors = shipped_sensors;
   request.world = world;
   request.flight = flight;
@@ -94,11 +94,11 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
     read_value(ConfigNode::parse(mode, "mode"), read, {});
     request.mode = read;
   }
-  study::SimulateSummary done;
+  stages::SimulateSummary done;
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    done = study::simulate_dataset(request, out, Parallel(threads), log);
+    done = stages::simulate_dataset(request, out, Parallel(threads), log);
   }
   using namespace py::literals;
   return py::dict("triangles"_a = done.triangles, "scans"_a = done.scans, "points"_a = done.points,
@@ -108,8 +108,8 @@ py::dict simulate_to(const fs::path& world, const fs::path& flight,
 
 }  // namespace
 
-py::tuple next_event(dataset::EventSource& source) {
-  std::optional<dataset::Event> event;
+py::tuple next_event(EventSource& source) {
+  std::optional<Event> event;
   {
     const py::gil_scoped_release released;
     event = source.next();
@@ -125,8 +125,8 @@ py::tuple next_event(dataset::EventSource& source) {
 }
 
 Events::Events(const py::object& given) : source_(nullptr) {
-  if (py::isinstance<dataset::EventSource>(given)) {
-    source_ = &given.cast<dataset::EventSource&>();
+  if (py::isinstance<EventSource>(given)) {
+    source_ = &given.cast<EventSource&>();
   } else if (py::isinstance<dataset::Dataset>(given)) {
     source_ = given.cast<dataset::Dataset&>().events.get();
   } else {
@@ -136,8 +136,7 @@ Events::Events(const py::object& given) : source_(nullptr) {
 }
 
 void bind_dataset(py::module_& m) {
-  py::class_<dataset::EventSource>(m, "EventSource",
-                                   "Measurements in order; can be iterated over once.")
+  py::class_<EventSource>(m, "EventSource", "Measurements in order; can be iterated over once.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &next_event);
   py::class_<dataset::Dataset>(
@@ -159,7 +158,7 @@ void bind_dataset(py::module_& m) {
         options.layout = layout;
         options.rate_hz = rate_hz;
         const py::gil_scoped_release released;
-        return study::open_any_dataset(path, options, Parallel(threads));
+        return stages::open_any_dataset(path, options, Parallel(threads));
       },
       py::arg("path"), py::arg("sensor") = "", py::arg("layout") = "", py::arg("rate_hz") = 10.0,
       py::arg("threads") = 0, "Opens a dataset folder, .mcap, .bag, or a folder of sweeps.");
@@ -179,7 +178,8 @@ void bind_dataset(py::module_& m) {
       "write_cloud",
       [](const fs::path& file, const Array3f& points) {
         const auto rows = rows_of(points, "points");
-        const dataset::Cloud cloud{{rows.begin(), rows.end()}, {}, {}};
+        dataset::Cloud cloud;
+        cloud.points.assign(rows.begin(), rows.end());
         if (file.extension() == ".pcd") {
           dataset::write_pcd(file, cloud);
         } else if (file.extension() == ".ply") {

@@ -3,9 +3,9 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
-#include "lidarena/study/config_folder.hpp"
-#include "lidarena/study/run_algorithm.hpp"
-#include "lidarena/study/score_run.hpp"
+#include "lidarena/stages/config_folder.hpp"
+#include "lidarena/stages/run_algorithm.hpp"
+#include "lidarena/stages/score_run.hpp"
 #include "python/src/bindings.hpp"
 #include "python/src/simulated_world.hpp"
 
@@ -52,7 +52,7 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
                             const fs::path& out, const std::string& preset,
                             const std::string& sensor, const std::string& config_file,
                             const std::vector<std::string>& overrides, int threads) {
-  study::RunRequest request;
+  stages::RunRequest request;
   request.odometry = {algorithm, preset, config_file, overrides};
   request.dataset = dataset;
   request.read.sensor = sensor;
@@ -60,7 +60,8 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
   {
     const py::gil_scoped_release released;
     PythonLog log;
-    summary = study::summary_json(study::run_algorithm(request, out, Parallel(threads), log));
+    stages::run_algorithm(request, out, Parallel(threads), log);
+    summary = to_json(dataset::read_run_manifest(out).summary);
   }
   return to_python(summary);
 }
@@ -68,11 +69,11 @@ py::object run_algorithm_on(const std::string& algorithm, const fs::path& datase
 }  // namespace
 
 void bind_evaluation(py::module_& m) {
-  py::class_<study::ConfigFolder>(m, "ConfigFolder", "Named worlds, flights, sensors, studies.")
+  py::class_<stages::ConfigFolder>(m, "ConfigFolder", "Named worlds, flights, sensors, studies.")
       .def(py::init<fs::path>(), py::arg("root"))
-      .def_property_readonly("root", [](const study::ConfigFolder& c) { return c.root(); })
-      .def("names", &study::ConfigFolder::names, py::arg("kind"))
-      .def("resolve", &study::ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
+      .def_property_readonly("root", [](const stages::ConfigFolder& c) { return c.root(); })
+      .def("names", &stages::ConfigFolder::names, py::arg("kind"))
+      .def("resolve", &stages::ConfigFolder::resolve, py::arg("kind"), py::arg("name_or_path"));
   m.def("evaluate", &evaluate, py::arg("estimate"), py::arg("truth"), py::arg("map") = py::none(),
         py::arg("world") = nullptr, py::arg("threads") = 0,
         "All metrics of a trajectory, and of its map against a world, as in metrics.json.");
@@ -90,7 +91,7 @@ void bind_evaluation(py::module_& m) {
         {
           const py::gil_scoped_release released;
           PythonLog log;
-          metrics = study::score_run(run, Parallel(threads), log);
+          metrics = stages::score_run(run, {}, Parallel(threads), log);
         }
         return to_python(to_json(metrics));
       },

@@ -3,16 +3,16 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/odometry/run.hpp"
+#include "lidarena/stages/recorder.hpp"
 #include "python/src/events.hpp"
 
 namespace lidarena::python {
 namespace {
 
-constexpr std::array kStatuses{odometry::ScanStatus::kTracked, odometry::ScanStatus::kInitializing,
-                               odometry::ScanStatus::kDegenerate,
-                               odometry::ScanStatus::kTooFewPoints,
-                               odometry::ScanStatus::kDiverged};
+constexpr std::array kStatuses{
+    odometry::ScanStatus::kTracked,    odometry::ScanStatus::kInitializing,
+    odometry::ScanStatus::kDegenerate, odometry::ScanStatus::kTooFewPoints,
+    odometry::ScanStatus::kDiverged,   odometry::ScanStatus::kRefused};
 
 odometry::ScanStatus status_of(const std::string& name) {
   std::string known;
@@ -23,24 +23,17 @@ odometry::ScanStatus status_of(const std::string& name) {
   throw InputError("status", "unknown status '" + name + "'", "use one of: " + known);
 }
 
-/// An odometry written in Python. Only register_scan is required; the other methods have defaults.
+/// An odometry written in Python. Only track is required; the other methods have defaults.
 class PythonOdometry : public odometry::Odometry {
  public:
   odometry::OdometryTraits traits() const override {
-    odometry::OdometryTraits defaults;
-    defaults.publishes_scans = false;
     const py::gil_scoped_acquire gil;
     const py::function own =
         py::get_override(static_cast<const odometry::Odometry*>(this), "traits");
-    return own ? own().cast<odometry::OdometryTraits>() : defaults;
+    return own ? own().cast<odometry::OdometryTraits>() : odometry::OdometryTraits{};
   }
   void register_imu(const ImuSample& sample) override {
     PYBIND11_OVERRIDE(void, odometry::Odometry, register_imu, sample);
-  }
-  odometry::ScanResult register_scan(const Scan& scan) override {
-    const odometry::ScanResult result = register_in_python(scan);
-    estimates_.push_back(result.estimate);
-    return result;
   }
   void finish() override { PYBIND11_OVERRIDE(void, odometry::Odometry, finish, ); }
   Trajectory trajectory() const override {
@@ -57,67 +50,96 @@ class PythonOdometry : public odometry::Odometry {
     const auto rows = rows_of(points, "map()");
     return {rows.begin(), rows.end()};
   }
-  std::map<std::string, std::uint64_t> memory() const override {
+  std::span<const Eigen::Vector3f> registered_scan() const override {
+    const py::gil_scoped_acquire gil;
+    const py::function own =
+        py::get_override(static_cast<const odometry::Odometry*>(this), "registered_scan");
+    if (!own) return {};
+    const auto points = own().cast<Array3f>();
+    const auto rows = rows_of(points, "registered_scan()");
+    published_.assign(rows.begin(), rows.end());
+    return published_;
+  }
+  odometry::MemoryUse memory() const override {
     const py::gil_scoped_acquire gil;
     const py::function own =
         py::get_override(static_cast<const odometry::Odometry*>(this), "memory");
-    if (!own) return {};
-    return own().cast<std::map<std::string, std::uint64_t>>();
+    return own ? own().cast<odometry::MemoryUse>() : odometry::MemoryUse{};
+  }
+
+ protected:
+  odometry::ScanResult track(const Scan& scan) override {
+    const odometry::ScanResult result = track_in_python(scan);
+    estimates_.push_back(result.estimate);
+    return result;
   }
 
  private:
-  odometry::ScanResult register_in_python(const Scan& scan) {
-    PYBIND11_OVERRIDE_PURE(odometry::ScanResult, odometry::Odometry, register_scan, scan);
+  odometry::ScanResult track_in_python(const Scan& scan) {
+    PYBIND11_OVERRIDE_PURE(odometry::ScanResult, odometry::Odometry, track, scan);
   }
   std::vector<StampedPose> estimates_;
+  mutable std::vector<Eigen::Vector3f> published_;
 };
 
-/// A field of ScanCounters from a number.
-template <class T>
-void set_counter(std::optional<T>& field, double value) {
-  field = static_cast<T>(value);
-}
-
-odometry::ScanCounters counters_of(const std::map<std::string, double>& by_name) {
-  odometry::ScanCounters counters;
-  std::string known;
+/// What a method counted, from the names and values given in Python: what a run records, and what
+/// else there is.
+void set_counters(const std::map<std::string, double>& by_name, odometry::ScanResult& result) {
   for (const auto& [name, value] : by_name) {
-    bool found = false;
-    known.clear();
-    odometry::ScanCounters::visit(counters, [&](const char* field_name, auto& field) {
-      known += std::string(known.empty() ? "" : ", ") + field_name;
+    bool is_recorded = false;
+    odometry::ScanCounters::visit(result.counters, [&](const char* field_name, auto& field) {
       if (name != field_name) return;
-      set_counter(field, value);
-      found = true;
+      field = static_cast<std::uint64_t>(value);
+      is_recorded = true;
     });
-    if (!found)
-      throw InputError("counters", "unknown counter '" + name + "'", "use some of: " + known);
+    if (!is_recorded) result.details.emplace_back(name, value);
   }
-  return counters;
 }
 
-py::dict to_dict(const odometry::ScanCounters& counters) {
+py::dict counters_of(const odometry::ScanResult& result) {
   py::dict by_name;
-  odometry::ScanCounters::visit(counters, [&](const char* name, const auto& field) {
+  odometry::ScanCounters::visit(result.counters, [&](const char* name, const auto& field) {
     if (field) by_name[name] = *field;
   });
+  for (const auto& [name, value] : result.details) by_name[name.c_str()] = value;
   return by_name;
+}
+
+/// From pairs of (stamp, 4x4 world_from_body).
+std::vector<StampedPose> poses_of(
+    const std::vector<std::pair<std::int64_t, Eigen::Matrix4d>>& given) {
+  std::vector<StampedPose> poses;
+  for (const auto& [stamp, pose] : given) poses.push_back({Time{stamp}, pose_of(pose)});
+  return poses;
+}
+
+std::vector<std::pair<std::int64_t, Eigen::Matrix4d>> pairs_of(
+    const std::vector<StampedPose>& poses) {
+  std::vector<std::pair<std::int64_t, Eigen::Matrix4d>> pairs;
+  for (const StampedPose& pose : poses)
+    pairs.emplace_back(pose.stamp.count(), matrix_of(pose.world_from_body));
+  return pairs;
 }
 
 void bind_results(py::module_& m) {
   py::class_<odometry::ScanResult>(m, "ScanResult", "Result of one scan.")
       .def(py::init([](std::int64_t stamp, const Eigen::Matrix4d& pose, const std::string& status,
                        std::optional<Eigen::Matrix<double, 6, 6>> covariance,
-                       std::map<std::string, double> counters) {
-             return odometry::ScanResult{{Time{stamp}, pose_of(pose)},
-                                         status_of(status),
-                                         covariance,
-                                         counters_of(counters),
-                                         {}};
+                       const std::map<std::string, double>& counters,
+                       const std::vector<std::pair<std::int64_t, Eigen::Matrix4d>>& motion,
+                       const std::vector<std::pair<std::int64_t, Eigen::Matrix4d>>& revised) {
+             odometry::ScanResult result{.estimate = {Time{stamp}, pose_of(pose)},
+                                         .status = status_of(status),
+                                         .covariance = covariance,
+                                         .motion = poses_of(motion),
+                                         .revised = poses_of(revised)};
+             set_counters(counters, result);
+             return result;
            }),
            py::arg("stamp"), py::arg("pose"), py::arg("status") = "tracked",
            py::arg("covariance") = py::none(),
-           py::arg("counters") = std::map<std::string, double>{})
+           py::arg("counters") = std::map<std::string, double>{},
+           py::arg("motion") = py::list(), py::arg("revised") = py::list())
       .def_property_readonly(
           "stamp", [](const odometry::ScanResult& r) { return r.estimate.stamp.count(); },
           "Instant that the pose refers to, ns")
@@ -131,18 +153,43 @@ void bind_results(py::module_& m) {
           "covariance", [](const odometry::ScanResult& r) { return r.covariance; },
           "6x6 of (translation, rotation), or None")
       .def_property_readonly(
-          "counters", [](const odometry::ScanResult& r) { return to_dict(r.counters); },
-          "What the method counted, by name");
-  py::class_<odometry::OdometryTraits>(m, "OdometryTraits", "Properties of an odometry.")
-      .def(py::init([](bool needs_imu, bool revises_past, bool gravity_aligned) {
-             return odometry::OdometryTraits{needs_imu, revises_past, gravity_aligned, false,
-                                             "body"};
+          "counters", [](const odometry::ScanResult& r) { return counters_of(r); },
+          "What the method counted, by name")
+      .def_property_readonly(
+          "motion", [](const odometry::ScanResult& r) { return pairs_of(r.motion); },
+          "Poses within the scan: pairs of (stamp in ns, 4x4 world_from_body)")
+      .def_property_readonly(
+          "revised", [](const odometry::ScanResult& r) { return pairs_of(r.revised); },
+          "The same of the scan before, revised by this one")
+      .def_property_readonly(
+          "up",
+          [](const odometry::ScanResult& r) {
+            return r.up ? std::optional(std::pair(r.up->direction, r.up->sigma_rad)) : std::nullopt;
+          },
+          "(unit vector in the world frame, standard deviation in rad), or None");
+  py::class_<odometry::MemoryUse>(m, "MemoryUse", "Bytes that a method holds, by part.")
+      .def(py::init([](std::uint64_t map, std::uint64_t scan_buffer, std::uint64_t backlog,
+                       std::uint64_t other) {
+             return odometry::MemoryUse{map, scan_buffer, backlog, other};
            }),
+           py::arg("map") = 0, py::arg("scan_buffer") = 0, py::arg("backlog") = 0,
+           py::arg("other") = 0)
+      .def_readonly("map", &odometry::MemoryUse::map)
+      .def_readonly("scan_buffer", &odometry::MemoryUse::scan_buffer)
+      .def_readonly("backlog", &odometry::MemoryUse::backlog)
+      .def_readonly("other", &odometry::MemoryUse::other);
+  py::class_<odometry::OdometryTraits>(m, "OdometryTraits", "Properties of an odometry.")
+      .def(py::init(
+               [](bool needs_imu, bool revises_past, bool gravity_aligned, bool publishes_scans) {
+                 return odometry::OdometryTraits{needs_imu, revises_past, gravity_aligned,
+                                                 publishes_scans, "body"};
+               }),
            py::arg("needs_imu") = false, py::arg("revises_past") = false,
-           py::arg("gravity_aligned") = false)
+           py::arg("gravity_aligned") = false, py::arg("publishes_scans") = false)
       .def_readonly("needs_imu", &odometry::OdometryTraits::needs_imu)
       .def_readonly("revises_past", &odometry::OdometryTraits::revises_past)
-      .def_readonly("gravity_aligned", &odometry::OdometryTraits::gravity_aligned);
+      .def_readonly("gravity_aligned", &odometry::OdometryTraits::gravity_aligned)
+      .def_readonly("publishes_scans", &odometry::OdometryTraits::publishes_scans);
 }
 
 py::object make(const py::object& rig, const std::string& algorithm, const std::string& lidar_id,
@@ -175,15 +222,15 @@ py::dict summary_of(const odometry::RunSummary& s) {
                   "diverged"_a = s.diverged, "reason"_a = s.reason);
 }
 
-odometry::RunResult run_events(odometry::Odometry& odometry, const py::object& given,
-                               const std::string& lidar_id, const std::string& imu_id) {
+stages::RunResult run_events(odometry::Odometry& odometry, const py::object& given,
+                             const std::string& lidar_id, const std::string& imu_id) {
   Events events(given);
   odometry::RunOptions options;
   options.lidar_id = lidar_id;
   options.imu_id = imu_id;
   const py::gil_scoped_release released;
   PythonLog log;
-  return odometry::run(odometry, events.source(), options, log);
+  return stages::record_run(odometry, events.source(), options, log);
 }
 
 }  // namespace
@@ -192,8 +239,9 @@ void bind_odometry(py::module_& m) {
   bind_results(m);
   py::class_<odometry::Odometry, PythonOdometry>(
       m, "Odometry", py::dynamic_attr(),
-      "A LiDAR(-inertial) odometry. Derive from it and define register_scan(scan) -> ScanResult, "
-      "and where needed register_imu, finish, trajectory, map, memory, traits.")
+      "A LiDAR(-inertial) odometry. Derive from it and define track(scan) -> ScanResult, and "
+      "where needed register_imu, finish, trajectory, map, registered_scan, memory, traits. "
+      "Callers use register_scan, which refuses scans that are out of time order.")
       .def(py::init<>())
       .def("traits", &odometry::Odometry::traits)
       .def("register_imu", &odometry::Odometry::register_imu, py::arg("sample"),
@@ -202,6 +250,12 @@ void bind_odometry(py::module_& m) {
            py::call_guard<py::gil_scoped_release>())
       .def("finish", &odometry::Odometry::finish, py::call_guard<py::gil_scoped_release>())
       .def("trajectory", &odometry::Odometry::trajectory, "Best estimate of all poses so far.")
+      .def_property_readonly("scans_refused", &odometry::Odometry::scans_refused,
+                             "Scans that were not later than the one before")
+      .def_property_readonly(
+          "leveled_from_world",
+          [](const odometry::Odometry& o) { return matrix_of(o.leveled_from_world()); },
+          "4x4 rotation that levels the world by all that is known of up, after finish()")
       .def(
           "map", [](const odometry::Odometry& o) { return own_points(o.map()); },
           "The method's own map, (N, 3) float32, world frame, m.")
@@ -212,18 +266,18 @@ void bind_odometry(py::module_& m) {
         py::arg("overrides") = std::vector<std::string>{}, py::arg("threads") = 0,
         "Makes an algorithm by its name; `overrides` are 'key=value'. Its complete "
         "configuration is the attribute `config`.");
-  py::class_<odometry::RunResult>(m, "RunResult", "Results of a run.")
+  py::class_<stages::RunResult>(m, "RunResult", "Results of a run.")
       .def_property_readonly(
-          "trajectory", [](const odometry::RunResult& r) { return r.files.trajectory; },
+          "trajectory", [](const stages::RunResult& r) { return r.files.trajectory; },
           "Final trajectory, after finish()")
       .def_property_readonly(
-          "live", [](const odometry::RunResult& r) { return r.files.live; },
+          "live", [](const stages::RunResult& r) { return r.files.live; },
           "Poses as estimated right after each scan")
       .def_property_readonly(
-          "map", [](const odometry::RunResult& r) { return own_points(r.files.map.points); },
+          "map", [](const stages::RunResult& r) { return own_points(r.files.map.points); },
           "Map published by the method, (N, 3) float32")
       .def_property_readonly("summary",
-                             [](const odometry::RunResult& r) { return summary_of(r.summary); });
+                             [](const stages::RunResult& r) { return summary_of(r.summary); });
   m.def("run", &run_events, py::arg("odometry"), py::arg("events"), py::arg("lidar_id") = "",
         py::arg("imu_id") = "",
         "Runs an odometry on events: a Dataset, an EventSource, or an iterable of "

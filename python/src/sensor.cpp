@@ -21,11 +21,11 @@ py::dtype beam_type() {
 }
 
 py::dtype truth_type() {
-  return structured({{"position", "3f4", offsetof(dataset::PointTruth, position)},
-                     {"range", "f4", offsetof(dataset::PointTruth, range)},
-                     {"normal", "3f4", offsetof(dataset::PointTruth, normal)},
-                     {"triangle", "u4", offsetof(dataset::PointTruth, triangle)}},
-                    sizeof(dataset::PointTruth));
+  return structured({{"position", "3f4", offsetof(PointTruth, position)},
+                     {"range", "f4", offsetof(PointTruth, range)},
+                     {"normal", "3f4", offsetof(PointTruth, normal)},
+                     {"triangle", "u4", offsetof(PointTruth, triangle)}},
+                    sizeof(PointTruth));
 }
 
 Trajectory sampled(const flight::Flight& flight, const Stamps& stamps) {
@@ -47,7 +47,7 @@ py::array beams(const sensor::Lidar& lidar, std::uint64_t index) {
 py::object measure(const sensor::Lidar& lidar, const SimulatedWorld& world,
                    const flight::Flight& flight, std::uint64_t index, bool truth, int threads) {
   auto scan = std::make_unique<Scan>();
-  std::vector<dataset::PointTruth> hits;
+  std::vector<PointTruth> hits;
   {
     const py::gil_scoped_release released;
     *scan = lidar.measure(world.world, flight, index, Parallel(threads), truth ? &hits : nullptr);

@@ -22,7 +22,7 @@ class TruthOdometry(lidarena.Odometry):
     def register_imu(self, sample):
         self.samples += 1
 
-    def register_scan(self, scan):
+    def track(self, scan):
         self.scans.append(scan)
         return lidarena.ScanResult(scan.stamp, self.flight.at(scan.stamp).pose,
                                    counters={"points": len(scan)})
@@ -84,7 +84,7 @@ def test_a_python_odometry_is_run_and_scored(recorded, room, flight):
 
 def test_what_python_raises_comes_out_of_the_run(recorded):
     class Failing(lidarena.Odometry):
-        def register_scan(self, scan):
+        def track(self, scan):
             raise KeyError("my own fault")
 
     with pytest.raises(KeyError, match="my own fault"):
@@ -167,7 +167,7 @@ def test_a_python_odometry_stands_in_a_study(tmp_path, room, flight):
         import lidarena.external
 
         class Still(lidarena.Odometry):
-            def register_scan(self, scan):
+            def track(self, scan):
                 return lidarena.ScanResult(scan.stamp, np.eye(4))
 
         lidarena.external.main(lambda rig: Still())

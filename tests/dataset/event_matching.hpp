@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 
 namespace lidarena::dataset {
 

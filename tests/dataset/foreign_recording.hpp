@@ -54,7 +54,7 @@ class ForeignRecording {
     write("/tf_static", ros::kTfMessage, log_time);
   }
   void odometry(const std::string& topic, const StampedPose& pose) {
-    ros::encode_odometry(pose, "odom", "base_link", message_);
+    ros::encode_odometry(pose, {"odom", "base_link"}, message_);
     write(topic, ros::kOdometry, pose.stamp);
   }
   void close() { out_->close(); }

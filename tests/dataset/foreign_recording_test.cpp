@@ -22,7 +22,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 
 constexpr Time kEpoch = ForeignRecording::kEpoch;
-constexpr int kPoints = 301;
+constexpr int kSweepPoints = 301;
 constexpr Time kPeriod = milliseconds(100);
 const TimeField kNone{};
 
@@ -31,7 +31,7 @@ Time stamp_of(int sweep) { return kEpoch + sweep * kPeriod; }
 /// Times of a sweep's points from 0 to `span`, plus `start`.
 std::vector<double> times(double span, double start = 0.0) {
   std::vector<double> values;
-  for (int i = 0; i < kPoints; ++i) values.push_back(start + span * i / (kPoints - 1));
+  for (int i = 0; i < kSweepPoints; ++i) values.push_back(start + span * i / (kSweepPoints - 1));
   return values;
 }
 
@@ -189,7 +189,7 @@ TEST_F(ForeignRecordings, PointsWithoutAFiniteTimeAreLeftOut) {
     if (k == 3) values[100] = NAN;
     return values;
   });
-  EXPECT_EQ(all.scans.at(3).points.size(), static_cast<std::size_t>(kPoints - 1));
+  EXPECT_EQ(all.scans.at(3).points.size(), static_cast<std::size_t>(kSweepPoints - 1));
   EXPECT_THAT(all.left_out, testing::SizeIs(1));
 }
 

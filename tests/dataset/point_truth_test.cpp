@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/dataset/point_truth.hpp"
+#include "lidarena/base/point_truth.hpp"
 
 #include <gmock/gmock.h>
 
@@ -33,7 +33,7 @@ ScanTruth truth_of(const Scan& scan, const std::string& id) {
   return truth;
 }
 
-void expect_same(const ScanTruth& a, const ScanTruth& b) {
+void expect_same_truth(const ScanTruth& a, const ScanTruth& b) {
   EXPECT_EQ(a.sensor_id, b.sensor_id);
   EXPECT_EQ(a.stamp, b.stamp);
   ASSERT_EQ(a.points.size(), b.points.size());
@@ -69,7 +69,7 @@ TEST_F(PointTruthFiles, ComesBackBitByBitScanAfterScan) {
       if (scan == nullptr) continue;
       const auto truth = source->next();
       ASSERT_TRUE(truth.has_value());
-      expect_same(*truth, truth_of(*scan, "mid360"));
+      expect_same_truth(*truth, truth_of(*scan, "mid360"));
     }
     EXPECT_FALSE(source->next().has_value());
   }

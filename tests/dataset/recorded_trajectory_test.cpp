@@ -33,7 +33,7 @@ class RecordedTrajectory : public ::testing::TestWithParam<const char*> {
     MessageWriter message(out.encoding());
     StampedPose written = pose(i);
     written.stamp += late;
-    ros::encode_odometry(written, "map", "lidar", message);
+    ros::encode_odometry(written, {"map", "lidar"}, message);
     out.write(topic, written.stamp, written.stamp, message.bytes());
   }
   static void put_pose_stamped(RecordingWriter& out, std::uint16_t topic, int i, double x) {

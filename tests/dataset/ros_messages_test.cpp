@@ -60,7 +60,7 @@ TEST(Ros2Messages, AnImuSampleComesBackBitByBit) {
 TEST(Ros2Messages, APoseComesBackToTheLastDigitsOfItsQuaternion) {
   MessageWriter out;
   const StampedPose pose = sample::truth(77);
-  encode_odometry(pose, "world", "body", out);
+  encode_odometry(pose, {"world", "body"}, out);
   const StampedPose back = decode_odometry(out.bytes(), "test");
   EXPECT_EQ(back.stamp, pose.stamp);
   EXPECT_EQ(back.world_from_body.translation(), pose.world_from_body.translation());

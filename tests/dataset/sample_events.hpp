@@ -4,9 +4,9 @@
 #include <cmath>
 #include <vector>
 
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/event.hpp"
 
 /// A small synthetic flight with a LiDAR of 10 Hz and an IMU of 200 Hz that share the id "mid360":
 /// every value is a smooth function of its index, so that tests and the scripts for the official

@@ -43,7 +43,7 @@ class SlowNode {
         ADD_FAILURE() << "a scan came before the answer to number " << scans - 1;
         ++scans;
       }
-      dataset::ros::encode_odometry({*stamp, Pose::Identity()}, "odom", "body", message_);
+      dataset::ros::encode_odometry({*stamp, Pose::Identity()}, {"odom", "body"}, message_);
       out_.write(odometry_, Time{1}, Time{1}, message_.bytes());
     }
   }
@@ -124,7 +124,7 @@ TEST(LockStep, AStudyDrivesANodeAndScoresItLikeTheSameMethodOnTheFile) {
   };
   const auto node = dataset::read_run(run("node-external"));
   expect_same_poses(node.live, dataset::read_run(run("arena_lio")).live);
-  const Json& messages = node.manifest.at("messages");
+  const Json& messages = node.manifest.messages;
   EXPECT_EQ(messages.at("answered"), 30);
   EXPECT_EQ(messages.at("unanswered"), 0);
   EXPECT_EQ(messages.at("lost"), 0);
@@ -135,7 +135,7 @@ TEST(LockStep, AStudyDrivesANodeAndScoresItLikeTheSameMethodOnTheFile) {
   EXPECT_THAT(dataset::read_bytes(run("node-external") + "/program.log"),
               HasSubstr("waits for /livox_mid360/points"));
   const Json broken = dataset::read_json(run("broken-external") + "/manifest.json");
-  EXPECT_THAT(broken.at("failed").get<std::string>(),
+  EXPECT_THAT(broken.at("reason").get<std::string>(),
               AllOf(HasSubstr("ended before the data did"), HasSubstr("exit code 3")));
   EXPECT_EQ(dataset::read_bytes(run("broken-external") + "/program.log"), "no map\n");
 }

@@ -23,7 +23,7 @@ using listed::Truths;
 /// Hits on the floor z = 0 for x in [0, length], |y| < 1, one per centimeter, from above.
 Truths hits_on_floor(double length) {
   Truths truths;
-  dataset::ScanTruth scan{"front", Time(0), {}};
+  ScanTruth scan{"front", Time(0), {}};
   for (double x = 0.005; x < length; x += 0.01) {
     for (double y = -0.995; y < 1.0; y += 0.01) {
       scan.points.push_back({Vector3d(x, y, 0).cast<float>(), 1.0F, Vector3f(0, 0, 1), 0});
@@ -86,7 +86,7 @@ TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
   Truths truths = hits_on_floor(2.0);
   // the second triangle is that with y > x: flip the side of half of its hits
   std::size_t turned = 0;
-  for (dataset::PointTruth& hit : truths.scans[0].points) {
+  for (PointTruth& hit : truths.scans[0].points) {
     if (hit.position.y() > hit.position.x() && turned++ % 2 == 0) hit.normal = -hit.normal;
   }
   const ObservedSurface both = observe(truths, world, kTwoThreads);
@@ -96,25 +96,13 @@ TEST(ObservedSurface, ATriangleHitFromBothSidesOrNotAtAllHasNoFreeSide) {
   EXPECT_EQ(observe(none, world, kTwoThreads).free_side[0], FreeSide::kUnknown);
 }
 
-class Events : public dataset::EventSource {
- public:
-  std::optional<dataset::Event> next() override {
-    if (events.empty()) return std::nullopt;
-    dataset::Event event = std::move(events.front());
-    events.pop_front();
-    return event;
-  }
-  std::deque<dataset::Event> events;
-};
-
 TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
   const world::World world(meshes::box(Vector3d(7, 8, 4)));
   const Trajectory truth = flights::sample(flights::tour, 50ms, 5s);
   const Pose body_from_lidar = make_pose(so3::exp({0.3, -0.2, 1.1}), Vector3d(0.1, -0.05, 0.2));
   SequentialRandom random(82);
-  Events source;
+  std::vector<TimedReturn> returns;
   for (Time stamp{0}; stamp < 4900ms; stamp += 100ms) {
-    Scan scan{stamp, {}, true};
     for (int i = 0; i < 300; ++i) {
       const Time t = stamp + 300us * i;
       const Pose lidar = *truth.at(t) * body_from_lidar;
@@ -124,13 +112,10 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
       world::Hit hit;
       world.cast(std::span(&ray, 1), 100.0, std::span(&hit, 1));
       const double range = double{hit.range} + 0.03 * random.normal();
-      const Vector3d position = lidar.inverse() * (ray.origin + range * direction);
-      scan.points.push_back(
-          {position.cast<float>(), 0.0F, static_cast<std::int32_t>(300'000 * i), 0, 0});
+      returns.push_back({t, lidar.inverse() * (ray.origin + range * direction)});
     }
-    source.events.push_back({"front", std::move(scan)});
   }
-  const ObservedSurface seen = observe(source, "front", body_from_lidar, truth, world, kTwoThreads);
+  const ObservedSurface seen = observe(returns, body_from_lidar, truth, world, kTwoThreads);
   EXPECT_EQ(seen.off_mesh, 0U);
   EXPECT_GT(seen.hits.size(), 10000U);
   for (const Vector3f& hit : seen.hits) {  // on a wall, although the returns have 3 cm of noise
@@ -140,6 +125,27 @@ TEST(ObservedSurface, FromNoisyReturnsIsWhereTheirRaysMeetTheMesh) {
   }
   for (std::size_t t = 0; t < seen.free_side.size(); ++t) {
     EXPECT_EQ(seen.free_side[t], FreeSide::kBack) << t;  // outward normals, rays from inside
+  }
+}
+
+TEST(ObservedSurface, TheReturnsOfAMapAreThoseThatItWasMadeOf) {
+  const Trajectory estimate = flights::sample(flights::tour, 50ms, 5s);
+  const Pose body_from_lidar = make_pose(so3::exp({0.3, -0.2, 1.1}), Vector3d(0.1, -0.05, 0.2));
+  SequentialRandom random(83);
+  dataset::Cloud map;
+  std::vector<TimedReturn> expected;
+  for (std::uint32_t i = 0; i < 100; ++i) {
+    const Time t = 40ms * static_cast<int>(i) + Time{7};
+    const Vector3d position(random.normal(), random.normal(), random.normal());
+    map.points.push_back((*estimate.at(t) * body_from_lidar * position).cast<float>());
+    map.origins.push_back({i, 0, to_seconds(t)});
+    expected.push_back({t, position});
+  }
+  const std::vector<TimedReturn> returns = returns_of(map, BodyMotion(estimate), body_from_lidar);
+  ASSERT_EQ(returns.size(), expected.size());
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    EXPECT_EQ(returns[i].stamp, expected[i].stamp);
+    EXPECT_LT((returns[i].position - expected[i].position).norm(), 1e-5);
   }
 }
 
@@ -205,7 +211,7 @@ TEST(Completeness, OfHalfTheFloorIsAHalfAndAllOfItIsRight) {
       seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
   const Truths floor = hits_on_floor(2.0);
-  for (const dataset::PointTruth& hit : floor.scans[0].points) map.push_back(hit.position);
+  for (const PointTruth& hit : floor.scans[0].points) map.push_back(hit.position);
   const Completeness c = Scored{map, world}.rate(samples);
   for (std::size_t row = 0; row < c.rows.size(); ++row) {
     // half, plus what lies within the distance beyond the border at x = 2 m
@@ -225,7 +231,7 @@ TEST(Completeness, FollowsTheLimits) {
       seen_samples(world, observe(truths, world, kTwoThreads), kTwoThreads);
   std::vector<Vector3f> map;
   const Truths floor = hits_on_floor(2.0);
-  for (const dataset::PointTruth& hit : floor.scans[0].points) {
+  for (const PointTruth& hit : floor.scans[0].points) {
     map.push_back(hit.position + Vector3f(0, 0, 0.07F));
   }
   const Completeness c = Scored{map, world}.rate(samples);
@@ -246,7 +252,7 @@ TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
   const Pose mesh_from_map = flights::random_pose(random, 3.0);
   std::vector<Vector3f> map;
   const Truths floor = hits_on_floor(2.0);
-  for (const dataset::PointTruth& hit : floor.scans[0].points) {
+  for (const PointTruth& hit : floor.scans[0].points) {
     map.push_back((mesh_from_map.inverse() * hit.position.cast<double>()).cast<float>());
   }
   const Scored scored{map, world, morton_order(map, kTwoThreads), mesh_from_map};

@@ -29,9 +29,9 @@ using ::testing::IsEmpty;
 const Vector3d kHalf(1.6, 1.2, 0.8);
 
 /// Hits on all walls of the room except within 5 cm of the corners, from inside.
-dataset::ScanTruth hits_of_room(std::size_t count) {
+ScanTruth hits_of_room(std::size_t count) {
   SequentialRandom random(91);
-  dataset::ScanTruth scan{"front", Time(0), {}};
+  ScanTruth scan{"front", Time(0), {}};
   for (std::size_t i = 0; i < count; ++i) {
     const auto axis = static_cast<Eigen::Index>(i % 3);
     const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
@@ -50,7 +50,7 @@ dataset::ScanTruth hits_of_room(std::size_t count) {
 struct Room {
   world::World world{meshes::box(kHalf)};
   Trajectory truth = flights::sample(flights::tour, 10ms, 20s);
-  dataset::ScanTruth hits = hits_of_room(60000);
+  ScanTruth hits = hits_of_room(60000);
   MapReference seen{
       world, [this] {
         Truths truths;
@@ -62,7 +62,7 @@ struct Room {
   /// The hits, each `before` meters in front of the wall, in a frame that differs by `offset`.
   std::vector<Vector3f> map(double before, const Pose& offset = Pose::Identity()) const {
     std::vector<Vector3f> points;
-    for (const dataset::PointTruth& hit : hits.points) {
+    for (const PointTruth& hit : hits.points) {
       const Vector3d at = (hit.position + static_cast<float>(before) * hit.normal).cast<double>();
       points.push_back((offset * at).cast<float>());
     }

@@ -37,7 +37,6 @@ dataset::RunFiles perfect_run(const Pose& truth_from_estimate) {
     run.map.points.push_back((back * wall).cast<float>());
   }
   run.reprojected = run.map;
-  run.manifest = {{"status", "ok"}};
   return run;
 }
 
@@ -178,7 +177,8 @@ TEST_F(EvaluateRun, ASinglePoseAndForeignClocksAreNoNumbersButReasons) {
 TEST_F(EvaluateRun, WhatARunCostIsThereEvenWhenItDiverged) {
   EXPECT_TRUE(evaluate()["resources"].is_null());  // no resources.csv
   run_.resources = {{0.1, 0.02, 0.02, 100, 90, 50, 5, 0}, {0.2, 0.03, 0.03, 120, 100, 60, 5, 0}};
-  run_.manifest = {{"status", "diverged"}, {"reason", "a pose was not finite"}};
+  run_.manifest.status = dataset::RunStatus::kDiverged;
+  run_.manifest.reason = "a pose was not finite";
   const Json m = evaluate();
   EXPECT_EQ(m["status"], "diverged");
   EXPECT_EQ(m["resources"]["scans"], 2);
@@ -208,7 +208,8 @@ TEST_F(EvaluateRun, ADivergedRunHasAReasonAndNoNumber) {
 }
 
 TEST_F(EvaluateRun, WhatTheRunnerSaysOfTheRunCounts) {
-  run_.manifest = {{"status", "diverged"}, {"reason", "pose 12 is not finite"}};
+  run_.manifest.status = dataset::RunStatus::kDiverged;
+  run_.manifest.reason = "pose 12 is not finite";
   const Json m = evaluate();
   EXPECT_EQ(m["status"], "diverged");
   EXPECT_EQ(m["reason"], "pose 12 is not finite");

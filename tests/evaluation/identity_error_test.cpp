@@ -31,8 +31,8 @@ class Queue : public Base {
 /// A thin wall of 4 cm whose faces are x = 5 and x = 5.04; every return is of the near face, and
 /// displaced by `moved` from its true hit. The sensor stands still at the origin.
 struct Wall {
-  Queue<dataset::EventSource, dataset::Event> events;
-  Queue<dataset::ScanTruthSource, dataset::ScanTruth> truth;
+  Queue<EventSource, Event> events;
+  Queue<ScanTruthSource, ScanTruth> truth;
   world::World world{[] {
     world::TriangleMesh mesh;
     mesh.append(meshes::box(Vector3d(0.02, 3, 3)), flights::level({5.02, 0, 0}));
@@ -44,7 +44,7 @@ struct Wall {
     for (int s = 0; s < 10; ++s) {
       const Time stamp = 100ms * s;
       Scan scan{stamp, {}, true};
-      dataset::ScanTruth hits{"front", stamp, {}};
+      ScanTruth hits{"front", stamp, {}};
       for (int i = 0; i < 200; ++i) {
         const double y = random.uniform(-2, 2);
         const Vector3d at(5.0, y, random.uniform(-2, 2));
@@ -58,11 +58,9 @@ struct Wall {
   }
 
   IdentifiedMap identified(const Trajectory& estimate) {
-    std::vector<ReturnOrigin> origins;
-    const dataset::Cloud map =
-        reproject(events, "front", Pose::Identity(), estimate, 0.02, nullptr, &origins);
-    EXPECT_EQ(origins.size(), map.points.size());
-    return identify(map.points, origins, truth);
+    const dataset::Cloud map = reprojected(events, "front", Pose::Identity(), estimate);
+    EXPECT_EQ(map.origins.size(), map.points.size());
+    return identify(map, truth);
   }
 };
 

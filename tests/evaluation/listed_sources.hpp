@@ -5,8 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "lidarena/dataset/event.hpp"
-#include "lidarena/dataset/point_truth.hpp"
+#include "lidarena/base/event.hpp"
+#include "lidarena/base/point_truth.hpp"
 
 /// Sources that return the items that a test has put into a list.
 namespace lidarena::evaluation::listed {
@@ -20,16 +20,16 @@ std::optional<Item> take_first(std::deque<Item>& items) {
   return item;
 }
 
-class Truths : public dataset::ScanTruthSource {
+class Truths : public ScanTruthSource {
  public:
-  std::optional<dataset::ScanTruth> next() override { return take_first(scans); }
-  std::deque<dataset::ScanTruth> scans;
+  std::optional<ScanTruth> next() override { return take_first(scans); }
+  std::deque<ScanTruth> scans;
 };
 
-class Events : public dataset::EventSource {
+class Events : public EventSource {
  public:
-  std::optional<dataset::Event> next() override { return take_first(events); }
-  std::deque<dataset::Event> events;
+  std::optional<Event> next() override { return take_first(events); }
+  std::deque<Event> events;
 };
 
 }  // namespace lidarena::evaluation::listed

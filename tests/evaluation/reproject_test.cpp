@@ -43,7 +43,7 @@ TEST(Reproject, EveryReturnLandsOnTheWallItCameFromThoughTheBodyTurnsWithinTheSc
   const Trajectory truth = sample(tour, 100ms, 10s);  // its interpolation is the true motion
   Events source = scans_of_a_wall(truth);
   ReprojectionCounts counts;
-  const dataset::Cloud cloud = reproject(source, "front", kBodyFromLidar, truth, 0.02, &counts);
+  const dataset::Cloud cloud = reprojected(source, "front", kBodyFromLidar, truth, &counts);
   EXPECT_EQ(counts.returns, 100U * 500U);
   EXPECT_EQ(counts.without_pose, 0U);
   EXPECT_GT(cloud.points.size(), 30000U);  // 16 x 4 m have 160 000 voxels
@@ -61,7 +61,7 @@ TEST(Reproject, TheMotionWithinScansIsUsedWithTheGapsOfTheTrajectory) {
     Events source = scans_of_a_wall(fine);
     ReprojectionCounts counts;
     const dataset::Cloud cloud =
-        reproject(source, "front", kBodyFromLidar, BodyMotion(run), 0.02, &counts);
+        reprojected(source, "front", kBodyFromLidar, BodyMotion(run), &counts);
     EXPECT_EQ(counts.without_pose, 5000U - 1U) << "a second without poses, but for the one at 4 s";
     double worst = 0.0;
     for (const Eigen::Vector3f& p : cloud.points) worst = std::max(worst, std::abs(p.x() - 7.0));
@@ -82,7 +82,7 @@ TEST(Reproject, KeepsTheFirstReturnOfEachVoxelItself) {
   scan.points.push_back({{1.019F, 0.019F, 0.019F}, 2.0F, 10, 0, 0});  // same 2 cm cell
   scan.points.push_back({{1.021F, 0.001F, 0.001F}, 3.0F, 20, 0, 0});  // the next cell
   source.events.push_back({"front", scan});
-  const dataset::Cloud cloud = reproject(source, "front", Pose::Identity(), still);
+  const dataset::Cloud cloud = reprojected(source, "front", Pose::Identity(), still);
   ASSERT_EQ(cloud.points.size(), 2U);
   EXPECT_EQ(cloud.points[0], Eigen::Vector3f(1.001F, 0.001F, 0.001F));
   EXPECT_EQ(cloud.intensity, (std::vector{1.0F, 3.0F}));
@@ -95,7 +95,7 @@ TEST(Reproject, ReturnsWithoutAPoseAreDroppedAndCounted) {
       flights::with_gap(flights::with_gap(flights::with_gap(truth, -1s, 1s), 9s, 20s), 4s, 5s);
   Events source = scans_of_a_wall(truth);
   ReprojectionCounts counts;
-  const dataset::Cloud cloud = reproject(source, "front", kBodyFromLidar, estimate, 0.02, &counts);
+  const dataset::Cloud cloud = reprojected(source, "front", kBodyFromLidar, estimate, &counts);
   // 3 s of 5000 returns a second; the two returns exactly at 4 s and at 9 s have a pose
   EXPECT_EQ(counts.without_pose, 15000U - 2U);
   for (const Eigen::Vector3f& p : cloud.points) ASSERT_NEAR(p.x(), 7.0F, 1e-5F);
@@ -110,7 +110,7 @@ TEST(Reproject, TakesTheNamedLidarAloneAndLeavesOutNaN) {
   source.events.push_back(
       {"front", Scan{Time(0), {{{2, 2, 2}, 0, 0, 0, 0}, {{nan, 0, 0}, 0, 0, 0, 0}}, false}});
   ReprojectionCounts counts;
-  const dataset::Cloud cloud = reproject(source, "front", Pose::Identity(), still, 0.02, &counts);
+  const dataset::Cloud cloud = reprojected(source, "front", Pose::Identity(), still, &counts);
   ASSERT_EQ(cloud.points.size(), 1U);
   EXPECT_EQ(cloud.points[0], Eigen::Vector3f(2, 2, 2));
   EXPECT_EQ(counts.returns, 2U);

@@ -24,21 +24,21 @@ Scan scan_of(std::int64_t stamp, std::size_t points, bool timed = true) {
   return scan;
 }
 
-Events two_lidars() {
-  Events source;
+std::unique_ptr<Events> two_lidars() {
+  auto made = std::make_unique<Events>();
+  Events& source = *made;
   source.events.push_back({"front", scan_of(10, 5)});
   source.events.push_back({"imu", ImuSample{}});
   source.events.push_back({"rear", scan_of(12, 3)});
   source.events.push_back({"front", scan_of(20, 0)});
   source.events.push_back({"front", scan_of(30, 4, false)});
-  return source;
+  return made;
 }
 
 TEST(ReturnStore, KeepsTheScoredReturnsOfOneLidarWhileAllEventsPassUnchanged) {
   const TemporaryFolder folder;
   ReturnStore store(folder.path() / "not_made_yet" / "run", "front", 2);
-  Events source = two_lidars();
-  const auto passed = store.keep_from(source);
+  const auto passed = store.keep_from(two_lidars());
   std::size_t events = 0, points = 0;
   while (const auto event = passed->next()) {
     ++events;
@@ -74,9 +74,9 @@ TEST(ReturnStore, AFullDiskIsAnErrorThatNamesThePlace) {
   const rlimit small{1000, before.rlim_max};
   setrlimit(RLIMIT_FSIZE, &small);
   const auto ignored = std::signal(SIGXFSZ, SIG_IGN);
-  Events source;
-  source.events.push_back({"front", scan_of(10, 5000)});
-  const auto passed = store.keep_from(source);
+  auto source = std::make_unique<Events>();
+  source->events.push_back({"front", scan_of(10, 5000)});
+  const auto passed = store.keep_from(std::move(source));
   try {
     passed->next();
     store.read();

@@ -5,8 +5,8 @@
 
 #include <set>
 
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/scan.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -46,7 +46,7 @@ TEST(ScoredReturns, EveryRowOfASpinningSensorIsLookedAt) {
 TEST(ScoredReturns, AScanAndItsTruthKeepTheSameReturnsInOrderAndTwiceIsAsOnce) {
   constexpr std::size_t kPoints = 131'072;
   std::vector<Point> points(kPoints);
-  std::vector<dataset::PointTruth> hits(kPoints);
+  std::vector<PointTruth> hits(kPoints);
   for (std::size_t i = 0; i < kPoints; ++i) {
     points[i].dt_ns = static_cast<std::int32_t>(i);
     hits[i].triangle = static_cast<std::uint32_t>(i);

@@ -23,14 +23,14 @@ TEST(GazeboCore, ASensorSeesABallFallAsPhysicsHasIt) {
     const double s = to_seconds(t);
     return kHeight - 0.5 * kGravityHere * s * s;
   };
-  std::vector<dataset::Event> events;
+  std::vector<Event> events;
   for (Time t{0}; t <= 1000 * kStep; t += kStep) {
     const Pose pose = make_pose(Eigen::Quaterniond::Identity(), {12, 0, height_at(t)});
     world.move({&pose, 1});
     sensor.step(world, {t, Pose::Identity()}, events);
   }
   std::size_t on_ball = 0, scans = 0, samples = 0;
-  for (const dataset::Event& event : events) {
+  for (const Event& event : events) {
     const auto* scan = std::get_if<Scan>(&event.data);
     samples += scan == nullptr;
     if (scan == nullptr) continue;

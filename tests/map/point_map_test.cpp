@@ -68,8 +68,10 @@ TEST(PointMap, ABatchAddsWhatItsPointsAddOneByOneAndTellsWhich) {
     if (one_by_one.insert(points[i])) expected.push_back(i);
   }
   PointMap batch(0.5);
+  batch.insert(points);
+  OccupiedVoxels voxels(0.5);
   std::vector<std::uint32_t> added;
-  batch.insert(points, &added);
+  voxels.insert(points, added);
   ASSERT_GT(expected.size(), 1000U);
   EXPECT_EQ(added, expected);
   EXPECT_TRUE(std::ranges::equal(batch.points(), one_by_one.points()));

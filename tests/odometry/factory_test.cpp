@@ -84,13 +84,6 @@ TEST(OdometryFactory, TheSchemasDefaultsAreThoseOfTheDefaultPreset) {
   expect_defaults("arena_lio", to_json(arena_lio::settings_for(unknown)));
 }
 
-TEST(OdometryFactory, AFormerKeyIsRefusedWithTheNewOne) {
-  EXPECT_THAT(refusal({"arena_lio+loop", "", "", {"loops.loop.least_gap_s=5"}}),
-              HasSubstr("write 'min_time_gap_s'"));
-  EXPECT_THAT(refusal({"ct_icp", "indoor", "", {"registration.min_neighbours=9"}}),
-              HasSubstr("write 'min_neighbors'"));
-}
-
 TEST(OdometryFactory, RefusalsNameTheNearestWord) {
   EXPECT_THAT(refusal({"kis_icp", "indoor", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
   EXPECT_THAT(refusal({"orb_slam", "indoor", "", {}}),
@@ -109,18 +102,7 @@ TEST(OdometryFactory, RefusalsNameTheNearestWord) {
 TEST(OdometryFactory, AFormerPresetIsRefusedWithItsSuccessor) {
   EXPECT_THAT(refusal({"kiss_icp", "original", "", {}}), HasSubstr("the preset published"));
   EXPECT_THAT(refusal({"kiss_icp", "improved", "", {}}), HasSubstr("arena_lo"));
-  EXPECT_THAT(refusal({"ct_icp", "original", "", {}}), HasSubstr("the preset indoor"));
-  EXPECT_THAT(refusal({"ct_icp", "improved", "", {}}), HasSubstr("arena_lo"));
-  EXPECT_THAT(refusal({"fast_lio2", "original", "", {}}), HasSubstr("the preset published"));
-  EXPECT_THAT(refusal({"fast_lio2+loop", "improved", "", {}}), HasSubstr("arena_lio"));
-  EXPECT_THAT(refusal({"lio_sam", "original", "", {}}), HasSubstr("the preset indoor"));
-  EXPECT_THAT(refusal({"lio_sam_lc", "improved", "", {}}), HasSubstr("arena_lio+loop"));
   EXPECT_THAT(refusal({"arena_lio", "improved", "", {}}), HasSubstr("leave it out"));
-}
-
-TEST(OdometryFactory, AFormerAlgorithmIsRefusedWithItsSuccessor) {
-  EXPECT_THAT(refusal({"arena_slam", "", "", {}}),
-              AllOf(HasSubstr("there is no 'arena_slam'"), HasSubstr("use arena_lio+loop")));
 }
 
 TEST(OdometryFactory, TheDefaultPresetIsNamedWhereThereIsOne) {

@@ -50,13 +50,5 @@ TEST(LidarPath, EmptyScansLastAsLongAsTheLastOneThatHadTimes) {
   EXPECT_EQ(path.times_of(empty_at(3.0)).last, from_seconds(3.05));
 }
 
-TEST(LidarPath, KnowsWhatIsNotLater) {
-  LidarPath path(turned_lidar());
-  EXPECT_FALSE(path.is_out_of_order(Time{0}));
-  path.add(Pose::Identity(), from_seconds(1.0), {});
-  EXPECT_TRUE(path.is_out_of_order(from_seconds(1.0)));
-  EXPECT_FALSE(path.is_out_of_order(from_seconds(1.0) + Time{1}));
-}
-
 }  // namespace
 }  // namespace lidarena::odometry

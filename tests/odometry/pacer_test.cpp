@@ -14,7 +14,7 @@ namespace {
 using testing::ElementsAre;
 
 /// A scan of a tenth of a second that ends at `end_s`.
-dataset::Event scan_ending_at(double end_s) {
+Event scan_ending_at(double end_s) {
   Scan scan;
   scan.stamp = from_seconds(end_s - 0.1);
   Point last;
@@ -23,7 +23,7 @@ dataset::Event scan_ending_at(double end_s) {
   return {"lidar", scan};
 }
 
-dataset::Event imu_at(double t_s) {
+Event imu_at(double t_s) {
   ImuSample sample;
   sample.stamp = from_seconds(t_s);
   return {"imu", sample};
@@ -41,7 +41,7 @@ std::vector<std::string> handed_over(Pacer& pacer, std::vector<std::string>& log
 
 /// Appends each event to `log` and reports that each scan took `seconds`.
 Pacer::Process taking(double seconds, std::vector<std::string>& log) {
-  return [seconds, &log](const dataset::Event& event) {
+  return [seconds, &log](const Event& event) {
     const auto* scan = std::get_if<Scan>(&event.data);
     const Time t = scan != nullptr ? end_of(*scan) : std::get<ImuSample>(event.data).stamp;
     log.push_back((scan != nullptr ? "scan " : "imu ") + std::to_string(t.count() / 100'000'000));

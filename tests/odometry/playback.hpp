@@ -27,6 +27,11 @@ struct Outcome {
       value = std::max(value, (r.counters.*counter).value_or(T{}));
     return value;
   }
+  double largest_detail(std::string_view name) const {
+    double value = 0.0;
+    for (const ScanResult& r : results) value = std::max(value, r.detail(name).value_or(0.0));
+    return value;
+  }
   /// Error (m) of the last pose relative to the first one.
   double final_error(const Recording& recording) const {
     const StampedPose& first = results.front().estimate;
@@ -36,9 +41,9 @@ struct Outcome {
   }
 };
 
-inline Outcome play(const std::vector<dataset::Event>& events, Odometry& odometry) {
+inline Outcome play(const std::vector<Event>& events, Odometry& odometry) {
   Outcome outcome;
-  for (const dataset::Event& event : events) {
+  for (const Event& event : events) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       outcome.results.push_back(odometry.register_scan(*scan));
     } else {
@@ -49,18 +54,17 @@ inline Outcome play(const std::vector<dataset::Event>& events, Odometry& odometr
 }
 
 /// The events of the default recording.
-inline const std::vector<dataset::Event>& usual_events() {
-  static const std::vector<dataset::Event> events = record({});
+inline const std::vector<Event>& usual_events() {
+  static const std::vector<Event> events = record({});
   return events;
 }
 
 /// The events with `change` applied to each IMU sample; without the samples for which it returns
 /// false.
-inline std::vector<dataset::Event> with_imu(
-    const std::function<bool(ImuSample&)>& change,
-    const std::vector<dataset::Event>& events = usual_events()) {
-  std::vector<dataset::Event> changed;
-  for (dataset::Event event : events) {
+inline std::vector<Event> with_imu(const std::function<bool(ImuSample&)>& change,
+                                   const std::vector<Event>& events = usual_events()) {
+  std::vector<Event> changed;
+  for (Event event : events) {
     auto* sample = std::get_if<ImuSample>(&event.data);
     if (sample == nullptr || change(*sample)) changed.push_back(std::move(event));
   }

@@ -138,8 +138,8 @@ Rig rig_of(const Recording& recording) {
   return rig;
 }
 
-std::vector<dataset::Event> record(const Recording& recording) {
-  std::vector<dataset::Event> events;
+std::vector<Event> record(const Recording& recording) {
+  std::vector<Event> events;
   const auto scan_count = static_cast<std::size_t>(std::lround(recording.seconds / kScanSeconds));
   std::size_t imu_index = 0;
   for (std::size_t i = 0; i < scan_count; ++i) {
@@ -157,7 +157,7 @@ std::vector<dataset::Event> record(const Recording& recording) {
 
 std::vector<Scan> scans_of(const Recording& recording) {
   std::vector<Scan> scans;
-  for (dataset::Event& event : record(recording)) {
+  for (Event& event : record(recording)) {
     if (auto* scan = std::get_if<Scan>(&event.data)) scans.push_back(std::move(*scan));
   }
   return scans;

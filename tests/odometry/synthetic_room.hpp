@@ -5,10 +5,10 @@
 #include <functional>
 #include <vector>
 
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/pose.hpp"
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/rig.hpp"
-#include "lidarena/dataset/event.hpp"
 
 /// Simulated LiDAR and IMU in a small room, both computed in closed form. Independent of the
 /// library's simulator, so that an odometry is tested on its own.
@@ -58,7 +58,7 @@ struct Recording {
 Rig rig_of(const Recording& recording);
 
 /// All events in the order of EventSource.
-std::vector<dataset::Event> record(const Recording& recording);
+std::vector<Event> record(const Recording& recording);
 
 /// The scans only.
 std::vector<Scan> scans_of(const Recording& recording);

@@ -16,7 +16,7 @@ namespace {
 class Drifter : public Odometry {
  public:
   OdometryTraits traits() const override { return {}; }
-  ScanResult register_scan(const Scan& scan) override {
+  ScanResult track(const Scan& scan) override {
     const double s = to_seconds(scan.stamp);
     const Pose truth = true_pose(s);
     pose_ = truth;
@@ -28,13 +28,21 @@ class Drifter : public Odometry {
       published_.push_back((pose_ * (range * p.cast<double>())).cast<float>());
     }
     poses_.push_back({scan.stamp, pose_});
-    return {poses_.back(), ScanStatus::kTracked, std::nullopt, {}, {}};
+    ScanResult result{.estimate = poses_.back(), .covariance = covariance()};
+    result.up = UpDirection{Eigen::Vector3d::UnitZ(), 0.01};
+    return result;
   }
   Trajectory trajectory() const override { return Trajectory(poses_, "drifter"); }
   std::vector<Eigen::Vector3f> map() const override { return {}; }
   std::span<const Eigen::Vector3f> registered_scan() const override { return published_; }
-  std::map<std::string, std::uint64_t> memory() const override { return {{"map", 0}}; }
+  MemoryUse memory() const override { return {}; }
 
+  static Eigen::Matrix<double, 6, 6> covariance() {
+    Eigen::Matrix<double, 6, 6> c = Eigen::Matrix<double, 6, 6>::Zero();
+    c.diagonal() << 1.0, 4.0, 9.0, 0.1, 0.2, 0.3;
+    c(0, 4) = c(4, 0) = 0.05;
+    return c;
+  }
   static Pose true_pose(double s) {
     const double angle = 0.15 * s;
     return make_pose(so3::exp({0.0, 0.0, angle}),
@@ -82,6 +90,31 @@ double rms_height(std::span<const StampedPose> poses) {
   return std::sqrt(sum / static_cast<double>(poses.size()));
 }
 
+TEST(WithLoop, MovesAllThatIsInTheWorldAndSaysByHowMuch) {
+  Drifter alone;
+  WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
+  bool moved = false;
+  for (int i = 0; i < 320; ++i) {
+    const ScanResult raw = alone.register_scan(scan_after(i));
+    const ScanResult result = looped.register_scan(scan_after(i));
+    const Pose& world_from_odom = result.world_from_odom;
+    const Eigen::Matrix3d rotation = world_from_odom.linear();
+    moved = moved || so3::angle(rotation) > 1e-4;
+    EXPECT_TRUE((world_from_odom.inverse() * result.estimate.world_from_body)
+                    .isApprox(raw.estimate.world_from_body, 1e-9))
+        << "without the loops it is the odometry's own, which is continuous";
+    // the position's part turns with the world, the rotation's is about the body's axes
+    EXPECT_TRUE(result.covariance->topLeftCorner(3, 3).isApprox(
+        rotation * Drifter::covariance().topLeftCorner(3, 3) * rotation.transpose(), 1e-12));
+    EXPECT_TRUE(result.covariance->topRightCorner(3, 3).isApprox(
+        rotation * Drifter::covariance().topRightCorner(3, 3), 1e-12));
+    EXPECT_TRUE(result.covariance->bottomRightCorner(3, 3).isApprox(
+        Drifter::covariance().bottomRightCorner(3, 3), 1e-12));
+    EXPECT_TRUE(result.up->direction.isApprox(rotation.col(2), 1e-12));
+  }
+  EXPECT_TRUE(moved);
+}
+
 TEST(WithLoop, CuresTheDriftOfAnyOdometryAndKeepsTheLiveEstimatesAsTheyWere) {
   Drifter alone;
   WithLoop looped(std::make_unique<Drifter>(), quick(), Parallel(1));
@@ -120,12 +153,11 @@ TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
     const Scan scan = scan_after(i);
     looped.register_scan(scan);
     if (i != 420) continue;
-    after_two_rounds = looped.memory().at("map");
+    after_two_rounds = looped.memory().map;
     loops_then = looped.loops().memory_bytes();
     keyframes = looped.loops().poses().size();
   }
-  EXPECT_LT(static_cast<double>(looped.memory().at("map")),
-            1.3 * static_cast<double>(after_two_rounds))
+  EXPECT_LT(static_cast<double>(looped.memory().map), 1.3 * static_cast<double>(after_two_rounds))
       << "it would be 2.5 times as much";
   // the graph grows with the path, descriptors do not
   EXPECT_LT(looped.loops().memory_bytes() - loops_then,
@@ -135,8 +167,8 @@ TEST(WithLoop, AKnownPlaceIsNotKeptTwice) {
 /// Its first four scans are initializing, 5 cm off, and their poses are mended with the fifth.
 class LateStarter : public Drifter {
  public:
-  ScanResult register_scan(const Scan& scan) override {
-    ScanResult result = Drifter::register_scan(scan);
+  ScanResult track(const Scan& scan) override {
+    ScanResult result = Drifter::track(scan);
     if (++scans_ >= 5) return result;
     result.status = ScanStatus::kInitializing;
     result.estimate.world_from_body.translation().x() += 0.05;
@@ -154,7 +186,7 @@ TEST(WithLoop, PosesOfAnUnfinishedStartAreTakenOverOnceTheyAreRevised) {
     const Scan scan = scan_after(i);
     alone.register_scan(scan);
     const ScanResult result = looped.register_scan(scan);
-    EXPECT_EQ(result.counters.keyframes == 0, i < 4) << "no keyframe of a scan that will move";
+    EXPECT_EQ(result.detail("keyframes") == 0, i < 4) << "no keyframe of a scan that will move";
   }
   const Trajectory poses = looped.trajectory();
   const Trajectory expected = alone.trajectory();
@@ -170,9 +202,9 @@ TEST(WithLoop, PosesOfAnUnfinishedStartAreTakenOverOnceTheyAreRevised) {
 /// Each pose is 2 cm off until the next scan revises it.
 class Reviser : public Drifter {
  public:
-  ScanResult register_scan(const Scan& scan) override {
+  ScanResult track(const Scan& scan) override {
     const Trajectory before = trajectory();
-    ScanResult result = Drifter::register_scan(scan);
+    ScanResult result = Drifter::track(scan);
     if (before.size() > 0) result.revised = {before.poses().back()};
     result.estimate.world_from_body.translation().x() += 0.02;
     return result;

@@ -35,6 +35,8 @@ def main(cmake, source):
                                     ("odometry/kiss_icp/config.hpp", "int x = 1;", {"kiss_icp"}),
                                     ("odometry/kiss_icp/kiss_icp.cpp", "  // a comment", set()),
                                     ("odometry/run.cpp", "int x = 1;", methods),
+                                    ("stages/recorder.cpp", "int x = 1;", methods),
+                                    ("stages/score_run.cpp", "int x = 1;", {"scorer"}),
                                     ("evaluation/map/ghosting.cpp", "int x = 1;", {"scorer"}),
                                     ("evaluation/map/reproject.hpp", "int x = 1;", methods | {"scorer"}),
                                     ("sensor/lidar.cpp", "int x = 1;", {"simulator"}),

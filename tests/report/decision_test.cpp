@@ -24,9 +24,9 @@ results::RunRecord tried(const std::string& sensor, const std::string& algorithm
   r.metrics->resources.scans = 100;
   r.metrics->resources.cpu_load_percent = cpu_percent;
   r.metrics->resources.cpu_late_scans = cpu_percent > 100.0 ? 1.0 : 0.0;
-  r.simulation = Json::parse(
-      R"({"sensors":[{"name":"cheap","facts":{"weight_kg":0.265,"price":"below 1000 EUR"}},
-                     {"name":"dear","facts":{"weight_kg":0.4,"price":"above 10000 EUR"}}]})");
+  r.simulation.emplace().sensors = {
+      Json::parse(R"({"name":"cheap","facts":{"weight_kg":0.265,"price":"below 1000 EUR"}})"),
+      Json::parse(R"({"name":"dear","facts":{"weight_kg":0.4,"price":"above 10000 EUR"}})")};
   return r;
 }
 
@@ -114,7 +114,7 @@ TEST(Decision, RealTimeIsJudgedByCpuTimeOnOneCoreAndInPacedRunsByTheClock) {
   results.rows[0].metrics->resources.late_scans = 0.0;
   const auto words = [&] { return verdict(candidates(results, "mine").front()); };
   EXPECT_EQ(words(), "too slow for one core");
-  results.rows[0].manifest = {{"paced", true}};
+  results.rows[0].manifest.emplace().paced = true;
   EXPECT_EQ(words(), "real time on one core");
   results.rows[0].metrics->resources.late_scans = 0.1;
   EXPECT_EQ(words(), "too slow for one core");
@@ -136,7 +136,7 @@ TEST(Readings, ModesOfTheSensorsStayApart) {
               ::testing::ElementsAre("indoor-rolling", "indoor-official"));
   const results::StudyCells cells(results, "indoor-official");
   EXPECT_EQ(cells.rows("mine", "cheap", "good").size(), 1U);
-  results.rows[1].simulation = Json::object();
+  results.rows[1].simulation.emplace();
   EXPECT_THAT(commands_table(results).rows.at(1).at(1).text, HasSubstr(" --mode official"));
 }
 

@@ -24,10 +24,11 @@ class PageScenes : public ::testing::Test {
     results_.rows.push_back(results::made_up::run_of("cave", sensor, algorithm, 1.0, 0.0, seed));
     results::RunRecord& run = results_.rows.back();
     run.folder = folder_.path() / run.name;
-    run.manifest = {{"kind", "run"}, {"dataset", "../flight"}, {"algorithm", algorithm}};
+    run.manifest.emplace().dataset = "../flight";
+    run.manifest->algorithm = algorithm;
     folder_.write(run.name + "/trajectory.tum", kPath);
     folder_.write("flight/truth.tum", kPath);
-    dataset::write_json(run.folder / "manifest.json", run.manifest);
+    dataset::write_run_manifest(run.folder, *run.manifest);
     dataset::Cloud cloud;
     for (std::size_t i = 0; i < points; ++i)
       cloud.points.emplace_back(0.01F * static_cast<float>(i % 1000), 0.0F, 0.0F);

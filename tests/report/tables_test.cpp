@@ -33,7 +33,7 @@ results::RunRecord row(const std::string& world, const std::string& sensor,
 
 /// The paper's own figures, as if they were our runs.
 results::StudyResults results_of_the_paper() {
-  const study::ConfigFolder configs(std::string(LIDARENA_SOURCE_DIR) + "/configs");
+  const stages::ConfigFolder configs(std::string(LIDARENA_SOURCE_DIR) + "/configs");
   const auto spec = study::load_study(configs.resolve("studies", "paper"));
   results::StudyResults results =
       results::made_up::runs_of_reference(study::load_reference(spec, configs));
@@ -132,7 +132,8 @@ TEST(FigureTables, LiveTrajectoriesHaveATableWhereTheyDiffer) {
 TEST(FigureTables, MapsOfMeansAreCalledMeans) {
   results::StudyResults results = eight_seeds(1.5);
   for (results::RunRecord& run : results.rows)
-    run.manifest = {{"own_map", run.algorithm == "good" ? "means" : "returns"}};
+    run.manifest.emplace().own_map =
+        run.algorithm == "good" ? dataset::OwnMap::kMeans : dataset::OwnMap::kReturns;
   const auto tables = figure_tables(results, "indoor");
   EXPECT_THAT(table_called(tables, "map-cave-indoor").note,
               HasSubstr("The own maps of good are means of several returns"));
@@ -201,7 +202,10 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   results.rows[2].reason = "estimate left the world";
   results.rows[2].metrics->resources.scans = 1;
   results.rows[2].metrics->resources.own.peak_bytes = 12.5e6;
-  results.rows[0].simulation = Json::parse(R"({"seed":7,"new_scene":true,"seconds":20.0})");
+  dataset::SimulationRecord& made = results.rows[0].simulation.emplace();
+  made.seed = 7;
+  made.new_scene = true;
+  made.seconds = 20.0;
   results.rows[0].sources = {"/my worlds/cave.ply", "cave", {"livox_mid360", "ouster_os0_128"}};
   const results::Table failures = failures_table(results);
   ASSERT_EQ(failures.rows.size(), 2U) << "and one of which the paper's map lies mostly elsewhere";
@@ -214,27 +218,30 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   EXPECT_THAT(commands_table(results).rows.at(0).at(1).text,
               HasSubstr("lidarena simulate --world '/my worlds/cave.ply' --flight cave --sensor "
                         "livox_mid360 --sensor ouster_os0_128 --seed 7 --new-scene --seconds 20.0 "
-                        "--no-data --out data && lidarena run ct_icp data --preset indoor --sensor "
+                        "--no-data --hits on --out data && lidarena run ct_icp data --preset indoor --sensor "
                         "livox_mid360_paper --out run && lidarena evaluate run"));
 }
 
 TEST(SummaryTables, ACommandHasAllSettingsOfItsRunAndRecordedDataStayWhereTheyAre) {
   results::RunRecord run = row("cave", "lidar", "fast_lio2", 1.0, 0.0);
   run.folder = "study/runs/one";
-  run.manifest = Json::parse(R"({"dataset":"../../my data.bag","config":{"a":1},"paced":true,
-      "config_file":"mine.yaml","overrides":["map_voxel_size_m=0.3"]})");
+  dataset::RunManifest& manifest = run.manifest.emplace();
+  manifest.dataset = "../../my data.bag";
+  manifest.paced = true;
+  manifest.config_file = "mine.yaml";
+  manifest.overrides = {"map_voxel_size_m=0.3"};
   EXPECT_EQ(command_of(run),
             "lidarena run fast_lio2 'study/my data.bag' --preset indoor --config mine.yaml --set "
             "map_voxel_size_m=0.3 --paced --sensor lidar --out run && lidarena evaluate run");
   run.preset = "external";
-  run.manifest = Json::parse(R"({"dataset":"../../my data.bag","config":{"command":"true"}})");
   EXPECT_THAT(command_of(run), HasSubstr(" --external fast_lio2.yaml --sensor lidar"));
 }
 
 TEST(SummaryTables, ACommandOfALiveRunListensBesideAPlayer) {
   results::RunRecord run = row("cave", "lidar", "fast_lio2", 1.0, 0.0);
   run.folder = "runs/one";
-  run.manifest = Json::parse(R"({"dataset":"../../data","live":true})");
+  run.manifest.emplace().dataset = "../../data";
+  run.manifest->live = true;
   EXPECT_EQ(command_of(run),
             "{ lidarena run fast_lio2 data --live --preset indoor --sensor lidar --out run & "
             "lidarena play data && wait; } && lidarena evaluate run");

@@ -92,8 +92,9 @@ INSTANTIATE_TEST_SUITE_P(
         SharedWorld{"subt_cave_tiles/worlds/cave.world", world::ShapeKind::kVisual, 29227, kBox,
                     extent({-13, -53, -3}, {413, 53, 8}), "jersey_barrier"},
         // The ground plane of 100 m x 100 m is wider than the cave.
+        // with the poses of its <state>: -77, not -80 m
         SharedWorld{"ltu_cave/worlds/cave_world1.world", world::ShapeKind::kVisual, 5333, kPlane,
-                    extent({-80, -50, -3}, {50, 71, 30}), "cave_tile_2_1"},
+                    extent({-77, -50, -3}, {50, 71, 30}), "cave_tile_2_1"},
         SharedWorld{"edgar_mine/worlds/edgar_mine.world", world::ShapeKind::kVisual, 22557, 0,
                     extent({-23, -27, -1}, {502, 236, 6}), ""}));
 

@@ -262,7 +262,7 @@ TEST(Lidar, TheTruthIsWhereTheDeskewedPointsLieWithoutNoise) {
   const SwingingFlight flight(10.0);
   for (const SensorConfig& config : {mid360(), ouster()}) {
     const Lidar lidar = make_lidar(config);
-    std::vector<dataset::PointTruth> truth;
+    std::vector<PointTruth> truth;
     const Scan scan = lidar.measure(world, flight, 5, Parallel(2), &truth);
     ASSERT_EQ(truth.size(), scan.points.size());
     const auto shots = shots_of(lidar, scan, 5);
@@ -288,7 +288,7 @@ TEST(Lidar, NoiseMovesThePointsAndNotTheirTruth) {
   const world::World world(box_mesh({-12, -10, -6}, {11, 9, 7}));
   const SwingingFlight flight(10.0);
   SensorConfig config = mid360();
-  std::vector<dataset::PointTruth> exact, noisy;
+  std::vector<PointTruth> exact, noisy;
   const Scan right = make_lidar(config).measure(world, flight, 2, kOneThread, &exact);
   config.range_noise_m = 0.05;
   const Scan moved = make_lidar(config).measure(world, flight, 2, kOneThread, &noisy);
@@ -310,7 +310,7 @@ TEST(Lidar, RangeNoiseIsGaussianWithTheConfiguredSigmaAlongTheBeam) {
   double sum = 0.0, squares = 0.0;
   std::size_t count = 0, beyond_two_sigma = 0;
   for (std::uint64_t index = 0; index < 3; ++index) {
-    std::vector<dataset::PointTruth> truth;
+    std::vector<PointTruth> truth;
     const Scan scan = lidar.measure(world, flight, index, kOneThread, &truth);
     const auto shots = shots_of(lidar, scan, index);
     ASSERT_EQ(truth.size(), scan.points.size());

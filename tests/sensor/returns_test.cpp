@@ -65,7 +65,7 @@ double mid360_signal(double reflectivity, double cosine, double range) {
 
 struct Measured {
   Scan scan;
-  std::vector<dataset::PointTruth> truth;
+  std::vector<PointTruth> truth;
   double error(std::size_t i) const {
     return scan.points[i].position.cast<double>().norm() - static_cast<double>(truth[i].range);
   }
@@ -201,7 +201,7 @@ TEST(Returns, RangesAreRoundedToTheStepAndNotMoved) {
   const world::World world(box_mesh({-9, -8, -3}, {7, 6, 5}));
   for (SensorConfig sensor : {config, ouster()}) {
     sensor.noise.range_step_m = 0.05;
-    std::vector<dataset::PointTruth> truth;
+    std::vector<PointTruth> truth;
     const Lidar lidar = make_lidar(sensor);
     const Scan scan = lidar.measure(world, rest(Pose::Identity()), 0, kOneThread, &truth);
     std::vector<Beam> beams;

@@ -31,21 +31,21 @@ SensorConfig with_imu(SensorConfig sensor, double rate_hz) {
   return sensor;
 }
 
-std::vector<dataset::Event> fly(const std::vector<SensorConfig>& sensors, double seconds,
-                                int threads = 1, const SimulationOptions& options = {}) {
+std::vector<Event> fly(const std::vector<SensorConfig>& sensors, double seconds, int threads = 1,
+                       const SimulationOptions& options = {}) {
   const SwingingFlight flight(seconds);
   const Parallel parallel(threads);
   const auto source = simulate(box_world(), flight, sensors, options, parallel);
-  std::vector<dataset::Event> events;
+  std::vector<Event> events;
   while (auto event = source->next()) events.push_back(std::move(*event));
   EXPECT_FALSE(source->next().has_value());  // no events after the end
   return events;
 }
 
-const ImuSample* imu_of(const dataset::Event& event) { return std::get_if<ImuSample>(&event.data); }
-const Scan* scan_of(const dataset::Event& event) { return std::get_if<Scan>(&event.data); }
+const ImuSample* imu_of(const Event& event) { return std::get_if<ImuSample>(&event.data); }
+const Scan* scan_of(const Event& event) { return std::get_if<Scan>(&event.data); }
 
-bool same_event(const dataset::Event& a, const dataset::Event& b) {
+bool same_event(const Event& a, const Event& b) {
   if (a.sensor_id != b.sensor_id || a.data.index() != b.data.index()) return false;
   if (const ImuSample* imu = imu_of(a)) {
     const ImuSample* other = imu_of(b);
@@ -58,12 +58,12 @@ bool same_event(const dataset::Event& a, const dataset::Event& b) {
 /// scan comes only after every IMU has delivered its samples up to the scan's last point and one at
 /// or after it, if the flight is long enough. `imu_rates`: of each sensor, Hz; `seconds`: duration
 /// of the flight.
-void expect_promised_order(const std::vector<dataset::Event>& events,
+void expect_promised_order(const std::vector<Event>& events,
                            const std::map<std::string, double>& imu_rates, double seconds) {
   std::map<std::string, Time> newest_imu;
   std::map<std::string, Time> newest_scan_end;
   Time clock{0};
-  for (const dataset::Event& event : events) {
+  for (const Event& event : events) {
     if (const ImuSample* imu = imu_of(event)) {
       EXPECT_GE(imu->stamp, clock);
       clock = newest_imu[event.sensor_id] = imu->stamp;
@@ -85,7 +85,7 @@ TEST(Simulate, DeliversInTheOrderThatEventSourcePromises) {
   const auto events = fly(sensors, 0.55);
   expect_promised_order(events, {{"mid360", 200}, {"ouster", 133}}, 0.55);
   std::map<std::pair<std::string, bool>, int> counts;
-  for (const dataset::Event& event : events) ++counts[{event.sensor_id, scan_of(event) != nullptr}];
+  for (const Event& event : events) ++counts[{event.sensor_id, scan_of(event) != nullptr}];
   EXPECT_EQ((counts[{"mid360", false}]), 111);  // 0, 5, ... 550 ms
   EXPECT_EQ((counts[{"ouster", false}]), 74);   // 0 ... 73 / 133 Hz = 0.549 s
   EXPECT_EQ((counts[{"mid360", true}]), 5);     // only complete scans
@@ -115,8 +115,8 @@ TEST(Simulate, IsTheSameOnAnyNumberOfThreadsAndDiffersBySeed) {
 
 TEST(Simulate, ASensorMeasuresTheSameAloneAndInCompany) {
   const auto alone = fly({with_imu(mid360(), 200)}, 0.2);
-  std::vector<dataset::Event> in_company;
-  for (dataset::Event& event : fly({with_imu(ouster(), 100), with_imu(mid360(), 200)}, 0.2)) {
+  std::vector<Event> in_company;
+  for (Event& event : fly({with_imu(ouster(), 100), with_imu(mid360(), 200)}, 0.2)) {
     if (event.sensor_id == "mid360") in_company.push_back(std::move(event));
   }
   EXPECT_TRUE(
@@ -131,7 +131,7 @@ TEST(Simulate, DurationCutsTheFlightAndNoiseCanBeSwitchedOff) {
   const auto events = fly({sensor}, 10.0, 1, options);
   EXPECT_EQ(events.size(), 51U + 2U);
   const SwingingFlight flight(10.0);
-  for (const dataset::Event& event : events) {
+  for (const Event& event : events) {
     if (const Scan* scan = scan_of(event)) {
       for (const Point& point : scan->points) {
         const Pose pose = flight.pose_at(time_of(*scan, point)) * sensor.body_from_lidar;
@@ -145,9 +145,9 @@ TEST(Simulate, DurationCutsTheFlightAndNoiseCanBeSwitchedOff) {
   }
 }
 
-struct TruthRecorder : dataset::ScanTruthSink {
-  std::vector<dataset::ScanTruth> scans;
-  void write(const dataset::ScanTruth& truth) override { scans.push_back(truth); }
+struct TruthRecorder : ScanTruthSink {
+  std::vector<ScanTruth> scans;
+  void write(const ScanTruth& truth) override { scans.push_back(truth); }
 };
 
 TEST(Simulate, TheTruthOfEveryScanComesJustBeforeIt) {

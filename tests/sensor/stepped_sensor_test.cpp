@@ -36,15 +36,15 @@ ImuConfig noisy_imu() {
 }
 
 /// Steps the sensor like a physics engine that moves the body along `flight`.
-std::vector<dataset::Event> fly_by_steps(SteppedSensor& sensor, const world::Surfaces& world,
-                                         const flight::Flight& flight, Time from, Time to) {
-  std::vector<dataset::Event> events;
+std::vector<Event> fly_by_steps(SteppedSensor& sensor, const world::Surfaces& world,
+                                const flight::Flight& flight, Time from, Time to) {
+  std::vector<Event> events;
   for (Time t = from; t <= to; t += kStep) sensor.step(world, {t, flight.pose_at(t)}, events);
   return events;
 }
 
-std::vector<dataset::Event> all_of(dataset::EventSource& source) {
-  std::vector<dataset::Event> events;
+std::vector<Event> all_of(EventSource& source) {
+  std::vector<Event> events;
   while (auto event = source.next()) events.push_back(std::move(*event));
   return events;
 }
@@ -71,10 +71,10 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
     config.range_noise_m = 0.02;
     config.imu = noisy_imu();
     const auto source = simulate(world, flight, {config}, {.seed = 7}, Parallel(1));
-    const std::vector<dataset::Event> expected = all_of(*source);
+    const std::vector<Event> expected = all_of(*source);
     SteppedSensor sensor(config, config.name, 7, true, Time{0});
     // one step more, since IMU samples come one step late
-    const std::vector<dataset::Event> events =
+    const std::vector<Event> events =
         fly_by_steps(sensor, world, flight, Time{0}, flight.duration() + kStep);
     ASSERT_EQ(events.size(), expected.size());
     for (std::size_t i = 0; i < events.size(); ++i) {
@@ -122,7 +122,7 @@ TEST(SteppedSensor, EachShotSeesAMovingWallWhereItsStepPutsIt) {
   const auto wall_at = [](Time t) { return 10.0 + kSpeed * to_seconds(t); };
   world::MovingWorld world(
       {{world::make_mesh(world::box_shape({2.0, 100.0, 100.0})), Pose::Identity(), {}, true}});
-  std::vector<dataset::Event> events;
+  std::vector<Event> events;
   for (Time t{0}; t <= 100 * kStep; t += kStep) {
     const Pose pose = make_pose(Eigen::Quaterniond::Identity(), {wall_at(t) + 1.0, 0, 0});
     world.move({&pose, 1});
@@ -148,7 +148,7 @@ TEST(SteppedSensor, BegunLateItsScansAreThoseOfOneThatWasThereAllTheTime) {
   const auto events = fly_by_steps(sensor, world, flight, 333 * kStep, 620 * kStep);
   const Lidar lidar(config, make_pattern(config), config.name, 3, true);
   std::vector<Scan> scans;
-  for (const dataset::Event& event : events) {
+  for (const Event& event : events) {
     if (const auto* scan = std::get_if<Scan>(&event.data)) scans.push_back(*scan);
   }
   ASSERT_EQ(scans.size(), 2U);  // from 0.4 s and from 0.5 s

@@ -3,11 +3,11 @@
 
 #include <filesystem>
 
-#include "lidarena/study/config_folder.hpp"
+#include "lidarena/stages/config_folder.hpp"
 
 namespace lidarena::study {
 
 inline const std::filesystem::path kConfigs = LIDARENA_SOURCE_DIR "/configs";
-inline ConfigFolder configs() { return ConfigFolder(kConfigs); }
+inline stages::ConfigFolder configs() { return stages::ConfigFolder(kConfigs); }
 
 }  // namespace lidarena::study

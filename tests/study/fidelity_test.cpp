@@ -15,7 +15,7 @@
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/evaluation/trajectory/trajectory_error.hpp"
 #include "lidarena/odometry/factory.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 #include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -46,13 +46,13 @@ class CalmFlight {
     std::ofstream(named) << "base: "
                          << (kConfigs / "sensors" / (sensor + "_range_noise.yaml")).string()
                          << "\n";
-    SimulateRequest request;
+    stages::SimulateRequest request;
     request.world = kConfigs / "worlds" / (world_ + ".yaml");
     request.flight = kConfigs / "flights" / (world_ + ".yaml");
     request.sensors = {named};
     request.seconds = seconds;
     LogSink log;
-    simulate_dataset(request, folder(), Parallel(2), log);
+    stages::simulate_dataset(request, folder(), Parallel(2), log);
     truth_ = dataset::load_truth(folder()).value();
   }
 
@@ -65,7 +65,7 @@ class CalmFlight {
 
   /// Poses of the scans that the method uses, up to a divergence.
   Trajectory of_remake(const odometry::OdometryRequest& request) const {
-    dataset::Dataset dataset = open_any_dataset(folder(), {}, Parallel(2));
+    dataset::Dataset dataset = stages::open_any_dataset(folder(), {}, Parallel(2));
     const odometry::MadeOdometry made =
         odometry::make_odometry(request, dataset.rig, "", Parallel(2));
     while (const auto event = dataset.events->next()) {

@@ -28,7 +28,7 @@ TEST(ConfigFolder, NamesResolveAndAMisspeltOneIsCorrected) {
   } catch (const InputError& e) {
     EXPECT_THAT(e.what(), HasSubstr("did you mean 'quick'?"));
   }
-  EXPECT_THROW(ConfigFolder::find("/"), InputError);
+  EXPECT_THROW(stages::ConfigFolder::find("/"), InputError);
 }
 
 TEST(ConfigFolder, AFolderOrAProgramThatHappensToBeCalledLikeAWorldOrAStudyDoesNotHideIt) {
@@ -38,7 +38,7 @@ TEST(ConfigFolder, AFolderOrAProgramThatHappensToBeCalledLikeAWorldOrAStudyDoesN
   fs::create_directory(folder.path() / "cave");
   folder.write("test", "#!/bin/sh\n");
   folder.write("mine", "title: Mine\n");
-  const ConfigFolder known = configs();
+  const stages::ConfigFolder known = configs();
   fs::current_path(folder.path());
   const fs::path world = known.resolve("worlds", "cave");
   const fs::path study = known.resolve("studies", "test");

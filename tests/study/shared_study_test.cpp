@@ -15,7 +15,7 @@
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
 #include "lidarena/results/run_record.hpp"
-#include "lidarena/study/claim.hpp"
+#include "lidarena/study/lease.hpp"
 #include "lidarena/study/slurm.hpp"
 #include "lidarena/study/status.hpp"
 #include "lidarena/study/study.hpp"
@@ -48,12 +48,12 @@ class SharedStudy : public ::testing::Test {
     spec_.sensors = {"livox_mid360"};
     spec_.seeds = {1, 2, 3};
     spec_.external = {external("a", "true"), external("b", "true")};
-    for (ExternalProgram& program : spec_.external) program.command = kStill;
+    for (stages::ExternalProgram& program : spec_.external) program.command = kStill;
     spec_.algorithms = {"a", "b"};
     options_.program = LIDARENA_BINARY;
   }
-  static ExternalProgram external(const std::string& name, const std::string& command) {
-    ExternalProgram program;
+  static stages::ExternalProgram external(const std::string& name, const std::string& command) {
+    stages::ExternalProgram program;
     program.name = name;
     program.command = command;
     return program;
@@ -270,7 +270,7 @@ TEST_F(SharedStudy, ANodeWithOtherConfigurationsIsRefused) {
   plan_study(spec_, configs(), out(), options_);
   std::ofstream(scratch_.path() / "flight.yaml", std::ios::app) << "# changed\n";
   EXPECT_THROW(work(worker("scratch")), InputError);
-  EXPECT_EQ(status().workers.size(), 0U) << "its claim must not remain";
+  EXPECT_EQ(status().workers.size(), 0U) << "its lease must not remain";
 }
 
 TEST_F(SharedStudy, AFolderIsPublishedWholeAndReplacesAnOlderOne) {

@@ -24,11 +24,11 @@
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_files.hpp"
 #include "lidarena/dataset/text_file.hpp"
+#include "lidarena/stages/process.hpp"
+#include "lidarena/stages/score_run.hpp"
+#include "lidarena/stages/simulate_dataset.hpp"
 #include "lidarena/study/plan.hpp"
-#include "lidarena/study/process.hpp"
 #include "lidarena/study/program.hpp"
-#include "lidarena/study/score_run.hpp"
-#include "lidarena/study/simulate_dataset.hpp"
 #include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -39,16 +39,16 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 /// Runs a line of shell script as a process.
-ProcessEnd run_shell(const std::string& line, const ProcessLimits& limits = {},
-                     const std::filesystem::path& log = {}) {
-  Command command;
+stages::ProcessEnd run_shell(const std::string& line, const stages::ProcessLimits& limits = {},
+                             const std::filesystem::path& log = {}) {
+  stages::Command command;
   command.arguments = {"/bin/sh", "-c", line};
   command.log = log;
-  return Process(command, limits).wait();
+  return stages::Process(command, limits).wait();
 }
 
 TEST(Process, OneThatSucceedsLeavesNoReasonAndTellsWhatItUsed) {
-  const ProcessEnd end = run_shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done");
+  const stages::ProcessEnd end = run_shell("i=0; while [ $i -lt 100000 ]; do i=$((i+1)); done");
   EXPECT_EQ(end.exit_code, 0);
   EXPECT_EQ(end.reason, "");
   EXPECT_GT(end.processor_s, 0.0);
@@ -58,23 +58,23 @@ TEST(Process, OneThatSucceedsLeavesNoReasonAndTellsWhatItUsed) {
 TEST(Process, TheLastLineOfItsLogIsTheReasonOfItsFailure) {
   const TemporaryFolder scratch;
   const auto log = scratch.path() / "log";
-  const ProcessEnd end =
+  const stages::ProcessEnd end =
       run_shell("echo begin >&2; echo 'lidarena: file: is broken' >&2; exit 2", {}, log);
   EXPECT_EQ(end.exit_code, 2);
   EXPECT_EQ(end.reason, "file: is broken");
   EXPECT_EQ(dataset::read_bytes(log), "begin\nlidarena: file: is broken\n");
   EXPECT_THAT(run_shell("exit 7").reason, HasSubstr("exit code 7"));
-  const ProcessEnd killed = run_shell("kill -9 $$");
+  const stages::ProcessEnd killed = run_shell("kill -9 $$");
   EXPECT_EQ(killed.exit_code, -1);
   EXPECT_THAT(killed.reason, AllOf(HasSubstr("signal 9"), HasSubstr("out of memory")));
-  Command missing;
+  stages::Command missing;
   missing.arguments = {"/no/such/program"};
-  EXPECT_EQ(Process(missing).wait().exit_code, 127);
+  EXPECT_EQ(stages::Process(missing).wait().exit_code, 127);
 }
 
 TEST(Process, OneBeyondItsTimeIsStoppedWithAReason) {
   const auto begin = std::chrono::steady_clock::now();
-  const ProcessEnd late = run_shell("while :; do :; done", {.seconds = 0.3});
+  const stages::ProcessEnd late = run_shell("while :; do :; done", {.seconds = 0.3});
   EXPECT_EQ(late.exit_code, -1);
   EXPECT_THAT(late.reason, HasSubstr("not finished within its time limit"));
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(30));
@@ -87,19 +87,19 @@ TEST(Process, OneThatSleepsStallsAndOneThatComputesDoesNot) {
 }
 
 TEST(Process, OneThatTakesTooMuchMemoryIsStopped) {
-  const ProcessEnd end =
+  const stages::ProcessEnd end =
       run_shell("x=$(head -c 300000000 /dev/zero | tr '\\0' x); sleep 60", {.memory_mb = 200.0});
   EXPECT_THAT(end.reason, HasSubstr("more than its limit of 200 MB"));
 }
 
 TEST(Process, UsesOnlyTheCoresItIsGiven) {
   const TemporaryFolder scratch;
-  Command command;
+  stages::Command command;
   command.arguments = {"/bin/sh", "-c", "grep Cpus_allowed_list /proc/self/status"};
   command.output = scratch.path() / "out";
-  const int last = usable_cores().back();
+  const int last = stages::usable_cores().back();
   command.cores = {last};
-  EXPECT_EQ(Process(command).wait().exit_code, 0);
+  EXPECT_EQ(stages::Process(command).wait().exit_code, 0);
   EXPECT_EQ(dataset::read_bytes(command.output),
             "Cpus_allowed_list:\t" + std::to_string(last) + "\n");
 }
@@ -285,9 +285,16 @@ TEST(RunStudy, ARunScoredAgainLaterHasTheSameMetrics) {
   const Json metrics = dataset::read_json(run / "metrics.json");
   EXPECT_FALSE(metrics.contains("resources")) << "resources differ between repeated runs";
   ASSERT_TRUE(metrics.at("maps").at("reprojected").at("first_pose").at("identity").is_object());
-  // simulates the flight, whose data are gone
-  EXPECT_FALSE(score_run(run, Parallel(1), log).resources.empty());
-  EXPECT_EQ(dataset::read_json(run / "metrics.json"), metrics);
+  // again, without the hits, which are gone: by the rays of the map's points
+  EXPECT_FALSE(stages::score_run(run, {}, Parallel(1), log).resources.empty());
+  const Json again = dataset::read_json(run / "metrics.json");
+  EXPECT_EQ(again.at("final"), metrics.at("final"));
+  const Json &map = metrics.at("maps").at("reprojected").at("first_pose"),
+             &map_again = again.at("maps").at("reprojected").at("first_pose");
+  EXPECT_EQ(map_again.at("histogram"), map.at("histogram"));
+  EXPECT_TRUE(map_again.at("completeness").is_object());
+  EXPECT_FALSE(stages::score_run(run, {stages::ScorePart::kTrajectory}, Parallel(1), log)
+                   .maps.reprojected.has_value());
 }
 
 TEST(RunStudy, WhereMapsAreNotKeptTheFiguresAreTheSame) {
@@ -347,9 +354,9 @@ TEST(RunStudy, AnExternalProgramIsScoredLikeOursAndItsFailureIsARow) {
   EXPECT_EQ(dataset::read_run(run("fine")).motion.size(), 4U);
   EXPECT_FALSE(std::filesystem::exists(run("still") / "input")) << "the recording must be deleted";
   const Json silent = dataset::read_json(run("silent") / "manifest.json");
-  EXPECT_THAT(silent.at("failed").get<std::string>(), HasSubstr("left no trajectory.tum"));
+  EXPECT_THAT(silent.at("reason").get<std::string>(), HasSubstr("left no trajectory.tum"));
   const Json broken = dataset::read_json(run("broken") / "manifest.json");
-  EXPECT_THAT(broken.at("failed").get<std::string>(), HasSubstr("exit code 3"));
+  EXPECT_THAT(broken.at("reason").get<std::string>(), HasSubstr("exit code 3"));
   EXPECT_EQ(dataset::read_bytes(run("broken") / "program.log"), "no such luck\n");
   const StudyOutcome again = run_study(spec, configs(), scratch.path(), with_program(), log);
   EXPECT_EQ(again.reused, 2U) << "failed runs must be tried again";

@@ -102,7 +102,7 @@ TEST_F(Evaluate, SeveralTrajectoriesBecomeRowsAndAFailureOneOfThem) {
 TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
   write("crashed/manifest.json",
         R"({"kind": "run", "algorithm": "x", "preset": "y", "sensor": "z",
-            "dataset": "nowhere", "failed": "killed by SIGSEGV"})");
+            "dataset": "nowhere", "status": "failed", "reason": "killed by SIGSEGV"})");
   const Outcome alone = call("crashed");
   EXPECT_EQ(alone.exit_code, 1);
   EXPECT_THAT(alone.out, HasSubstr("status: failed: killed by SIGSEGV"));
@@ -114,7 +114,7 @@ TEST_F(Evaluate, ARunThatFailedInAStudyIsARowWithItsReason) {
 }
 
 TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
-  write_tum("truth.tum", tour, 100, "# world_from_body\n");
+  write_tum("truth.tum", tour, 100, "# world_from_body: time[s] x y z[m] qx qy qz qw\n");
   // 0.5 m along x from a body with yaw 0.3 t
   write_tum(
       "lidar.tum",
@@ -122,7 +122,7 @@ TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
         const Position p = tour(t);
         return Position{p[0] + 0.5 * std::cos(0.3 * t), p[1] + 0.5 * std::sin(0.3 * t), p[2]};
       },
-      10, "# map_from_lidar\n");
+      10, "# map_from_lidar: time[s] x y z[m] qx qy qz qw\n");
   const std::string files = " --trajectory lidar.tum --truth truth.tum";
   EXPECT_THAT(refusal(files), AllOf(HasSubstr("lidar.tum: contains poses of 'lidar'"),
                                     HasSubstr("those of 'body'; give --lever body_from_lidar=")));
@@ -131,7 +131,8 @@ TEST_F(Evaluate, AnotherBodyFrameIsRefusedUntilItsLeverIsGiven) {
   EXPECT_EQ(call("--lever body_from_lidar=0.5,0,0,0,0,0,1" + files).exit_code, 0);
   EXPECT_THAT(refusal("--lever 0.5,0,0" + files), HasSubstr("--lever"));
   // without frame names, the offset is detected and reported, and the file is scored unchanged
-  write("silent.tum", content(path("lidar.tum")).substr(17));
+  const std::string rows = content(path("lidar.tum"));
+  write("silent.tum", rows.substr(rows.find('\n') + 1));
   const Outcome warned = call("--trajectory silent.tum --truth truth.tum");
   EXPECT_THAT(warned.out, HasSubstr("another frame of the body, 0.5 m away"));
 }

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "adapters/gazebo/plugin/plugin_config.hpp"
+#include "lidarena/base/event.hpp"
 #include "lidarena/base/rig.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/event.hpp"
 #include "lidarena/dataset/recording.hpp"
 
 namespace lidarena::gazebo_plugin {
@@ -16,7 +16,7 @@ namespace lidarena::gazebo_plugin {
 class Output {
  public:
   virtual ~Output() = default;
-  virtual void write(const dataset::Event& event) = 0;
+  virtual void write(const Event& event) = 0;
   /// True pose of the link that carries the sensor; called at every step.
   virtual void write_truth(const StampedPose&) {}
   /// Completes the output; no further calls follow.

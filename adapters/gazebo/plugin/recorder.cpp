@@ -10,7 +10,7 @@ class Recorder final : public Output {
   Recorder(const PluginConfig& config, const Rig& rig, std::string source)
       : writer_(config.record, rig, {dataset::DatasetFormat::kMcap, config.dialect, false}),
         source_(std::move(source)) {}
-  void write(const dataset::Event& event) override { writer_.write(event); }
+  void write(const Event& event) override { writer_.write(event); }
   void write_truth(const StampedPose& pose) override { writer_.write_truth(pose); }
   void finish() override { writer_.finish({{"kind", "dataset"}, {"source", source_}}); }
 

@@ -67,7 +67,7 @@ void SensorRun::write(const StampedPose& body) {
   try {
     for (const auto& output : outputs_) {
       output->write_truth(body);
-      for (const dataset::Event& event : events_) output->write(event);
+      for (const Event& event : events_) output->write(event);
     }
   } catch (const Error& error) {
     has_failed_ = true;

@@ -53,8 +53,8 @@ class SensorRun {
   std::vector<std::unique_ptr<Output>> outputs_;
   Console console_;
   std::optional<sensor::SteppedSensor> sensor_;
-  std::vector<dataset::Event> events_;  ///< of the current step
-  std::optional<Time> start_, last_;    ///< first and last step
+  std::vector<Event> events_;         ///< of the current step
+  std::optional<Time> start_, last_;  ///< first and last step
   std::chrono::steady_clock::time_point start_wall_;
   double start_cpu_ = 0.0;                            ///< s, of the process
   double cast_seconds_ = 0.0, output_seconds_ = 0.0;  ///< CPU; the second includes the first

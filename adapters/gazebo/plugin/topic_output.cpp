@@ -38,7 +38,7 @@ class TopicOutput final : public Output {
     if (options_.frames) write_mounting();
   }
 
-  void write(const dataset::Event& event) override {
+  void write(const Event& event) override {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
       dataset::encode_driver_imu(*sample, driver_, imu_frame_, message_);
       return send(imu_, sample->stamp);
@@ -61,7 +61,7 @@ class TopicOutput final : public Output {
       ros::encode_clock(pose.stamp, message_);
       send(clock_, pose.stamp);
     }
-    ros::encode_odometry(pose, kWorldFrame, rig_.body_frame, message_);
+    ros::encode_odometry(pose, {kWorldFrame, rig_.body_frame}, message_);
     send(odometry_, pose.stamp);
     if (!options_.frames) return;
     const StampedTransform transform{pose.stamp, kWorldFrame, rig_.body_frame,

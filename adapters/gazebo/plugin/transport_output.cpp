@@ -63,7 +63,7 @@ class TransportOutput final : public Output {
         points_(node_.Advertise<gz_msgs::PointCloudPacked>(points_topic(config, rig))),
         imu_(node_.Advertise<gz_msgs::IMU>(imu_topic(config, rig))) {}
 
-  void write(const dataset::Event& event) override {
+  void write(const Event& event) override {
     if (const auto* scan = std::get_if<Scan>(&event.data)) {
       points_.Publish(packed(*scan, frame_));
       return;

@@ -6,10 +6,10 @@
 #include <string_view>
 #include <vector>
 
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/scan.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
 #include "lidarena/dataset/messages/point_times.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 
 namespace lidarena::dataset::ros {
 

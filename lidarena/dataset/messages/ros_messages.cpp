@@ -116,13 +116,18 @@ ImuSample decode_imu(Bytes message, std::string_view place, Encoding encoding) {
   return sample;
 }
 
-void encode_odometry(const StampedPose& pose, std::string_view frame_id,
-                     std::string_view child_frame_id, MessageWriter& out) {
+void encode_odometry(const StampedPose& pose, const OdometryFrames& frames, MessageWriter& out) {
   out.clear();
-  put_header(pose.stamp, frame_id, out);
-  out.put(child_frame_id);
+  put_header(pose.stamp, frames.frame_id, out);
+  out.put(frames.child_frame_id);
   put_pose(pose.world_from_body, out);
-  out.put_repeated(0.0, kCovariance6);
+  if (frames.covariance) {
+    for (Eigen::Index row = 0; row < 6; ++row)
+      for (Eigen::Index column = 0; column < 6; ++column)
+        out.put((*frames.covariance)(row, column));
+  } else {
+    out.put_repeated(0.0, kCovariance6);
+  }
   out.put_repeated(0.0, 6);  // twist
   out.put_repeated(0.0, kCovariance6);
 }

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/scan.hpp"
 #include "lidarena/base/trajectory.hpp"
 #include "lidarena/dataset/messages/message_stream.hpp"
-#include "lidarena/dataset/point_truth.hpp"
 
 /// Conversion of Lidarena's types to and from messages of ROS 2 or ROS 1 (whose types differ only
 /// in the header). Encoders start a new message in `out`; decoders throw InputError (place `place`)
@@ -69,8 +69,14 @@ void encode_imu(const ImuSample& sample, std::string_view frame_id, MessageWrite
 ImuSample decode_imu(Bytes message, std::string_view place, Encoding encoding = Encoding::kCdr);
 
 /// Only the pose: twist and covariances are 0.
-void encode_odometry(const StampedPose& pose, std::string_view frame_id,
-                     std::string_view child_frame_id, MessageWriter& out);
+/// What an Odometry message says besides its pose.
+struct OdometryFrames {
+  std::string_view frame_id;
+  std::string_view child_frame_id;
+  /// Of (translation, rotation), m and rad, along the axes of `frame_id`; unknown: zeros.
+  std::optional<Eigen::Matrix<double, 6, 6>> covariance{};
+};
+void encode_odometry(const StampedPose& pose, const OdometryFrames& frames, MessageWriter& out);
 StampedPose decode_odometry(Bytes message, std::string_view place,
                             Encoding encoding = Encoding::kCdr);
 

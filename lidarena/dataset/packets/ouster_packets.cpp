@@ -7,6 +7,7 @@
 
 #include "lidarena/dataset/firing_order.hpp"
 #include "lidarena/dataset/imu_units.hpp"
+#include "lidarena/dataset/packets/packet_field.hpp"
 
 namespace lidarena::dataset {
 namespace {
@@ -28,13 +29,6 @@ Layout layout_of(OusterProfile profile) {
       return {32, 12, 4, 0, 32};
   }
   return {};
-}
-
-template <class T>
-T at(Bytes bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/firing_order.hpp"
 #include "lidarena/dataset/messages/ros_messages.hpp"
+#include "lidarena/dataset/packets/packet_field.hpp"
 
 namespace lidarena::dataset {
 namespace {
@@ -41,13 +42,6 @@ double height_m(std::uint8_t model, std::size_t laser) {
   const std::size_t step = laser % 2 == 0 ? laser / 2 : 8 + laser / 2;
   const auto& heights = model == kPuckHiRes ? kHiRes : kVlp;
   return 1e-3 * (step < 8 ? heights[step] : -heights[15 - step]);
-}
-
-template <class T>
-T at(Bytes bytes, std::size_t offset) {
-  T value;
-  std::memcpy(&value, bytes.data() + offset, sizeof value);
-  return value;
 }
 
 int azimuth_of(Bytes packet, std::size_t block) {

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMinRate = 0.05;  // rad/s RMS
 constexpr std::size_t kMinPairs = 20;
 constexpr double kMaxOffset_s = 0.5;
-constexpr double kStep_s = 0.01;
+constexpr double kGridStep_s = 0.01;
 constexpr double kMinSecondAxis = 0.1;  // of the largest singular value
 
 /// The mean angular rate of the body between two poses.
@@ -67,7 +67,7 @@ class RateIntegral {
   std::vector<Eigen::Vector3d> sums_;
 };
 
-struct Fit {
+struct RotationFit {
   Eigen::Matrix3d body_from_imu = Eigen::Matrix3d::Identity();
   double misfit = 0.0;  ///< RMS, rad/s
   double rate = 0.0;    ///< RMS, rad/s
@@ -75,7 +75,7 @@ struct Fit {
   std::size_t pairs = 0;
 };
 
-Fit fit(std::span<const Interval> intervals, const RateIntegral& gyro, double late_s) {
+RotationFit fit(std::span<const Interval> intervals, const RateIntegral& gyro, double late_s) {
   std::vector<std::pair<Eigen::Vector3d, Eigen::Vector3d>> pairs;
   const Time late = from_seconds(late_s);
   Eigen::Vector3d mean_body = Eigen::Vector3d::Zero(), mean_imu = Eigen::Vector3d::Zero();
@@ -86,7 +86,7 @@ Fit fit(std::span<const Interval> intervals, const RateIntegral& gyro, double la
       mean_imu += *rate;
     }
   }
-  Fit result;
+  RotationFit result;
   result.pairs = pairs.size();
   if (pairs.size() < kMinPairs) return result;
   mean_body /= static_cast<double>(pairs.size());
@@ -112,19 +112,19 @@ Fit fit(std::span<const Interval> intervals, const RateIntegral& gyro, double la
 
 /// The offset with the least misfit, refined by the parabola through its neighbors.
 double best_offset(std::span<const Interval> intervals, const RateIntegral& gyro) {
-  const int steps = static_cast<int>(kMaxOffset_s / kStep_s);
+  const int steps = static_cast<int>(kMaxOffset_s / kGridStep_s);
   std::vector<double> misfits;
   for (int i = -steps; i <= steps; ++i) {
-    const Fit at = fit(intervals, gyro, i * kStep_s);
+    const RotationFit at = fit(intervals, gyro, i * kGridStep_s);
     misfits.push_back(at.pairs < kMinPairs ? 1e9 : at.misfit);
   }
   const auto least = std::ranges::min_element(misfits);
-  const double offset = (static_cast<double>(least - misfits.begin()) - steps) * kStep_s;
+  const double offset = (static_cast<double>(least - misfits.begin()) - steps) * kGridStep_s;
   if (least == misfits.begin() || least + 1 == misfits.end()) return offset;
   const double before = std::pow(*(least - 1), 2), here = std::pow(*least, 2),
                after = std::pow(*(least + 1), 2);
   const double bend = before - 2.0 * here + after;
-  return bend > 0.0 ? offset + 0.5 * kStep_s * (before - after) / bend : offset;
+  return bend > 0.0 ? offset + 0.5 * kGridStep_s * (before - after) / bend : offset;
 }
 
 }  // namespace
@@ -135,7 +135,7 @@ std::optional<ImuAlignment> align_imu(const Trajectory& trajectory,
   if (intervals.size() < kMinPairs || samples.size() < 2) return std::nullopt;
   const RateIntegral gyro(samples);
   const double late_s = best_offset(intervals, gyro);
-  const Fit best = fit(intervals, gyro, late_s);
+  const RotationFit best = fit(intervals, gyro, late_s);
   if (best.pairs < kMinPairs || best.rate < kMinRate) return std::nullopt;
   ImuAlignment alignment{late_s, 0.0, best.body_from_imu, best.rate, best.misfit, best.axes_known};
   const std::span all(intervals);

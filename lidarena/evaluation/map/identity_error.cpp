@@ -9,16 +9,16 @@ namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 
-IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const ReturnOrigin> origins,
-                       dataset::ScanTruthSource& truth) {
+IdentifiedMap identify(const dataset::Cloud& map, ScanTruthSource& truth) {
+  const std::vector<dataset::ReturnOrigin>& origins = map.origins;
   IdentifiedMap identified;
   std::size_t next = 0;
   for (std::uint32_t scan = 0; next < origins.size(); ++scan) {
-    const std::optional<dataset::ScanTruth> hits = truth.next();
+    const std::optional<ScanTruth> hits = truth.next();
     if (!hits) break;
     for (; next < origins.size() && origins[next].scan == scan; ++next) {
       if (origins[next].point >= hits->points.size()) continue;
-      identified.points.push_back(map[next]);
+      identified.points.push_back(map.points[next]);
       identified.hits.push_back(hits->points[origins[next].point]);
     }
   }
@@ -28,7 +28,7 @@ IdentifiedMap identify(std::span<const Eigen::Vector3f> map, std::span<const Ret
 IdentityError identity_error(const IdentifiedMap& map, const Pose& mesh_from_map) {
   std::vector<double> distance, normal, tangential;
   for (std::size_t i = 0; i < map.points.size(); ++i) {
-    const dataset::PointTruth& hit = map.hits[i];
+    const PointTruth& hit = map.hits[i];
     const Vector3d error =
         mesh_from_map * map.points[i].cast<double>() - hit.position.cast<double>();
     const double across = std::abs(hit.normal.cast<double>().dot(error));

@@ -3,9 +3,7 @@
 
 #include <cmath>
 #include <limits>
-#include <variant>
 
-#include "lidarena/evaluation/map/lidar_poses.hpp"
 #include "lidarena/evaluation/map/point_scores.hpp"
 #include "lidarena/map/point_map.hpp"
 
@@ -66,10 +64,10 @@ class Observation {
 
 /// Finds the triangles from the positions, because the truth's indices are those of the simulator's
 /// mesh.
-void add_hits(const std::vector<dataset::PointTruth>& hits, const world::World& world,
+void add_hits(const std::vector<PointTruth>& hits, const world::World& world,
               const Parallel& parallel, Observation& observation) {
   std::vector<Vector3d> positions;
-  for (const dataset::PointTruth& hit : hits) positions.push_back(hit.position.cast<double>());
+  for (const PointTruth& hit : hits) positions.push_back(hit.position.cast<double>());
   std::vector<world::ClosestPoint> nearest(hits.size());
   world.closest_points(positions, kOnMesh_m, nearest, parallel);
   for (std::size_t i = 0; i < hits.size(); ++i) {
@@ -109,12 +107,12 @@ void add_rays(const std::vector<Measured>& measured, const world::World& world,
 
 }  // namespace
 
-ObservedSurface observe(dataset::ScanTruthSource& truth, const world::World& world,
+ObservedSurface observe(ScanTruthSource& truth, const world::World& world,
                         const Parallel& parallel) {
   Observation observation(world);
-  std::vector<dataset::PointTruth> batch;
-  while (const std::optional<dataset::ScanTruth> scan = truth.next()) {
-    for (const dataset::PointTruth& point : scan->points) {
+  std::vector<PointTruth> batch;
+  while (const std::optional<ScanTruth> scan = truth.next()) {
+    for (const PointTruth& point : scan->points) {
       if (observation.is_new(point.position.cast<double>())) batch.push_back(point);
     }
     if (batch.size() < kBatch) continue;
@@ -125,25 +123,34 @@ ObservedSurface observe(dataset::ScanTruthSource& truth, const world::World& wor
   return observation.finish();
 }
 
-ObservedSurface observe(dataset::EventSource& events, const std::string& lidar_id,
-                        const Pose& body_from_lidar, const Trajectory& truth,
-                        const world::World& world, const Parallel& parallel) {
+std::vector<TimedReturn> returns_of(const dataset::Cloud& map, const BodyMotion& motion,
+                                    const Pose& body_from_lidar) {
+  LidarPoses poses(motion, body_from_lidar);
+  std::vector<TimedReturn> returns;
+  returns.reserve(map.origins.size());
+  for (std::size_t i = 0; i < map.origins.size(); ++i) {
+    const Time stamp = from_seconds(map.origins[i].time_s);
+    const Pose* world_from_lidar = poses.at(stamp);
+    if (world_from_lidar == nullptr) continue;
+    returns.push_back({stamp, world_from_lidar->inverse() * map.points[i].cast<double>()});
+  }
+  return returns;
+}
+
+ObservedSurface observe(std::span<const TimedReturn> returns, const Pose& body_from_lidar,
+                        const Trajectory& truth, const world::World& world,
+                        const Parallel& parallel) {
   Observation observation(world);
   LidarPoses poses(truth, body_from_lidar);
   std::vector<Measured> batch;
-  while (const std::optional<dataset::Event> event = events.next()) {
-    const Scan* scan = std::get_if<Scan>(&event->data);
-    if (scan == nullptr || event->sensor_id != lidar_id) continue;
-    for (const Point& point : scan->points) {
-      const Pose* world_from_lidar = poses.at(time_of(*scan, point));
-      if (world_from_lidar == nullptr || !point.position.allFinite()) continue;
-      const Vector3d position = *world_from_lidar * point.position.cast<double>();
-      if (!observation.is_new(position)) continue;
-      const Vector3d origin = world_from_lidar->translation();
-      const Vector3d sensor_to_point = position - origin;
-      batch.push_back(
-          {{origin, sensor_to_point.normalized().cast<float>()}, sensor_to_point.norm()});
-    }
+  for (const TimedReturn& measured : returns) {
+    const Pose* world_from_lidar = poses.at(measured.stamp);
+    if (world_from_lidar == nullptr) continue;
+    const Vector3d position = *world_from_lidar * measured.position;
+    if (!observation.is_new(position)) continue;
+    const Vector3d origin = world_from_lidar->translation();
+    const Vector3d sensor_to_point = position - origin;
+    batch.push_back({{origin, sensor_to_point.normalized().cast<float>()}, sensor_to_point.norm()});
     if (batch.size() < kBatch) continue;
     add_rays(batch, world, parallel, observation);
     batch.clear();

@@ -7,9 +7,10 @@
 #include <string>
 #include <vector>
 
+#include "lidarena/base/point_truth.hpp"
 #include "lidarena/base/trajectory.hpp"
-#include "lidarena/dataset/event.hpp"
-#include "lidarena/dataset/point_truth.hpp"
+#include "lidarena/dataset/points/cloud.hpp"
+#include "lidarena/evaluation/map/lidar_poses.hpp"
 #include "lidarena/evaluation/map/signed_distance.hpp"
 #include "lidarena/world/world.hpp"
 
@@ -28,13 +29,23 @@ struct ObservedSurface {
 };
 
 /// From the true hits that the simulator recorded for each return.
-ObservedSurface observe(dataset::ScanTruthSource& truth, const world::World& world,
+ObservedSurface observe(ScanTruthSource& truth, const world::World& world,
                         const Parallel& parallel);
+
+/// A return in the LiDAR's frame at its own instant.
+struct TimedReturn {
+  Time stamp{0};
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// The returns of which a map with origins was made, by the motion that placed them.
+std::vector<TimedReturn> returns_of(const dataset::Cloud& map, const BodyMotion& motion,
+                                    const Pose& body_from_lidar);
 
 /// From the measurements only: each return's ray, placed by the true motion, is cast again. Returns
 /// whose ray hits the mesh more than 0.5 m from the measured range count as off the mesh.
-ObservedSurface observe(dataset::EventSource& events, const std::string& lidar_id,
-                        const Pose& body_from_lidar, const Trajectory& truth,
-                        const world::World& world, const Parallel& parallel);
+ObservedSurface observe(std::span<const TimedReturn> returns, const Pose& body_from_lidar,
+                        const Trajectory& truth, const world::World& world,
+                        const Parallel& parallel);
 
 }  // namespace lidarena::evaluation

@@ -2,10 +2,10 @@
 #include "lidarena/evaluation/map/reproject.hpp"
 
 #include <cmath>
-#include <utility>
 #include <variant>
+#include <vector>
 
-#include "lidarena/map/point_map.hpp"
+#include "lidarena/map/occupied_voxels.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -14,17 +14,17 @@ const Eigen::Vector3f kNowhere = Eigen::Vector3f::Constant(NAN);  // rejected by
 
 }  // namespace
 
-dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
-                         const Pose& body_from_lidar, const BodyMotion& motion, double voxel_size_m,
-                         ReprojectionCounts* counts, std::vector<ReturnOrigin>* origins) {
+ReprojectionCounts reproject(EventSource& events, const std::string& lidar_id,
+                             const Pose& body_from_lidar, const BodyMotion& motion,
+                             const std::function<void(const dataset::Cloud&)>& take,
+                             double voxel_size_m) {
   LidarPoses poses(motion, body_from_lidar);
-  map::PointMap map(voxel_size_m);
-  dataset::Cloud cloud;
+  map::OccupiedVoxels voxels(voxel_size_m);
   ReprojectionCounts seen;
   std::uint32_t scans = 0;
   std::vector<Eigen::Vector3f> placed;  // the scan's points in the world, kNowhere if dropped
-  std::vector<std::uint32_t> added;     // indices of those that were added to the map
-  while (const std::optional<dataset::Event> event = events.next()) {
+  std::vector<std::uint32_t> added;     // indices of those that are new in the map
+  while (const std::optional<Event> event = events.next()) {
     const Scan* scan = std::get_if<Scan>(&event->data);
     if (scan == nullptr || event->sensor_id != lidar_id) continue;
     if (!scan->timed) ++seen.untimed_scans;
@@ -43,16 +43,34 @@ dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_
       }
     }
     added.clear();
-    map.insert(placed, &added);
+    voxels.insert(placed, added);
+    dataset::Cloud part;
     for (const std::uint32_t i : added) {
-      cloud.intensity.push_back(scan->points[i].intensity);
-      if (origins != nullptr) origins->push_back({scans, i});
+      part.points.push_back(placed[i]);
+      part.intensity.push_back(scan->points[i].intensity);
+      part.origins.push_back({scans, i, to_seconds(time_of(*scan, scan->points[i]))});
     }
+    take(part);
     ++scans;
   }
-  cloud.points = map.take();
+  return seen;
+}
+
+dataset::Cloud reprojected(EventSource& events, const std::string& lidar_id,
+                           const Pose& body_from_lidar, const BodyMotion& motion,
+                           ReprojectionCounts* counts) {
+  dataset::Cloud map;
+  const auto append = [](auto& all, const auto& part) {
+    all.insert(all.end(), part.begin(), part.end());
+  };
+  const ReprojectionCounts seen =
+      reproject(events, lidar_id, body_from_lidar, motion, [&](const dataset::Cloud& part) {
+        append(map.points, part.points);
+        append(map.intensity, part.intensity);
+        append(map.origins, part.origins);
+      });
   if (counts != nullptr) *counts = seen;
-  return cloud;
+  return map;
 }
 
 }  // namespace lidarena::evaluation

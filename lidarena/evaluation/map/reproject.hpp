@@ -2,11 +2,10 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <functional>
 #include <string>
-#include <vector>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/evaluation/map/lidar_poses.hpp"
 
@@ -20,19 +19,18 @@ struct ReprojectionCounts {
   std::size_t untimed_scans = 0;  ///< scans without per-point times: moved as if measured at once
 };
 
-/// The return from which a point of the map was made.
-struct ReturnOrigin {
-  std::uint32_t scan = 0;   ///< index among the scans of the chosen LiDAR
-  std::uint32_t point = 0;  ///< index into the scan
-};
-
 /// A map built in the same way for every algorithm: each return is moved with the pose at its own
 /// instant, and the first return in each voxel is kept. Never averaged, because centroids hide
-/// noise. In the world frame of the estimate. `origins`, if given, receives one entry per point of
-/// the map.
-dataset::Cloud reproject(dataset::EventSource& events, const std::string& lidar_id,
-                         const Pose& body_from_lidar, const BodyMotion& motion,
-                         double voxel_size_m = 0.02, ReprojectionCounts* counts = nullptr,
-                         std::vector<ReturnOrigin>* origins = nullptr);
+/// noise. In the world frame of the estimate, with intensity and origin of each point. `take` gets
+/// the points that each scan adds.
+ReprojectionCounts reproject(EventSource& events, const std::string& lidar_id,
+                             const Pose& body_from_lidar, const BodyMotion& motion,
+                             const std::function<void(const dataset::Cloud&)>& take,
+                             double voxel_size_m = 0.02);
+
+/// The same as one cloud.
+dataset::Cloud reprojected(EventSource& events, const std::string& lidar_id,
+                           const Pose& body_from_lidar, const BodyMotion& motion,
+                           ReprojectionCounts* counts = nullptr);
 
 }  // namespace lidarena::evaluation

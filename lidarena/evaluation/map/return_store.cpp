@@ -75,11 +75,12 @@ void ReturnStore::keep(const Scan& scan) {
 }
 
 /// Passes events on.
-class ReturnStore::Keeper : public dataset::EventSource {
+class ReturnStore::Keeper : public EventSource {
  public:
-  Keeper(ReturnStore& store, dataset::EventSource& events) : store_(store), events_(events) {}
-  std::optional<dataset::Event> next() override {
-    std::optional<dataset::Event> event = events_.next();
+  Keeper(ReturnStore& store, std::unique_ptr<EventSource> events)
+      : store_(store), events_(std::move(events)) {}
+  std::optional<Event> next() override {
+    std::optional<Event> event = events_->next();
     const auto* scan = event ? std::get_if<Scan>(&event->data) : nullptr;
     if (scan != nullptr && event->sensor_id == store_.lidar_id_) store_.keep(*scan);
     return event;
@@ -87,16 +88,16 @@ class ReturnStore::Keeper : public dataset::EventSource {
 
  private:
   ReturnStore& store_;
-  dataset::EventSource& events_;
+  std::unique_ptr<EventSource> events_;
 };
 
-class ReturnStore::Reader : public dataset::EventSource {
+class ReturnStore::Reader : public EventSource {
  public:
   explicit Reader(const ReturnStore& store) : store_(store) {
     if (std::fflush(file()) != 0) fail(store.folder_, "cannot keep the scored returns");
     std::rewind(file());
   }
-  std::optional<dataset::Event> next() override {
+  std::optional<Event> next() override {
     ScanHeader header;
     if (std::fread(&header, sizeof(header), 1, file()) != 1) return std::nullopt;
     std::vector<KeptPoint> kept(header.points);
@@ -104,7 +105,7 @@ class ReturnStore::Reader : public dataset::EventSource {
       fail(store_.folder_, "cannot read the scored returns again");
     Scan scan{Time{header.stamp_ns}, {}, header.timed != 0};
     for (const KeptPoint& point : kept) scan.points.push_back(point_of(point));
-    return dataset::Event{store_.lidar_id_, std::move(scan)};
+    return Event{store_.lidar_id_, std::move(scan)};
   }
 
  private:
@@ -112,12 +113,10 @@ class ReturnStore::Reader : public dataset::EventSource {
   const ReturnStore& store_;
 };
 
-std::unique_ptr<dataset::EventSource> ReturnStore::keep_from(dataset::EventSource& events) {
-  return std::make_unique<Keeper>(*this, events);
+std::unique_ptr<EventSource> ReturnStore::keep_from(std::unique_ptr<EventSource> events) {
+  return std::make_unique<Keeper>(*this, std::move(events));
 }
 
-std::unique_ptr<dataset::EventSource> ReturnStore::read() const {
-  return std::make_unique<Reader>(*this);
-}
+std::unique_ptr<EventSource> ReturnStore::read() const { return std::make_unique<Reader>(*this); }
 
 }  // namespace lidarena::evaluation

@@ -6,7 +6,7 @@
 #include <memory>
 #include <string>
 
-#include "lidarena/dataset/event.hpp"
+#include "lidarena/base/event.hpp"
 
 namespace lidarena::evaluation {
 
@@ -19,11 +19,11 @@ class ReturnStore {
   /// Throws Error if it cannot be created.
   ReturnStore(const std::filesystem::path& folder, std::string lidar_id, std::size_t max_returns);
 
-  /// `events` unchanged, each scan of the LiDAR being kept on its way. Both must outlive the
+  /// `events` unchanged, each scan of the LiDAR being kept on its way. The store must outlive the
   /// returned source, which throws Error when the disk is full.
-  std::unique_ptr<dataset::EventSource> keep_from(dataset::EventSource& events);
+  std::unique_ptr<EventSource> keep_from(std::unique_ptr<EventSource> events);
   /// The kept scans, from the first on. One source at a time; the store must outlive it.
-  std::unique_ptr<dataset::EventSource> read() const;
+  std::unique_ptr<EventSource> read() const;
 
  private:
   class Keeper;

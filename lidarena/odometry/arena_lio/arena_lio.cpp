@@ -9,6 +9,7 @@
 
 #include "lidarena/base/so3.hpp"
 #include "lidarena/map/voxel_filter.hpp"
+#include "lidarena/odometry/arena_lio/lidar_covariance.hpp"
 
 namespace lidarena::odometry::arena_lio {
 namespace {
@@ -59,8 +60,8 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
     : config_(config),
       lidar_from_body_(lidar.body_from_lidar.inverse()),
       map_from_start_(map::grid_from_points(kGrid)),
-      world_(imu.body_from_imu *
-             make_pose(Eigen::Matrix3d(map_from_start_.transpose()), Eigen::Vector3d::Zero())),
+      world_from_map_(imu.body_from_imu * make_pose(Eigen::Matrix3d(map_from_start_.transpose()),
+                                                    Eigen::Vector3d::Zero())),
       imu_from_lidar_(imu.body_from_imu.inverse() * lidar.body_from_lidar),
       noise_(noise_for(imu, config)),
       parallel_(std::move(parallel)),
@@ -72,15 +73,14 @@ ArenaLio::ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& 
   estimate_.state.imu_from_lidar = imu_from_lidar_;
 }
 
-ScanResult ArenaLio::register_scan(const Scan& scan) {
+ScanResult ArenaLio::track(const Scan& scan) {
   const Time end = scan_end(scan);
-  if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   const std::vector<ImuSample> samples = new_samples(end);
   const std::vector<estimation::ImuInterval> intervals = intervals_until(end);
   const bool starts = !started_;
   if (starts && !start(samples)) {
     using enum ScanStatus;
-    return finish_scan(scan.stamp, end, scan.points.empty() ? kTooFewPoints : kInitializing, {});
+    return finish_scan(scan.stamp, end, scan.points.empty() ? kTooFewPoints : kInitializing, 0, {});
   }
   const Scan usable = usable_points(scan, config_.min_range_m);
   if (opening_) begin_again({usable, end, intervals});
@@ -96,15 +96,14 @@ ScanResult ArenaLio::register_scan(const Scan& scan) {
   track_ = estimation::bent_track(std::move(track_), end, estimate_.state.world_from_imu());
   const std::vector<Eigen::Vector3f> points = deskewed(usable);
   if (!tracking_.contradicts()) grow_map(points);
-  publish(points);
-  return finish_scan(scan.stamp, end, status,
-                     {.points = points.size(),
-                      .keypoints = found.keypoints,
-                      .matches = found.agreement.on_planes,
-                      .near_planes = found.agreement.near_planes,
-                      .iterations = found.update.evaluations,
-                      .map_points = map_.fine().size(),
-                      .standing = still});
+  registered_scan_ = transformed(world_from_map_ * estimate_.state.world_from_lidar(), points);
+  return finish_scan(scan.stamp, end, status, points.size(),
+                     {{"keypoints", found.keypoints},
+                      {"matches", found.agreement.on_planes},
+                      {"near_planes", found.agreement.near_planes},
+                      {"iterations", found.update.evaluations},
+                      {"map_points", map_.fine().size()},
+                      {"standing", still}});
 }
 
 ArenaLio::Match ArenaLio::match(const Scan& usable) const {
@@ -156,6 +155,10 @@ bool ArenaLio::start(const std::vector<ImuSample>& samples) {
   started_ = true;
   if (!begin->still) opening_ = {{}, estimate_};
   imu_.set_accel_scale(accel_scale_);
+  Pose leveled = Pose::Identity();
+  leveled.linear() = estimation::level_rotation(up().direction);
+  world_from_map_ = leveled * world_from_map_;
+  for (StampedPose& pose : poses_) pose.world_from_body = leveled * pose.world_from_body;
   start_samples_ = {};
   return true;
 }
@@ -199,12 +202,18 @@ void ArenaLio::replay_opening() {
     }
     insert(deskewed(scan.usable));
     const auto published = std::ranges::find(poses_, scan.end, &StampedPose::stamp);
-    if (published != poses_.end()) published->world_from_body = start_from_body();
+    if (published != poses_.end()) published->world_from_body = world_from_body();
   }
 }
 
-Pose ArenaLio::start_from_body() const {
-  return world_.start_from_map() * estimate_.state.world_from_lidar() * lidar_from_body_;
+Pose ArenaLio::world_from_body() const {
+  return world_from_map_ * estimate_.state.world_from_lidar() * lidar_from_body_;
+}
+
+UpDirection ArenaLio::up() const {
+  const auto of_gravity = estimate_.covariance.bottomRightCorner<2, 2>();
+  return {-(world_from_map_.linear() * estimate_.state.gravity).normalized(),
+          std::sqrt(of_gravity.trace())};
 }
 
 bool ArenaLio::stands(const std::vector<ImuSample>& samples, const State& predicted) {
@@ -275,74 +284,51 @@ void ArenaLio::grow_map(const std::vector<Eigen::Vector3f>& points) {
   map_.follow(estimate_.state.world_from_lidar().translation().cast<float>());
 }
 
-void ArenaLio::publish(const std::vector<Eigen::Vector3f>& points) {
-  const auto of_gravity = estimate_.covariance.bottomRightCorner<2, 2>();
-  world_.level(estimate_.state.gravity, std::sqrt(of_gravity.trace()));
-  registered_scan_ =
-      transformed(world_.world_from_map() * estimate_.state.world_from_lidar(), points);
-}
-
-/// A scan out of time order is counted and changes nothing else.
-ScanResult ArenaLio::refused_scan() {
-  ++scans_refused_;
-  const Time last = poses_.back().stamp;
-  return finish_scan(last, last, ScanStatus::kTooFewPoints, {});
-}
-
-ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status,
-                                 const ScanCounters& counters) {
+ScanResult ArenaLio::finish_scan(Time begin, Time end, ScanStatus status, std::size_t points,
+                                 ScanDetails details) {
   const State& state = estimate_.state;
-  const Pose map_from_body = state.world_from_lidar() * lidar_from_body_;
-  const Pose world_from_map = world_.world_from_map();
   ScanResult result;
-  result.estimate = {end, world_from_map * map_from_body};
+  result.estimate = {end, world_from_body()};
   result.status = status;
   if (started_) {
-    result.covariance =
-        estimation::body_covariance(of_lidar(estimate_), world_from_map.linear(), lidar_from_body_);
+    result.covariance = estimation::body_covariance(of_lidar(estimate_), world_from_map_.linear(),
+                                                    lidar_from_body_);
+    result.up = up();
   }
   result.motion =
-      estimation::motion_along(track_, begin, end, end, world_from_map * state.world_from_imu(),
+      estimation::motion_along(track_, begin, end, end, world_from_map_ * state.world_from_imu(),
                                state.imu_from_lidar * lidar_from_body_);
-  result.counters = counters;
-  result.counters.imu_gap_s = longest_gap_s_;
-  result.counters.imu_saturated = saturated_;
-  result.counters.imu_refused = imu_.refused();
-  result.counters.imu_delay_s = gyro_.delay_s();
-  result.counters.scans_refused = scans_refused_;
-  result.counters.accel_scale = accel_scale_;
+  result.counters = {.points = points, .imu_saturated = saturated_};
   const Pose moved = imu_from_lidar_.inverse() * state.imu_from_lidar;
   const Eigen::Matrix3d turned =
       imu_from_lidar_.linear().transpose() * so3::exp(-gyro_.turned()) * imu_from_lidar_.linear();
-  result.counters.lidar_moved_m = moved.translation().norm();
-  result.counters.lidar_turned_rad = so3::angle(turned * moved.linear());
-  if (poses_.empty() || end > poses_.back().stamp) poses_.push_back({end, start_from_body()});
+  for (const auto& [name, value] : {std::pair("imu_gap_s", longest_gap_s_),
+                                    {"imu_refused", static_cast<double>(imu_.refused())},
+                                    {"imu_delay_s", gyro_.delay_s()},
+                                    {"accel_scale", accel_scale_},
+                                    {"lidar_moved_m", moved.translation().norm()},
+                                    {"lidar_turned_rad", so3::angle(turned * moved.linear())}})
+    details.emplace_back(name, value);
+  result.details = std::move(details);
+  if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);
   return result;
 }
 
-void ArenaLio::finish() {
-  if (!started_) return;
-  const Pose start_from_world = world_.world_from_start().inverse();
-  world_.level(estimate_.state.gravity, 0.0);
-  registered_scan_ = transformed(world_.world_from_start() * start_from_world, registered_scan_);
-}
-
-Trajectory ArenaLio::trajectory() const {
-  std::vector<StampedPose> poses = poses_;
-  for (StampedPose& pose : poses)
-    pose.world_from_body = world_.world_from_start() * pose.world_from_body;
-  return Trajectory(std::move(poses), "arena_lio");
+Pose ArenaLio::leveled_from_world() const {
+  Pose leveled = Pose::Identity();
+  if (started_) leveled.linear() = estimation::level_rotation(up().direction);
+  return leveled;
 }
 
 std::vector<Eigen::Vector3f> ArenaLio::map() const {
-  return transformed(world_.world_from_map(), map_.fine().centers());
+  return transformed(world_from_map_, map_.fine().centers());
 }
 
-std::map<std::string, std::uint64_t> ArenaLio::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", imu_.memory_bytes()},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
+MemoryUse ArenaLio::memory() const {
+  return {.map = map_.memory_bytes(),
+          .scan_buffer = registered_scan_.capacity() * sizeof(Eigen::Vector3f),
+          .backlog = imu_.memory_bytes(),
+          .other = poses_.capacity() * sizeof(StampedPose)};
 }
 
 }  // namespace lidarena::odometry::arena_lio

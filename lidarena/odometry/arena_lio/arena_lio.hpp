@@ -15,7 +15,6 @@
 #include "lidarena/odometry/arena_lio/initialization.hpp"
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
 #include "lidarena/odometry/arena_lio/tracking.hpp"
-#include "lidarena/odometry/arena_lio/upright_world.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry::arena_lio {
@@ -29,16 +28,18 @@ class ArenaLio : public Odometry {
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
   OdometryTraits traits() const override {
-    return {.needs_imu = true, .revises_past = true, .gravity_aligned = true};
+    return {
+        .needs_imu = true, .revises_past = true, .gravity_aligned = true, .publishes_scans = true};
   }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
-  ScanResult register_scan(const Scan& scan) override;
-  void finish() override;
-  Trajectory trajectory() const override;
+  Trajectory trajectory() const override { return Trajectory(poses_, "arena_lio"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  Pose world_from_start() const override { return world_.world_from_start(); }
-  std::map<std::string, std::uint64_t> memory() const override;
+  Pose leveled_from_world() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
   using State = estimation::InertialState;
@@ -90,18 +91,17 @@ class ArenaLio : public Odometry {
   void insert(const std::vector<Eigen::Vector3f>& points);
   /// The same, unless the sensor has long stood still; what is far is removed.
   void grow_map(const std::vector<Eigen::Vector3f>& points);
-  /// Places a scan (m, LiDAR frame at its end) in the world, which is leveled before.
-  void publish(const std::vector<Eigen::Vector3f>& points);
-  /// Pose of the body, as estimated.
-  Pose start_from_body() const;
-  ScanResult refused_scan();
+  Pose world_from_body() const;
+  /// By the gravity that the filter estimates.
+  UpDirection up() const;
   /// The result with the current estimate, which is that at `end`.
-  ScanResult finish_scan(Time begin, Time end, ScanStatus status, const ScanCounters& counters);
+  ScanResult finish_scan(Time begin, Time end, ScanStatus status, std::size_t points,
+                         ScanDetails details);
 
   Config config_;
   Pose lidar_from_body_;            ///< as told: the body stays where the LiDAR is told to be on it
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
-  UprightWorld world_;
+  Pose world_from_map_;
   Pose imu_from_lidar_;
   estimation::ImuNoise noise_;
   Parallel parallel_;
@@ -123,14 +123,13 @@ class ArenaLio : public Odometry {
   Eigen::Vector3d rate_change_ = Eigen::Vector3d::Zero();  ///< rad/s, from scan to scan, likewise
   std::optional<Eigen::Vector3d> mean_rate_;               ///< rad/s, of the last scan, map's axes
   Tracking tracking_;
-  std::size_t scans_refused_ = 0;
   StillDetector still_;
   Pose first_pose_ = Pose::Identity();  ///< of the IMU
   bool has_moved_ = false;
   map::LocalPlanes map_;
 
   Time scan_duration_;              ///< duration of the last scan that had points
-  std::vector<StampedPose> poses_;  ///< of the body, in its frame at the start
+  std::vector<StampedPose> poses_;  ///< of the body, in the world
   std::vector<Eigen::Vector3f> registered_scan_;
 };
 

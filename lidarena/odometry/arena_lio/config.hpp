@@ -25,12 +25,6 @@ struct Config {
   double accel_noise_factor = 3.0;
   double max_imu_gap_s = 0.05;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"scan_voxel_m", "scan_voxel_size_m"},     {"map_voxel_m", "map_cell_size_m"},
-      {"map_voxel_size_m", "map_cell_size_m"},   {"max_points", "max_scan_points"},
-      {"imu_noise_factor", "gyro_noise_factor"}, {"least_agreement", "min_inlier_share"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));

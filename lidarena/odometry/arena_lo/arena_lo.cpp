@@ -48,9 +48,8 @@ ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel
       map_({config.map_cell_size_m, config.max_cell_points, config.map_radius_m}),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
-ScanResult ArenaLo::register_scan(const Scan& scan) {
+ScanResult ArenaLo::track(const Scan& scan) {
   const estimation::ScanTimes times = estimation::times_of(scan, scan_duration_);
-  if (!poses_.empty() && times.last <= poses_.back().stamp) return refused_scan();
   const std::vector<Slice> slices = slices_of(scan, times, slice_duration(times), config_);
   if (map_.empty()) opening_ = {slices, {start(config_), slices.front().middle}, times.last};
   if (scans_mapped_ == 1) begin_again(slices, times.last);
@@ -68,19 +67,17 @@ ScanResult ArenaLo::register_scan(const Scan& scan) {
   if (used) grow_map(points);
   if (scans_mapped_ > 1) opening_.reset();
   registered_scan_ = transformed(body_from_lidar_, points);
-  return {poses_.back(),
-          status,
-          std::nullopt,
-          {.points = points.size(),
-           .keypoints = measurement.points,
-           .matches = measurement.on_planes,
-           .near_planes = measurement.near_planes,
-           .iterations = found.passes,
-           .map_points = map_.fine().size(),
-           .scans_refused = scans_refused_,
-           .inserted = used},
-          times.timed ? poses_within(last_, motion) : std::vector<StampedPose>{},
-          std::move(revised)};
+  return {.estimate = poses_.back(),
+          .status = status,
+          .counters = {.points = points.size()},
+          .motion = times.timed ? poses_within(last_, motion) : std::vector<StampedPose>{},
+          .revised = std::move(revised),
+          .details = {{"keypoints", measurement.points},
+                      {"matches", measurement.on_planes},
+                      {"near_planes", measurement.near_planes},
+                      {"iterations", found.passes},
+                      {"map_points", map_.fine().size()},
+                      {"inserted", used}}};
 }
 
 double ArenaLo::slice_duration(const estimation::ScanTimes& times) const {
@@ -195,26 +192,15 @@ StampedPose ArenaLo::body_pose(Time instant, const Pose& map_from_lidar) const {
   return {instant, body_from_lidar_ * map_from_lidar * body_from_lidar_.inverse()};
 }
 
-/// A scan out of time order is counted and changes nothing else.
-ScanResult ArenaLo::refused_scan() {
-  ++scans_refused_;
-  return {poses_.back(),
-          ScanStatus::kTooFewPoints,
-          std::nullopt,
-          {.scans_refused = scans_refused_},
-          {}};
-}
-
 std::vector<Eigen::Vector3f> ArenaLo::map() const {
   return transformed(body_from_lidar_, map_.fine().centers());
 }
 
-std::map<std::string, std::uint64_t> ArenaLo::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", poses_.capacity() * sizeof(StampedPose) +
-                        last_.steps.capacity() * sizeof(estimation::MotionStep)}};
+MemoryUse ArenaLo::memory() const {
+  return {.map = map_.memory_bytes(),
+          .scan_buffer = registered_scan_.capacity() * sizeof(Eigen::Vector3f),
+          .other = poses_.capacity() * sizeof(StampedPose) +
+                   last_.steps.capacity() * sizeof(estimation::MotionStep)};
 }
 
 }  // namespace lidarena::odometry::arena_lo

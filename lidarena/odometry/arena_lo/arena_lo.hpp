@@ -22,12 +22,14 @@ class ArenaLo : public Odometry {
  public:
   ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {.revises_past = true}; }
-  ScanResult register_scan(const Scan& scan) override;
+  OdometryTraits traits() const override { return {.revises_past = true, .publishes_scans = true}; }
   Trajectory trajectory() const override { return Trajectory(poses_, "arena_lo"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
   /// The first scan of the map, which is placed again once the second shows the velocity.
@@ -69,7 +71,6 @@ class ArenaLo : public Odometry {
   /// Poses of the body at the scan's begin, if points have times, and at the instants of `motion`.
   std::vector<StampedPose> poses_within(const ScanSteps& scan, const Motion& motion) const;
   StampedPose body_pose(Time instant, const Pose& map_from_lidar) const;
-  ScanResult refused_scan();
 
   Config config_;
   Pose body_from_lidar_;
@@ -85,8 +86,7 @@ class ArenaLo : public Odometry {
 
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
-  Time scan_duration_;             ///< of the last scan that had times
-  std::size_t scans_refused_ = 0;  ///< out of time order
+  Time scan_duration_;  ///< of the last scan that had times
 };
 
 }  // namespace lidarena::odometry::arena_lo

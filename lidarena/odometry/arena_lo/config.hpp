@@ -28,13 +28,6 @@ struct Config {
   double angular_acceleration_rad_s2 = 15.0;
   double angular_acceleration_time_s = 0.1;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"sampling", "min_range_m, max_range_m, scan_voxel_size_m and max_scan_points"},
-      {"registration", "max_passes and kernel_scale_m"},
-      {"prior", "acceleration_m_s2 and angular_acceleration_rad_s2"},
-      {"map", "map_cell_size_m, max_cell_points and map_radius_m"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("min_range_m", self.min_range_m, "m", "nearer points are dropped", at_least(0));

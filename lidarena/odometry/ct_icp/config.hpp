@@ -31,14 +31,6 @@ struct SamplingConfig {
   double initial_scan_voxel_size_m = 0.2;
   double initial_keypoint_voxel_size_m = 1.0;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"frame_voxel_m", "scan_voxel_size_m"},
-      {"keypoint_voxel_m", "keypoint_voxel_size_m"},
-      {"start_scans", "initial_scans"},
-      {"start_frame_voxel_m", "initial_scan_voxel_size_m"},
-      {"start_keypoint_voxel_m", "initial_keypoint_voxel_size_m"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("scan_voxel_size_m", self.scan_voxel_size_m, "m",
@@ -73,15 +65,6 @@ struct RegistrationConfig {
   double proximity_weight = 0.1;
   double max_plane_distance_m = 0.3;
   double robust_kernel_scale_m = 0.1;
-
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {
-      {"translation_threshold_m", "convergence_translation_m"},
-      {"rotation_threshold_rad", "convergence_rotation_rad"},
-      {"min_neighbours", "min_neighbors"},
-      {"max_neighbours", "max_neighbors"},
-      {"nearness_weight", "proximity_weight"},
-      {"loss_scale_m", "robust_kernel_scale_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -137,11 +120,6 @@ struct MapConfig {
   double min_point_spacing_m = 0.08;
   double radius_m = 100.0;
   bool always_insert = false;
-
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {{"voxel_m", "voxel_size_m"},
-                                                {"max_points", "max_points_per_voxel"},
-                                                {"spacing_m", "min_point_spacing_m"}};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

@@ -25,24 +25,19 @@ std::vector<Eigen::Vector3f> CtIcp::map() const {
   return transformed(path_.body_from_lidar(), map_.points());
 }
 
-std::map<std::string, std::uint64_t> CtIcp::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", path_.memory_bytes()}};
+MemoryUse CtIcp::memory() const {
+  return {.map = map_.memory_bytes(),
+          .scan_buffer = registered_scan_.capacity() * sizeof(Eigen::Vector3f),
+          .other = path_.memory_bytes()};
 }
 
-ScanResult CtIcp::unchanged(ScanStatus status) const {
-  return {path_.poses().back(), status, std::nullopt, {.scans_refused = scans_refused_}, {}};
+ScanResult CtIcp::ended() const {
+  return {.estimate = path_.poses().back(), .status = ScanStatus::kDiverged};
 }
 
-ScanResult CtIcp::register_scan(const Scan& scan) {
-  if (ended_) return unchanged(ScanStatus::kDiverged);
+ScanResult CtIcp::track(const Scan& scan) {
+  if (ended_) return ended();
   const estimation::ScanTimes times = path_.times_of(scan);
-  if (path_.is_out_of_order(times.last)) {
-    ++scans_refused_;
-    return unchanged(ScanStatus::kTooFewPoints);
-  }
   const bool rigid = !times.timed || map_.empty() || scans_ < kRigidScans;
   const auto points = timed_points(scan, times, rigid);
   const SamplingConfig& sampling = config_.sampling;
@@ -53,22 +48,20 @@ ScanResult CtIcp::register_scan(const Scan& scan) {
   const Registration found = align(keypoints);
   const ScanStatus status = status_of(found, points.size());
   ended_ = status == ScanStatus::kDiverged;
-  if (ended_) return unchanged(status);
+  if (ended_) return ended();
   const bool inserted = advance(found, frame, times);
 
   registered_scan_ = placed(path_.body_from_lidar(), found.motion, points, parallel_);
-  return {path_.poses().back(),
-          status,
-          std::nullopt,
-          {.points = points.size(),
-           .keypoints = keypoints.size(),
-           .matches = found.matches,
-           .iterations = found.iterations,
-           .map_points = map_.size(),
-           .scans_refused = scans_refused_,
-           .inserted = inserted},
-          rigid ? std::vector<StampedPose>{}
-                : body_poses(found.motion, times, path_.body_from_lidar())};
+  return {.estimate = path_.poses().back(),
+          .status = status,
+          .counters = {.points = points.size()},
+          .motion = rigid ? std::vector<StampedPose>{}
+                          : body_poses(found.motion, times, path_.body_from_lidar()),
+          .details = {{"keypoints", keypoints.size()},
+                      {"matches", found.matches},
+                      {"iterations", found.iterations},
+                      {"map_points", map_.size()},
+                      {"inserted", inserted}}};
 }
 
 Registration CtIcp::align(std::span<const TimedPoint> keypoints) const {

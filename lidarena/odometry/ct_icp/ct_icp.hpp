@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -24,18 +22,20 @@ class CtIcp : public Odometry {
  public:
   CtIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {}; }
-  ScanResult register_scan(const Scan& scan) override;
+  OdometryTraits traits() const override { return {.publishes_scans = true}; }
   Trajectory trajectory() const override { return Trajectory(path_.poses(), "ct_icp"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
   /// The first scans use finer voxels and more iterations.
   bool starting() const { return scans_ < config_.sampling.initial_scans; }
-  /// The result of a scan that changes nothing.
-  ScanResult unchanged(ScanStatus status) const;
+  /// The result of a scan at which the method ends, or after it.
+  ScanResult ended() const;
   /// Aligns the keypoints with the map, if there is one.
   Registration align(std::span<const TimedPoint> keypoints) const;
   ScanStatus status_of(const Registration& found, std::size_t points) const;
@@ -52,8 +52,7 @@ class CtIcp : public Odometry {
   MotionHistory history_;
 
   int scans_ = 0;
-  std::size_t scans_refused_ = 0;  ///< out of time order
-  bool ended_ = false;             ///< a registration has failed, where the program ends
+  bool ended_ = false;  ///< a registration has failed, where the program ends
 };
 
 }  // namespace lidarena::odometry::ct_icp

@@ -22,10 +22,6 @@ struct Config {
   double accel_bias_variance = 1e-4;
   bool keep_all_scans = true;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {{"scan_voxel_m", "scan_voxel_size_m"},
-                                                {"map_voxel_m", "map_voxel_size_m"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("point_stride", self.point_stride, "",
@@ -51,7 +47,8 @@ struct Config {
     v("accel_bias_variance", self.accel_bias_variance, "(m/s^3)^2",
       "random walk of the bias, of each IMU sample (b_acc_cov)", at_least(0));
     v("keep_all_scans", self.keep_all_scans, "",
-      "keep all points of all scans in memory, for a file to be written at the end (pcd_save_en)");
+      "count the memory of all points of all scans, which the program keeps for a file at the end "
+      "(pcd_save_en)");
   }
 };
 

@@ -14,6 +14,7 @@ constexpr double kConvergence = 1e-3;     // m, rad, m/s, ...: largest step of a
 constexpr double kPointVariance = 1e-3;   // m^2, of a point's distance from its plane
 constexpr std::size_t kMinPoints = 5;     // averaged points that a scan needs
 constexpr double kReportedImuGap = 0.05;  // s; longer pauses between samples are reported
+constexpr std::size_t kArchivedPointBytes = 48;  // of a point in the program's buffer
 
 }  // namespace
 
@@ -28,12 +29,11 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
       imu_(kReportedImuGap),
       box_(config.map_box_size_m, config.detection_range_m) {}
 
-ScanResult FastLio2::register_scan(const Scan& scan) {
+ScanResult FastLio2::track(const Scan& scan) {
   registered_scan_.clear();
   track_.clear();
   const Scan selected = selected_points(scan, config_, is_livox_);
   const Time end = clock_.end_of(selected);
-  if (!poses_.empty() && end <= poses_.back().stamp) return refused_scan();
   if (!started_) {
     start(end);
     const bool empty = scan.points.empty();
@@ -43,7 +43,7 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   const auto points = propagate_backward(selected, track_, estimate_.state, parallel_);
   const auto reduced = map::voxel_means(points, config_.scan_voxel_size_m);
   counters_.points = points.size();
-  counters_.keypoints = reduced.size();
+  details_.emplace_back("keypoints", reduced.size());
   box_.follow(estimate_.state.world_from_lidar().translation().cast<float>(), map_);
   if (reduced.size() < kMinPoints) return finish_scan(scan, end, ScanStatus::kTooFewPoints);
   if (map_.empty()) {
@@ -56,8 +56,8 @@ ScanResult FastLio2::register_scan(const Scan& scan) {
   const estimation::IteratedUpdate update = estimation::iterated_update(
       estimate_, std::ref(residuals), {config_.max_iterations, kConvergence, kPointVariance});
   estimate_ = update.estimate;
-  counters_.matches = update.points.count;
-  counters_.iterations = update.evaluations;
+  details_.emplace_back("matches", update.points.count);
+  details_.emplace_back("iterations", update.evaluations);
   const Pose world_from_lidar = estimate_.state.world_from_lidar();
   if (estimation::is_plausible(estimate_.state))
     insert_scan(transformed(world_from_lidar, reduced), residuals.neighbors(),
@@ -86,7 +86,7 @@ void FastLio2::predict(const ScanSpan& scan) {
   std::vector<ImuSample> samples = imu_.samples(Time::min(), scan.end);
   for (ImuSample& sample : samples) sample.accel *= accel_scale_;
   const double pause = estimation::longest_pause_s(samples, scan.end);
-  counters_.imu_gap_s = pause > kReportedImuGap ? pause : 0.0;
+  details_.emplace_back("imu_gap_s", pause > kReportedImuGap ? pause : 0.0);
   track_ = propagate_forward(samples, scan, config_, estimate_);
   estimated_ = scan.end;
   imu_.remove_before(scan.end);
@@ -94,17 +94,7 @@ void FastLio2::predict(const ScanSpan& scan) {
 
 void FastLio2::publish(std::vector<Eigen::Vector3f> in_world) {
   registered_scan_ = std::move(in_world);
-  if (!config_.keep_all_scans) return;
-  archive_.emplace_back().reserve(registered_scan_.size());
-  for (const Eigen::Vector3f& p : registered_scan_)
-    archive_.back().push_back({p.x(), p.y(), p.z()});
-  archived_bytes_ += archive_.back().size() * sizeof(ArchivedPoint);
-}
-
-/// A scan out of time order is counted and changes nothing else.
-ScanResult FastLio2::refused_scan() {
-  ++scans_refused_;
-  return finish_scan({}, poses_.back().stamp, ScanStatus::kTooFewPoints);
+  if (config_.keep_all_scans) archived_bytes_ += registered_scan_.size() * kArchivedPointBytes;
 }
 
 ScanResult FastLio2::finish_scan(const Scan& scan, Time end, ScanStatus status) {
@@ -117,11 +107,11 @@ ScanResult FastLio2::finish_scan(const Scan& scan, Time end, ScanStatus status) 
         estimation::body_covariance(estimate_, world_from_start_.linear(), imu_from_body_);
   result.motion =
       estimation::motion_along(track_, scan.stamp, end, end, world_from_imu, imu_from_body_);
-  counters_.map_points = map_.size();
-  counters_.imu_refused = imu_.refused();
-  counters_.scans_refused = scans_refused_;
-  counters_.accel_scale = accel_scale_;
+  details_.emplace_back("map_points", map_.size());
+  details_.emplace_back("imu_refused", imu_.refused());
+  details_.emplace_back("accel_scale", accel_scale_);
   result.counters = std::exchange(counters_, {});
+  result.details = std::exchange(details_, {});
   if (poses_.empty() || end > poses_.back().stamp) poses_.push_back(result.estimate);
   return result;
 }
@@ -130,12 +120,12 @@ std::vector<Eigen::Vector3f> FastLio2::map() const {
   return transformed(world_from_start_, map_.points());
 }
 
-std::map<std::string, std::uint64_t> FastLio2::memory() const {
+MemoryUse FastLio2::memory() const {
   const std::size_t published = registered_scan_.capacity() * sizeof(Eigen::Vector3f);
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", archived_bytes_ + published},
-          {"backlog", imu_.memory_bytes()},
-          {"other", poses_.capacity() * sizeof(StampedPose)}};
+  return {.map = map_.memory_bytes(),
+          .scan_buffer = archived_bytes_ + published,
+          .backlog = imu_.memory_bytes(),
+          .other = poses_.capacity() * sizeof(StampedPose)};
 }
 
 }  // namespace lidarena::odometry::fast_lio2

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <array>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -23,13 +22,15 @@ class FastLio2 : public Odometry {
  public:
   FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
 
-  OdometryTraits traits() const override { return {.needs_imu = true}; }
+  OdometryTraits traits() const override { return {.needs_imu = true, .publishes_scans = true}; }
   void register_imu(const ImuSample& sample) override { imu_.add(sample); }
-  ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override { return Trajectory(poses_, "fast_lio2"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
   /// Initializes with the samples up to `end`, except those of the first scan; the estimate is then
@@ -37,9 +38,9 @@ class FastLio2 : public Odometry {
   void start(Time end);
   /// Propagates the estimate to the end of the scan.
   void predict(const ScanSpan& scan);
-  /// Keeps the scan (m) as the program publishes it.
+  /// Keeps the scan (m) as the program publishes it. The program also keeps all scans before; here
+  /// the bytes of that buffer are counted, and the runner writes the scans to a file.
   void publish(std::vector<Eigen::Vector3f> in_world);
-  ScanResult refused_scan();
   /// The result with the current estimate, which is that at `end`.
   ScanResult finish_scan(const Scan& scan, Time end, ScanStatus status);
 
@@ -61,15 +62,12 @@ class FastLio2 : public Odometry {
   estimation::ImuTrack track_;  ///< of the last scan
   map::KdTree map_;
   MapBox box_;
-  ScanCounters counters_;  ///< of the scan at hand
-  std::size_t scans_refused_ = 0;
+  ScanCounters counters_;  ///< of the scan at hand, as are the details
+  ScanDetails details_;
 
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;
-  /// A point as stored in the program's buffer (48 bytes).
-  using ArchivedPoint = std::array<float, 12>;
-  std::vector<std::vector<ArchivedPoint>> archive_;  ///< by scan
-  std::size_t archived_bytes_ = 0;
+  std::size_t archived_bytes_ = 0;  ///< that the program's buffer of all scans would hold
 };
 
 }  // namespace lidarena::odometry::fast_lio2

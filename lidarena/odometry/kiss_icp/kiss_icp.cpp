@@ -31,22 +31,16 @@ std::vector<Eigen::Vector3f> KissIcp::map() const {
   return transformed(path_.body_from_lidar(), map_.points());
 }
 
-std::map<std::string, std::uint64_t> KissIcp::memory() const {
-  return {{"map", map_.memory_bytes()},
-          {"scan_buffer", registered_scan_.capacity() * sizeof(Eigen::Vector3f)},
-          {"backlog", 0},
-          {"other", path_.memory_bytes()}};
+MemoryUse KissIcp::memory() const {
+  return {.map = map_.memory_bytes(),
+          .scan_buffer = registered_scan_.capacity() * sizeof(Eigen::Vector3f),
+          .other = path_.memory_bytes()};
 }
 
-ScanResult KissIcp::refused_scan() const {
-  return {path_.poses().back(), ScanStatus::kTooFewPoints, std::nullopt, {}, {}};
-}
-
-ScanResult KissIcp::register_scan(const Scan& scan) {
+ScanResult KissIcp::track(const Scan& scan) {
   registered_scan_.clear();
   const estimation::ScanTimes times = path_.times_of(scan);
   const Time instant = pose_instant(config_.release, times);
-  if (path_.is_out_of_order(instant)) return refused_scan();
 
   const se3::Vector6 twist = deskews(scan) ? twist_within(times, motion_) : se3::Vector6::Zero();
   const Points points = preprocess(scan, times, twist, instant);
@@ -64,16 +58,15 @@ ScanResult KissIcp::register_scan(const Scan& scan) {
 
   advance(pose, map_points, times);
   append_transformed(path_.body_from_lidar() * pose, points, registered_scan_);
-  return {path_.poses().back(),
-          status,
-          std::nullopt,
-          {.points = points.size(),
-           .keypoints = keypoints.size(),
-           .matches = found.matches,
-           .iterations = found.iterations,
-           .map_points = map_.size(),
-           .threshold_m = sigma},
-          motion_within(times, twist)};
+  return {.estimate = path_.poses().back(),
+          .status = status,
+          .counters = {.points = points.size()},
+          .motion = motion_within(times, twist),
+          .details = {{"keypoints", keypoints.size()},
+                      {"matches", found.matches},
+                      {"iterations", found.iterations},
+                      {"map_points", map_.size()},
+                      {"threshold_m", sigma}}};
 }
 
 bool KissIcp::deskews(const Scan& scan) const {

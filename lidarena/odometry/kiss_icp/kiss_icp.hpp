@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <map>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "lidarena/base/parallel.hpp"
@@ -23,16 +21,16 @@ class KissIcp : public Odometry {
  public:
   KissIcp(const Config& config, const LidarInfo& lidar, Parallel parallel);
 
-  OdometryTraits traits() const override { return {}; }
-  ScanResult register_scan(const Scan& scan) override;
+  OdometryTraits traits() const override { return {.publishes_scans = true}; }
   Trajectory trajectory() const override { return Trajectory(path_.poses(), "kiss_icp"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
-  std::map<std::string, std::uint64_t> memory() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
-  /// The result of a scan that changes nothing.
-  ScanResult refused_scan() const;
   /// The scan's points within the range gate, in the lidar's frame at `instant`, for a lidar that
   /// moves with `twist`.
   Points preprocess(const Scan& scan, const estimation::ScanTimes& times, const se3::Vector6& twist,

@@ -68,18 +68,6 @@ struct Config {
   bool loop_closure = false;
   LoopRule loop;
 
-  /// Former names, for the message that names the new one.
-  static constexpr RenamedKey renamed_keys[] = {{"columns_by", "sensor"},
-                                                {"edge_leaf_m", "edge_voxel_size_m"},
-                                                {"surface_leaf_m", "surface_voxel_size_m"},
-                                                {"keyframe_distance_m", "keyframe_translation_m"},
-                                                {"keyframe_angle_rad", "keyframe_rotation_rad"},
-                                                {"submap_density_m", "submap_keyframe_spacing_m"},
-                                                {"gyro_noise", "gyro_noise_density"},
-                                                {"accel_noise", "accel_noise_density"},
-                                                {"gyro_walk", "gyro_bias_walk"},
-                                                {"accel_walk", "accel_bias_walk"}};
-
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("process_interval_s", self.process_interval_s, "s",

@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 namespace lidarena::odometry::lio_sam {
 namespace {
@@ -49,7 +50,7 @@ LioSam::LioSam(const Config& config, const LidarInfo& lidar, const ImuInfo& imu,
       submap_(voxels_),
       loops_(config, parallel_) {}
 
-ScanResult LioSam::register_scan(const Scan& scan) {
+ScanResult LioSam::track(const Scan& scan) {
   Within within{.end = end_in_message(scan), .track = {}};
   const ScanStatus waiting =
       scan.points.empty() ? ScanStatus::kTooFewPoints : ScanStatus::kInitializing;
@@ -61,23 +62,23 @@ ScanResult LioSam::register_scan(const Scan& scan) {
                      within, {});
 
   last_processed_ = scan.stamp;
-  ScanCounters counters;
-  map::Features features = features_of(scan, within, counters);
+  ScanResult counted;
+  map::Features features = features_of(scan, within, counted);
   if (features.surfaces.empty())
-    return processed(scan.stamp, ScanStatus::kTooFewPoints, within, counters);
+    return processed(scan.stamp, ScanStatus::kTooFewPoints, within, counted);
   const Pose before = world_from_lidar_;
   const Registration found = match(features, guess(), scan.stamp);
-  counters.matches = found.matches;
-  counters.iterations = found.iterations;
-  counters.degenerate_directions = found.degenerate_directions;
-  counters.map_points = submap_.size();
+  counted.counters.degenerate_directions = found.degenerate_directions;
+  counted.details.emplace_back("matches", found.matches);
+  counted.details.emplace_back("iterations", found.iterations);
+  counted.details.emplace_back("map_points", submap_.size());
   const ScanStatus status = status_of(found);
   if (status == ScanStatus::kDiverged)
-    return result_of({scan.stamp, predicted()}, status, within, counters);
+    return result_of({scan.stamp, predicted()}, status, within, counted);
   world_from_lidar_ = found.map_from_lidar;
   feed_back(before, found);
   keep(scan.stamp, std::move(features));
-  return processed(scan.stamp, status, within, counters);
+  return processed(scan.stamp, status, within, counted);
 }
 
 bool LioSam::is_due(Time stamp) const {
@@ -85,17 +86,17 @@ bool LioSam::is_due(Time stamp) const {
 }
 
 map::Features LioSam::features_of(const Scan& scan, const Within& within,
-                                  ScanCounters& counters) const {
+                                  ScanResult& counted) const {
   const estimation::ImageLayout& layout = rule_.layout;
   const Pose imu_from_lidar = body_from_imu_.inverse() * body_from_lidar_;
   const estimation::RangeImage image = estimation::project(
       scan, deskewed(scan, within.track, within.end + kImuMargin, imu_from_lidar, layout), layout);
   const map::Features all = extract_features(image, rule_, parallel_);
   map::Features features = map::thinned(all, voxels_);
-  counters.points = image.pixels.size();
-  counters.edges = all.edges.size();
-  counters.surfaces = all.surfaces.size();
-  counters.keypoints = features.edges.size() + features.surfaces.size();
+  counted.counters.points = image.pixels.size();
+  counted.details.emplace_back("edges", all.edges.size());
+  counted.details.emplace_back("surfaces", all.surfaces.size());
+  counted.details.emplace_back("keypoints", features.edges.size() + features.surfaces.size());
   return features;
 }
 
@@ -152,35 +153,39 @@ void LioSam::keep(Time stamp, map::Features features) {
   keyframes_.push_back({stamp, world_from_lidar_, std::move(features), 0});
   if (!loops_.close(keyframes_, previous_from_this)) return;
   map::move_to(loops_.poses(), keyframes_);
-  world_from_lidar_ = loops_.poses().back();
+  const Pose corrected = loops_.poses().back();
+  world_from_odom_ = orthonormalized(corrected * world_from_lidar_.inverse() * world_from_odom_);
+  world_from_lidar_ = corrected;
 }
 
 ScanResult LioSam::processed(Time stamp, ScanStatus status, const Within& within,
-                             ScanCounters counters) {
-  const bool registered = status != ScanStatus::kTooFewPoints || counters.matches;
+                             ScanResult counted) {
+  const bool registered =
+      status != ScanStatus::kTooFewPoints || counted.counters.degenerate_directions;
   const Pose world_from_lidar = registered ? world_from_lidar_ : predicted();
   const Pose anchor_from_lidar =
       keyframes_.empty()
           ? world_from_lidar
           : body_from_lidar_ * keyframes_.back().world_from_lidar.inverse() * world_from_lidar;
   poses_.add(stamp, anchor_from_lidar * body_from_lidar_.inverse());
-  return result_of({stamp, world_from_lidar}, status, within, counters);
+  return result_of({stamp, world_from_lidar}, status, within, std::move(counted));
 }
 
 ScanResult LioSam::result_of(const StampedPose& lidar, ScanStatus status, const Within& within,
-                             ScanCounters counters) const {
-  ScanResult result;
+                             ScanResult counted) const {
+  ScanResult result = std::move(counted);
   const Pose world_from_body = orthonormalized(lidar.world_from_body * body_from_lidar_.inverse());
   result.estimate = {lidar.stamp, world_from_body};
   result.status = status;
-  result.counters = counters;
-  result.counters.imu_gap_s = imu_.longest_gap_s();
-  result.counters.imu_refused = imu_.refused();
+  result.world_from_odom = world_from_odom_;
   result.counters.imu_restarts = imu_.resets();
-  result.counters.accel_scale = imu_.accel_scale();
-  result.counters.keyframes = keyframes_.size();
   result.counters.loops = loops_.accepted();
-  result.counters.loops_tried = loops_.tried();
+  for (const auto& [name, value] : {std::pair("imu_gap_s", imu_.longest_gap_s()),
+                                    {"imu_refused", static_cast<double>(imu_.refused())},
+                                    {"accel_scale", imu_.accel_scale()},
+                                    {"keyframes", static_cast<double>(keyframes_.size())},
+                                    {"loops_tried", static_cast<double>(loops_.tried())}})
+    result.details.emplace_back(name, value);
   if (status != ScanStatus::kDiverged)
     result.motion =
         estimation::motion_along(within.track, lidar.stamp, within.end, lidar.stamp,
@@ -195,11 +200,10 @@ Trajectory LioSam::trajectory() const {
   return Trajectory(poses_.placed(bodies), "lio_sam");
 }
 
-std::map<std::string, std::uint64_t> LioSam::memory() const {
-  return {{"map", map::memory_bytes(keyframes_) + submap_.memory_bytes()},
-          {"scan_buffer", 0},
-          {"backlog", imu_.memory_bytes()},
-          {"other", poses_.memory_bytes() + loops_.memory_bytes()}};
+MemoryUse LioSam::memory() const {
+  return {.map = map::memory_bytes(keyframes_) + submap_.memory_bytes(),
+          .backlog = imu_.memory_bytes(),
+          .other = poses_.memory_bytes() + loops_.memory_bytes()};
 }
 
 }  // namespace lidarena::odometry::lio_sam

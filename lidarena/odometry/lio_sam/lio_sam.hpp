@@ -34,10 +34,12 @@ class LioSam : public Odometry {
             .publishes_scans = false};
   }
   void register_imu(const ImuSample& sample) override { imu_.register_imu(sample); }
-  ScanResult register_scan(const Scan& scan) override;
   Trajectory trajectory() const override;
   std::vector<Eigen::Vector3f> map() const override { return map::points_of(keyframes_); }
-  std::map<std::string, std::uint64_t> memory() const override;
+  MemoryUse memory() const override;
+
+ protected:
+  ScanResult track(const Scan& scan) override;
 
  private:
   /// The motion within a scan, by the IMU.
@@ -46,7 +48,7 @@ class LioSam : public Odometry {
     estimation::ImuTrack track;
   };
   bool is_due(Time stamp) const;
-  map::Features features_of(const Scan& scan, const Within& within, ScanCounters& counters) const;
+  map::Features features_of(const Scan& scan, const Within& within, ScanResult& counted) const;
   /// Initial guess of the registration: the last pose and the motion of the IMU odometry since the
   /// latest guess that used it, which lies further back if the IMU odometry has been silent.
   Pose guess();
@@ -58,9 +60,9 @@ class LioSam : public Odometry {
   void keep(Time stamp, map::Features features);
   ScanStatus status_of(const Registration& found) const;
   /// Adds the latest pose to the trajectory.
-  ScanResult processed(Time stamp, ScanStatus status, const Within& within, ScanCounters counters);
+  ScanResult processed(Time stamp, ScanStatus status, const Within& within, ScanResult counted);
   ScanResult result_of(const StampedPose& lidar, ScanStatus status, const Within& within,
-                       ScanCounters counters) const;
+                       ScanResult counted) const;
   /// world_from_lidar_ and the motion since, by the IMU.
   Pose predicted() const { return world_from_lidar_ * imu_.motion_since_sent(); }
 
@@ -71,10 +73,11 @@ class LioSam : public Odometry {
   ImuOdometry imu_;
   std::optional<Time> last_processed_;
 
-  Pose world_from_lidar_;             ///< of the last processed scan
-  Pose last_match_;                   ///< of the last scan with enough features, before loops
-  Pose odom_from_lidar_;              ///< chain of the motions fed back, without loops
-  bool degenerate_ = false;           ///< the last registration was
+  Pose world_from_lidar_;  ///< of the last processed scan
+  Pose last_match_;        ///< of the last scan with enough features, before loops
+  Pose world_from_odom_ = Pose::Identity();  ///< by which loops have moved the pose
+  Pose odom_from_lidar_;                     ///< chain of the motions fed back, without loops
+  bool degenerate_ = false;                  ///< the last registration was
   std::optional<Pose> guess_origin_;  ///< of the IMU odometry, at the latest guess that used it
 
   std::vector<map::Keyframe> keyframes_;

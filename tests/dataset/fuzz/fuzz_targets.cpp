@@ -136,7 +136,9 @@ Target recordings(const char* ending, std::vector<std::string> corpus) {
 Target clouds(const char* ending) {
   const fs::path file = scratch() / (std::string("cloud.") + ending);
   const bool is_pcd = std::string_view(ending) == "pcd";
-  const Cloud cloud{{{1, 2, 3}, {4, 5, 6}}, {7, 8}, {}};
+  Cloud cloud;
+  cloud.points = {{1, 2, 3}, {4, 5, 6}};
+  cloud.intensity = {7, 8};
   is_pcd ? write_pcd(file, cloud) : write_ply(file, cloud);
   std::vector<std::string> corpus{text_of(file)};
   is_pcd ? write_sweep_pcd(file, sample::scan(0, 5)) : write_sweep_ply(file, sample::scan(0, 5));
@@ -304,7 +306,7 @@ Target messages() {
     keep();
     ros::encode_imu(sample::imu(0), "imu", out);
     keep();
-    ros::encode_odometry(sample::truth(1), "a", "b", out);
+    ros::encode_odometry(sample::truth(1), {"a", "b"}, out);
     keep();
     const ros::StampedTransform transform{sample::kStart, "a", "b", Pose::Identity()};
     ros::encode_transforms(std::span(&transform, 1), out);

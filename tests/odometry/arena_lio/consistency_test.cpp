@@ -79,20 +79,19 @@ std::vector<Errors> errors_over(const Recording& recording) {
   rig.imus.front().accel_noise_density = recording.accel_noise_density;
   const Config config = settings_for(rig.lidars.front());
   ArenaLio odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
-  std::optional<Time> first;
+  std::optional<StampedPose> first;  // at rest; it shows how the world was leveled
   std::vector<Errors> errors;
   int scans = 0;
-  for (const dataset::Event& event : synthetic::record(recording)) {
+  for (const Event& event : synthetic::record(recording)) {
     if (const auto* sample = std::get_if<ImuSample>(&event.data)) {
       odometry.register_imu(*sample);
       continue;
     }
     const ScanResult result = odometry.register_scan(std::get<Scan>(event.data));
-    if (!first) first = result.estimate.stamp;  // at rest
+    if (!first && result.covariance) first = result.estimate;
     if (++scans % kEvery != 0 || scans < 3 * kEvery) continue;
-    // The covariance is that of the pose in the map, without the lean of the published world.
-    const Pose truth = synthetic::truth(recording, *first, result.estimate.stamp);
-    errors.push_back(errors_of(result, odometry.world_from_start() * truth));
+    const Pose truth = synthetic::truth(recording, first->stamp, result.estimate.stamp);
+    errors.push_back(errors_of(result, first->world_from_body * truth));
   }
   return errors;
 }

@@ -13,7 +13,7 @@ namespace {
 using synthetic::Outcome;
 using synthetic::Recording;
 
-Outcome play_standing(const std::vector<dataset::Event>& events, const Recording& recording = {}) {
+Outcome play_standing(const std::vector<Event>& events, const Recording& recording = {}) {
   const Rig rig = synthetic::rig_of(recording);
   ArenaLio odometry(settings_for(rig.lidars.front()), rig.lidars.front(), rig.imus.front(),
                     Parallel(1));

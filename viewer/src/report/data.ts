@@ -7,6 +7,7 @@ export interface FigureInfo {
   label: string;
   unit: string;
   more_is_better: boolean;
+  in_runs: boolean; // a column of the list of runs
 }
 
 /** A kind of what can happen during a run, lidarena/dataset/run_events.hpp. */

@@ -28,7 +28,7 @@ export const MIN_ERROR_CM = 0.1; // likewise
 
 /** The parts of an algorithm's own memory: key, name, color. */
 export const MEMORY_PARTS = [
-  ["map_bytes", "map (tree)", "#2b6cb0"],
+  ["map_bytes", "map", "#2b6cb0"],
   ["scan_buffer_bytes", "scan buffer", "#d9a441"],
   ["backlog_bytes", "backlog", "#d1453b"],
 ] as const;

@@ -248,9 +248,7 @@ class Report implements Page {
     const columns = this.data.figures
       .map((figure, i) => ({ ...figure, i }))
       .filter(({ i }) => this.runs.some((run) => run.values[i] !== null));
-    const main = columns.filter(({ key }) =>
-      /^((live_)?rpe_1m_at|ate_se3_translation|own_map_(rmse|outliers)$|reprojected_map_(rmse|outliers)$|cpu|own_memory_peak)/.test(key),
-    );
+    const main = columns.filter(({ in_runs }) => in_runs);
     const bad = this.runs.filter((run) => run.lost);
     const failed: ShownTable = {
       id: "failures",

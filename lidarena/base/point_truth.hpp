@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lidarena/base/time.hpp"
+
+namespace lidarena {
+
+/// Ground truth of one simulated return: the surface point that was hit; 32 bytes. For evaluation
+/// only: stored apart from the measurements (topic /truth/SENSOR/hits), never passed to an
+/// estimator.
+struct PointTruth {
+  Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m, world frame, on the surface
+  float range = 0.0F;  ///< m, true value, by the sensor's definition of range
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, world frame, towards the sensor
+  std::uint32_t triangle = 0;                        ///< index in the world mesh
+};
+static_assert(sizeof(PointTruth) == 32);
+
+/// Ground truth of one scan: as many points as the scan has, in the same order.
+struct ScanTruth {
+  std::string sensor_id;
+  Time stamp{0};  ///< of the scan
+  std::vector<PointTruth> points;
+};
+
+/// Ground truth scan by scan; next() is empty at the end.
+class ScanTruthSource {
+ public:
+  virtual ~ScanTruthSource() = default;
+  virtual std::optional<ScanTruth> next() = 0;
+};
+
+/// Receives the ground truth of each scan when the scan is simulated.
+class ScanTruthSink {
+ public:
+  virtual ~ScanTruthSink() = default;
+  virtual void write(const ScanTruth& truth) = 0;
+};
+
+}  // namespace lidarena

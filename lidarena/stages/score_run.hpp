@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "lidarena/base/log.hpp"
+#include "lidarena/base/parallel.hpp"
+#include "lidarena/results/run_metrics.hpp"
+
+namespace lidarena::stages {
+
+/// What of a run is scored. The trajectory always is.
+enum class ScorePart { kTrajectory, kMap };
+constexpr auto enum_names(ScorePart) {
+  return std::array{std::pair{"trajectory", ScorePart::kTrajectory},
+                    std::pair{"map", ScorePart::kMap}};
+}
+using ScoreParts = std::vector<ScorePart>;
+/// Whether maps are scored: an empty list means all.
+bool scores_maps(const ScoreParts& parts);
+
+/// Scores the RUN folder against the truth and the mesh of the dataset that its manifest names.
+/// `parts`: without kMap the maps are not read and have no metrics. Writes metrics.json,
+/// resources.json and scored.ply (at most 400,000 map points in the mesh's frame with their
+/// distance, for pictures). Throws InputError if the dataset has no truth.
+results::RunMetrics score_run(const std::filesystem::path& run, const ScoreParts& parts,
+                              const Parallel& parallel, LogSink& log);
+
+/// Deletes the maps of a scored RUN folder and the motion that they were made with; trajectories,
+/// metrics and manifest stay.
+void remove_maps(const std::filesystem::path& run);
+
+}  // namespace lidarena::stages

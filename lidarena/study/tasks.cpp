@@ -1,0 +1,156 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/tasks.hpp"
+
+#include <fmt/format.h>
+
+#include "lidarena/dataset/dataset_manifest.hpp"
+#include "lidarena/dataset/json_file.hpp"
+
+namespace lidarena::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRequest = "request.json";
+constexpr const char* kExternal = "external.json";  ///< the external program that a run is of
+
+/// What request.json of a folder holds; empty if it is missing or torn.
+Json request_of(const fs::path& folder) {
+  try {
+    Json request = dataset::read_json(folder / kRequest);
+    return request.is_object() ? request : Json::object();
+  } catch (const Error&) {
+    return Json::object();
+  }
+}
+
+std::size_t first_open(const std::vector<Step>& steps, const Json& request) {
+  std::size_t step = 0;
+  while (step < steps.size() && request.value(steps[step].name, Json()) == steps[step].key) ++step;
+  return step;
+}
+
+/// The sensor's id in the dataset, whose LiDARs are in the order of the study's sensors.
+std::string lidar_id_of(const fs::path& dataset, const StudySpec& spec, const std::string& sensor) {
+  const auto manifest = dataset::read_dataset_manifest(dataset);
+  for (std::size_t i = 0; manifest && i < spec.sensors.size(); ++i) {
+    if (spec.sensors[i] == sensor) return manifest->rig.lidars.at(i).id;
+  }
+  return sensor;
+}
+
+}  // namespace
+
+std::size_t Task::first_open_step() const { return first_open(steps, request_of(folder)); }
+
+TaskResult Task::result() const {
+  const Json request = request_of(folder);
+  const Json told = request.value("result", Json::object());
+  const std::string state = told.value("state", "");
+  TaskResult result;
+  result.seconds = told.value("seconds", 0.0);
+  result.attempt = told.value("attempt", 0);
+  if (state == "failed") {
+    result.state = TaskState::kFailed;
+  } else if (first_open(steps, request) == steps.size()) {
+    result.state = state == "diverged" ? TaskState::kDiverged : TaskState::kOk;
+  }
+  return result;
+}
+
+void Task::record(std::size_t step, double seconds, bool diverged) const {
+  Json done = Json::object();
+  for (std::size_t i = 0; i <= step; ++i) done[steps[i].name] = steps[i].key;
+  if (step + 1 == steps.size())
+    done["result"] = {{"state", diverged ? "diverged" : "ok"}, {"seconds", seconds}};
+  dataset::write_json(folder / kRequest, done);
+}
+
+void Task::record_failure(double seconds, int attempt) const {
+  dataset::write_json(
+      folder / kRequest,
+      {{"result", {{"state", "failed"}, {"seconds", seconds}, {"attempt", attempt}}}});
+}
+
+Task Tasks::flight(const PlanUnit& unit, const stages::ConfigFolder& configs) const {
+  const PlannedRun& cell = plan_.cells[unit.cells.front()];
+  Task task;
+  task.name = "flight " + unit.dataset;
+  task.folder = root_ / "datasets" / unit.dataset;
+  std::vector<std::string> call{"simulate",
+                                "--world",
+                                configs.resolve("worlds", cell.world).string(),
+                                "--flight",
+                                configs.resolve("flights", cell.flight).string(),
+                                "--seed",
+                                std::to_string(cell.seed),
+                                "--seconds",
+                                fmt::format("{}", cell.seconds),
+                                "--out",
+                                task.folder.string(),
+                                "--configs",
+                                configs.root().string(),
+                                "--hits",
+                                stages::scores_maps(plan_.spec.score) ? "on" : "off",
+                                "--example-scans"};
+  for (const std::string& sensor : plan_.spec.sensors)
+    call.insert(call.end(), {"--sensor", configs.resolve("sensors", sensor).string()});
+  if (plan_.spec.new_scenes) call.emplace_back("--new-scene");
+  if (cell.allow_missing) call.emplace_back("--allow-missing");
+  if (cell.mode) call.insert(call.end(), {"--mode", value_to_json(*cell.mode).get<std::string>()});
+  task.steps.push_back(
+      {"flight", unit.flight, task.folder / "manifest.json", [call] { return call; }});
+  return task;
+}
+
+Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::path& folder) const {
+  Step step{"run", {}, folder / "manifest.json", {}};
+  step.key = {
+      {"flight", unit.flight}, {"code", code_.of_method(cell.algorithm)}, {"cell", to_json(cell)}};
+  const stages::ExternalProgram* external = find_external(plan_.spec, cell.algorithm);
+  if (external != nullptr) step.key["external"] = to_json(*external);
+  // Without its maps, a run cannot be scored again.
+  if (!plan_.spec.keep_maps) step.key["maps_removed_after"] = code_.of("scorer");
+  if (!stages::scores_maps(plan_.spec.score)) step.key["maps"] = "none";
+  step.arguments = [this, &cell, external, folder] {
+    const fs::path dataset = root_ / "datasets" / cell.dataset;
+    std::vector<std::string> call{"run",
+                                  cell.algorithm,
+                                  dataset.string(),
+                                  "--out",
+                                  folder.string(),
+                                  "--sensor",
+                                  lidar_id_of(dataset, plan_.spec, cell.sensor)};
+    if (external != nullptr) {
+      dataset::write_json(folder / kExternal, to_json(*external));
+      call.insert(call.end(), {"--external", (folder / kExternal).string()});
+    } else if (!cell.preset.empty()) {
+      call.insert(call.end(), {"--preset", cell.preset});
+    }
+    if (!stages::scores_maps(plan_.spec.score)) call.insert(call.end(), {"--maps", "off"});
+    return call;
+  };
+  return step;
+}
+
+Task Tasks::run(const PlanUnit& unit, std::size_t index) const {
+  const PlannedRun& cell = plan_.cells[index];
+  Task task;
+  task.name = "run " + cell.name;
+  task.cell = &cell;
+  task.folder = root_ / "runs" / cell.name;
+  task.weight = plan_.seconds[index];
+  task.steps.push_back(run_step(unit, cell, task.folder));
+  Json score_key = code_.of("scorer");
+  const bool scores_maps = stages::scores_maps(plan_.spec.score);
+  if (!scores_maps) score_key["parts"] = "trajectory";
+  task.steps.push_back({"score", score_key, task.folder / "metrics.json",
+                        [folder = task.folder.string(), scores_maps] {
+                          std::vector<std::string> call{"evaluate", folder};
+                          if (!scores_maps) call.insert(call.end(), {"--score", "trajectory"});
+                          return call;
+                        }});
+  return task;
+}
+
+}  // namespace lidarena::study
