@@ -23,6 +23,8 @@ def limits(field):
         return ", ".join(field["enum"])
     if "anyOf" in field:
         return limits(field["anyOf"][0]) + ", or unset"
+    if "type" not in field:
+        return "any JSON value"
     if field["type"] == "array":
         count = f"{field['minItems']} of " if "minItems" in field else ""
         return "list of " + count + limits(field["items"])
