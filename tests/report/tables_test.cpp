@@ -215,11 +215,13 @@ TEST(SummaryTables, AFailedRunIsARowWithItsReasonAndEveryRunHasItsCommand) {
   ASSERT_EQ(runs.rows.at(2).size(), runs.head.size());
   EXPECT_EQ(runs.rows[2][1].text, "diverged: estimate left the world");
   EXPECT_EQ(runs.rows[2].back().value, 12.5);
-  EXPECT_THAT(commands_table(results).rows.at(0).at(1).text,
-              HasSubstr("lidarena simulate --world '/my worlds/cave.ply' --flight cave --sensor "
-                        "livox_mid360 --sensor ouster_os0_128 --seed 7 --new-scene --seconds 20.0 "
-                        "--no-data --hits on --out data && lidarena run ct_icp data --preset indoor --sensor "
-                        "livox_mid360_paper --out run && lidarena evaluate run"));
+  EXPECT_THAT(
+      commands_table(results).rows.at(0).at(1).text,
+      HasSubstr(
+          "lidarena simulate --world '/my worlds/cave.ply' --flight cave --sensor "
+          "livox_mid360 --sensor ouster_os0_128 --seed 7 --new-scene --seconds 20.0 "
+          "--no-data --hits on --out data && lidarena run ct_icp data --preset indoor --sensor "
+          "livox_mid360_paper --out run && lidarena evaluate run"));
 }
 
 TEST(SummaryTables, ACommandHasAllSettingsOfItsRunAndRecordedDataStayWhereTheyAre) {
