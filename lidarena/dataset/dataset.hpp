@@ -44,7 +44,7 @@ struct Dataset {
   std::optional<std::size_t> scan_count;  ///< of the chosen LiDAR, if known before reading
   Json manifest;                      ///< manifest.json of the folder; null for third-party data
   std::vector<std::string> notes;     ///< assumptions and damage, to be shown to the user
-  std::vector<std::string> warnings;  ///< what would spoil a run, likewise
+  std::vector<std::string> warnings;  ///< faults that make a run wrong, likewise
   /// Why the IMU of the recording cannot be used with its LiDAR (the rig is then without it).
   std::string imu_fault;
   std::vector<TopicSummary> topics;  ///< of a recording of messages

@@ -31,9 +31,9 @@ struct ImuVerdict {
 
 /// Judges the units of an IMU by its first samples (some seconds). Gravity is in every sample of
 /// an accelerometer, so that their magnitudes have a median of 1 (in g), 1000 (in mg) or 9.8; where
-/// they scatter around it as only accelerations without gravity do, that is said. Rates whose 90th
-/// percentile is beyond 5 rad/s (286 deg/s) are taken to be in deg/s. Samples that are not finite
-/// or all zero are ignored.
+/// they scatter around it as only accelerations without gravity do, a warning states it. Rates
+/// whose 90th percentile is beyond 5 rad/s (286 deg/s) are taken to be in deg/s. Samples that are
+/// not finite or all zero are ignored.
 ImuVerdict judge_imu(std::string_view topic, std::span<const ImuSample> samples);
 
 /// Why a sample (in SI) cannot be a measurement; empty if it can: not finite, all zero, or beyond

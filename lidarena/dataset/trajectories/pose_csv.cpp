@@ -136,7 +136,7 @@ std::optional<std::int64_t> integer(std::string_view word) {
   return value;
 }
 
-/// Integers are converted exactly; their unit is told by the magnitude if the header has none.
+/// Integers are converted exactly; the magnitude gives their unit if the header has none.
 Time time_at(std::string_view word, std::int64_t unit_ns, const std::string& place) {
   constexpr std::int64_t kSecond = 1'000'000'000;
   const auto whole = integer(word);
