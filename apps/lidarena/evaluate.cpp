@@ -165,20 +165,31 @@ std::string failure_of(const fs::path& folder) {
 /// Scores a RUN folder. If that is impossible, throws if it is the only folder (`alone`), else
 /// returns the status "failed" with the reason.
 results::ScoredRun score_folder(const fs::path& folder, const stages::ScoreParts& parts, bool alone,
-                                const Parallel& parallel, LogSink& log) {
+                                const stages::GivenTruth* truth, const Parallel& parallel,
+                                LogSink& log) {
   results::ScoredRun run;
   const bool ends_with_slash = folder.filename().empty();  // "run/"
   run.name = (ends_with_slash ? folder.parent_path() : folder).filename().string();
   try {
     describe(folder, run);
     const std::string failure = failure_of(folder);
-    run.metrics = failure.empty() ? stages::score_run(folder, parts, parallel, log)
+    run.metrics = failure.empty() ? stages::score_run(folder, parts, parallel, log, truth)
                                   : results::failed_metrics(failure);
   } catch (const InputError& error) {
     if (alone) throw;
     run.metrics = results::failed_metrics(error.what());
   }
   return run;
+}
+
+/// The truth for RUN folders, if one is given.
+std::optional<stages::GivenTruth> given_truth(const EvaluateOptions& o, LogSink& log) {
+  if (o.runs.empty() || o.truth.empty()) return std::nullopt;
+  stages::GivenTruth given{read_poses(o.truth, o.truth_topic, o.rate_hz), o.lever, {}};
+  if (!o.lever.empty()) given.truth_from_body = parse_lever(o.lever);
+  for (const std::string& text : {given.poses.note, given.poses.ended})
+    if (!text.empty()) log.warn(text);
+  return given;
 }
 
 stages::ScoreParts score_parts_of(const std::vector<std::string>& names) {
@@ -208,8 +219,10 @@ std::vector<results::ScoredRun> score_all(const EvaluateOptions& o, const Parall
                                           LogSink& log) {
   std::vector<results::ScoredRun> runs;
   const stages::ScoreParts parts = score_parts_of(o.score);
+  const std::optional<stages::GivenTruth> truth = given_truth(o, log);
   for (const std::string& folder : o.runs) {
-    runs.push_back(score_folder(folder, parts, o.runs.size() == 1, parallel, log));
+    runs.push_back(score_folder(folder, parts, o.runs.size() == 1, truth ? &*truth : nullptr,
+                                parallel, log));
   }
   if (o.trajectories.empty()) return runs;
   const Files files(o);
@@ -272,9 +285,10 @@ int evaluate_verb(const Common& common, const EvaluateOptions& o) {
   if (o.runs.empty() == o.trajectories.empty()) {
     throw InputError("evaluate", "needs either RUN folders or --trajectory and --truth");
   }
-  if (o.trajectories.empty() && !(o.truth + o.map + o.mesh + o.lever).empty()) {
-    throw InputError("evaluate", "--truth, --map, --mesh and --lever need --trajectory");
-  }
+  if (o.trajectories.empty() && !(o.map + o.mesh).empty())
+    throw InputError("evaluate", "--map and --mesh need --trajectory");
+  if (o.truth.empty() && !o.lever.empty())
+    throw InputError("evaluate", "--lever needs --truth", "add --truth FILE");
   if (int{common.json} + int{o.csv} + int{o.markdown} + int{o.latex} > 1) {
     throw InputError("evaluate", "takes at most one of --json, --csv, --markdown, --latex");
   }
@@ -303,7 +317,8 @@ void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--trajectory", o->trajectories,
                    "Estimate: TUM, KITTI or EuRoC csv, .mcap or .bag; several may be given");
   verb->add_option("--truth", o->truth,
-                   "Truth: a file in any of these formats, or a dataset folder");
+                   "Truth: a file in any of these formats, or a dataset folder; of RUN folders the "
+                   "default is that of their dataset");
   verb->add_option("--topic", o->topic, "Topic of the estimate's poses in a bag");
   verb->add_option("--truth-topic", o->truth_topic, "Topic of the truth's poses in a bag");
   verb->add_option("--rate", o->rate_hz, "Poses per second of KITTI files without times.txt")

@@ -168,12 +168,12 @@ int list_configs(const Common& common, const std::string& kind) {
 
 void add_list(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "list", "List the available worlds, flights, sensors, algorithms or studies");
+      "list", "List the available worlds, flights, sensors, algorithms, studies or recordings");
   auto kind = std::make_shared<std::string>();
   auto filter = std::make_shared<SensorFilter>();
-  verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms or studies")
+  verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms, studies or recordings")
       ->required()
-      ->check(CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies"}));
+      ->check(CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies", "recordings"}));
   const auto add_limit = [verb](const char* name, double& limit, const char* what) {
     return verb->add_option(name, limit, what)->check(CLI::PositiveNumber);
   };

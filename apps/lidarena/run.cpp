@@ -43,6 +43,8 @@ void check_options(const RunOptions& o) {
                      "see lidarena list algorithms; for example: lidarena run arena_lio my.bag");
   }
   if (o.external.empty()) odometry::check_algorithm(o.request.odometry);
+  if (o.request.parts > 1 && (o.live.asked || !o.external.empty()))
+    throw InputError("--parts", "is for Lidarena's own methods on a dataset", "leave it out");
   if (o.dataset.empty() && !o.live.asked) {
     throw InputError("run " + algorithm, "needs a dataset",
                      "give a dataset folder, .mcap, .bag or folder of sweeps");
@@ -137,6 +139,10 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
                    "YAML file of an external program (name, command, ...) to run as ALGORITHM");
   verb->add_option("--maps", o->maps, "Write the maps, which take most of the space: on or off")
       ->check(CLI::IsMember({"on", "off"}))
+      ->capture_default_str();
+  verb->add_option("--parts", r.parts,
+                   "Hand each sweep over as N scans by the times of its points, as for 20 Hz")
+      ->check(CLI::Range(1, 100))
       ->capture_default_str();
   verb->add_flag("--paced", r.paced, "Drop scans when the algorithm is late, as on a live robot");
   verb->add_option("--layout", r.read.layout, "Fields of a point in raw binary sweeps")

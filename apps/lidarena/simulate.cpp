@@ -121,6 +121,11 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--out", o->out,
                    "Folder to write; default: WORLD-FLIGHT-SENSOR in the working folder");
+  verb->add_option("--set", o->request.set,
+                   "sensor.KEY=VALUE (each sensor), SENSOR.KEY, imu.KEY, flight.KEY or world.KEY: "
+                   "overrides the file; may be repeated")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   verb->add_option("--seed", o->request.seed,
                    "Seed of all noise (a procedural world has its own seed in its file)")
       ->capture_default_str();

@@ -36,6 +36,7 @@ struct StudyRequest {
   bool worker = false;
   std::string scratch;
   std::optional<double> scratch_gb;
+  std::vector<std::filesystem::path> known;
   double grace_s = 0.0;
   bool slurm = false;
   bool print = false;
@@ -98,7 +99,7 @@ void print_plan(const study::StudyPlan& plan, const study::Shard& shard,
   for (const std::size_t i : units_of(plan, shard)) {
     const study::PlanUnit& unit = plan.units[i];
     for (const std::size_t cell : unit.cells) {
-      const study::CellEstimate one = study::estimate(plan.cells[cell], configs);
+      const study::CellEstimate one = study::estimate(plan.spec, plan.cells[cell], configs);
       const double mb = one.record_mb + (plan.spec.keep_maps ? one.maps_mb : 0.0);
       fmt::print("{:70} {:>8} {:6.0f} MB\n", plan.cells[cell].name, clock_text(one.seconds), mb);
       seconds += one.seconds;
@@ -146,6 +147,7 @@ study::StudyOptions options_of(const Common& common, const StudyRequest& request
   options.scratch = request.scratch;
   if (request.scratch_gb)
     options.scratch_bytes = static_cast<std::uint64_t>(1e9 * *request.scratch_gb);
+  options.known = request.known;
   options.stop = asked_to_stop;
   options.grace_s = request.grace_s;
   options.waits_for_others = !request.worker;
@@ -380,6 +382,10 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
                    "With --world: length of the flight, s; 0 = the whole tour");
   add_allow_missing(*verb, request->allow_missing);
   verb->add_flag("--dry", request->dry, "Only list the runs, with estimated time and disk space");
+  verb->add_option("--known", request->known,
+                   "results.csv of an earlier part of this study: its rows count as done if code, "
+                   "settings and seed are the same; may be repeated")
+      ->check(CLI::ExistingFile);
   verb->add_option("--jobs", request->jobs,
                    "Number of runs at the same time, each on its own cores")
       ->check(CLI::Range(1, 256));

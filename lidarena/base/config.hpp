@@ -179,13 +179,10 @@ C load_config(const std::filesystem::path& file) {
   return config;
 }
 
-/// Applies "key=value" or "group.key=value" (as given to --set).
-template <ConfigStruct C>
-void set_field(C& config, const std::string& assignment);
-
 /// "a.b=v" as the YAML text {a: {b: v}}; throws InputError when there is no '='.
 std::string assignment_as_yaml(const std::string& assignment);
 
+/// Applies "key=value" or "group.key=value" (as given to --set).
 template <ConfigStruct C>
 void set_field(C& config, const std::string& assignment) {
   read_config(ConfigNode::parse(assignment_as_yaml(assignment), "--set " + assignment), config);

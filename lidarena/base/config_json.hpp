@@ -15,6 +15,14 @@ namespace lidarena {
 
 using Json = nlohmann::ordered_json;
 
+/// Any value of a configuration: a scalar is a boolean, a number or null if it can be read as one,
+/// else a string.
+Json json_of(const ConfigNode& node);
+inline void read_value(const ConfigNode& node, Json& out, const Limits&) { out = json_of(node); }
+
+/// The value of a key, which may be a path ("group.key"); null if there is none.
+Json value_at(const Json& config, std::string_view key);
+
 /// Null if the struct has a function empty() that is true.
 template <ConfigStruct C>
 Json to_json(const C& config);

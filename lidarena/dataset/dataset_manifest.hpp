@@ -21,6 +21,7 @@ struct SimulationRecord {
   bool noise = true;
   std::string mode;
   bool allow_missing = false;
+  std::vector<std::string> set;
   std::vector<std::string> sensor_sources;
   std::vector<Json> sensors;
   Json routes;
@@ -37,6 +38,7 @@ struct SimulationRecord {
     v("mode", self.mode, "", "timing mode of all sensors; empty: as in their files");
     v("allow_missing", self.allow_missing, "",
       "parts of the world that cannot be found are left out");
+    v("set", self.set, "", "KIND.key=value: settings over the files of world, flight and sensors");
     v("sensor_sources", self.sensor_sources, "", "files of the sensors");
     v("sensors", self.sensors, "", "complete settings of each sensor, see the schema of a sensor");
     v("routes", self.routes, "", "the world's routes");

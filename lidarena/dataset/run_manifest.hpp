@@ -86,6 +86,7 @@ struct RunManifest {
   std::string dataset, sensor;
   std::optional<Pose> body_from_lidar;
   int threads = 0;
+  int parts = 1;
   bool paced = false, live = false;
   OwnMap own_map = OwnMap::kReturns;
   RunStatus status = RunStatus::kOk;
@@ -107,6 +108,7 @@ struct RunManifest {
     v("sensor", self.sensor, "", "id of the LiDAR");
     v("body_from_lidar", self.body_from_lidar, "", "mounting: x y z (m) qx qy qz qw");
     v("threads", self.threads, "", "");
+    v("parts", self.parts, "", "scans in which each sweep was handed over");
     v("paced", self.paced, "", "scans were dropped when the method was late");
     v("live", self.live, "", "the run was made of live topics");
     v("own_map", self.own_map, "", "what the points of map.ply are");

@@ -6,7 +6,6 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/flight/clearance.hpp"
 #include "lidarena/flight/figures.hpp"
-#include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/fly_quadrotor.hpp"
 #include "lidarena/flight/late_start.hpp"
 #include "lidarena/flight/recording.hpp"
@@ -19,17 +18,6 @@ namespace {
 
 bool is_recording(const std::filesystem::path& file) {
   return file.extension() == ".tum" || file.extension() == ".txt";
-}
-
-/// The configuration of a flight; for a TUM file, that of its replay, with a clearance of 0: it
-/// must only not pass through a surface.
-FlightConfig config_of(const std::filesystem::path& file) {
-  if (!is_recording(file)) return load_config<FlightConfig>(file);
-  FlightConfig config;
-  config.kind = FlightKind::kReplay;
-  config.replay = file.filename().string();
-  config.clearance_m = 0.0;
-  return config;
 }
 
 const std::vector<Eigen::Vector3d>& route_of(const world::WorldModel& model, int route,
@@ -115,10 +103,27 @@ void require_clear(const Flight& flight, const world::World& world, double clear
 
 }  // namespace
 
+FlightConfig load_flight(const std::filesystem::path& file, const std::vector<std::string>& set) {
+  if (is_recording(file) && !set.empty())
+    throw InputError("--set flight." + set.front(), file.string() + " has no keys",
+                     "name the recording in a flight's file (kind: replay)");
+  FlightConfig config;
+  if (is_recording(file)) {
+    config.kind = FlightKind::kReplay;
+    config.replay = file.filename().string();
+    config.clearance_m = 0.0;
+  } else {
+    config = load_config<FlightConfig>(file);
+  }
+  for (const std::string& assignment : set) set_field(config, assignment);
+  return config;
+}
+
 std::unique_ptr<Flight> make_flight(const std::filesystem::path& file,
                                     const world::WorldModel& model, const world::World& world,
-                                    LogSink& log, std::optional<std::uint64_t> gust_seed) {
-  FlightConfig config = config_of(file);
+                                    LogSink& log, std::optional<std::uint64_t> gust_seed,
+                                    const std::vector<std::string>& set) {
+  FlightConfig config = load_flight(file, set);
   if (config.dynamics && gust_seed) config.dynamics->gusts.seed = *gust_seed;
   const double begin_s = begin_of_recording(config);
   if (config.duration_s > 0.0) config.duration_s += begin_s;

@@ -170,9 +170,14 @@ typename Maker::Config preset_config(const OdometryRequest& request, const Lidar
 }
 
 template <class Maker>
+typename Maker::Config config_of(const OdometryRequest& request, const LidarInfo& lidar) {
+  return configured(preset_config<Maker>(request, lidar), request);
+}
+
+template <class Maker>
 MadeOdometry make(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
                   const Parallel& parallel) {
-  const auto config = configured(preset_config<Maker>(request, lidar), request);
+  const auto config = config_of<Maker>(request, lidar);
   return {Maker::build(config, rig, lidar, parallel), to_json(config)};
 }
 
@@ -184,9 +189,15 @@ LoopedConfig<typename Maker::Config> with_loops(typename Maker::Config odometry)
 }
 
 template <class Maker>
+LoopedConfig<typename Maker::Config> config_with_loop(const OdometryRequest& request,
+                                                      const LidarInfo& lidar) {
+  return configured(with_loops<Maker>(preset_config<Maker>(request, lidar)), request);
+}
+
+template <class Maker>
 MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, const LidarInfo& lidar,
                             const Parallel& parallel) {
-  const auto config = configured(with_loops<Maker>(preset_config<Maker>(request, lidar)), request);
+  const auto config = config_with_loop<Maker>(request, lidar);
   return {std::make_unique<WithLoop>(Maker::build(config.odometry, rig, lidar, parallel),
                                      config.loops, parallel),
           to_json(config)};
@@ -214,20 +225,27 @@ struct Algorithm {
   AlgorithmInfo info;
   MadeOdometry (*make)(const OdometryRequest&, const Rig&, const LidarInfo&, const Parallel&);
   Json (*schema)(const AlgorithmInfo&);
+  Json (*config)(const OdometryRequest&, const LidarInfo&);
 };
 
 template <class Maker>
 Algorithm plain(std::string name, std::string summary, bool needs_imu) {
   return {{std::move(name), std::move(summary), preset_names<Maker>(), needs_imu},
           make<Maker>,
-          schema<Maker>};
+          schema<Maker>,
+          [](const OdometryRequest& request, const LidarInfo& lidar) {
+            return to_json(config_of<Maker>(request, lidar));
+          }};
 }
 
 template <class Maker>
 Algorithm looped(std::string name, std::string summary, bool needs_imu) {
   return {{std::move(name), std::move(summary), preset_names<Maker>(), needs_imu},
           make_with_loop<Maker>,
-          schema_with_loop<Maker>};
+          schema_with_loop<Maker>,
+          [](const OdometryRequest& request, const LidarInfo& lidar) {
+            return to_json(config_with_loop<Maker>(request, lidar));
+          }};
 }
 
 std::vector<Algorithm> algorithms() {
@@ -311,6 +329,10 @@ OdometryRequest with_default_preset(OdometryRequest request) {
 }
 
 void check_algorithm(const OdometryRequest& request) { chosen_algorithm(request); }
+
+Json configuration_of(const OdometryRequest& request, const LidarInfo& lidar) {
+  return chosen_algorithm(request).config(request, lidar);
+}
 
 MadeOdometry make_odometry(const OdometryRequest& request, const Rig& rig,
                            const std::string& lidar_id, const Parallel& parallel) {

@@ -42,6 +42,10 @@ OdometryRequest with_default_preset(OdometryRequest request);
 /// preset, its successor.
 void check_algorithm(const OdometryRequest& request);
 
+/// The complete configuration that the request gives for a LiDAR; without one, for a LiDAR of which
+/// nothing is known. Throws InputError as check_algorithm(), and for a bad configuration.
+Json configuration_of(const OdometryRequest& request, const LidarInfo& lidar = {});
+
 struct MadeOdometry {
   std::unique_ptr<Odometry> odometry;
   Json config;  ///< the complete configuration, for the manifest

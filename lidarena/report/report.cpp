@@ -11,6 +11,7 @@
 #include "lidarena/report/report_data.hpp"
 #include "lidarena/report/summary_tables.hpp"
 #include "lidarena/report/svg_figures.hpp"
+#include "lidarena/report/sweep_tables.hpp"
 #include "lidarena/report/web_page.hpp"
 #include "lidarena/results/study_cells.hpp"
 
@@ -23,6 +24,7 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
   const auto add = [&](std::vector<results::Table> more) {
     std::ranges::move(more, std::back_inserter(tables));
   };
+  add(sweep_tables(results));
   for (const std::string& world : results::StudyCells(results, "").worlds())
     tables.push_back(decision_table(results, world));
   for (const std::string& variant : results::variants_of(results)) {

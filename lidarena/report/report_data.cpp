@@ -111,6 +111,9 @@ Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
            {"sensor", row.sensor},
            {"algorithm", row.algorithm},
            {"preset", results::variant_of(row)},
+           {"variation", row.variation},
+           {"varied", row.varied},
+           {"differs", row.differs},
            {"seed", row.seed},
            {"status", row.status},
            {"lost", results::lost_reason(row)},
@@ -122,9 +125,10 @@ Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
            {"values", Json::array()}};
   for (const results::Figure& figure : results::figures()) {
     run["values"].push_back(rounded(results::value_of(row, figure)));
+    if (const auto bound = results::zero_bound_of(row, figure))
+      run["zero_bounds"][figure.key] = *bound;
     if (!row.metrics) continue;
     const results::Reading reading = figure.read(*row.metrics);
-    if (const auto bound = results::zero_bound(reading)) run["zero_bounds"][figure.key] = *bound;
     if (reading.is_share && reading.used < reading.total)
       run["sampled"][figure.key] = {*reading.used, *reading.total};
   }
@@ -214,7 +218,7 @@ Json decision_json(const results::StudyResults& results) {
 Json claims_json(const results::StudyResults& results) {
   std::map<std::string, results::Runs> cells;
   for (const RunRecord& row : results.rows)
-    cells[row.sensor + "|" + results::label_of(row)].push_back(&row);
+    if (row.variation.empty()) cells[row.sensor + "|" + results::label_of(row)].push_back(&row);
   Json claims{{"cells", Json::array()}, {"better", Json::object()}};
   for (const auto& [name, runs] : cells) claims["cells"].push_back(name);
   for (const results::Figure* figure :

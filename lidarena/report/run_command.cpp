@@ -22,6 +22,7 @@ std::string simulate_command(const results::RunRecord& row) {
   std::string command = "lidarena simulate" + option("--world", row.sources.world) +
                         option("--flight", row.sources.flight);
   for (const std::string& sensor : row.sources.sensors) command += option("--sensor", sensor);
+  for (const std::string& set : made.set) command += option("--set", set);
   command += option("--seed", std::to_string(made.seed));
   if (made.new_scene) command += " --new-scene";
   if (made.seconds > 0.0) command += option("--seconds", Json(made.seconds).dump());
@@ -42,6 +43,7 @@ std::string settings_of(const results::RunRecord& row) {
   }
   std::string settings = option("--preset", row.preset) + option("--config", manifest.config_file);
   for (const std::string& set : manifest.overrides) settings += option("--set", set);
+  if (manifest.parts > 1) settings += option("--parts", std::to_string(manifest.parts));
   if (manifest.paced) settings += " --paced";
   return settings;
 }
@@ -61,6 +63,7 @@ std::string live_command(const results::RunRecord& row, const std::string& datas
 }  // namespace
 
 std::string command_of(const results::RunRecord& row) {
+  if (row.known) return {};  // its flight is not here
   const bool is_simulated = row.simulation.has_value();
   std::string dataset = "data";
   if (!is_simulated && row.manifest) {

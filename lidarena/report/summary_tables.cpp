@@ -24,15 +24,18 @@ const std::array kShown{
     &results::kOwnMapRmse, &results::kMapRmse,   &results::kOwnMapOutliers, &results::kMapOutliers,
     &results::kCpuLoad,    &results::kCpuP95,    &results::kOwnMemory};
 
+/// RMSE of the map of a perfect estimate that is interpolated as the run's is, cm.
+std::optional<double> interpolation_floor(const results::RunRecord& run) {
+  return results::value_of(run, results::figure_of("interpolation_floor_rmse", "the report"));
+}
+
 /// The figure; a share of zero with its bound, a map of means named as one.
 TableCell figure_cell(const results::RunRecord& run, const results::Figure& figure) {
   TableCell cell = number(results::value_of(run, figure));
-  if (run.metrics)
-    cell.text = results::value_text(cell.value, results::zero_bound(figure.read(*run.metrics)));
+  if (cell.value) cell.text = results::value_text(cell.value, results::zero_bound_of(run, figure));
   if (&figure == &results::kOwnMapRmse && cell.value && has_mean_map(run)) cell.text += ", means";
   if (&figure == &results::kMapRmse && is_bent_by_interpolation(run))
-    cell.text +=
-        ", floor " + number(1e2 * run.metrics->maps.interpolation_floor.rmse_m.value_or(0.0)).text;
+    cell.text += ", floor " + number(interpolation_floor(run)).text;
   return cell;
 }
 
@@ -51,7 +54,7 @@ bool has_mean_map(const results::RunRecord& run) {
 }
 
 bool is_bent_by_interpolation(const results::RunRecord& run) {
-  return run.metrics && !run.metrics->maps.interpolation_floor.empty();
+  return interpolation_floor(run).has_value();
 }
 
 std::string methods_with_mean_maps(const results::StudyResults& results) {
@@ -82,9 +85,10 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
     if (row.world != world) continue;
     const std::string lost = results::lost_reason(row);
     std::vector<TableCell> cells{
-        word(fmt::format("{}, {}, {}", row.sensor, results::label_of(row), row.seed)),
+        word(fmt::format("{}, {}, {}{}{}", row.sensor, results::label_of(row), row.seed,
+                         row.variation.empty() ? "" : ", ", row.variation)),
         word(lost.empty() ? "ok" : lost),
-        number(row.metrics ? results::coverage_of(*row.metrics) : std::nullopt)};
+        number(results::coverage_of(row))};
     for (const results::Figure* figure : kShown) cells.push_back(figure_cell(row, *figure));
     table.rows.push_back(std::move(cells));
   }

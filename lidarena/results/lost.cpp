@@ -12,26 +12,26 @@ std::string state_of(const std::string& status, const std::string& reason) {
   return reason.empty() ? status : status + ": " + reason;
 }
 
-/// Of shares of map points; empty for other figures, and where the share is not zero.
-std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure) {
-  return run.metrics ? zero_bound(figure.read(*run.metrics)) : std::nullopt;
+/// Of RunMetrics or of a RunRecord.
+template <class Run>
+std::string lost_by_figures(const Run& run) {
+  if (const auto share = value_of(run, kOwnMapOutliers); share && *share > kLostOutliers_percent)
+    return fmt::format("lost: {:.0f} % of its own map lie beyond 20 cm", *share);
+  if (const auto drift = value_of(run, kDrift); drift && *drift > kLostDrift_cm_per_m)
+    return fmt::format("lost: it drifts by {:.3g} cm per m", *drift);
+  return {};
 }
 
 }  // namespace
 
 std::string lost_reason(const RunMetrics& metrics) {
   if (!metrics.is_ok()) return metrics.status_and_reason();
-  if (const auto share = value_of(metrics, kOwnMapOutliers);
-      share && *share > kLostOutliers_percent)
-    return fmt::format("lost: {:.0f} % of its own map lie beyond 20 cm", *share);
-  if (const auto drift = value_of(metrics, kDrift); drift && *drift > kLostDrift_cm_per_m)
-    return fmt::format("lost: it drifts by {:.3g} cm per m", *drift);
-  return {};
+  return lost_by_figures(metrics);
 }
 
 std::string lost_reason(const RunRecord& run) {
   if (run.status != "ok") return state_of(run.status, run.reason);
-  return run.metrics ? lost_reason(*run.metrics) : std::string("not scored");
+  return run.metrics || run.known ? lost_by_figures(run) : std::string("not scored");
 }
 
 bool is_lost(const RunRecord& run) { return !lost_reason(run).empty(); }

@@ -39,6 +39,13 @@ void read_dataset_manifest(RunRecord& row) {
   }
 }
 
+/// The key that a study gave the run; empty if it is not of a study.
+std::string key_of(const fs::path& run) {
+  if (!fs::exists(run / "request.json")) return {};
+  const Json request = dataset::read_json(run / "request.json");
+  return request.value("result", Json::object()).value("key", "");
+}
+
 void read_row(RunRecord& row) {
   if (!fs::exists(row.folder / "manifest.json")) {
     row.status = "missing";
@@ -58,6 +65,14 @@ void read_row(RunRecord& row) {
     row.reason = row.manifest->reason;
     return;
   }
+  row.key = key_of(row.folder);
+  if (fs::exists(row.folder / kKnownRow)) {
+    const std::string place = (row.folder / kKnownRow).string();
+    read_json(dataset::read_json(place), row.known.emplace(), place);
+    row.status = row.known->status;
+    row.reason = row.known->reason;
+    return;
+  }
   if (!fs::exists(row.folder / "metrics.json")) {
     row.status = "not scored";
     row.reason = "no metrics.json: run `lidarena evaluate`";
@@ -66,16 +81,52 @@ void read_row(RunRecord& row) {
   set_metrics(row, read_metrics(row.folder));
 }
 
+/// The sensors that fly with a planned run.
+std::vector<std::string> sensors_beside(const Json& study, const Json& run) {
+  std::vector<std::string> sensors;
+  for (const Json& other : study.at("runs")) {
+    const auto sensor = other.at("sensor").get<std::string>();
+    if (other.at("dataset") == run.at("dataset") &&
+        std::ranges::find(sensors, sensor) == sensors.end())
+      sensors.push_back(sensor);
+  }
+  return sensors;
+}
+
 }  // namespace
 
 std::optional<double> value_of(const RunRecord& run, const Figure& figure) {
-  return run.metrics ? value_of(*run.metrics, figure) : std::nullopt;
+  if (run.metrics) return value_of(*run.metrics, figure);
+  if (!run.known) return std::nullopt;
+  const auto value = run.known->figures.find(column_of(figure));
+  return value == run.known->figures.end() ? std::nullopt : std::optional(value->second);
+}
+
+std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure) {
+  if (run.metrics) return zero_bound(figure.read(*run.metrics));
+  if (!run.known) return std::nullopt;
+  const auto bound = run.known->zero_bounds.find(figure.key);
+  return bound == run.known->zero_bounds.end() ? std::nullopt : std::optional(bound->second);
+}
+
+std::optional<double> coverage_of(const RunRecord& run) {
+  if (run.metrics) return coverage_of(*run.metrics);
+  return run.known ? run.known->coverage_percent : std::nullopt;
 }
 
 void set_metrics(RunRecord& row, RunMetrics metrics) {
   row.status = metrics.status;
   row.reason = metrics.reason;
   row.metrics = std::move(metrics);
+}
+
+std::vector<std::string> varied_keys(const std::vector<RunRecord>& runs) {
+  std::vector<std::string> keys;
+  for (const RunRecord& run : runs) {
+    for (const auto& [key, value] : run.varied.items())
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  }
+  return keys;
 }
 
 std::string variant_of(const RunRecord& row) { return variant_of(row.preset, row.mode); }
@@ -109,9 +160,13 @@ StudyResults read_results(const fs::path& folder) {
       row.preset = run.at("preset").get<std::string>();
       row.seed = run.at("seed").get<std::uint64_t>();
       if (run.contains("mode") && run.at("mode").is_string()) row.mode = run.at("mode");
+      row.variation = run.value("variation", "");
+      row.varied = run.value("varied", Json::object());
+      row.differs = run.value("differs", names);
       row.sources = {run.at("world").get<std::string>(), run.at("flight").get<std::string>(),
-                     study.at("spec").value("sensors", names)};
+                     sensors_beside(study, run)};
       read_row(row);
+      if (const std::string as = run.value("as", ""); !as.empty()) row.algorithm = as;
       results.rows.push_back(std::move(row));
     }
   } else if (dataset::is_run(folder)) {
@@ -150,19 +205,44 @@ StudyResults merged(std::vector<StudyResults> parts) {
   return all;
 }
 
+/// The bounds of all shares of zero, by the figure's key.
+static std::map<std::string, double> zero_bounds_of(const RunRecord& run) {
+  std::map<std::string, double> bounds;
+  for (const Figure& figure : figures())
+    if (const auto bound = zero_bound_of(run, figure)) bounds[figure.key] = *bound;
+  return bounds;
+}
+
 std::string results_csv(const StudyResults& results) {
   Table table{"", "", "", {}, {}};
   table.head = {"run",  "world", "flight", "sensor", "algorithm",       "preset",
                 "mode", "seed",  "status", "reason", "coverage_percent"};
   for (const Figure& figure : figures()) table.head.push_back(column_of(figure));
+  const std::vector<std::string> varied = varied_keys(results.rows);
+  if (!varied.empty()) table.head.emplace_back("variation");
+  table.head.insert(table.head.end(), varied.begin(), varied.end());
+  const bool has_keys =
+      std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.key.empty(); });
+  if (has_keys) table.head.insert(table.head.end(), {"own_map", "zero_bounds", "key"});
   for (const RunRecord& r : results.rows) {
     std::vector<TableCell> row;
     for (const std::string& text : {r.name, r.world, r.flight, r.sensor, r.algorithm, r.preset,
                                     r.mode, std::to_string(r.seed), r.status, r.reason}) {
       row.push_back(word(text));
     }
-    row.push_back(number(r.metrics ? coverage_of(*r.metrics) : std::nullopt));
+    row.push_back(number(coverage_of(r)));
     for (const Figure& figure : figures()) row.push_back(number(value_of(r, figure)));
+    if (!varied.empty()) row.push_back(word(r.variation));
+    for (const std::string& key : varied) {
+      const Json value = r.varied.value(key, Json());
+      row.push_back(word(value.is_null() ? "" : value.is_string() ? value.get<std::string>()
+                                                                  : value.dump()));
+    }
+    if (has_keys) {
+      row.push_back(word(r.manifest ? value_to_json(r.manifest->own_map).get<std::string>() : ""));
+      row.push_back(word(bounds_text(zero_bounds_of(r))));
+      row.push_back(word(r.key));
+    }
     table.rows.push_back(std::move(row));
   }
   return table_csv(table);
@@ -176,12 +256,13 @@ std::string results_text(const StudyResults& results) {
                "CPU %", "own MB", "status"},
               {}};
   for (const RunRecord& r : results.rows) {
-    std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r))};
+    const std::string variation = r.variation.empty() ? "" : ", " + r.variation;
+    std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r) + variation)};
     for (const Figure* figure :
          {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
       row.push_back(number(value_of(r, *figure)));
-      if (r.metrics)
-        row.back().text = value_text(row.back().value, zero_bound(figure->read(*r.metrics)));
+      if (row.back().value)
+        row.back().text = value_text(row.back().value, zero_bound_of(r, *figure));
     }
     const std::string lost = lost_reason(r);
     row.push_back(word(lost.empty() ? "ok" : lost));

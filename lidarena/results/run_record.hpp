@@ -10,6 +10,7 @@
 #include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/figures.hpp"
+#include "lidarena/results/known_row.hpp"
 #include "lidarena/results/run_metrics.hpp"
 
 namespace lidarena::results {
@@ -27,10 +28,15 @@ struct RunRecord {
   std::filesystem::path folder;
   std::string world, flight, sensor, algorithm, preset;
   std::string mode;  ///< timing mode of the sensors if the study sets one: "rolling", ...
+  std::string variation;             ///< what differs from the base of the study; empty: nothing
+  Json varied = Json::object();      ///< each key that the study varies, with its value in this run
+  std::vector<std::string> differs;  ///< those keys whose value is not that of the base
   std::uint64_t seed = 0;
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;
   std::optional<RunMetrics> metrics;  ///< empty if the run was not scored
+  std::optional<KnownRow> known;      ///< its figures, if they are all that is left of it
+  std::string key;                    ///< of code, settings and seed, in a study; may be empty
   std::optional<dataset::RunManifest> manifest;
   std::optional<LidarInfo> lidar;                       ///< in its dataset's rig
   std::optional<dataset::SimulationRecord> simulation;  ///< how its dataset was simulated
@@ -46,6 +52,12 @@ std::string label_of(const RunRecord& row);
 
 /// The figure of a scored run; empty if it has none.
 std::optional<double> value_of(const RunRecord& run, const Figure& figure);
+/// The upper bound (%) of a share of which 0 of N points were found; empty for any other figure.
+std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure);
+/// Share of the flight (%) that the final trajectory covers; empty if the run was not scored.
+std::optional<double> coverage_of(const RunRecord& run);
+/// The varied keys of all runs, in their order.
+std::vector<std::string> varied_keys(const std::vector<RunRecord>& runs);
 /// Sets the metrics and the status.
 void set_metrics(RunRecord& run, RunMetrics metrics);
 

@@ -32,7 +32,7 @@ bool belongs_to(const RunRecord& row, const std::string& variant) {
 
 StudyCells::StudyCells(const StudyResults& results, const std::string& variant) {
   for (const RunRecord& row : results.rows) {
-    if (belongs_to(row, variant)) rows_.push_back(&row);
+    if (row.variation.empty() && belongs_to(row, variant)) rows_.push_back(&row);
   }
 }
 

@@ -10,8 +10,8 @@
 
 namespace lidarena::results {
 
-/// The runs of a study by world, sensor and algorithm: its cells. Lost runs (lost.hpp) are the
-/// worst of their cell.
+/// The runs of a study's base by world, sensor and algorithm: its cells. Lost runs (lost.hpp) are
+/// the worst of their cell. Runs of its variations are in report/sweep_tables.hpp.
 class StudyCells {
  public:
   /// Takes the runs of one variant (see variant_of()); empty = all. `results` must outlive this.

@@ -27,7 +27,7 @@ const std::array kShortNames{std::pair{"drift", &kDrift}, std::pair{"map", &kMap
                              std::pair{"memory", &kOwnMemory}};
 
 /// What the two runs of a pair have in common beside sensor and method.
-using Place = std::tuple<std::string, std::string, std::string, std::uint64_t>;
+using Place = std::tuple<std::string, std::string, std::string, std::string, std::uint64_t>;
 using Group = std::pair<std::string, std::string>;  ///< sensor, method
 
 struct Pair {
@@ -49,7 +49,7 @@ Pairs pairs_of(const StudyResults& before, const StudyResults& after) {
     return single ? *methods.begin() : label_of(run);
   };
   const auto place_of = [](const RunRecord& run) {
-    return Place(run.world, run.flight, run.mode, run.seed);
+    return Place(run.world, run.flight, run.mode, run.variation, run.seed);
   };
   std::map<std::pair<Group, Place>, const RunRecord*> old_runs;
   for (const RunRecord& run : before.rows)

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "lidarena/base/config.hpp"
+#include "lidarena/base/config_json.hpp"
 #include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/world_config.hpp"
 
@@ -35,7 +35,7 @@ std::vector<std::string> keys_of(WorldKind kind) {
   return {"kind", "file", "shapes", "model_paths", "allow_missing"};
 }
 
-WorldConfig read_world_config(const fs::path& file) {
+WorldConfig read_world_config(const fs::path& file, const std::vector<std::string>& set) {
   const ConfigNode node = ConfigNode::load(file);
   WorldConfig config;
   read_config(node, config);
@@ -44,6 +44,11 @@ WorldConfig read_world_config(const fs::path& file) {
                      "set kind to house, cave, mesh or sdf");
   }
   node.reject_unknown(keys_of(config.kind));
+  for (const std::string& assignment : set) {
+    ConfigNode::parse(assignment_as_yaml(assignment), "--set " + assignment)
+        .reject_unknown(keys_of(config.kind));
+    set_field(config, assignment);
+  }
   const bool needs_file = config.kind == WorldKind::kMesh || config.kind == WorldKind::kSdf;
   if (needs_file && config.file.empty()) {
     throw InputError(file.string(), "the key 'file' is missing",
@@ -62,17 +67,28 @@ world::SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
   return sdf;
 }
 
+/// The world file with what its seed draws, and `options.set` over both.
+WorldConfig drawn_config(const fs::path& file, const WorldOptions& options) {
+  WorldConfig config = read_world_config(file, options.set);
+  config.seed = options.seed.value_or(config.seed);
+  if (config.vary) {
+    config.house = drawn_house(config.house, config.seed);
+    config.cave = drawn_cave(config.cave, config.seed);
+  }
+  for (const std::string& assignment : options.set) set_field(config, assignment);
+  return config;
+}
+
 world::WorldModel load_configured(const fs::path& file, const WorldOptions& options, LogSink& log) {
-  const WorldConfig config = read_world_config(file);
+  const WorldConfig config = drawn_config(file, options);
   const fs::path base = file.parent_path();
-  const std::uint64_t seed = options.seed.value_or(config.seed);
   world::WorldModel model;
   switch (config.kind) {
     case WorldKind::kHouse:
-      model = make_house(config.vary ? drawn_house(config.house, seed) : config.house, seed);
+      model = make_house(config.house, config.seed);
       break;
     case WorldKind::kCave:
-      model = make_cave(config.vary ? drawn_cave(config.cave, seed) : config.cave, seed);
+      model = make_cave(config.cave, config.seed);
       break;
     case WorldKind::kMesh:
       model.mesh = world::load_mesh(base / config.file, config.up_axis);
@@ -84,7 +100,19 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
   return model;
 }
 
+bool is_world_file(const fs::path& file) {
+  const std::string ending = ending_of(file);
+  return ending == ".yaml" || ending == ".yml";
+}
+
 }  // namespace
+
+Json world_config(const fs::path& file, const std::vector<std::string>& set) {
+  if (is_world_file(file)) return to_json(read_world_config(file, set));
+  if (set.empty()) return Json::object();
+  throw InputError("--set world." + set.front(), file.string() + " has no keys",
+                   "name the mesh in a world file (.yaml) and vary that");
+}
 
 world::WorldModel load_world(const fs::path& file, const WorldOptions& options, LogSink& log) {
   const std::string ending = ending_of(file);
@@ -93,7 +121,8 @@ world::WorldModel load_world(const fs::path& file, const WorldOptions& options, 
     throw InputError(file.string(), "there is no such file", "check the path");
   }
   world::WorldModel model;
-  if (ending == ".yaml" || ending == ".yml") {
+  if (!is_world_file(file)) world_config(file, options.set);
+  if (is_world_file(file)) {
     model = load_configured(file, options, log);
   } else if (ending == ".sdf" || ending == ".world") {
     model.mesh = world::load_sdf(file, sdf_options({}, {}, options), log);

@@ -45,6 +45,14 @@ void read_over(const fs::path& file, SensorConfig& sensor) {
   sensor = std::move(read.sensor);
 }
 
+void apply(const std::string& assignment, const fs::path& file, SensorConfig& sensor) {
+  if (assignment.starts_with("imu.") && !sensor.imu)
+    throw InputError("--set " + assignment, "the sensor " + file.string() + " has no IMU",
+                     "leave it out, or give all of the IMU: --set 'imu={rate_hz: 200}'");
+  set_field(sensor, assignment);
+  if (assignment.starts_with("pattern_file=")) resolve_pattern_file(file, sensor);
+}
+
 /// The file that `base`, a value in `file`, names.
 fs::path base_file(const ConfigNode& base, const fs::path& file, const fs::path& shipped) {
   const std::string name = base.text();
@@ -96,10 +104,12 @@ std::vector<fs::path> sensor_files(const fs::path& file, const fs::path& shipped
   }
 }
 
-SensorConfig load_sensor(const fs::path& file, const fs::path& shipped) {
+SensorConfig load_sensor(const fs::path& file, const fs::path& shipped,
+                         const std::vector<std::string>& set) {
   const std::vector<fs::path> files = sensor_files(file, shipped);
   SensorConfig sensor;
   for (auto next = files.rbegin(); next != files.rend(); ++next) read_over(*next, sensor);
+  for (const std::string& assignment : set) apply(assignment, file, sensor);
   if (sensor.name.empty()) sensor.name = file.stem().string();
   if (sensor.min_range_m >= sensor.max_range_m) {
     throw InputError(file.string(), "min_range_m is not below max_range_m");

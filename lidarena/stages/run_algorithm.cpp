@@ -11,6 +11,7 @@
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/stages/recorder.hpp"
 #include "lidarena/stages/simulate_dataset.hpp"
+#include "lidarena/stages/split_sweeps.hpp"
 
 namespace lidarena::stages {
 namespace {
@@ -53,6 +54,13 @@ void judge_start(odometry::RunSummary& summary) {
   summary.reason =
       "the method never left its initialization, all poses are that of the start; it waits for IMU "
       "samples at the time of the scans, or for rest";
+}
+
+/// The rig as a method sees it that gets each sweep in several parts.
+Rig with_parts(Rig rig, const std::string& lidar_id, int parts) {
+  for (LidarInfo& lidar : rig.lidars)
+    if (lidar.id == lidar_id) lidar.rate_hz *= parts;
+  return rig;
 }
 
 /// Writes the scored returns, placed by the motion of the run.
@@ -113,7 +121,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   refuse_faulty_imu(dataset, chosen);
   dataset::read_whole_part(dataset);
   const std::string lidar_id = chosen_lidar(dataset, dataset::id_of_topic(request.read.sensor));
-  odometry::MadeOdometry made = odometry::make_odometry(chosen, dataset.rig, lidar_id, parallel);
+  odometry::MadeOdometry made = odometry::make_odometry(
+      chosen, with_parts(dataset.rig, lidar_id, request.parts), lidar_id, parallel);
   const LidarInfo lidar = *dataset.rig.find_lidar(lidar_id);
   odometry::RunOptions options;
   options.lidar_id = lidar_id;
@@ -121,6 +130,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
     options.imu_id = imu->id;
   }
   options.scan_count = dataset.scan_count;
+  if (options.scan_count) *options.scan_count *= static_cast<std::size_t>(request.parts);
   options.paced = request.paced;
   dataset::begin_run(out);
   MapRecord map;
@@ -130,6 +140,9 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   evaluation::ReturnStore returns(out, lidar_id,
                                   evaluation::scored_returns(dataset.scan_count.value_or(0)));
   if (request.maps) dataset.events = returns.keep_from(std::move(dataset.events));
+  if (request.parts > 1)
+    dataset.events =
+        std::make_unique<SplitSweeps>(std::move(dataset.events), lidar_id, request.parts);
   odometry::RunSummary summary =
       odometry::run(*made.odometry, *dataset.events, options, recorder, log);
   dataset::tell_reading(dataset, log);
@@ -145,6 +158,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   files.manifest = manifest_of(chosen, made.config, traits,
                                manifest_of(summary, lidar, request.dataset, out, parallel));
   files.manifest.paced = request.paced;
+  files.manifest.parts = request.parts;
   if (!request.maps) files.manifest.own_map = dataset::OwnMap::kNone;
   dataset::write_run(out, files);
   return summary;

@@ -19,6 +19,7 @@ struct RunRequest {
   std::filesystem::path dataset;
   dataset::ReadOptions read;  ///< `read.sensor` names the LiDAR if the dataset has several
   bool paced = false;         ///< drop scans when the algorithm is late, as on a live robot
+  int parts = 1;              ///< scans in which each sweep is handed over, see SplitSweeps
   bool maps = true;           ///< write map.ply and reprojected.ply
 };
 

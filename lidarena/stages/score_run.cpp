@@ -5,6 +5,7 @@
 
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/dataset/hits_file.hpp"
+#include "lidarena/evaluation/diagnosis/lever_arm.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/observed_surface.hpp"
@@ -94,15 +95,20 @@ bool scores_maps(const ScoreParts& parts) {
 }
 
 results::RunMetrics score_run(const fs::path& folder, const ScoreParts& parts,
-                              const Parallel& parallel, LogSink& log) {
+                              const Parallel& parallel, LogSink& log, const GivenTruth* given) {
   const bool with_maps = scores_maps(parts);
-  const dataset::RunFiles run =
+  dataset::RunFiles run =
       dataset::read_run(folder, with_maps ? dataset::ReadMaps::kYes : dataset::ReadMaps::kNo);
   const fs::path dataset = folder / run.manifest.dataset;
-  const auto truth = dataset::load_truth(dataset);
+  if (given != nullptr && given->truth_from_body) {
+    run.trajectory = evaluation::moved_to_body(run.trajectory, *given->truth_from_body);
+    run.live = evaluation::moved_to_body(run.live, *given->truth_from_body);
+  }
+  const auto truth =
+      given != nullptr ? std::optional(given->poses.trajectory) : dataset::load_truth(dataset);
   if (!truth) {
     throw InputError(dataset.string(), "contains no truth to score against",
-                     "give one: evaluate --trajectory FILE --truth FILE");
+                     "give one: evaluate RUN --truth FILE");
   }
   std::unique_ptr<world::World> world;
   if (const auto mesh = dataset::find_world_mesh(dataset); with_maps && mesh) {
@@ -117,8 +123,9 @@ results::RunMetrics score_run(const fs::path& folder, const ScoreParts& parts,
     }
   };
   evaluation::ScoredPoints scored;
-  const results::RunMetrics metrics =
+  results::RunMetrics metrics =
       evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe, &scored);
+  if (given != nullptr) metrics.frames = {given->poses.body, given->lever};
   const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
   if (world && mesh_from_map && !run.reprojected.points.empty()) {
     const dataset::Cloud cloud = scored_cloud(run, *mesh_from_map, scored, *world, parallel);

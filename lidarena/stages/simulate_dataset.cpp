@@ -13,12 +13,12 @@
 #include "lidarena/dataset/recording.hpp"
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
-#include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/make_flight.hpp"
 #include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/stages/read_ahead.hpp"
+#include "lidarena/stages/scene_settings.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
 #include "lidarena/world/world.hpp"
@@ -50,11 +50,13 @@ struct Scene {
 std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& flight_file,
                                   std::vector<sensor::SensorConfig> sensors,
                                   const sensor::SimulationOptions& options,
-                                  std::optional<std::uint64_t> gust_seed, LogSink& log) {
+                                  std::optional<std::uint64_t> gust_seed,
+                                  const std::vector<std::string>& flight_settings, LogSink& log) {
   auto scene = std::make_unique<Scene>();
   scene->world = std::make_unique<world::World>(std::move(model.mesh), model.name);
   scene->model = std::move(model);
-  scene->flight = flight::make_flight(flight_file, scene->model, *scene->world, log, gust_seed);
+  scene->flight = flight::make_flight(flight_file, scene->model, *scene->world, log, gust_seed,
+                                      flight_settings);
   scene->sensors = std::move(sensors);
   scene->options = options;
   return scene;
@@ -90,6 +92,7 @@ dataset::DatasetManifest manifest_of(const SimulateRequest& request, const Scene
   record.noise = request.noise;
   if (request.mode) record.mode = value_to_json(*request.mode).get<std::string>();
   record.allow_missing = request.allow_missing;
+  record.set = request.set;
   for (const fs::path& file : request.sensors)
     record.sensor_sources.push_back(file.filename().string());
   for (sensor::SensorConfig sensor : scene.sensors) {
@@ -224,11 +227,12 @@ void copy_over(const fs::path& from, const fs::path& to) {
   fs::copy_file(from, to, fs::copy_options::overwrite_existing);
 }
 
-/// Copies the flight's file into the dataset, and the recording that it replays to the same
-/// relative path, so that the dataset can be simulated again after it was moved.
-void copy_flight(const fs::path& flight, const fs::path& out) {
+/// Copies the flight's file (with `set` over it, all its keys) into the dataset, and the recording
+/// that it replays to the same relative path, so that the dataset can be simulated again after it
+/// was moved.
+void copy_flight(const fs::path& flight, const std::vector<std::string>& set, const fs::path& out) {
   if (flight.extension() == ".yaml") {
-    const fs::path replay = load_config<flight::FlightConfig>(flight).replay;
+    const fs::path replay = flight::load_flight(flight, set).replay;
     if (replay.is_relative() && !replay.empty()) {
       if (*replay.lexically_normal().begin() == "..") {
         throw InputError(flight.string(), "replays a file above its own folder",
@@ -237,7 +241,9 @@ void copy_flight(const fs::path& flight, const fs::path& out) {
       copy_over(flight.parent_path() / replay, out / replay);
     }
   }
-  copy_over(flight, out / ("flight" + flight.extension().string()));
+  const fs::path copy = out / ("flight" + flight.extension().string());
+  if (set.empty()) return copy_over(flight, copy);
+  dataset::write_json(copy, to_json(flight::load_flight(flight, set)));  // JSON is YAML
 }
 
 /// Copies the sensors' ray tables into the dataset, for the same reason.
@@ -279,7 +285,7 @@ std::unique_ptr<Scene> scene_of(const fs::path& folder, const dataset::Simulatio
   std::optional<std::uint64_t> gust_seed;  // the routes in the manifest are those that were drawn
   if (record.new_scene) gust_seed = options.seed;
   return make_scene(std::move(model), folder / record.flight, std::move(sensors), options,
-                    gust_seed, silent);
+                    gust_seed, {}, silent);
 }
 
 /// The manifest of a dataset without measurements, which has to be simulated; empty for any other.
@@ -310,15 +316,18 @@ dataset::Dataset open_simulated(const fs::path& folder, const dataset::DatasetMa
 
 SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path& out,
                                  const Parallel& parallel, LogSink& log) {
+  const SceneSettings set = scene_settings(request.set, request.sensors);
   std::vector<sensor::SensorConfig> sensors;
-  for (const fs::path& file : request.sensors) {
-    sensors.push_back(sensor::load_sensor(file, request.shipped_sensors));
+  for (std::size_t i = 0; i < request.sensors.size(); ++i) {
+    sensors.push_back(
+        sensor::load_sensor(request.sensors[i], request.shipped_sensors, set.sensors[i]));
     if (request.mode) sensors.back().mode = *request.mode;
   }
   std::optional<std::uint64_t> scene_seed;
   if (request.new_scene) scene_seed = request.seed;
   scenes::WorldOptions world;
   world.seed = scene_seed;
+  world.set = set.world;
   world.allow_missing = request.allow_missing;
   world::WorldModel model = scenes::load_world(request.world, world, log);
   if (request.new_scene)
@@ -330,7 +339,8 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
 
   // The flight is checked before anything is written.
   const auto scene =
-      make_scene(std::move(model), request.flight, std::move(sensors), options, scene_seed, log);
+      make_scene(std::move(model), request.flight, std::move(sensors), options, scene_seed,
+                 set.flight, log);
   if (request.seconds > 0 && options.duration > scene->flight->duration()) {
     log.warn(fmt::format("the flight ends after {:.1f} s; {:.1f} s were requested",
                          to_seconds(scene->flight->duration()), request.seconds));
@@ -345,7 +355,7 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   for (const char* stale : {"manifest.json", "data.mcap", "metadata.yaml"}) fs::remove(out / stale);
   dataset::remove_hits(out);
   world::save_ply(out / "world.ply", scene->world->mesh());
-  copy_flight(request.flight, out);
+  copy_flight(request.flight, set.flight, out);
   copy_patterns(scene->sensors, out);
   const bool with_data = request.data && !request.live;
   std::optional<dataset::HitsWriter> writer;

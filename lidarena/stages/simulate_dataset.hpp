@@ -27,6 +27,7 @@ struct SimulateRequest {
   std::filesystem::path flight;
   std::vector<std::filesystem::path> sensors;
   std::filesystem::path shipped_sensors{};  ///< where files name their base, see load_sensor()
+  std::vector<std::string> set{};           ///< "KIND.key=value", see scene_settings()
   std::uint64_t seed = 1;                   ///< of all noise
   /// The seed also draws a procedural world, start and direction of its routes, and the gusts,
   /// whose files have seeds of their own otherwise.

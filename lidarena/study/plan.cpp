@@ -29,16 +29,25 @@ class Digests {
   std::map<fs::path, std::string> known_;
 };
 
-Json key_of_flight(const StudySpec& spec, const PlannedRun& cell,
-                   const stages::ConfigFolder& configs, const ProgramCode& code, Digests& digests) {
+Json key_of_flight(const StudyPlan& plan, const PlanUnit& unit, const stages::ConfigFolder& configs,
+                   const ProgramCode& code, Digests& digests) {
+  const StudySpec& spec = plan.spec;
+  const PlannedRun& cell = plan.cells[unit.cells.front()];
+  if (const StudyRecording* recording = recording_of(spec, cell)) {
+    Json read = to_json(*recording);
+    read["file"] = fs::path(recording->file).filename().string();
+    read["truth"] = digests.of(recording->truth);
+    return {{"code", code.of("simulator")}, {"recording", read}, {"bytes", bytes_of(*recording)}};
+  }
   Json sensors = Json::array();
-  for (const std::string& sensor : spec.sensors) {
+  for (const std::string& sensor : sensors_of(plan, unit)) {
     for (const fs::path& file : configs.sensor_files(sensor)) sensors.push_back(digests.of(file));
   }
   return {{"code", code.of("simulator")},
           {"world", digests.of(configs.resolve("worlds", cell.world))},
           {"flight", digests.of(configs.resolve("flights", cell.flight))},
           {"sensors", sensors},
+          {"set", cell.set},
           {"seed", cell.seed},
           {"new_scene", spec.new_scenes},
           {"seconds", cell.seconds},
@@ -59,16 +68,19 @@ void make_paths_absolute(StudySpec& spec, const stages::ConfigFolder& configs) {
     make_absolute(scene.flight, "flights", configs);
   }
   for (std::string& sensor : spec.sensors) make_absolute(sensor, "sensors", configs);
+  for (StudyRecording& recording : spec.recordings) recording = resolved(recording, configs);
 }
 
 /// Expected seconds of each cell; cells of the same flight and sensor take the same.
-std::vector<double> expected_seconds(const std::vector<PlannedRun>& cells,
+std::vector<double> expected_seconds(const StudySpec& spec, const std::vector<PlannedRun>& cells,
                                      const stages::ConfigFolder& configs) {
-  std::map<std::tuple<std::string, double, std::string>, double> known;
+  using Flown = std::tuple<std::string, std::string, double, std::string, std::vector<std::string>>;
+  std::map<Flown, double> known;
   std::vector<double> seconds;
   for (const PlannedRun& cell : cells) {
-    const auto [place, is_new] = known.try_emplace({cell.flight, cell.seconds, cell.sensor}, 0.0);
-    if (is_new) place->second = estimate(cell, configs).seconds;
+    const auto [place, is_new] =
+        known.try_emplace({cell.recording, cell.flight, cell.seconds, cell.sensor, cell.set}, 0.0);
+    if (is_new) place->second = estimate(spec, cell, configs).seconds;
     seconds.push_back(place->second);
   }
   return seconds;
@@ -85,16 +97,17 @@ std::vector<PlanUnit> units_of_cells(const StudyPlan& plan, const stages::Config
     const PlannedRun& cell = plan.cells[i];
     const auto [place, is_new] = places.emplace(cell.dataset, units.size());
     if (is_new) {
-      const auto [bytes, is_unknown] = data.try_emplace({cell.flight, cell.seconds}, 0U);
+      const auto [bytes, is_unknown] = data.try_emplace({cell.recording + cell.flight, cell.seconds}, 0U);
       if (is_unknown) bytes->second = data_bytes(plan.spec, cell, configs);
       units.push_back({.dataset = cell.dataset,
                        .cells = {},
                        .data_bytes = bytes->second,
-                       .flight = key_of_flight(plan.spec, cell, configs, code, digests)});
+                       .flight = {}});
     }
     units[place->second].cells.push_back(i);
     units[place->second].seconds += plan.seconds[i];
   }
+  for (PlanUnit& unit : units) unit.flight = key_of_flight(plan, unit, configs, code, digests);
   std::ranges::stable_sort(units, std::ranges::greater{}, &PlanUnit::seconds);
   return units;
 }
@@ -121,16 +134,24 @@ StudyPlan make_plan(StudySpec spec, const stages::ConfigFolder& configs, const P
   plan.spec = std::move(spec);
   plan.code = code.json();
   plan.shards = shards;
-  plan.seconds = expected_seconds(plan.cells, configs);
+  plan.seconds = expected_seconds(plan.spec, plan.cells, configs);
   plan.units = units_of_cells(plan, configs, code);
   assign_shards(plan);
   return plan;
 }
 
+std::vector<std::string> sensors_of(const StudyPlan& plan, const PlanUnit& unit) {
+  std::vector<std::string> sensors = plan.spec.sensors;
+  std::erase_if(sensors, [&](const std::string& sensor) {
+    return std::ranges::none_of(
+        unit.cells, [&](std::size_t cell) { return plan.cells[cell].sensor == sensor; });
+  });
+  return sensors;
+}
+
 Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const stages::ConfigFolder& configs) {
   Digests digests;
-  return key_of_flight(plan.spec, plan.cells[unit.cells.front()], configs, ProgramCode(plan.code),
-                       digests);
+  return key_of_flight(plan, unit, configs, ProgramCode(plan.code), digests);
 }
 
 std::vector<std::size_t> units_of(const StudyPlan& plan, const Shard& shard) {

@@ -63,6 +63,9 @@ struct StudyPlan {
 StudyPlan make_plan(StudySpec spec, const stages::ConfigFolder& configs, const ProgramCode& code,
                     int shards = 1);
 
+/// The sensors that fly in the unit's dataset: those of the study that have a cell in it.
+std::vector<std::string> sensors_of(const StudyPlan& plan, const PlanUnit& unit);
+
 /// All that the unit's dataset depends on, from the configuration files as they are here.
 Json flight_key(const StudyPlan& plan, const PlanUnit& unit, const stages::ConfigFolder& configs);
 

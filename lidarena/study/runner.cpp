@@ -242,7 +242,11 @@ class Runner {
       publish_failure(unit, slot.task, reason, seconds);
     } else {
       if (!plan_.spec.keep_maps) stages::remove_maps(slot.task.folder);
-      const dataset::RunManifest manifest = dataset::read_run_manifest(slot.task.folder);
+      dataset::RunManifest manifest = dataset::read_run_manifest(slot.task.folder);
+      if (const StudyRecording* recording = recording_of(plan_.spec, *slot.task.cell)) {
+        manifest.dataset = recording->file;  // the path from the folder is about to change
+        dataset::write_run_manifest(slot.task.folder, manifest);
+      }
       slot.task.record(slot.step, seconds, manifest.summary.diverged);
       unit.place.publish_run(slot.task.cell->name);
       count_run(slot.task);

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "lidarena/dataset/existing_folder.hpp"
+#include "lidarena/study/known_rows.hpp"
 #include "lidarena/study/lease.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/runner.hpp"
@@ -104,7 +105,15 @@ StudyOutcome work_on_study(const fs::path& out, const stages::ConfigFolder& conf
 StudyOutcome run_study(const StudySpec& spec, const stages::ConfigFolder& configs,
                        const fs::path& out, const StudyOptions& options, LogSink& log) {
   const StudyOptions found = with_absolute_paths(options);
-  return work(plan_study(spec, configs, out, found), fs::absolute(out), configs, found, log);
+  const StudyPlan plan = plan_study(spec, configs, out, found);
+  for (const fs::path& csv : options.known) {
+    const KnownRows known = take_known_rows(plan, out, csv);
+    log.info(fmt::format("{}: {} runs are known", csv.string(), known.taken));
+    if (known.other > 0)
+      log.warn(fmt::format("{}: {} rows were made by other code or settings, and are not used",
+                           csv.string(), known.other));
+  }
+  return work(plan, fs::absolute(out), configs, found, log);
 }
 
 std::uint64_t default_scratch_bytes(const fs::path& folder) {

@@ -29,6 +29,8 @@ struct StudyOptions {
   /// Disk space for the measurements of the datasets in use; empty = half of what is free. A
   /// dataset that needs more is simulated anew for each run.
   std::optional<std::uint64_t> scratch_bytes;
+  /// results.csv files of earlier parts of this study, see take_known_rows().
+  std::vector<std::filesystem::path> known;
   std::function<Stop()> stop;  ///< asked often; empty = never
   double grace_s = 0.0;        ///< after Stop::kSoon
   /// Stay until other processes have finished their units, to take over those of dead ones.

@@ -9,9 +9,11 @@
 
 #include "lidarena/base/config_json.hpp"
 #include "lidarena/dataset/text_file.hpp"
-#include "lidarena/flight/flight_config.hpp"
+#include "lidarena/flight/make_flight.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/lidar.hpp"
+#include "lidarena/stages/scene_settings.hpp"
+#include "lidarena/study/variations.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -19,11 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 std::string stem(const std::string& name_or_path) { return fs::path(name_or_path).stem().string(); }
-
-/// Throws InputError for an algorithm or preset that neither the factory nor the study lists.
-void check_algorithm(const StudySpec& spec, const std::string& text) {
-  if (find_external(spec, text) == nullptr) odometry::check_algorithm(parse_algorithm(text));
-}
 
 void check_external(const StudySpec& spec) {
   for (const stages::ExternalProgram& program : spec.external) {
@@ -43,11 +40,20 @@ void check_external(const StudySpec& spec) {
   }
 }
 
+PlannedRun with_method(const StudySpec& spec, PlannedRun cell, const StudyAlgorithm& method) {
+  const odometry::OdometryRequest request = parse_algorithm(method.name);
+  const bool external = find_external(spec, method.name) != nullptr;
+  cell.algorithm = request.algorithm;
+  cell.preset = external ? "external" : request.preset;
+  cell.as = method.as;
+  cell.settings = method.set;
+  cell.parts = method.parts;
+  return cell;
+}
+
 PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t seed,
                    std::optional<sensor::ScanMode> mode, const std::string& sensor,
-                   const std::string& algorithm) {
-  const bool external = find_external(spec, algorithm) != nullptr;
-  const odometry::OdometryRequest request = parse_algorithm(algorithm);
+                   const StudyAlgorithm& method) {
   PlannedRun cell;
   cell.dataset = fmt::format("{}-{}-s{}", stem(scene.world), stem(scene.flight), seed);
   if (mode)
@@ -55,15 +61,26 @@ PlannedRun cell_of(const StudySpec& spec, const StudyScene& scene, std::uint64_t
   cell.world = scene.world;
   cell.flight = scene.flight;
   cell.sensor = sensor;
-  cell.algorithm = request.algorithm;
-  cell.preset = external ? "external" : request.preset;
   cell.seed = seed;
   cell.seconds = scene.seconds;
   cell.allow_missing = scene.allow_missing;
   cell.mode = mode;
-  cell.name = fmt::format("{}-{}-{}{}{}", cell.dataset, stem(sensor), cell.algorithm,
-                          cell.preset.empty() ? "" : "-", cell.preset);
+  return with_method(spec, cell, method);
+}
+
+/// Without a method.
+PlannedRun cell_of(const StudyRecording& recording) {
+  PlannedRun cell;
+  cell.dataset = cell.world = cell.recording = recording.name;
+  cell.sensor = recording.sensor.empty() ? "lidar" : recording.sensor;
+  std::ranges::replace(cell.sensor, '/', '_');
+  cell.seed = 0;
   return cell;
+}
+
+std::string name_of(const PlannedRun& cell) {
+  return fmt::format("{}-{}-{}{}{}{}", cell.dataset, stem(cell.sensor), cell.label(),
+                     cell.preset.empty() ? "" : "-", cell.preset, cell.method_part);
 }
 
 void check_names_differ(const std::vector<PlannedRun>& cells) {
@@ -77,28 +94,44 @@ void check_names_differ(const std::vector<PlannedRun>& cells) {
   }
 }
 
+/// The settings of the cell's flight.
+stages::SceneSettings settings_of(const PlannedRun& cell, const stages::ConfigFolder& configs) {
+  return stages::scene_settings(cell.set, {configs.resolve("sensors", cell.sensor)});
+}
+
 /// Length of the cell's flight, s; a guess if the flight's file gives no duration.
 double expected_seconds(const PlannedRun& cell, const stages::ConfigFolder& configs) {
   constexpr double kUnknown = 120.0;
   double seconds = cell.seconds;
   const fs::path flight = configs.resolve("flights", cell.flight);
   if (seconds == 0.0 && flight.extension() == ".yaml")
-    seconds = load_config<flight::FlightConfig>(flight).duration_s;
+    seconds = flight::load_flight(flight, settings_of(cell, configs).flight).duration_s;
   return seconds == 0.0 ? kUnknown : seconds;
+}
+
+/// The methods of a study, each with one value for each of its settings.
+std::vector<StudyAlgorithm> methods_of(const StudySpec& spec) {
+  std::vector<std::string> outside;
+  for (const stages::ExternalProgram& program : spec.external) outside.push_back(program.name);
+  return with_single_values(spec.algorithms, outside);
 }
 
 /// The names by which expectations call the study's cells.
 results::CellFilter names_of(const StudySpec& spec) {
   results::CellFilter names;
   for (const StudyScene& scene : spec.scenes) names.world.push_back(stem(scene.world));
+  for (const StudyRecording& recording : spec.recordings) names.world.push_back(recording.name);
   for (const std::string& sensor : spec.sensors) names.sensor.push_back(stem(sensor));
-  for (const std::string& algorithm : spec.algorithms)
-    names.algorithm.push_back(parse_algorithm(algorithm).algorithm);
+  for (const StudyAlgorithm& method : methods_of(spec))
+    names.algorithm.push_back(method.as.empty() ? parse_algorithm(method.name).algorithm
+                                                : method.as);
   return names;
 }
 
-double shots_per_second(const std::string& sensor, const stages::ConfigFolder& configs) {
-  const auto pattern = sensor::make_pattern(configs.load_sensor(sensor));
+double shots_per_second(const std::string& sensor, const stages::ConfigFolder& configs,
+                        const std::vector<std::string>& set = {}) {
+  const auto pattern = sensor::make_pattern(sensor::load_sensor(
+      configs.resolve("sensors", sensor), configs.root() / "sensors", set));
   return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
 }
 
@@ -110,6 +143,11 @@ odometry::OdometryRequest parse_algorithm(const std::string& text) {
   request.algorithm = text.substr(0, colon);
   if (colon != std::string::npos) request.preset = text.substr(colon + 1);
   return odometry::with_default_preset(std::move(request));
+}
+
+const StudyRecording* recording_of(const StudySpec& spec, const PlannedRun& cell) {
+  if (cell.recording.empty()) return nullptr;
+  return &*std::ranges::find(spec.recordings, cell.recording, &StudyRecording::name);
 }
 
 const stages::ExternalProgram* find_external(const StudySpec& spec, const std::string& name) {
@@ -154,30 +192,45 @@ std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::Confi
   const auto need = [](bool there, const char* what) {
     if (!there) throw InputError("study", std::string("names no ") + what);
   };
-  need(!spec.scenes.empty(), "scenes");
-  need(!spec.sensors.empty(), "sensors");
+  need(!spec.scenes.empty() || !spec.recordings.empty(), "scenes");
+  need(!spec.sensors.empty() || spec.scenes.empty(), "sensors");
   need(!spec.algorithms.empty(), "algorithms");
   need(!spec.seeds.empty(), "seeds");
   for (const std::string& sensor : spec.sensors) configs.load_sensor(sensor);
   check_external(spec);
   for (const results::Expectation& expectation : spec.expect)
     results::check(expectation, names_of(spec), "study");
-  for (const std::string& algorithm : spec.algorithms) check_algorithm(spec, algorithm);
+  const std::vector<StudyAlgorithm> methods = methods_of(spec);
+  const std::vector<Variation> variations = variations_of(spec);
+  CellSettings settings(spec, methods, configs);
 
   std::vector<std::optional<sensor::ScanMode>> modes(spec.modes.begin(), spec.modes.end());
   if (modes.empty()) modes.emplace_back();
   std::vector<PlannedRun> cells;
+  const auto add = [&](const PlannedRun& base, const Variation& variation) {
+    PlannedRun cell = settings.varied(base, variation, variations);
+    cell.name = name_of(cell);
+    const bool is_planned = cell.variation.empty() && !variation.settings.empty();  // as the base
+    if (!is_planned) cells.push_back(std::move(cell));
+  };
   for (const StudyScene& scene : spec.scenes) {
     configs.resolve("worlds", scene.world);
     configs.resolve("flights", scene.flight);
     for (const std::uint64_t seed : spec.seeds) {
       for (const std::optional<sensor::ScanMode> mode : modes) {
-        for (const std::string& sensor : spec.sensors) {
-          for (const std::string& algorithm : spec.algorithms) {
-            cells.push_back(cell_of(spec, scene, seed, mode, sensor, algorithm));
+        for (const Variation& variation : variations) {
+          for (const std::string& sensor : spec.sensors) {
+            for (const StudyAlgorithm& method : methods)
+              add(cell_of(spec, scene, seed, mode, sensor, method), variation);
           }
         }
       }
+    }
+  }
+  for (const StudyRecording& recording : spec.recordings) {
+    const PlannedRun flown = cell_of(resolved(recording, configs));
+    for (const Variation& variation : variations) {
+      for (const StudyAlgorithm& method : methods) add(with_method(spec, flown, method), variation);
     }
   }
   check_names_differ(cells);
@@ -200,19 +253,27 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-CellEstimate estimate(const PlannedRun& cell, const stages::ConfigFolder& configs) {
+CellEstimate estimate(const StudySpec& spec, const PlannedRun& cell,
+                      const stages::ConfigFolder& configs) {
   // Measured on flights of 20, 60 and 300 s; at 60 s, algorithms differ by a factor of about 3.
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
+  constexpr double kBytesOfRecordedShot = 20.0;
+  if (const StudyRecording* recording = recording_of(spec, cell)) {
+    const double shots = static_cast<double>(bytes_of(*recording)) / kBytesOfRecordedShot;
+    return {kSecondsOfRun + kSecondsOfShot * shots, kMegabytesOfRun, kMapMegabytesOfShot * shots};
+  }
   const double seconds = expected_seconds(cell, configs);
-  const double shots = seconds * shots_per_second(cell.sensor, configs);
+  const double shots = seconds * shots_per_second(cell.sensor, configs,
+                                                  settings_of(cell, configs).sensors.front());
   return {kSecondsOfRun + kSecondsOfFlightSecond * seconds + kSecondsOfShot * shots,
           kMegabytesOfRun, kMapMegabytesOfFlightSecond * seconds + kMapMegabytesOfShot * shots};
 }
 
 std::uint64_t data_bytes(const StudySpec& spec, const PlannedRun& cell,
                          const stages::ConfigFolder& configs) {
+  if (!cell.recording.empty()) return 0;
   constexpr double kBytesOfShot = 24.0;     // of a point, see formats.md
   constexpr double kBytesOfSecond = 1.5e6;  // the true trajectory and the IMUs
   constexpr double kBytesOfHits = 6.4e6;    // 20,000 of 32 bytes, ten times a second

@@ -3,8 +3,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "lidarena/dataset/dataset_manifest.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/md5.hpp"
 
 namespace lidarena::study {
 namespace {
@@ -30,18 +33,53 @@ std::size_t first_open(const std::vector<Step>& steps, const Json& request) {
   return step;
 }
 
-/// The sensor's id in the dataset, whose LiDARs are in the order of the study's sensors.
-std::string lidar_id_of(const fs::path& dataset, const StudySpec& spec, const std::string& sensor) {
+/// The sensor's id in the dataset, whose LiDARs are in the order of `sensors`.
+std::string lidar_id_of(const fs::path& dataset, const std::vector<std::string>& sensors,
+                        const std::string& sensor) {
   const auto manifest = dataset::read_dataset_manifest(dataset);
-  for (std::size_t i = 0; manifest && i < spec.sensors.size(); ++i) {
-    if (spec.sensors[i] == sensor) return manifest->rig.lidars.at(i).id;
+  for (std::size_t i = 0; manifest && i < sensors.size(); ++i) {
+    if (sensors[i] == sensor) return manifest->rig.lidars.at(i).id;
   }
   return sensor;
+}
+
+/// x,y,z,qx,qy,qz,qw
+std::string text_of(const Pose& pose) {
+  const std::string list = value_to_json(pose).dump();
+  return list.substr(1, list.size() - 2);
+}
+
+std::vector<std::string> arguments_of(const StudyRecording& recording) {
+  std::vector<std::string> call{recording.file, "--rate", fmt::format("{}", recording.rate_hz)};
+  const auto add = [&](const char* name, const std::string& value) {
+    if (!value.empty()) call.insert(call.end(), {name, value});
+  };
+  add("--sensor", recording.sensor);
+  add("--imu-topic", recording.imu_topic);
+  add("--layout", recording.layout);
+  if (recording.body_from_lidar)
+    add("--extrinsics", "body_from_lidar=" + text_of(*recording.body_from_lidar));
+  return call;
+}
+
+std::vector<std::string> truth_arguments_of(const StudyRecording& recording) {
+  std::vector<std::string> call{"--truth", recording.truth};
+  if (!recording.truth_topic.empty())
+    call.insert(call.end(), {"--truth-topic", recording.truth_topic});
+  if (recording.truth_from_body)
+    call.insert(call.end(), {"--lever", text_of(*recording.truth_from_body)});
+  return call;
 }
 
 }  // namespace
 
 std::size_t Task::first_open_step() const { return first_open(steps, request_of(folder)); }
+
+std::string Task::key() const {
+  Json keys = Json::object();
+  for (const Step& step : steps) keys[step.name] = step.key;
+  return dataset::md5_of(keys.dump());
+}
 
 TaskResult Task::result() const {
   const Json request = request_of(folder);
@@ -61,8 +99,10 @@ TaskResult Task::result() const {
 void Task::record(std::size_t step, double seconds, bool diverged) const {
   Json done = Json::object();
   for (std::size_t i = 0; i <= step; ++i) done[steps[i].name] = steps[i].key;
-  if (step + 1 == steps.size())
-    done["result"] = {{"state", diverged ? "diverged" : "ok"}, {"seconds", seconds}};
+  if (step + 1 == steps.size()) {
+    done["result"] = {
+        {"state", diverged ? "diverged" : "ok"}, {"seconds", seconds}, {"key", key()}};
+  }
   dataset::write_json(folder / kRequest, done);
 }
 
@@ -93,8 +133,9 @@ Task Tasks::flight(const PlanUnit& unit, const stages::ConfigFolder& configs) co
                                 "--hits",
                                 stages::scores_maps(plan_.spec.score) ? "on" : "off",
                                 "--example-scans"};
-  for (const std::string& sensor : plan_.spec.sensors)
+  for (const std::string& sensor : sensors_of(plan_, unit))
     call.insert(call.end(), {"--sensor", configs.resolve("sensors", sensor).string()});
+  for (const std::string& set : cell.set) call.insert(call.end(), {"--set", set});
   if (plan_.spec.new_scenes) call.emplace_back("--new-scene");
   if (cell.allow_missing) call.emplace_back("--allow-missing");
   if (cell.mode) call.insert(call.end(), {"--mode", value_to_json(*cell.mode).get<std::string>()});
@@ -112,21 +153,25 @@ Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::pat
   // Without its maps, a run cannot be scored again.
   if (!plan_.spec.keep_maps) step.key["maps_removed_after"] = code_.of("scorer");
   if (!stages::scores_maps(plan_.spec.score)) step.key["maps"] = "none";
-  step.arguments = [this, &cell, external, folder] {
-    const fs::path dataset = root_ / "datasets" / cell.dataset;
-    std::vector<std::string> call{"run",
-                                  cell.algorithm,
-                                  dataset.string(),
-                                  "--out",
-                                  folder.string(),
-                                  "--sensor",
-                                  lidar_id_of(dataset, plan_.spec, cell.sensor)};
+  step.arguments = [this, &cell, external, folder, sensors = sensors_of(plan_, unit)] {
+    std::vector<std::string> call{"run", cell.algorithm};
+    if (const StudyRecording* recording = recording_of(plan_.spec, cell)) {
+      std::ranges::move(arguments_of(*recording), std::back_inserter(call));
+    } else {
+      const fs::path dataset = root_ / "datasets" / cell.dataset;
+      call.insert(call.end(),
+                  {dataset.string(), "--sensor", lidar_id_of(dataset, sensors, cell.sensor)});
+    }
+    call.insert(call.end(), {"--out", folder.string()});
     if (external != nullptr) {
       dataset::write_json(folder / kExternal, to_json(*external));
       call.insert(call.end(), {"--external", (folder / kExternal).string()});
     } else if (!cell.preset.empty()) {
       call.insert(call.end(), {"--preset", cell.preset});
     }
+    for (const std::string& set : assignments_of(cell.settings))
+      call.insert(call.end(), {"--set", set});
+    if (cell.parts > 1) call.insert(call.end(), {"--parts", std::to_string(cell.parts)});
     if (!stages::scores_maps(plan_.spec.score)) call.insert(call.end(), {"--maps", "off"});
     return call;
   };
@@ -145,9 +190,13 @@ Task Tasks::run(const PlanUnit& unit, std::size_t index) const {
   const bool scores_maps = stages::scores_maps(plan_.spec.score);
   if (!scores_maps) score_key["parts"] = "trajectory";
   task.steps.push_back({"score", score_key, task.folder / "metrics.json",
-                        [folder = task.folder.string(), scores_maps] {
+                        [folder = task.folder.string(), scores_maps,
+                         recording = recording_of(plan_.spec, cell)] {
                           std::vector<std::string> call{"evaluate", folder};
                           if (!scores_maps) call.insert(call.end(), {"--score", "trajectory"});
+                          if (recording != nullptr)
+                            std::ranges::move(truth_arguments_of(*recording),
+                                              std::back_inserter(call));
                           return call;
                         }});
   return task;

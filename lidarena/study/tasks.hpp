@@ -40,6 +40,8 @@ struct Task {
   /// Index of the first step that is not done; the number of steps if all are.
   std::size_t first_open_step() const;
   TaskResult result() const;
+  /// Digest of the keys of all steps: the same for the same code, settings and seed.
+  std::string key() const;
   /// Records that the step is done; after the last one, the result.
   void record(std::size_t step, double seconds, bool diverged = false) const;
   void record_failure(double seconds, int attempt) const;

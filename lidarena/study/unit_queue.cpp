@@ -83,6 +83,7 @@ void UnitQueue::open(const PlanUnit& unit, const Leases::Taken& taken, bool has_
   open_.push_back(std::make_shared<OpenUnit>(unit, plan_, study_, options_.scratch, taken.token));
   OpenUnit& opened = *open_.back();
   opened.keeps_data = has_room;
+  opened.has_flown = !plan_.cells[unit.cells.front()].recording.empty();
   for (const std::size_t cell : open_cells(unit)) {
     opened.waiting.push_back(opened.tasks.run(unit, cell));
     if (published_.run(unit, cell).first_open_step() > 0)

@@ -23,6 +23,11 @@ struct Candidate {
   std::string preset;
 };
 
+/// For the names of the tests, which would else show its bytes.
+void PrintTo(const Candidate& candidate, std::ostream* out) {
+  *out << candidate.algorithm << ":" << candidate.preset;
+}
+
 std::vector<Candidate> candidates() {
   std::vector<Candidate> all;
   for (const AlgorithmInfo& info : list_algorithms()) {

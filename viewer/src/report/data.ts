@@ -28,6 +28,9 @@ export interface Run {
   sensor: string;
   algorithm: string;
   preset: string; // with the timing mode of the sensors, if the study sets one
+  variation: string; // what differs from the base of the study; empty: nothing
+  varied: Record<string, unknown>; // each key that the study varies, with its value in this run
+  differs: string[]; // those keys whose value is not that of the base
   seed: number;
   status: string;
   lost: string; // why the run is lost, as lidarena/results/lost.hpp defines it; empty if it is not
@@ -181,6 +184,9 @@ export interface Spread {
   worst: number;
   bound: number | null; // of a median share of zero
 }
+
+/** The runs of the study's base; those of its variations are other settings. */
+export const baseOf = (runs: Run[]) => runs.filter((run) => run.variation === "");
 
 export const keptOf = (runs: Run[]) => runs.filter((run) => !run.lost);
 

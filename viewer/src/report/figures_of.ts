@@ -2,6 +2,7 @@
 // Every chart of a report: the page and the SVG files draw the same ones.
 import { RUN_COLORS } from "../view/colors";
 import {
+  baseOf,
   count,
   CPU,
   distinct,
@@ -19,6 +20,7 @@ import {
 } from "./data";
 import { base, binAxis, groups, legendOf, line, panels, sensorColor, timeAxis, valueAxis, type Figure } from "./figure_parts";
 import type { DistanceHistogram } from "./metrics";
+import { responsesOf } from "./responses";
 
 const THRESHOLD = "#e0a800";
 const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
@@ -295,9 +297,11 @@ function outliers(data: ReportData, all: Run[], world: string): Figure | null {
   });
 }
 
-/** The charts of `runs`, world by world. */
-export function figuresOf(data: ReportData, runs: Run[]): Figure[] {
+/** The charts of `all`, world by world: of the study's base, and of what its variations do. */
+export function figuresOf(data: ReportData, all: Run[]): Figure[] {
+  const runs = baseOf(all);
   const ofWorld = (world: string) => [
+    ...responsesOf(data, all, world),
     histograms(runs, world, "own_map"),
     histograms(runs, world, "all_returns"),
     outliers(data, runs, world),
@@ -306,7 +310,7 @@ export function figuresOf(data: ReportData, runs: Run[]): Figure[] {
     spread(data, runs, world),
   ];
   return [
-    ...distinct(runs, (run) => run.world).flatMap(ofWorld),
+    ...distinct(all, (run) => run.world).flatMap(ofWorld),
     pareto(data, runs, "pareto-cpu", "Error against CPU time", figureOf(data, CPU).of, "CPU time, % of one core"),
     pareto(data, runs, "pareto-memory", "Error against memory", figureOf(data, MEMORY).of, "memory of the algorithm, MB"),
   ].filter((figure): figure is Figure => figure !== null);

@@ -5,7 +5,7 @@ import "./report.css";
 import { element, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
-import { cellOf, distinct, label, type ReportData, type Run, type Table } from "./data";
+import { baseOf, cellOf, distinct, label, type ReportData, type Run, type Table } from "./data";
 import { decision } from "./decision";
 import { figuresOf } from "./figures_of";
 import { keepFocus } from "./keyboard";
@@ -43,7 +43,8 @@ class Report implements Page {
   data = jsonOf<ReportData>("data");
   scenes = scenesInPage();
   settings = readSettings(location.hash, this.data);
-  runs: Run[] = [];
+  runs: Run[] = []; // of the base, that pass the filters
+  listed: Run[] = []; // of all variations
   private opened: RunView | null = null;
   private pictures = 0; // asked for so far
   private boxes: ChartBox[] = [];
@@ -102,7 +103,8 @@ class Report implements Page {
 
   /** Draws what depends on the settings, or only on those called `changed`. */
   private show(changed = ["filters", "figure", "front", "run"]) {
-    this.runs = this.data.runs.filter((run) => passes(run, this.settings));
+    this.listed = this.data.runs.filter((run) => passes(run, this.settings));
+    this.runs = baseOf(this.listed);
     if (changed.includes("filters")) {
       this.showOverview();
       this.drawCharts();
@@ -205,7 +207,7 @@ class Report implements Page {
 
   private drawCharts() {
     for (const box of this.boxes) box.dispose();
-    const figures = figuresOf(this.data, this.runs);
+    const figures = figuresOf(this.data, this.listed);
     this.boxes = figures.map((figure) => new ChartBox(figure));
     const groups = distinct(this.boxes, (box) => box.figure.world).map((world) => {
       const ofWorld = this.boxes.filter((box) => box.figure.world === world).map((box) => box.root);
@@ -247,9 +249,10 @@ class Report implements Page {
     const open = (run: Run) => ({ ...word(run.name), open: () => this.change({ run: run.name }) });
     const columns = this.data.figures
       .map((figure, i) => ({ ...figure, i }))
-      .filter(({ i }) => this.runs.some((run) => run.values[i] !== null));
+      .filter(({ i }) => this.listed.some((run) => run.values[i] !== null));
     const main = columns.filter(({ in_runs }) => in_runs);
-    const bad = this.runs.filter((run) => run.lost);
+    const varies = this.listed.some((run) => run.variation !== "");
+    const bad = this.listed.filter((run) => run.lost);
     const failed: ShownTable = {
       id: "failures",
       title: "Runs that are lost",
@@ -267,17 +270,19 @@ class Report implements Page {
         "flight",
         "sensor",
         "method",
+        ...(varies ? ["variation"] : []),
         "seed",
         "status",
         "coverage, %",
         ...main.map(({ label: text, unit }) => `${text}, ${unit}`),
       ],
-      rows: this.runs.map((run) => [
+      rows: this.listed.map((run) => [
         open(run),
         word(run.world),
         word(run.flight),
         word(run.sensor),
         word(label(run)),
+        ...(varies ? [word(run.variation || "base")] : []),
         number(run.seed),
         word(run.lost ? (run.status === "ok" ? "lost" : run.status) : "ok"),
         number(run.coverage_percent),

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/study/variations.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "lidarena/dataset/md5.hpp"
+#include "lidarena/flight/make_flight.hpp"
+#include "lidarena/odometry/factory.hpp"
+#include "lidarena/scenes/load_world.hpp"
+#include "lidarena/sensor/simulate.hpp"
+#include "lidarena/stages/scene_settings.hpp"
+
+namespace lidarena::study {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kMaxNameLength = 80;  // of a part of a folder's name
+
+std::string kind_of(const std::string& key) { return key.substr(0, key.find('.')); }
+
+/// The key within the configuration of its kind.
+std::string key_in(const std::string& kind, const std::string& key) {
+  return kind == "imu" ? key : key.substr(std::min(kind.size() + 1, key.size()));
+}
+
+bool is_of_method(const PlannedRun& cell, const std::string& kind) {
+  return kind == "algorithm" || kind == cell.label();
+}
+
+std::string text_of(const std::string& key, const Json& value) {
+  return key + "=" + text_of_value(value);
+}
+
+/// As a part of a folder's name.
+std::string name_part(const std::string& name, const std::vector<std::string>& settings) {
+  if (settings.empty()) return {};
+  std::string all;
+  for (const std::string& setting : settings) all += (all.empty() ? "" : ",") + setting;
+  std::string part = name.empty() ? all : name + "-" + dataset::md5_of(all).substr(0, 6);
+  if (part.size() > kMaxNameLength)
+    part = part.substr(0, kMaxNameLength - 7) + "-" + dataset::md5_of(part).substr(0, 6);
+  std::ranges::replace_if(
+      part,
+      [](unsigned char c) {
+        return std::isalnum(c) == 0 && std::string_view("._-+=,").find(static_cast<char>(c)) ==
+                                           std::string_view::npos;
+      },
+      '_');
+  return "-" + part;
+}
+
+const Json& values_of(const std::string& key, const Json& values) {
+  if (values.is_array() && !values.empty()) return values;
+  throw InputError("study: vary: " + key, "is not a list of values", "write " + key + ": [A, B]");
+}
+
+/// All combinations of the values of all keys, the last key fastest.
+std::vector<Variation> grid_of(const Json& vary) {
+  std::vector<Variation> grid(1);
+  for (const auto& [key, values] : vary.items()) {
+    std::vector<Variation> longer;
+    for (const Variation& before : grid) {
+      for (const Json& value : values_of(key, values)) {
+        longer.push_back(before);
+        longer.back().settings.emplace_back(key, value);
+      }
+    }
+    grid = std::move(longer);
+  }
+  return grid;
+}
+
+}  // namespace
+
+std::vector<Variation> variations_of(const StudySpec& spec) {
+  if (!spec.vary.is_object())
+    throw InputError("study: vary", "is not a map", "write vary: {sensor.range_noise_m: [0, 0.01]}");
+  std::vector<Variation> all(1);
+  if (spec.vary_as == VaryAs::kGrid && !spec.vary.empty()) {
+    std::ranges::move(grid_of(spec.vary), std::back_inserter(all));
+  } else {
+    for (const auto& [key, values] : spec.vary.items())
+      for (const Json& value : values_of(key, values)) all.push_back({"", {{key, value}}});
+  }
+  for (const VariedSet& set : spec.sets) {
+    if (set.name.empty() || set.name.find('/') != std::string::npos)
+      throw InputError("study: sets", "a set has the name '" + set.name + "'",
+                       "give each a name without '/', since a folder is named after it");
+    if (!set.set.is_object())
+      throw InputError("study: sets: " + set.name, "has no settings",
+                       "write set: {sensor.range_noise_m: 0.01}");
+    Variation variation{set.name, {}};
+    for (const auto& [key, value] : set.set.items()) variation.settings.emplace_back(key, value);
+    all.push_back(std::move(variation));
+  }
+  return all;
+}
+
+/// Whether settings of this kind are settings of the cell. Throws InputError if they are of none.
+bool CellSettings::applies_to(const PlannedRun& base, const std::string& kind) const {
+  if (kind == "world" || kind == "flight" || kind == "sensor" || kind == "imu")
+    return base.recording.empty();
+  if (kind == "algorithm") return true;
+  std::vector<std::string> known{"world", "flight", "sensor", "imu", "algorithm"};
+  for (const std::string& sensor : spec_.sensors) known.push_back(fs::path(sensor).stem());
+  for (const StudyAlgorithm& method : methods_)
+    known.push_back(method.as.empty() ? parse_algorithm(method.name).algorithm : method.as);
+  if (std::ranges::find(known, kind) == known.end()) {
+    const std::string nearest = nearest_word(kind, known);
+    throw InputError("study: vary: " + kind, "is not what a study can vary",
+                     nearest.empty() ? "a key begins with world, flight, sensor, imu, algorithm, or "
+                                       "the name of a sensor or method of the study"
+                                     : "did you mean '" + nearest + "'?");
+  }
+  return kind == fs::path(base.sensor).stem() || kind == base.label();
+}
+
+Json CellSettings::load(const PlannedRun& base, const std::string& kind,
+                        const std::string& assignment) const {
+  std::vector<std::string> set;
+  if (!assignment.empty()) set.push_back(assignment);
+  if (kind == "world") return scenes::world_config(configs_.resolve("worlds", base.world), set);
+  if (kind == "flight")
+    return to_json(flight::load_flight(configs_.resolve("flights", base.flight), set));
+  const bool is_recorded = !base.recording.empty();
+  const fs::path sensor = is_recorded ? fs::path() : configs_.resolve("sensors", base.sensor);
+  const fs::path shipped = configs_.root() / "sensors";
+  if (!is_of_method(base, kind)) return to_json(sensor::load_sensor(sensor, shipped, set));
+  if (base.preset == "external")
+    throw InputError("study: vary: " + kind, base.label() + " is an external program",
+                     "vary the settings of Lidarena's own methods by name: METHOD.KEY");
+  odometry::OdometryRequest request{base.algorithm, base.preset, {}, assignments_of(base.settings)};
+  request.overrides.insert(request.overrides.end(), set.begin(), set.end());
+  if (is_recorded) return odometry::configuration_of(request);
+  const Rig rig = sensor::make_rig({sensor::load_sensor(sensor, shipped)});
+  return odometry::configuration_of(request, rig.lidars.front());
+}
+
+/// The cell's configuration of this kind, with one setting over it if it is not empty.
+const Json& CellSettings::configuration(const PlannedRun& base, const std::string& kind,
+                                        const std::string& assignment) {
+  std::string file = kind + "|" + base.sensor;
+  if (kind == "world") file = "world|" + base.world;
+  if (kind == "flight") file = "flight|" + base.flight;
+  if (is_of_method(base, kind)) file += "|" + base.label() + "|" + base.preset;
+  const auto [place, is_new] = loaded_.try_emplace(file + "|" + assignment);
+  if (!is_new) return place->second;
+  try {
+    place->second = load(base, kind, assignment);
+  } catch (const InputError& error) {
+    loaded_.erase(place);
+    throw InputError("study: vary", error.what());
+  }
+  return place->second;
+}
+
+/// Whether the cell is another one with this setting. What the seed draws is never the same.
+bool CellSettings::changes(const PlannedRun& base, const std::string& key, const Json& value) {
+  const std::string kind = kind_of(key);
+  const Json& before = configuration(base, kind, "");
+  const Json& after =
+      configuration(base, kind, stages::assignment_of(key_in(kind, key), value));
+  return before != after || (kind == "world" && value_at(before, "vary") == true);
+}
+
+PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variation,
+                                const std::vector<Variation>& all) {
+  PlannedRun cell = base;
+  for (const Variation& other : all) {
+    for (const auto& [key, value] : other.settings) {
+      const std::string kind = kind_of(key);
+      if (!applies_to(base, kind) || cell.varied.contains(key)) continue;
+      cell.varied[key] = value_at(configuration(base, kind, ""), key_in(kind, key));
+    }
+  }
+  std::vector<std::string> of_flight, of_method;
+  for (const auto& [key, value] : variation.settings) {
+    const std::string kind = kind_of(key);
+    if (!applies_to(base, kind) || !changes(base, key, value)) continue;
+    cell.varied[key] = value;
+    cell.differs.push_back(key);
+    if (is_of_method(base, kind)) {
+      cell.settings[key_in(kind, key)] = value;
+      of_method.push_back(text_of(key, value));
+    } else {
+      cell.set.push_back(stages::assignment_of(key, value));
+      of_flight.push_back(text_of(key, value));
+    }
+    cell.variation += (cell.variation.empty() ? "" : ", ") + text_of(key, value);
+  }
+  if (!cell.variation.empty() && !variation.name.empty()) cell.variation = variation.name;
+  cell.dataset += name_part(variation.name, of_flight);
+  cell.method_part = name_part(variation.name, of_method);
+  return cell;
+}
+
+}  // namespace lidarena::study

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// What a study's varied keys do to its figures: curves of one key, heat maps of two.
+import {
+  distinct,
+  DRIFT,
+  figureOf,
+  grouped,
+  keptOf,
+  label,
+  LIVE_DRIFT,
+  MAP_RMSE,
+  OWN_RMSE,
+  shown,
+  spreadOf,
+  type FigureOf,
+  type ReportData,
+  type Run,
+} from "./data";
+import { line, panels, sensorColor, valueAxis, type Figure } from "./figure_parts";
+
+const SHOWN = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE];
+const LOG_FROM_RATIO = 20; // of the largest value to the smallest: a logarithmic axis
+const HEAT_COLORS = ["#f4f8ee", "#f7c873", "#d1453b", "#5c1a33"];
+
+type Value = string | number | boolean | null;
+const valueOf = (run: Run, key: string) => run.varied[key] as Value;
+const textOf = (value: Value | Value[]) => (Array.isArray(value) ? `[${value.join(", ")}]` : String(value));
+
+/** The runs that differ from the base in no other key. */
+const within = (runs: Run[], keys: string[]) => runs.filter((run) => keys.every((key) => key in run.varied) && run.differs.every((key) => keys.includes(key)));
+
+/** The values of a key: numbers by size, others in the order of the runs. */
+function valuesOf(runs: Run[], key: string): Value[] {
+  const values = [...new Map(runs.map((run) => [textOf(valueOf(run, key)), valueOf(run, key)])).values()];
+  return values.every((value) => typeof value === "number") ? (values as number[]).sort((a, b) => a - b) : values;
+}
+
+const lostNote = (runs: Run[]) => {
+  const lost = runs.length - keptOf(runs).length;
+  return lost > 0 ? ` Lost, and counted as the worst: ${lost} of ${runs.length} runs; a median that is lost is not drawn.` : "";
+};
+
+function axisOf(values: Value[], key: string): { axis: (i: number) => Record<string, unknown>; place: (value: Value) => number } {
+  const numbers = values.filter((value): value is number => typeof value === "number");
+  if (numbers.length < values.length) {
+    const axis = (gridIndex: number) => ({ type: "category", gridIndex, data: values.map(textOf), name: key, nameLocation: "middle", nameGap: 22 });
+    return { axis, place: (value) => values.findIndex((other) => textOf(other) === textOf(value)) };
+  }
+  const isLog = numbers[0] > 0 && numbers[numbers.length - 1] / numbers[0] >= LOG_FROM_RATIO;
+  const more = isLog ? { type: "log", min: numbers[0], max: numbers[numbers.length - 1] } : { min: numbers[0], max: numbers[numbers.length - 1] };
+  return { axis: (i) => valueAxis(i, key, { nameGap: 22, ...more }), place: (value) => value as number };
+}
+
+type Api = { value: (i: number) => number; coord: (point: number[]) => number[] };
+
+/** From the best run to the worst. */
+const whiskers = (name: string, color: string, panel: number, data: number[][]) => ({
+  type: "custom",
+  name,
+  xAxisIndex: panel,
+  yAxisIndex: panel,
+  silent: true,
+  itemStyle: { color },
+  encode: { x: 0, y: [1, 2] },
+  data,
+  renderItem: (_: unknown, api: Api) => {
+    const [x, y1] = api.coord([api.value(0), api.value(1)]);
+    const y2 = api.coord([api.value(0), api.value(2)])[1];
+    const style = { stroke: color, lineWidth: 1.2, opacity: 0.6 };
+    const stroke = (a: number[], b: number[]) => ({ type: "line", shape: { x1: a[0], y1: a[1], x2: b[0], y2: b[1] }, style });
+    return { type: "group", children: [stroke([x, y1], [x, y2]), stroke([x - 3, y1], [x + 3, y1]), stroke([x - 3, y2], [x + 3, y2])] };
+  },
+});
+
+/** A figure against the values of one key: a panel per method, a line per sensor. */
+function curve(all: Run[], world: string, key: string, figure: FigureOf): Figure | null {
+  const runs = within(all, [key]).filter((run) => run.world === world);
+  const values = valuesOf(runs, key);
+  const methods = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  if (values.length < 2 || !runs.some((run) => figure.of(run) !== null)) return null;
+  const { axis, place } = axisOf(values, key);
+  const series = methods.flatMap((method, panel) =>
+    sensors.flatMap((sensor) => {
+      const cells = grouped(
+        runs.filter((run) => label(run) === method && run.sensor === sensor),
+        (run) => textOf(valueOf(run, key)),
+      );
+      const spreads = values.flatMap((value) => {
+        const spread = spreadOf(cells.get(textOf(value)) ?? [], figure);
+        return spread && Number.isFinite(spread.median) ? [{ x: place(value), ...spread }] : [];
+      });
+      const color = sensorColor(sensor, sensors);
+      const medians = spreads.map(({ x, median }) => [x, median]);
+      const ranges = spreads.filter(({ best, worst }) => Number.isFinite(worst) && best !== worst).map(({ x, best, worst }) => [x, best, worst]);
+      const more = { xAxisIndex: panel, yAxisIndex: panel, symbol: "circle", symbolSize: 6 };
+      return [line(sensor, color, medians, more), whiskers(sensor, color, panel, ranges)];
+    }),
+  );
+  return panels({
+    id: `response-${world}-${key}-${figure.info.key}`,
+    title: `${figure.info.label} against ${key}, ${world}`,
+    world,
+    caption: `Median over flights and seeds; bars reach from the best run to the worst. All other keys as in the base.${lostNote(runs)}`,
+    names: methods,
+    legend: sensors,
+    columns: 4,
+    width: 290,
+    height: 230,
+    tooltip: { trigger: "item" },
+    xAxis: axis,
+    yAxis: (i, isLeft) => valueAxis(i, isLeft ? figure.info.unit : "", { nameGap: 40, min: 0 }),
+    series,
+  });
+}
+
+/** A figure against two keys: a panel per method and sensor. */
+function heatMap(all: Run[], world: string, [x, y]: [string, string], figure: FigureOf): Figure | null {
+  const runs = within(all, [x, y]).filter((run) => run.world === world);
+  if (!runs.some((run) => run.differs.length === 2)) return null;
+  const [columns, rows] = [valuesOf(runs, x), valuesOf(runs, y)];
+  const names = distinct(runs, (run) => `${label(run)}, ${run.sensor}`);
+  const series = names.map((name, panel) => {
+    const same = runs.filter((run) => `${label(run)}, ${run.sensor}` === name);
+    const data = columns.flatMap((a, i) =>
+      rows.flatMap((b, j) => {
+        const cell = same.filter((run) => textOf(valueOf(run, x)) === textOf(a) && textOf(valueOf(run, y)) === textOf(b));
+        const median = spreadOf(cell, figure)?.median;
+        return median !== undefined && Number.isFinite(median) ? [[i, j, Number(median.toPrecision(3))]] : [];
+      }),
+    );
+    const text = ({ data: point }: { data: number[] }) => shown(point[2]);
+    return { type: "heatmap", name, xAxisIndex: panel, yAxisIndex: panel, data, label: { show: true, fontSize: 10, formatter: text } };
+  });
+  const medians = series.flatMap(({ data }) => data.map((point) => point[2]));
+  if (medians.length === 0) return null;
+  const drawn = panels({
+    id: `heat-${world}-${x}-${y}-${figure.info.key}`,
+    title: `${figure.info.label} (${figure.info.unit}) against ${x} and ${y}, ${world}`,
+    world,
+    caption: `Median over flights and seeds. All other keys as in the base.${lostNote(runs)}`,
+    names,
+    legend: [],
+    columns: 3,
+    width: 340,
+    height: 250,
+    tooltip: { trigger: "item" },
+    xAxis: (gridIndex) => ({ type: "category", gridIndex, data: columns.map(textOf), name: x, nameLocation: "middle", nameGap: 22 }),
+    yAxis: (gridIndex, isLeft) => ({ type: "category", gridIndex, data: rows.map(textOf), name: isLeft ? y : "", nameLocation: "middle", nameGap: 40 }),
+    series,
+  });
+  drawn.columns = ["method, sensor", `index of ${x}`, `index of ${y}`, figure.info.key];
+  drawn.option.visualMap = { show: false, min: Math.min(...medians), max: Math.max(...medians), inRange: { color: HEAT_COLORS } };
+  return drawn;
+}
+
+/** The charts of a study that varies settings; none of any other study. */
+export function responsesOf(data: ReportData, runs: Run[], world: string): (Figure | null)[] {
+  const keys = [...new Set(runs.flatMap((run) => Object.keys(run.varied)))];
+  const figures = SHOWN.map((key) => figureOf(data, key));
+  const pairs = keys.flatMap((a, i) => keys.slice(i + 1).map((b): [string, string] => [a, b]));
+  return [
+    ...keys.flatMap((key) => figures.map((figure) => curve(runs, world, key, figure))),
+    ...pairs.flatMap((pair) => figures.map((figure) => heatMap(runs, world, pair, figure))),
+  ];
+}
