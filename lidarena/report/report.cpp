@@ -39,7 +39,7 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
 std::vector<results::Table> lists(const results::StudyResults& results) {
   std::vector<results::Table> tables{failures_table(results), commands_table(results)};
   for (const std::string& world : results::StudyCells(results, "").worlds())
-    tables.push_back(runs_table(results, world));
+    tables.insert(tables.end(), {runs_table(results, world), usual_table(results, world)});
   return tables;
 }
 

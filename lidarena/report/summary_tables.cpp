@@ -9,6 +9,7 @@
 #include "lidarena/report/run_command.hpp"
 #include "lidarena/results/expectation.hpp"
 #include "lidarena/results/lost.hpp"
+#include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
 namespace {
@@ -102,6 +103,40 @@ Table failures_table(const results::StudyResults& results) {
     if (lost.empty()) continue;
     table.rows.push_back({word(row.name), word(row.status == "ok" ? "lost" : row.status),
                           word(row.status == "ok" ? lost : row.reason)});
+  }
+  return table;
+}
+
+Table usual_table(const results::StudyResults& results, const std::string& world) {
+  Table table{"usual-" + world,
+              "By the usual names: " + world,
+              "APE: RMSE of the positions after alignment by SE(3). RTF: real-time factor, seconds of "
+              "data per second of computing. Success rate: runs that kept tracking. Medians over "
+              "flights and seeds.",
+              {"sensor, method", "APE, m", "RPE per second, m", "RTF", "success rate, %"},
+              {}};
+  const auto median = [](const results::Spread& spread) {
+    return spread.median ? std::optional(0.01 * *spread.median) : std::nullopt;
+  };
+  const results::Figure& rpe = results::figure_of("rpe_1s_translation", "the report");
+  const results::Figure& rtf = results::figure_of("real_time_factor", "the report");
+  for (const std::string& variant : results::variants_of(results)) {
+    const results::StudyCells cells(results, variant);
+    for (const std::string& sensor : cells.sensors()) {
+      for (const std::string& algorithm : cells.algorithms()) {
+        const results::Runs runs = cells.rows(world, sensor, algorithm);
+        if (runs.empty()) continue;
+        const auto spread = [&](const results::Figure& figure) {
+          return cells.spread(world, sensor, algorithm, figure);
+        };
+        const results::Spread ape = spread(results::kAte);
+        table.rows.push_back({word(sensor + ", " + results::label_of(*runs.front())),
+                              number(median(ape)), number(median(spread(rpe))),
+                              number(spread(rtf).median),
+                              number(100.0 * static_cast<double>(ape.kept) /
+                                     static_cast<double>(ape.runs))});
+      }
+    }
   }
   return table;
 }

@@ -23,6 +23,9 @@ std::string methods_with_mean_maps(const results::StudyResults& results);
 results::Table runs_table(const results::StudyResults& results, const std::string& world);
 /// Lost runs (results/lost.hpp) with their reasons.
 results::Table failures_table(const results::StudyResults& results);
+/// The runs of the base in a world by the names that other benchmarks use: APE, RPE per second,
+/// real-time factor, success rate.
+results::Table usual_table(const results::StudyResults& results, const std::string& world);
 /// The commands that reproduce each run, including its dataset.
 results::Table commands_table(const results::StudyResults& results);
 /// The study's expectations, judged by the runs of one variant: "holds", "falls short", "cannot be

@@ -92,7 +92,7 @@ std::vector<KnownRow> read_known_rows(const std::filesystem::path& csv) {
 std::string bounds_text(const std::map<std::string, double>& bounds) {
   std::string text;
   for (const auto& [key, bound] : bounds)
-    text += fmt::format("{}{}={:.9g}", text.empty() ? "" : ";", key, bound);
+    text += fmt::format("{}{}={}", text.empty() ? "" : ";", key, bound);
   return text;
 }
 

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "lidarena/dataset/json_file.hpp"
@@ -205,6 +206,11 @@ StudyResults merged(std::vector<StudyResults> parts) {
   return all;
 }
 
+/// With all digits, so that a row that is read again has the same figures.
+static TableCell exact(std::optional<double> value) {
+  return word(value && std::isfinite(*value) ? fmt::format("{}", *value) : "");
+}
+
 /// The bounds of all shares of zero, by the figure's key.
 static std::map<std::string, double> zero_bounds_of(const RunRecord& run) {
   std::map<std::string, double> bounds;
@@ -230,8 +236,8 @@ std::string results_csv(const StudyResults& results) {
                                     r.mode, std::to_string(r.seed), r.status, r.reason}) {
       row.push_back(word(text));
     }
-    row.push_back(number(coverage_of(r)));
-    for (const Figure& figure : figures()) row.push_back(number(value_of(r, figure)));
+    row.push_back(exact(coverage_of(r)));
+    for (const Figure& figure : figures()) row.push_back(exact(value_of(r, figure)));
     if (!varied.empty()) row.push_back(word(r.variation));
     for (const std::string& key : varied) {
       const Json value = r.varied.value(key, Json());

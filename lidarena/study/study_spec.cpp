@@ -259,6 +259,9 @@ CellEstimate estimate(const StudySpec& spec, const PlannedRun& cell,
   constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
+  // Without maps.
+  constexpr double kSecondsOfTrack = 0.5, kSecondsOfTrackSecond = 0.12;
+  constexpr double kSecondsOfTrackedShot = 0.05e-6, kMegabytesOfTrackSecond = 0.05;
   constexpr double kBytesOfRecordedShot = 20.0;
   if (const StudyRecording* recording = recording_of(spec, cell)) {
     const double shots = static_cast<double>(bytes_of(*recording)) / kBytesOfRecordedShot;
@@ -267,6 +270,9 @@ CellEstimate estimate(const StudySpec& spec, const PlannedRun& cell,
   const double seconds = expected_seconds(cell, configs);
   const double shots = seconds * shots_per_second(cell.sensor, configs,
                                                   settings_of(cell, configs).sensors.front());
+  if (!stages::scores_maps(spec.score))
+    return {kSecondsOfTrack + kSecondsOfTrackSecond * seconds + kSecondsOfTrackedShot * shots,
+            kMegabytesOfTrackSecond * seconds, 0.0};
   return {kSecondsOfRun + kSecondsOfFlightSecond * seconds + kSecondsOfShot * shots,
           kMegabytesOfRun, kMapMegabytesOfFlightSecond * seconds + kMapMegabytesOfShot * shots};
 }

@@ -193,16 +193,19 @@ TEST(Plan, AnotherBaseOfASensorMakesAnotherFlight) {
 }
 
 TEST(Plan, ADenserSensorAndALongerFlightAreExpectedToTakeMore) {
-  const std::vector<PlannedRun> cells = planned_cells(small_spec(), configs());
+  StudySpec spec = small_spec();
+  const std::vector<PlannedRun> cells = planned_cells(spec, configs());
   PlannedRun longer = cells[0];
   longer.seconds *= 2;
-  const CellEstimate mid360 = estimate(cells[0], configs());
+  const CellEstimate mid360 = estimate(spec, cells[0], configs());
   ASSERT_EQ(cells[2].sensor, "ouster_os0_128");
-  EXPECT_GT(estimate(cells[2], configs()).seconds, mid360.seconds);
-  EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
-  EXPECT_GT(estimate(longer, configs()).maps_mb, mid360.maps_mb);
+  EXPECT_GT(estimate(spec, cells[2], configs()).seconds, mid360.seconds);
+  EXPECT_GT(estimate(spec, longer, configs()).seconds, mid360.seconds);
+  EXPECT_GT(estimate(spec, longer, configs()).maps_mb, mid360.maps_mb);
   longer.seconds = 0.0;  // the whole flight, a minute
-  EXPECT_GT(estimate(longer, configs()).seconds, mid360.seconds);
+  EXPECT_GT(estimate(spec, longer, configs()).seconds, mid360.seconds);
+  spec.score = {stages::ScorePart::kTrajectory};
+  EXPECT_LT(estimate(spec, cells[0], configs()).seconds, mid360.seconds);
 }
 
 }  // namespace

@@ -20,6 +20,7 @@ import { line, panels, sensorColor, valueAxis, type Figure } from "./figure_part
 
 const SHOWN = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE];
 const LOG_FROM_RATIO = 20; // of the largest value to the smallest: a logarithmic axis
+const LOST = { visualMap: false, itemStyle: { color: "#c9ced6" }, label: { formatter: "lost" } };
 const HEAT_COLORS = ["#f4f8ee", "#f7c873", "#d1453b", "#5c1a33"];
 
 type Value = string | number | boolean | null;
@@ -126,19 +127,19 @@ function heatMap(all: Run[], world: string, [x, y]: [string, string], figure: Fi
       rows.flatMap((b, j) => {
         const cell = same.filter((run) => textOf(valueOf(run, x)) === textOf(a) && textOf(valueOf(run, y)) === textOf(b));
         const median = spreadOf(cell, figure)?.median;
-        return median !== undefined && Number.isFinite(median) ? [[i, j, Number(median.toPrecision(3))]] : [];
+        if (median === undefined) return [];
+        return [Number.isFinite(median) ? { value: [i, j, Number(median.toPrecision(3))] } : { value: [i, j, 0], ...LOST }];
       }),
     );
-    const text = ({ data: point }: { data: number[] }) => shown(point[2]);
+    const text = ({ value }: { value: number[] }) => shown(value[2]);
     return { type: "heatmap", name, xAxisIndex: panel, yAxisIndex: panel, data, label: { show: true, fontSize: 10, formatter: text } };
   });
-  const medians = series.flatMap(({ data }) => data.map((point) => point[2]));
-  if (medians.length === 0) return null;
+  const kept = series.map(({ data }) => data.filter((cell) => !("visualMap" in cell)).map(({ value }) => value[2]));
   const drawn = panels({
     id: `heat-${world}-${x}-${y}-${figure.info.key}`,
     title: `${figure.info.label} (${figure.info.unit}) against ${x} and ${y}, ${world}`,
     world,
-    caption: `Median over flights and seeds. All other keys as in the base.${lostNote(runs)}`,
+    caption: `Median over flights and seeds, colored from the smallest to the largest of each panel. All other keys as in the base.`,
     names,
     legend: [],
     columns: 3,
@@ -150,7 +151,10 @@ function heatMap(all: Run[], world: string, [x, y]: [string, string], figure: Fi
     series,
   });
   drawn.columns = ["method, sensor", `index of ${x}`, `index of ${y}`, figure.info.key];
-  drawn.option.visualMap = { show: false, min: Math.min(...medians), max: Math.max(...medians), inRange: { color: HEAT_COLORS } };
+  drawn.option.visualMap = kept.map((medians, seriesIndex) => {
+    const [min, max] = medians.length > 0 ? [Math.min(...medians), Math.max(...medians)] : [0, 1];
+    return { show: false, seriesIndex, min, max, inRange: { color: HEAT_COLORS } };
+  });
   return drawn;
 }
 
