@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <limits>
 
 namespace lidarena::results {
@@ -20,18 +21,30 @@ std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure) 
 }  // namespace
 
 std::string lost_reason(const RunMetrics& metrics) {
+  if (!metrics.is_ok() && metrics.ended_at_s)
+    return fmt::format("ended at {:.1f} s: {}", *metrics.ended_at_s, metrics.reason);
   if (!metrics.is_ok()) return metrics.status_and_reason();
-  if (const auto share = value_of(metrics, kOwnMapOutliers);
-      share && *share > kLostOutliers_percent)
-    return fmt::format("lost: {:.0f} % of its own map lie beyond 20 cm", *share);
+  for (const Figure* figure : {&kDrift, &kLiveDrift, &kDriftRotation, &kAte}) {
+    const auto value = value_of(metrics, *figure);
+    if (value && !std::isfinite(*value))
+      return fmt::format("lost: its {} is not finite", figure->label);
+  }
   if (const auto drift = value_of(metrics, kDrift); drift && *drift > kLostDrift_cm_per_m)
     return fmt::format("lost: it drifts by {:.3g} cm per m", *drift);
+  if (const auto turn = value_of(metrics, kDriftRotation); turn && *turn > kLostDrift_deg_per_m)
+    return fmt::format("lost: it drifts by {:.3g} degrees per m", *turn);
   return {};
 }
 
 std::string lost_reason(const RunRecord& run) {
-  if (run.status != "ok") return state_of(run.status, run.reason);
+  if (run.status != "ok")
+    return early_end(run) ? lost_reason(*run.metrics) : state_of(run.status, run.reason);
   return run.metrics ? lost_reason(*run.metrics) : std::string("not scored");
+}
+
+std::optional<EarlyEnd> early_end(const RunRecord& run) {
+  if (!run.metrics || run.metrics->is_ok() || !run.metrics->ended_at_s) return std::nullopt;
+  return EarlyEnd{*run.metrics->ended_at_s, value_of(run, kDrift)};
 }
 
 bool is_lost(const RunRecord& run) { return !lost_reason(run).empty(); }

@@ -152,8 +152,8 @@ StudyResults merged(std::vector<StudyResults> parts) {
 
 std::string results_csv(const StudyResults& results) {
   Table table{"", "", "", {}, {}};
-  table.head = {"run",  "world", "flight", "sensor", "algorithm",       "preset",
-                "mode", "seed",  "status", "reason", "coverage_percent"};
+  table.head = {"run",  "world", "flight", "sensor", "algorithm",        "preset",
+                "mode", "seed",  "status", "reason", "coverage_percent", "ended_at_s"};
   for (const Figure& figure : figures()) table.head.push_back(column_of(figure));
   for (const RunRecord& r : results.rows) {
     std::vector<TableCell> row;
@@ -162,6 +162,7 @@ std::string results_csv(const StudyResults& results) {
       row.push_back(word(text));
     }
     row.push_back(number(r.metrics ? coverage_of(*r.metrics) : std::nullopt));
+    row.push_back(number(r.metrics ? r.metrics->ended_at_s : std::nullopt));
     for (const Figure& figure : figures()) row.push_back(number(value_of(r, figure)));
     table.rows.push_back(std::move(row));
   }
@@ -172,13 +173,13 @@ std::string results_text(const StudyResults& results) {
   Table table{"",
               "",
               "",
-              {"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm", "outliers %",
-               "CPU %", "own MB", "status"},
+              {"world", "sensor", "algorithm", "RPE cm/m", "live RPE cm/m", "ATE cm", "map RMSE cm",
+               "outliers %", "CPU %", "own MB", "status"},
               {}};
   for (const RunRecord& r : results.rows) {
     std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r))};
     for (const Figure* figure :
-         {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
+         {&kDrift, &kLiveDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
       row.push_back(number(value_of(r, *figure)));
       if (r.metrics)
         row.back().text = value_text(row.back().value, zero_bound(figure->read(*r.metrics)));
