@@ -176,8 +176,6 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
     ++(d < 0.0 ? found.b_smaller : d > 0.0 ? found.a_smaller : found.ties);
   }
   if (differences.empty()) return found;
-  const SignedRanks ranks = ranks_of(differences);
-  found.b_ranks_smaller = 2 * ranks.positive < ranks.total;
   found.median_difference = median_of(differences);
   found.difference_95 = bootstrap_median(std::move(flights), seed, resamples);
   found.wilcoxon_p = wilcoxon_signed_rank_p(differences);

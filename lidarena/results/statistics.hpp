@@ -59,8 +59,7 @@ struct PairedComparison {
   std::size_t pairs = 0;             ///< pairs of runs that both have the figure
   std::vector<std::string> missing;  ///< "FLIGHT SEED: a: was not run", "...: lost with both"
   std::size_t b_smaller = 0, a_smaller = 0, ties = 0;
-  double median_difference = 0.0;  ///< b - a; infinite where most pairs have one lost run
-  bool b_ranks_smaller = false;    ///< whether the differences below zero have the larger rank sum
+  double median_difference = 0.0;         ///< b - a; infinite where most pairs have one lost run
   std::optional<Interval> difference_95;  ///< as median_95 of Spread
   /// Two-sided p of Wilcoxon's signed-rank test; empty when all pairs are ties.
   std::optional<double> wilcoxon_p;
