@@ -7,6 +7,8 @@ usage: renew_results.py STUDY --as NAME   takes over the figures of the report i
                                           --benchmark_filter='measure|simulate|bare' has measured
        renew_results.py COSTS.tsv         takes over what .ci/run has written as build/ci_costs.tsv
        renew_results.py                   renews the pages from docs/results/data
+       renew_results.py --judge           computes the cells of the tables there from the runs there
+                                          anew, after a change of what a lost run is
        renew_results.py --check           fails if a page differs from docs/results/data, if the
                                           tables there are not those of the runs there, or if
                                           README or a page of docs/results has a decimal figure
@@ -16,7 +18,11 @@ docs/results/data/NAME.csv has all runs of a study, NAME.json the tables of its 
 use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page has such a table
 (KIND: drift, map, ...; `KIND,KIND` for two in one; VARIANT: a preset, or `none`), between
 `<!-- runs NAME -->` and `<!-- end -->` the number of runs, and in a line
-`<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure.
+`<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure (KIND `live`: the live drift
+beside the final one).
+`<!-- ratio NAME KIND SENSOR METHOD SENSOR METHOD WORLD -->` is how many times the figure of the second cell
+is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all), and
+`<!-- ratios METHOD METHOD -->` the table of such ratios of the drift in all studies.
 docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
@@ -30,6 +36,8 @@ import re
 import shutil
 import statistics
 import sys
+
+import ratios
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
@@ -50,8 +58,11 @@ COLUMNS = {"drift": "rpe_1m_at_poses_translation_cm",
            "outliers-all": "reprojected_map_outliers_percent",
            "map-vertices": "own_map_rmse_vertices_cm",
            "outliers-vertices": "own_map_outliers_vertices_percent", "cpu": "cpu_load_percent"}
-LOST = {"own_map_outliers_percent": 50.0, "rpe_1m_at_poses_translation_cm": 100.0}
-BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
+LOST = {"rpe_1m_at_poses_translation_cm": 100.0, "rpe_1m_at_poses_rotation_deg": 20.0}
+PATH = [*LOST, "live_rpe_1m_at_poses_translation_cm", "ate_se3_translation_cm"]
+MIN_PAIRS = 16  # of a mark, within a world (lidarena/results/claims.hpp)
+KINDS = {"drift": "drift, final / live", "live-drift": "live drift", "map": "own map"}
+BLOCK = re.compile(r"(<!-- (table|runs|speed|costs|ratios|ratio|=) ([^>]*?) -->)(.*?)(<!-- end -->)", re.DOTALL)
 
 
 def tables_of(study):
@@ -76,6 +87,8 @@ def shown(cell, short=False):
         text = f"<u>{text}</u>"
     if cell.get("bold"):
         text = f"**{text}**"
+    if cell.get("live"):
+        text = f"{text} / {cell['live']} live"
     spread = cell.get("spread", "")
     if short:
         kept, runs = re.search(r"(\d+) of (\d+)$", spread).groups()
@@ -101,18 +114,59 @@ def table(study, kinds, variant):
                     methods.append(method)
                 texts.setdefault((world, sensor, method), []).append(shown(cell, len(kinds) > 1))
     head = [f"{NAMES[world]}, {NAMES[sensor]}" for world, sensor in columns]
-    lines = ["| | " + " | ".join(head) + " |", "|---|" + "---:|" * len(head)]
+    what = "; ".join(KINDS.get(kind, "") for kind in kinds)
+    lines = [f"| {what} | " + " | ".join(head) + " |", "|---|" + "---:|" * len(head)]
     for method in methods:
-        row = [" / ".join(texts.get((*column, method), ["-"])) for column in columns]
+        row = ["; ".join(texts.get((*column, method), ["-"])) for column in columns]
         lines.append(f"| {NAMES.get(method, '`' + method + '`')} | " + " | ".join(row) + " |")
     return "\n".join(lines)
 
 
 def figure(study, kind, variant, world, sensor, method):
-    for of_sensor, of_method, cell in cells_of(tables_of(study)[f"{kind}-{world}-{variant}"]):
+    part = "live" if kind == "live" else "text"
+    name = "drift" if kind == "live" else kind
+    for of_sensor, of_method, cell in cells_of(tables_of(study)[f"{name}-{world}-{variant}"]):
         if (of_sensor, of_method) == (sensor, method):
-            return cell["text"]
+            return cell[part]
     raise KeyError((world, sensor, method))
+
+
+def pairs_of(study, kind, first, second, world):
+    """(world, figure of the first, of the second) of the runs on the same flight and seed."""
+    def figures(cell):
+        return {(run["world"], run["flight"], run["mode"], run["seed"]): judged(run, COLUMNS[kind])
+                for run in runs_of(study) if (run["sensor"], run["algorithm"]) == cell
+                and run["preset"] in ("", "indoor") and world in ("", run["world"])}
+    a, b = figures(first), figures(second)
+    return [(key[0], a[key], b[key]) for key in a
+            if None not in (a[key], b.get(key))]
+
+
+def ratio_text(study, kind, first, second, world):
+    strata = ratios.strata_of(pairs_of(study, kind, first, second, world))
+    if not strata:
+        return "-"
+    found, interval = ratios.ratio(strata)
+    shown = ["lost" if math.isinf(value) else f"{value:.2g}" if value < 10 else f"{value:.0f}"
+             for value in (found, *(interval or ()))]
+    return f"{shown[0]} ({shown[1]} to {shown[2]})" if interval else shown[0]
+
+
+def ratios_table(second, first):
+    """Markdown: in each study, world and sensor the drift of `second` over that of `first`."""
+    lines = ["| study | world, sensor | pairs | final | live |", "|---|---|---:|---:|---:|"]
+    for file in sorted(DATA.glob("*.csv")):
+        study = file.stem
+        both = [{(run["world"], run["sensor"]) for run in runs_of(study)
+                 if run["algorithm"] == method and run["preset"] in ("", "indoor")}
+                for method in (first, second)]
+        for world, sensor in sorted(both[0] & both[1]):
+            cells = (sensor, first), (sensor, second)
+            pairs = sum(map(len, ratios.strata_of(pairs_of(study, "drift", *cells, world))))
+            texts = [ratio_text(study, kind, *cells, world) for kind in ("drift", "live-drift")]
+            lines.append(f"| `{study}` | {NAMES[world]}, {NAMES[sensor]} | {pairs} | "
+                         + " | ".join(texts) + " |")
+    return "\n".join(lines)
 
 
 BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
@@ -193,16 +247,117 @@ def renewed(page):
             return found[1] + speed(words) + found[5]
         if what == "costs":
             return f"{found[1]}\n\n{costs()}\n\n{found[5]}"
+        if what == "ratios":
+            return f"{found[1]}\n\n{ratios_table(*words)}\n\n{found[5]}"
+        if what == "ratio":
+            text = ratio_text(words[0], words[1], tuple(words[2:4]), tuple(words[4:6]), words[6])
+            return found[1] + text + found[5]
         text = str(len(runs_of(words[0]))) if what == "runs" else figure(*words)
         return found[1] + text + found[5]
     return BLOCK.sub(content, page)
 
 
+def number_text(value):
+    """As lidarena/results/table.cpp writes it: three significant digits, whole numbers in full."""
+    if math.isinf(value):
+        return "lost"
+    size = abs(value)
+    if 1 <= size < 1e6 and size == math.floor(size):
+        return f"{value:.0f}"
+    if 0 < size < 1e-3:
+        return f"{value:.2e}"
+    if size < 1:
+        return f"{value:.3g}"
+    return f"{value:.{max(0, 3 - int(math.log10(size)) - 1)}f}"
+
+
+def is_lost(run):
+    """As lidarena/results/lost.hpp says."""
+    figures = {name: float(run[name]) for name in PATH if run[name]}
+    return (run["status"] != "ok" or not all(map(math.isfinite, figures.values())) or
+            any(figures.get(name, 0.0) > limit for name, limit in LOST.items()))
+
+
 def judged(run, column):
-    """The figure of a run, infinite if it is lost (lidarena/results/lost.hpp), None if missing."""
-    lost = run["status"] != "ok" or any(
-        run[name] and float(run[name]) > limit for name, limit in LOST.items())
-    return math.inf if lost else float(run[column]) if run[column] else None
+    """The figure of a run, infinite if it is lost, None if missing."""
+    return math.inf if is_lost(run) else float(run[column]) if run[column] else None
+
+
+def ended_text(runs):
+    """When the lost ones of these runs ended themselves; empty if one did not. Files of earlier
+    versions have no `ended_at_s`, but the scan."""
+    lost = [run for run in runs if is_lost(run)]
+    times = [float(run["ended_at_s"]) for run in lost if run.get("ended_at_s")]
+    scans = [int(found[1]) for run in lost
+             if (found := re.match(r"scan (\d+): ", run["reason"]))]
+    if lost and len(times) == len(lost):
+        text = f"ended at {statistics.median(times):.1f} s"
+        drifts = [float(run[COLUMNS["drift"]]) for run in lost if run[COLUMNS["drift"]]]
+        return f"{text} [{number_text(statistics.median(drifts))}]" if drifts else text
+    return f"ended at scan {statistics.median(scans):.0f}" if lost and len(scans) == len(lost) else ""
+
+
+def runs_of_cell(runs, table_name, sensor, method):
+    """The kind of a stored table's cell and its runs."""
+    kind = next(k for k in sorted(COLUMNS, key=len, reverse=True) if table_name.startswith(k + "-"))
+    world, variant = table_name[len(kind) + 1:].split("-", 1)
+    preset, _, mode = variant.partition("-")
+    return kind, [
+        run for run in runs
+        if (run["world"], run["sensor"], run["algorithm"]) == (world, sensor, method)
+        and run["preset"] in ("", preset) and run["mode"] == mode]
+
+
+def values_of(runs, column):
+    return [value for run in runs if (value := judged(run, column)) is not None]
+
+
+def spread_text(values):
+    kept = [value for value in values if math.isfinite(value)]
+    count = f"{len(kept)} of {len(values)}"
+    if not kept or len(values) == 1:
+        return count
+    return f"{number_text(min(values))} to {number_text(max(values))}, {count}"
+
+
+def lost_text(kind, runs):
+    text = ended_text(runs) or "lost"
+    return text if kind == "drift" else text.partition(" [")[0]
+
+
+def live_text(kind, runs):
+    """The median of the live drift, beside a final one that is not lost."""
+    values = values_of(runs, COLUMNS["live-drift"]) if kind == "drift" else []
+    median = statistics.median(values) if values else math.inf
+    return number_text(median) if math.isfinite(median) else ""
+
+
+def judge(study):
+    """Computes the cells of the stored tables from the stored runs. Without 16 pairs in its world
+    no cell is marked."""
+    tables = tables_of(study)
+    runs = runs_of(study)
+    for name, stored in tables.items():
+        for sensor, method, cell in cells_of(stored):
+            kind, some = runs_of_cell(runs, name, sensor, method)
+            values = values_of(some, COLUMNS[kind])
+            if not values:
+                continue
+            median = statistics.median(values)
+            zero = "(below" in cell["text"] and median == 0.0
+            if math.isinf(median):
+                cell["text"] = lost_text(kind, some)
+                cell.pop("value", None)
+            elif not zero:
+                cell["text"], cell["value"] = number_text(median), median
+            cell["spread"] = spread_text(values)
+            cell.pop("live", None)
+            if live := live_text(kind, some):
+                cell["live"] = live
+            if len(values) < MIN_PAIRS:
+                cell.pop("bold", None)
+                cell.pop("underlined", None)
+    (DATA / (study + ".json")).write_text(json.dumps(tables, indent=1) + "\n")
 
 
 def is_spread(text, values):
@@ -217,28 +372,32 @@ def is_spread(text, values):
         for shown, value in ((found[1], min(values)), (found[2], max(values))))
 
 
+def is_cell(cell, kind, runs):
+    """Whether a stored cell has the median, the range and the marks that the runs allow."""
+    values = values_of(runs, COLUMNS[kind])
+    median = statistics.median(values) if values else None
+    if median is None:
+        return cell.get("value") is None
+    if math.isinf(median):
+        same = cell["text"] == lost_text(kind, runs)
+    else:
+        same = math.isclose(cell["value"], median, rel_tol=1e-6, abs_tol=1e-9)
+    marked = cell.get("bold") or cell.get("underlined")
+    return (same and is_spread(cell["spread"], values) and
+            cell.get("live", "") == live_text(kind, runs) and
+            not (marked and len(values) < MIN_PAIRS))
+
+
 def faults_of(study):
     """Cells of the stored tables that are not the medians of the stored runs."""
     runs = runs_of(study)
     checked = 0
     for name, stored in tables_of(study).items():
-        kind = next(k for k in sorted(COLUMNS, key=len, reverse=True) if name.startswith(k + "-"))
-        world, variant = name[len(kind) + 1:].split("-", 1)
-        preset, _, mode = variant.partition("-")
         for sensor, method, cell in cells_of(stored):
-            values = [judged(run, COLUMNS[kind]) for run in runs
-                      if (run["world"], run["sensor"], run["algorithm"]) == (world, sensor, method)
-                      and run["preset"] in ("", preset) and run["mode"] == mode]
-            values = [value for value in values if value is not None]
-            median = statistics.median(values) if values else None
+            kind, some = runs_of_cell(runs, name, sensor, method)
             checked += 1
-            if median is not None and math.isinf(median):
-                same = cell["text"] == "lost"
-            elif median is not None:
-                same = math.isclose(cell["value"], median, rel_tol=1e-6, abs_tol=1e-9)
-            else:
-                same = cell["value"] is None
-            if not same or (values and not is_spread(cell["spread"], values)):
+            if not is_cell(cell, kind, some):
+                median = statistics.median(values_of(some, COLUMNS[kind]) or [math.nan])
                 yield f"{study}: {name}, {sensor}, {method}: {cell}, but the runs give {median}"
     if checked == 0:
         yield f"{study}: no table of it was compared with its runs"
@@ -279,7 +438,11 @@ def main():
     parser.add_argument("study", type=pathlib.Path, nargs="?")
     parser.add_argument("--as", dest="name")
     parser.add_argument("--check", action="store_true")
+    parser.add_argument("--judge", action="store_true")
     arguments = parser.parse_args()
+    if arguments.judge:
+        for file in sorted(DATA.glob("*.csv")):
+            judge(file.stem)
     if arguments.check:
         faults = check()
         print(*faults, sep="\n")

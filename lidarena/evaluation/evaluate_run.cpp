@@ -141,6 +141,22 @@ bool are_same(const Trajectory& a, const Trajectory& b) {
   });
 }
 
+/// The scores of both trajectories.
+void score_trajectories(const dataset::RunFiles& run, const Trajectory& truth,
+                        results::RunMetrics& metrics) {
+  metrics.final = evaluate_trajectory(run.trajectory, truth);
+  metrics.live =
+      are_same(run.live, run.trajectory) ? metrics.final : evaluate_trajectory(run.live, truth);
+}
+
+/// When a run ended itself, and its scores until then if it has poses that can be scored.
+void score_until_end(const dataset::RunFiles& run, const Trajectory& truth,
+                     results::RunMetrics& metrics) {
+  if (run.trajectory.empty() || truth.empty()) return;
+  metrics.ended_at_s = to_seconds(run.trajectory.end_time() - truth.begin_time());
+  if (status_of(run.trajectory, truth).name == "ok") score_trajectories(run, truth, metrics);
+}
+
 /// Scores of both maps, as far as the run has them.
 results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World& world, const Parallel& parallel,
@@ -220,7 +236,9 @@ results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory&
   metrics.truth = facts_of(truth);
   metrics.resources = resource_metrics(run.resources);
   if (!metrics.is_ok()) {
-    log.warn(fmt::format("not scored: {} ({})", status.name, status.reason));
+    if (run.manifest.status == dataset::RunStatus::kDiverged) score_until_end(run, truth, metrics);
+    log.warn(fmt::format("not scored{}: {} ({})", metrics.final ? " as a whole" : "", status.name,
+                         status.reason));
     return metrics;
   }
   metrics.warnings = warnings_of(run.trajectory, truth);
@@ -230,9 +248,7 @@ results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory&
     }
   }
   for (const std::string& warning : metrics.warnings) log.warn(warning);
-  metrics.final = evaluate_trajectory(run.trajectory, truth);
-  metrics.live =
-      are_same(run.live, run.trajectory) ? metrics.final : evaluate_trajectory(run.live, truth);
+  score_trajectories(run, truth, metrics);
   if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, observe, scored);
   return metrics;
 }

@@ -77,7 +77,7 @@ Candidate candidate(const results::StudyCells& cells, const std::string& world,
   for (const Criterion& criterion : kCriteria) {
     if (criterion.figure != nullptr) {
       c.values.push_back(spread(*criterion.figure).median);
-      c.cells.push_back(results::spread_cell(spread(*criterion.figure)));
+      c.cells.push_back(cells.cell(world, sensor, algorithm, *criterion.figure));
       const bool is_map = criterion.figure == &results::kMapRmse;
       if (is_map && std::ranges::any_of(c.runs, [](const RunRecord* run) {
             return is_bent_by_interpolation(*run);
@@ -155,12 +155,14 @@ results::Runs everywhere(const results::StudyResults& results, const Candidate& 
   return results::StudyCells(results, c.variant).rows("", c.sensor, c.algorithm);
 }
 
-/// "ouster_os0_128, fast_lio2: better in drift, CPU (5 % level, 24 pairs)".
+/// "ouster_os0_128, fast_lio2: better in drift (ratio 1.9 (1.5 to 2.2)), CPU (5 % level, 24
+/// pairs)".
 std::string words_of(const Domination& domination, std::span<const Claim> claims) {
   std::string shown, medians;
   for (std::size_t i = 0; i < claims.size(); ++i) {
     std::string& list = claims[i].a_is_better ? shown : medians;
     list += (list.empty() ? "" : ", ") + std::string(domination.better[i]->label);
+    if (claims[i].a_is_better && claims[i].ratio_95) list += " (" + claims[i].ratio_words() + ")";
   }
   const std::string by = name_of(*domination.winner);
   if (claims.empty()) return by + ": as good, by the sensor's data sheet alone";
@@ -235,9 +237,10 @@ results::Table decision_table(const results::StudyResults& results, const std::s
       "Then "
       "what "
       "is dominated, and by which; then what lost track. Medians over flights and seeds, the range "
-      "and the runs that kept tracking. Whether a difference is more than chance is tested over "
-      "the "
-      "paired runs of all worlds (Wilcoxon, 5 % after Holm's correction).",
+      "and the runs that kept tracking; drift of the final trajectory / as known live. Whether a "
+      "difference is more than chance is tested over the paired runs of all worlds (log ratios, "
+      "ranked within each world; 5 % after Holm's correction), with the ratio and its interval at "
+      "95 %.",
       {"sensor, method", "verdict", "Pareto front"},
       {}};
   for (const Criterion& criterion : kCriteria) {

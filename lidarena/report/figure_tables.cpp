@@ -6,9 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <utility>
+#include <vector>
 
+#include "lidarena/report/page_claims.hpp"
 #include "lidarena/report/summary_tables.hpp"
-#include "lidarena/results/claims.hpp"
 #include "lidarena/results/study_cells.hpp"
 
 namespace lidarena::report {
@@ -27,7 +28,8 @@ struct Kind {
   const results::Figure& figure;
 };
 const std::array kKinds{
-    Kind{"drift", "RMSE of the drift, cm per 1 m", results::kDrift},
+    Kind{"drift", "RMSE of the drift of the final trajectory / as known live, cm per 1 m",
+         results::kDrift},
     Kind{"live-drift", "RMSE of the drift of the live trajectory, cm per 1 m", results::kLiveDrift},
     Kind{"map", "Own map: RMSE of the point-to-mesh distance, cm", results::kOwnMapRmse},
     Kind{"map-all", "Sampled returns: RMSE of the point-to-mesh distance, cm", results::kMapRmse},
@@ -39,50 +41,6 @@ const std::array kKinds{
     Kind{"outliers-all", "Sampled returns: points beyond 20 cm, %", results::kMapOutliers},
     Kind{"cpu", "CPU time, % of one core", results::kCpuLoad}};
 
-/// The cells of an accuracy table: sensors by algorithms, with the claims between the cells of each
-/// row and of each column, pooled over worlds.
-class Marks {
- public:
-  Marks(const StudyCells& cells, const results::Figure& figure)
-      : sensors_(cells.sensors()), algorithms_(cells.algorithms()) {
-    std::vector<results::Contest> contests;
-    const auto add = [&](std::size_t s1, std::size_t a1, std::size_t s2, std::size_t a2) {
-      results::Contest contest{cells.rows("", sensors_[s1], algorithms_[a1]),
-                               cells.rows("", sensors_[s2], algorithms_[a2]), &figure};
-      if (contest.a.empty() || contest.b.empty()) return;
-      pairs_.push_back({{s1, a1}, {s2, a2}});
-      contests.push_back(std::move(contest));
-    };
-    for (std::size_t s = 0; s < sensors_.size(); ++s)
-      for (std::size_t a = 0; a < algorithms_.size(); ++a) {
-        for (std::size_t b = a + 1; b < algorithms_.size(); ++b) add(s, a, s, b);
-        for (std::size_t t = s + 1; t < sensors_.size(); ++t) add(s, a, t, a);
-      }
-    claims_ = results::claims_of(contests);
-  }
-
-  /// Whether a cell is better than each other one of its row (`in_row`) or column.
-  bool is_best(std::size_t sensor, std::size_t algorithm, bool in_row) const {
-    const Place place{sensor, algorithm};
-    bool best = false;
-    for (std::size_t i = 0; i < claims_.size(); ++i) {
-      const auto& [a, b] = pairs_[i];
-      if ((a != place && b != place) || (a.first == b.first) != in_row) continue;
-      best = a == place ? claims_[i].a_is_better : claims_[i].b_is_better;
-      if (!best) return false;
-    }
-    return best;
-  }
-
-  std::string words() const { return results::words_of(claims_); }
-
- private:
-  using Place = std::pair<std::size_t, std::size_t>;  // of sensor and algorithm
-  std::vector<std::string> sensors_, algorithms_;
-  std::vector<std::pair<Place, Place>> pairs_;
-  std::vector<results::Claim> claims_;
-};
-
 /// Whether the smallest of `cells` is at `index`.
 bool is_smallest(const std::vector<TableCell*>& cells, std::size_t index) {
   return std::ranges::all_of(cells, [&](const TableCell* cell) {
@@ -92,15 +50,19 @@ bool is_smallest(const std::vector<TableCell*>& cells, std::size_t index) {
 
 /// Underlines the best of each row, prints the best of each column in bold: where the claims and
 /// the medians of this table agree.
-void mark_best(Table& table, const Marks& marks) {
+void mark_best(Table& table, const std::string& world, const Kind& kind, const PageClaims& claims) {
   for (std::size_t s = 0; s < table.rows.size(); ++s) {
-    for (std::size_t a = 0; a + 1 < table.head.size(); ++a) {
+    for (std::size_t a = 1; a < table.head.size(); ++a) {
       std::vector<TableCell*> row, column;
       for (std::size_t i = 1; i < table.head.size(); ++i) row.push_back(&table.rows[s][i]);
-      for (std::vector<TableCell>& other : table.rows) column.push_back(&other[a + 1]);
-      TableCell& cell = table.rows[s][a + 1];
-      cell.underlined = marks.is_best(s, a, true) && is_smallest(row, a);
-      cell.bold = marks.is_best(s, a, false) && is_smallest(column, s);
+      for (std::vector<TableCell>& other : table.rows) column.push_back(&other[a]);
+      TableCell& cell = table.rows[s][a];
+      const auto is_best = [&](bool among_methods) {
+        return claims.is_best(kind.figure, world, table.rows[s][0].text, table.head[a],
+                              among_methods);
+      };
+      cell.underlined = is_smallest(row, a - 1) && is_best(true);
+      cell.bold = is_smallest(column, s) && is_best(false);
     }
   }
 }
@@ -109,31 +71,23 @@ std::string published(std::optional<double> value) {
   return value ? fmt::format("{:g}", *value) : std::string();
 }
 
-/// Median, range and how many runs kept tracking; the state of the runs where there is no figure.
-TableCell cell_of(const StudyCells& cells, const std::string& world, const std::string& sensor,
-                  const std::string& algorithm, const Kind& kind) {
-  TableCell cell = results::spread_cell(cells.spread(world, sensor, algorithm, kind.figure));
-  if (cell.text.empty()) cell.text = cells.status_text(world, sensor, algorithm);
-  return cell;
-}
-
 /// One row per sensor and one column per algorithm.
 Table accuracy_table(const StudyResults& results, const StudyCells& cells, const std::string& world,
-                     const Kind& kind, const Marks& marks) {
+                     const Kind& kind, const PageClaims& claims) {
   Table table;
   table.head = {"sensor"};
   for (const std::string& algorithm : cells.algorithms()) table.head.push_back(algorithm);
   for (const std::string& sensor : cells.sensors()) {
     std::vector<TableCell> row{word(sensor)};
     for (const std::string& algorithm : cells.algorithms()) {
-      TableCell cell = cell_of(cells, world, sensor, algorithm, kind);
+      TableCell cell = cells.cell(world, sensor, algorithm, kind.figure);
       cell.reference =
           published(results::reference_of(results, world, sensor, algorithm, kind.figure.key));
       row.push_back(std::move(cell));
     }
     table.rows.push_back(std::move(row));
   }
-  mark_best(table, marks);
+  mark_best(table, world, kind, claims);
   return table;
 }
 
@@ -155,15 +109,17 @@ bool is_told(const StudyResults& results, const Kind& kind) {
 }
 
 /// What the marks of a table mean, and which own maps are means.
-std::string note_of(const StudyResults& results, const Kind& kind, const Marks& marks) {
+std::string note_of(const StudyResults& results, const std::string& world, const Kind& kind,
+                    const PageClaims& claims) {
   std::string note = fmt::format(
       "Medians over flights and seeds; behind them the range from the best run to the worst and "
-      "how "
-      "many of how many runs kept tracking: a lost run is the worst of its cell. Bold: the best "
-      "sensor for each algorithm; underlined: the best algorithm for each sensor, where the paired "
-      "differences over all worlds pass Wilcoxon's test (5 % after Holm's correction for this "
-      "table; here: {}). In brackets: published figures.",
-      marks.words());
+      "how many of how many runs kept tracking: a lost run is the worst of its cell. \"ended at "
+      "4.6 "
+      "s [3.5]\": the methods ended themselves, with the drift until then. Bold: the best sensor "
+      "for each algorithm; underlined: the best algorithm for each sensor, where the paired runs "
+      "of this world pass Wilcoxon's test of log ratios (5 % after Holm's correction for all {} "
+      "tests of this page; here: {}). In brackets: published figures.",
+      claims.tests(), claims.words(kind.figure, world));
   if (&kind.figure == &results::kOwnMapRmse || &kind.figure == &results::kOwnMapOutliers) {
     const std::string means = methods_with_mean_maps(results);
     if (!means.empty())
@@ -207,7 +163,7 @@ std::optional<Table> increase_table(const StudyResults& results, const StudyCell
   const std::string& b = worlds[1];
   Table table{
       "increase-" + variant,
-      fmt::format("Increase of the drift from {} to {}, %: {}", a, b, variant),
+      fmt::format("Increase of the final drift from {} to {}, %: {}", a, b, variant),
       fmt::format(
           "({1} - {0}) / {1}; \"usual\": ({1} - {0}) / {0}. In brackets: published figures.", a, b),
       {"sensor"},
@@ -260,7 +216,7 @@ Table timing_table(const StudyResults& results, const std::vector<std::string>& 
       bool known = false;
       for (const std::string& mode : modes) {
         const StudyCells cells(results, results::variant_of(preset, mode));
-        row.push_back(cell_of(cells, world, sensor, algorithm, kind));
+        row.push_back(cells.cell(world, sensor, algorithm, kind.figure));
         known = known || !row.back().text.empty();
       }
       if (known) table.rows.push_back(std::move(row));
@@ -281,18 +237,26 @@ std::vector<Table> figure_tables(const StudyResults& results, const std::string&
   if (Table sensors = sensor_table(results); !sensors.rows.empty()) {
     tables.push_back(std::move(sensors));
   }
+  std::vector<const results::Figure*> told;
   for (const Kind& kind : kKinds) {
-    if (!is_told(results, kind)) continue;
-    const Marks marks(cells, kind.figure);
+    if (is_told(results, kind)) told.push_back(&kind.figure);
+  }
+  const std::array drifts{&results::kDrift, &results::kLiveDrift};
+  const PageClaims claims(cells, told, drifts);
+  for (const Kind& kind : kKinds) {
+    if (std::ranges::find(told, &kind.figure) == told.end()) continue;
     for (const std::string& world : cells.worlds()) {
-      Table table = accuracy_table(results, cells, world, kind, marks);
+      Table table = accuracy_table(results, cells, world, kind, claims);
       table.id = fmt::format("{}-{}-{}", kind.id, world, variant);
       table.title = fmt::format("{}: {}, {}", kind.title, world, variant);
-      table.note = note_of(results, kind, marks);
+      table.note = note_of(results, world, kind, claims);
       tables.push_back(std::move(table));
     }
     if (&kind != &kKinds[0]) continue;
     if (auto growth = increase_table(results, cells, variant)) tables.push_back(std::move(*growth));
+    for (const results::Figure* drift : drifts)
+      for (Table& ratios : claims.ratio_tables(*drift, variant))
+        tables.push_back(std::move(ratios));
   }
   return tables;
 }

@@ -2,10 +2,12 @@
 #include "lidarena/report/report_data.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <iterator>
 #include <map>
 #include <set>
+#include <span>
 
 #include "lidarena/dataset/run_events.hpp"
 #include "lidarena/report/decision.hpp"
@@ -117,6 +119,7 @@ Json run_json(const RunRecord& row, const fs::path& out, std::size_t rows) {
            {"seed", row.seed},
            {"status", row.status},
            {"lost", results::lost_reason(row)},
+           {"ended_at_s", rounded(results::ended_at_s(row))},
            {"mean_map", has_mean_map(row)},
            {"command", command_of(row)},
            {"statuses", nullptr},
@@ -212,8 +215,13 @@ Json decision_json(const results::StudyResults& results) {
   return decision;
 }
 
-/// Which combination of sensor and method is better than which, figure by figure, as the test of
-/// results/claims.hpp says: "cells": their names; "better": {figure: [[better, worse],
+const std::array kClaimed{&results::kDrift,          &results::kLiveDrift, &results::kOwnMapRmse,
+                          &results::kOwnMapOutliers, &results::kMapRmse,   &results::kMapOutliers,
+                          &results::kCpuLoad,        &results::kOwnMemory};
+
+/// Which combination of sensor and method is better than which, figure by figure, as the tests of
+/// results/claims.hpp say, corrected together: "cells": their names; "better": {figure: [[better,
+/// worse],
 /// ...]}; "words": {figure: on how many pairs that rests}.
 Json claims_json(const results::StudyResults& results) {
   std::map<std::string, results::Runs> cells;
@@ -221,11 +229,9 @@ Json claims_json(const results::StudyResults& results) {
     if (row.variation.empty()) cells[row.sensor + "|" + results::label_of(row)].push_back(&row);
   Json claims{{"cells", Json::array()}, {"better", Json::object()}};
   for (const auto& [name, runs] : cells) claims["cells"].push_back(name);
-  for (const results::Figure* figure :
-       {&results::kDrift, &results::kLiveDrift, &results::kOwnMapRmse, &results::kOwnMapOutliers,
-        &results::kMapRmse, &results::kMapOutliers, &results::kCpuLoad, &results::kOwnMemory}) {
-    std::vector<results::Contest> contests;
-    std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::vector<results::Contest> contests;
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  for (const results::Figure* figure : kClaimed) {
     std::size_t a = 0;
     for (auto one = cells.begin(); one != cells.end(); ++one, ++a) {
       std::size_t b = a + 1;
@@ -234,14 +240,18 @@ Json claims_json(const results::StudyResults& results) {
         pairs.emplace_back(a, b);
       }
     }
+  }
+  const std::vector<results::Claim> made = results::claims_of(contests);
+  const std::size_t of_one = made.size() / kClaimed.size();
+  for (std::size_t k = 0; k < kClaimed.size(); ++k) {
     Json better = Json::array();
-    const std::vector<results::Claim> made = results::claims_of(contests);
-    for (std::size_t i = 0; i < made.size(); ++i) {
+    for (std::size_t i = k * of_one; i < (k + 1) * of_one; ++i) {
       if (made[i].a_is_better) better.push_back({pairs[i].first, pairs[i].second});
       if (made[i].b_is_better) better.push_back({pairs[i].second, pairs[i].first});
     }
-    claims["better"][figure->key] = better;
-    claims["words"][figure->key] = results::words_of(made);
+    claims["better"][kClaimed[k]->key] = better;
+    claims["words"][kClaimed[k]->key] =
+        results::words_of(std::span(made).subspan(k * of_one, of_one));
   }
   return claims;
 }

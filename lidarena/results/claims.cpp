@@ -4,16 +4,37 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
+#include <tuple>
+#include <utility>
 
 #include "lidarena/results/lost.hpp"
-#include "lidarena/results/statistics.hpp"
+#include "lidarena/results/stratified.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
 namespace {
 
-std::vector<RunFigure> figures_of(const Runs& runs, const Figure& figure) {
-  std::vector<RunFigure> found;
-  for (const RunRecord* run : runs) found.push_back(judged_figure(*run, figure));
+/// What the two runs of a pair have in common.
+using Place = std::tuple<std::string, std::string, std::string, std::uint64_t>;
+
+Place place_of(const RunRecord& run) { return {run.world, run.flight, run.mode, run.seed}; }
+
+/// The log ratios of the pairs, those of a world in one stratum.
+std::vector<std::vector<double>> log_ratios_of(const Contest& contest) {
+  std::map<Place, const RunRecord*> others;
+  for (const RunRecord* run : contest.b) others[place_of(*run)] = run;
+  std::map<std::string, std::vector<double>> strata;
+  for (const RunRecord* run : contest.a) {
+    const auto other = others.find(place_of(*run));
+    if (other == others.end()) continue;
+    const auto a = judged_value(*run, *contest.figure);
+    const auto b = judged_value(*other->second, *contest.figure);
+    if (!a || !b) continue;
+    if (const auto ratio = log_ratio(*a, *b)) strata[run->world].push_back(*ratio);
+  }
+  std::vector<std::vector<double>> found;
+  for (auto& [world, ratios] : strata) found.push_back(std::move(ratios));
   return found;
 }
 
@@ -26,18 +47,26 @@ std::string Claim::words() const {
   return p ? fmt::format("{} pairs, p = {:.2g}", pairs, *p) : fmt::format("{} equal pairs", pairs);
 }
 
+std::string Claim::ratio_words() const {
+  if (!ratio) return {};
+  const auto shown = [](double value) { return number(value, 2).text; };
+  const std::string range =
+      ratio_95 ? fmt::format(" ({} to {})", shown(ratio_95->low), shown(ratio_95->high)) : "";
+  return "ratio " + shown(*ratio) + range;
+}
+
 std::vector<Claim> claims_of(std::span<const Contest> contests) {
   std::vector<Claim> claims;
   std::vector<double> p;
-  std::vector<bool> b_ranks_smaller;
+  std::vector<bool> b_is_smaller;
   for (const Contest& contest : contests) {
-    const PairedComparison compared = compare_paired(figures_of(contest.a, *contest.figure),
-                                                     figures_of(contest.b, *contest.figure), 1, 0);
-    claims.push_back({compared.pairs, std::nullopt, false, false});
-    b_ranks_smaller.push_back(compared.b_ranks_smaller);
-    if (compared.pairs < kMinPairs || !compared.wilcoxon_p) continue;
-    claims.back().p = compared.wilcoxon_p;
-    p.push_back(*compared.wilcoxon_p);
+    const StratifiedComparison compared = compare_strata(log_ratios_of(contest));
+    claims.push_back(
+        {compared.pairs, std::nullopt, false, false, compared.ratio, compared.ratio_95});
+    b_is_smaller.push_back(compared.b_is_smaller);
+    if (compared.pairs < kMinPairs || !compared.p) continue;
+    claims.back().p = compared.p;
+    p.push_back(*compared.p);
   }
   const std::vector<double> corrected = holm(p);
   for (std::size_t i = 0, k = 0; i < claims.size(); ++i) {
@@ -45,7 +74,7 @@ std::vector<Claim> claims_of(std::span<const Contest> contests) {
     claims[i].p = corrected[k++];
     if (*claims[i].p >= kLevel) continue;
     const bool less_is_better = contests[i].figure->better == Better::kLess;
-    claims[i].b_is_better = b_ranks_smaller[i] == less_is_better;
+    claims[i].b_is_better = b_is_smaller[i] == less_is_better;
     claims[i].a_is_better = !claims[i].b_is_better;
   }
   return claims;

@@ -54,9 +54,11 @@ KnownRow row_of(const std::map<std::string, std::string>& cells, const std::stri
   };
   KnownRow row{text("run"),    text("key"),    text("algorithm"), text("preset"),
                text("sensor"), text("status"), text("reason"),    {},
-               {},             {},             {}};
+               {},             {},             {},
+               {}};
   value_from_json(Json(text("own_map")), row.own_map, place);
   row.coverage_percent = value("coverage_percent");
+  row.ended_at_s = value("ended_at_s");
   for (const Figure& figure : figures()) {
     const std::string column = column_of(figure);
     if (const auto known = value(column)) row.figures[column] = *known;

@@ -17,7 +17,7 @@ namespace lidarena::results {
 struct KnownRow {
   std::string name, key, algorithm, preset, sensor, status, reason;
   dataset::OwnMap own_map = dataset::OwnMap::kReturns;
-  std::optional<double> coverage_percent;
+  std::optional<double> coverage_percent, ended_at_s;
   std::map<std::string, double> figures;      ///< by column, see column_of()
   std::map<std::string, double> zero_bounds;  ///< %, by the figure's key
 
@@ -32,6 +32,7 @@ struct KnownRow {
     v("reason", self.reason, "", "");
     v("own_map", self.own_map, "", "");
     v("coverage_percent", self.coverage_percent, "%", "");
+    v("ended_at_s", self.ended_at_s, "s", "");
     v("figures", self.figures, "", "");
     v("zero_bounds", self.zero_bounds, "", "");
   }

@@ -12,19 +12,28 @@
 /// comparisons, expectations and the decision include it; nothing leaves it out.
 namespace lidarena::results {
 
-/// If more of the own map than this lies beyond 20 cm, it is not a map of the world.
-inline constexpr double kLostOutliers_percent = 50.0;
 /// A drift above this (1 m per m, see kDrift) is worse than not to move at all.
 inline constexpr double kLostDrift_cm_per_m = 100.0;
+/// A heading that drifts by more (kDriftRotation) is that of another path within 5 m.
+inline constexpr double kLostDrift_deg_per_m = 20.0;
 
-/// Why a run is lost: it has no scored result ("diverged: ...", "missing: ..."), its own map lies
-/// mostly beyond 20 cm, or it drifts by more than 1 m per m. Empty if it is not lost.
+/// Why a run is lost: it has no result of the whole flight ("ended at 4.6 s: ...", "diverged: ...",
+/// "missing: ..."), a figure of its path is not finite, or it drifts by more than 1 m or 20 degrees
+/// per m. Empty if it is not lost. A bad map is a figure, not a state.
 std::string lost_reason(const RunMetrics& metrics);
 std::string lost_reason(const RunRecord& run);
 bool is_lost(const RunRecord& run);
 
+/// When a run ended itself (s) and its drift until then (cm per m, if that is known).
+struct EarlyEnd {
+  double at_s = 0.0;
+  std::optional<double> drift;
+};
+/// Empty if the run did not end itself, or if that instant is not known.
+std::optional<EarlyEnd> early_end(const RunRecord& run);
+
 /// The value that every figure of a lost run has: infinity, negative where more is better. It sorts
-/// behind all others, and tables show it as "lost".
+/// behind all others, and tables show it as "lost", or as "ended at 4.6 s" (StudyCells).
 double lost_value(const Figure& figure);
 
 /// The figure of a run in its unit, lost_value() if the run is lost; empty if a run that is not

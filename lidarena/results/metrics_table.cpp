@@ -140,6 +140,8 @@ std::string metrics_text(const ScoredRun& run) {
   const RunMetrics& m = run.metrics;
   std::string text = fmt::format("{}\nstatus: {}\n", title_of(run), m.status_and_reason());
   if (m.is_ok() && !lost_reason(m).empty()) text += lost_reason(m) + "\n";
+  if (m.ended_at_s)
+    text += fmt::format("it ended itself at {:.1f} s; the figures are until then\n", *m.ended_at_s);
   for (const std::string& warning : m.warnings) text += fmt::format("warning: {}\n", warning);
   if (m.final) text += diagnosis_text(*m.final);
   const bool live_is_final = m.live && m.final && value_to_json(*m.live) == value_to_json(*m.final);

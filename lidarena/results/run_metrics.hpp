@@ -80,6 +80,7 @@ struct RunMetrics {
   int schema_version = kMetricsSchemaVersion;
   std::string status = "ok";
   std::string reason;
+  std::optional<double> ended_at_s;
   std::vector<std::string> warnings;
   TruthFacts truth;
   std::optional<TrajectoryMetrics> live, final;
@@ -97,6 +98,9 @@ struct RunMetrics {
     v("schema_version", self.schema_version, "", "");
     v("status", self.status, "", "ok, diverged, failed, no_output, no_overlap");
     v("reason", self.reason, "", "");
+    v("ended_at_s", self.ended_at_s, "s",
+      "last pose of a method that ended itself, since the truth's first pose; live and final are "
+      "until then; null otherwise");
     v("warnings", self.warnings, "", "");
     v("truth", self.truth, "", "");
     v("live", self.live, "", "poses as known at each scan");

@@ -110,6 +110,11 @@ std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure) 
   return bound == run.known->zero_bounds.end() ? std::nullopt : std::optional(bound->second);
 }
 
+std::optional<double> ended_at_s(const RunRecord& run) {
+  if (run.metrics) return run.metrics->ended_at_s;
+  return run.known ? run.known->ended_at_s : std::nullopt;
+}
+
 std::optional<double> coverage_of(const RunRecord& run) {
   if (run.metrics) return coverage_of(*run.metrics);
   return run.known ? run.known->coverage_percent : std::nullopt;
@@ -221,8 +226,8 @@ static std::map<std::string, double> zero_bounds_of(const RunRecord& run) {
 
 std::string results_csv(const StudyResults& results) {
   Table table{"", "", "", {}, {}};
-  table.head = {"run",  "world", "flight", "sensor", "algorithm",       "preset",
-                "mode", "seed",  "status", "reason", "coverage_percent"};
+  table.head = {"run",  "world", "flight", "sensor", "algorithm",        "preset",
+                "mode", "seed",  "status", "reason", "coverage_percent", "ended_at_s"};
   for (const Figure& figure : figures()) table.head.push_back(column_of(figure));
   const std::vector<std::string> varied = varied_keys(results.rows);
   if (!varied.empty()) table.head.emplace_back("variation");
@@ -237,6 +242,7 @@ std::string results_csv(const StudyResults& results) {
       row.push_back(word(text));
     }
     row.push_back(exact(coverage_of(r)));
+    row.push_back(exact(ended_at_s(r)));
     for (const Figure& figure : figures()) row.push_back(exact(value_of(r, figure)));
     if (!varied.empty()) row.push_back(word(r.variation));
     for (const std::string& key : varied) {
@@ -258,14 +264,14 @@ std::string results_text(const StudyResults& results) {
   Table table{"",
               "",
               "",
-              {"world", "sensor", "algorithm", "RPE cm/m", "ATE cm", "map RMSE cm", "outliers %",
-               "CPU %", "own MB", "status"},
+              {"world", "sensor", "algorithm", "RPE cm/m", "live RPE cm/m", "ATE cm", "map RMSE cm",
+               "outliers %", "CPU %", "own MB", "status"},
               {}};
   for (const RunRecord& r : results.rows) {
     const std::string variation = r.variation.empty() ? "" : ", " + r.variation;
     std::vector<TableCell> row{word(r.world), word(r.sensor), word(label_of(r) + variation)};
     for (const Figure* figure :
-         {&kDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
+         {&kDrift, &kLiveDrift, &kAte, &kMapRmse, &kMapOutliers, &kCpuLoad, &kOwnMemory}) {
       row.push_back(number(value_of(r, *figure)));
       if (row.back().value)
         row.back().text = value_text(row.back().value, zero_bound_of(r, *figure));

@@ -56,6 +56,8 @@ std::optional<double> value_of(const RunRecord& run, const Figure& figure);
 std::optional<double> zero_bound_of(const RunRecord& run, const Figure& figure);
 /// Share of the flight (%) that the final trajectory covers; empty if the run was not scored.
 std::optional<double> coverage_of(const RunRecord& run);
+/// When the method ended itself, s after the begin; empty if it did not, or if that is not known.
+std::optional<double> ended_at_s(const RunRecord& run);
 /// The varied keys of all runs, in their order.
 std::vector<std::string> varied_keys(const std::vector<RunRecord>& runs);
 /// Sets the metrics and the status.

@@ -56,9 +56,6 @@ std::string name_of(const RunFigure& run) {
   return run.seed.empty() ? run.flight : run.flight + " " + run.seed;
 }
 
-/// The difference of two figures; two lost runs are equal.
-double difference_of(double b, double a) { return b == a ? 0.0 : b - a; }
-
 /// Ranks of the magnitudes, doubled so that shared ranks are integers, and their sums.
 struct SignedRanks {
   std::vector<std::size_t> doubled;
@@ -165,8 +162,10 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
                                           !there       ? "b: was not run"
                                           : !run.value ? "a: has no such figure"
                                                        : "b: has no such figure"));
+    } else if (std::isinf(*run.value) && std::isinf(*other->second->value)) {
+      found.missing.push_back(name_of(run) + ": lost with both");
     } else {
-      flights[run.flight].push_back(difference_of(*other->second->value, *run.value));
+      flights[run.flight].push_back(*other->second->value - *run.value);
     }
     if (there) others.erase(other);
   }
@@ -177,8 +176,6 @@ PairedComparison compare_paired(std::span<const RunFigure> a, std::span<const Ru
     ++(d < 0.0 ? found.b_smaller : d > 0.0 ? found.a_smaller : found.ties);
   }
   if (differences.empty()) return found;
-  const SignedRanks ranks = ranks_of(differences);
-  found.b_ranks_smaller = 2 * ranks.positive < ranks.total;
   found.median_difference = median_of(differences);
   found.difference_95 = bootstrap_median(std::move(flights), seed, resamples);
   found.wilcoxon_p = wilcoxon_signed_rank_p(differences);

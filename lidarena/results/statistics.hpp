@@ -53,14 +53,13 @@ inline constexpr std::size_t kResamples = 10'000;
 Spread spread_of(std::span<const RunFigure> runs, Better better = Better::kLess,
                  std::uint64_t seed = 1, std::size_t resamples = kResamples);
 
-/// Comparison of `b` with `a` on the same flights and seeds. A lost run is worse than any other,
-/// two lost runs are equal.
+/// Comparison of `b` with `a` on the same flights and seeds. A lost run is worse than any other.
+/// Two lost runs carry no evidence and are no pair.
 struct PairedComparison {
   std::size_t pairs = 0;             ///< pairs of runs that both have the figure
-  std::vector<std::string> missing;  ///< "FLIGHT SEED: a: was not run", not compared
+  std::vector<std::string> missing;  ///< "FLIGHT SEED: a: was not run", "...: lost with both"
   std::size_t b_smaller = 0, a_smaller = 0, ties = 0;
-  double median_difference = 0.0;  ///< b - a; infinite where most pairs have one lost run
-  bool b_ranks_smaller = false;    ///< whether the differences below zero have the larger rank sum
+  double median_difference = 0.0;         ///< b - a; infinite where most pairs have one lost run
   std::optional<Interval> difference_95;  ///< as median_95 of Spread
   /// Two-sided p of Wilcoxon's signed-rank test; empty when all pairs are ties.
   std::optional<double> wilcoxon_p;

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "lidarena/results/lost.hpp"
+#include "lidarena/results/summary.hpp"
 
 namespace lidarena::results {
 namespace {
@@ -62,12 +63,43 @@ Spread StudyCells::spread(const std::string& world, const std::string& sensor,
   return spread_of(values, figure.better, 1, 0);
 }
 
+TableCell StudyCells::cell(const std::string& world, const std::string& sensor,
+                           const std::string& algorithm, const Figure& figure) const {
+  const Spread of = spread(world, sensor, algorithm, figure);
+  TableCell cell = spread_cell(of);
+  if (cell.text.empty()) cell.text = status_text(world, sensor, algorithm);
+  if (of.is_lost()) {
+    if (const std::string end = ended_text(world, sensor, algorithm, figure); !end.empty())
+      cell.text = end;
+  } else if (&figure == &kDrift && of.median) {
+    cell.live = number(spread(world, sensor, algorithm, kLiveDrift).median).text;
+  }
+  return cell;
+}
+
+std::string StudyCells::ended_text(const std::string& world, const std::string& sensor,
+                                   const std::string& algorithm, const Figure& figure) const {
+  std::vector<double> times, drifts;
+  for (const RunRecord* row : rows(world, sensor, algorithm)) {
+    if (!is_lost(*row)) continue;
+    const std::optional<EarlyEnd> end = early_end(*row);
+    if (!end) return {};
+    times.push_back(end->at_s);
+    if (end->drift) drifts.push_back(*end->drift);
+  }
+  if (times.empty()) return {};
+  const std::string text = fmt::format("ended at {:.1f} s", quantile(times, 0.5));
+  if (&figure != &kDrift || drifts.empty()) return text;
+  return fmt::format("{} [{}]", text, number(quantile(drifts, 0.5)).text);
+}
+
 std::string StudyCells::status_text(const std::string& world, const std::string& sensor,
                                     const std::string& algorithm) const {
   const Runs all = rows(world, sensor, algorithm);
   std::map<std::string, std::size_t> states;
   for (const RunRecord* row : all) {
-    if (is_lost(*row)) ++states[row->status == "ok" ? "lost" : row->status];
+    if (!is_lost(*row)) continue;
+    ++states[row->status == "ok" ? "lost" : early_end(*row) ? "ended itself" : row->status];
   }
   std::string text;
   for (const auto& [state, count] : states) {

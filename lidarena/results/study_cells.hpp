@@ -7,6 +7,7 @@
 #include "lidarena/results/claims.hpp"
 #include "lidarena/results/run_record.hpp"
 #include "lidarena/results/statistics.hpp"
+#include "lidarena/results/table.hpp"
 
 namespace lidarena::results {
 
@@ -28,6 +29,14 @@ class StudyCells {
   /// A figure over flights and seeds, without an interval.
   Spread spread(const std::string& world, const std::string& sensor, const std::string& algorithm,
                 const Figure& figure) const;
+  /// The spread as text; of the drift also the live one; of lost runs that ended themselves when.
+  /// The state of the runs where there is no figure.
+  TableCell cell(const std::string& world, const std::string& sensor, const std::string& algorithm,
+                 const Figure& figure) const;
+  /// "ended at 4.6 s [3.5]" if all lost runs of a cell ended themselves: the medians of the time
+  /// and, if `figure` is the drift, of the drift until then. Empty otherwise.
+  std::string ended_text(const std::string& world, const std::string& sensor,
+                         const std::string& algorithm, const Figure& figure) const;
   /// How many runs of a cell are lost, by their state ("1 of 3 diverged"); empty if none is.
   std::string status_text(const std::string& world, const std::string& sensor,
                           const std::string& algorithm) const;

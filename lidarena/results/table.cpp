@@ -14,6 +14,11 @@ std::string shown(const TableCell& cell, const char* dash) {
   return cell.text.empty() ? dash : cell.text;
 }
 
+/// " / 0.15 live", or nothing.
+std::string live_of(const TableCell& cell) {
+  return cell.live.empty() ? "" : " / " + cell.live + " live";
+}
+
 /// Escapes what Markdown would not show as it is, so that a command can be copied from a table.
 std::string for_markdown(const std::string& text) {
   std::string out;
@@ -52,6 +57,7 @@ std::string markdown_cell(const TableCell& cell) {
   std::string text = for_markdown(shown(cell, "-"));
   if (cell.underlined) text = "<u>" + text + "</u>";
   if (cell.bold) text = "**" + text + "**";
+  text += live_of(cell);
   if (!cell.spread.empty()) text += " [" + for_markdown(cell.spread) + "]";
   return cell.reference.empty() ? text : text + " (" + cell.reference + ")";
 }
@@ -60,6 +66,7 @@ std::string latex_cell(const TableCell& cell) {
   std::string text = for_latex(shown(cell, "--"));
   if (cell.underlined) text = "\\underline{" + text + "}";
   if (cell.bold) text = "\\textbf{" + text + "}";
+  text += live_of(cell);
   if (!cell.spread.empty()) text += " [" + for_latex(cell.spread) + "]";
   return cell.reference.empty() ? text : text + " (" + for_latex(cell.reference) + ")";
 }
@@ -95,9 +102,10 @@ std::string value_text(std::optional<double> value, std::optional<double> zero_b
 TableCell spread_cell(const Spread& spread) {
   TableCell cell = number(spread.median);
   cell.text = value_text(spread.median, spread.zero_bound);
-  const std::string range = spread.median && spread.runs > 1 ? number(spread.best).text + " to " +
-                                                                   number(spread.worst).text + ", "
-                                                             : "";
+  const std::string range =
+      spread.kept > 0 && spread.median && spread.runs > 1
+          ? number(spread.best).text + " to " + number(spread.worst).text + ", "
+          : "";
   if (spread.runs > 0) cell.spread = fmt::format("{}{} of {}", range, spread.kept, spread.runs);
   return cell;
 }
@@ -118,10 +126,12 @@ std::string csv_quoted(const std::string& text) {
 
 std::string table_csv(const Table& table) {
   const bool reference = table.has(&TableCell::reference), spread = table.has(&TableCell::spread);
+  const bool live = table.has(&TableCell::live);
   std::string csv;
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     if (i > 0) csv += ',';
     csv += csv_quoted(table.head[i]);
+    if (live && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (live)"));
     if (spread && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (range, runs)"));
     if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(table.head[i] + " (published)"));
   }
@@ -131,6 +141,7 @@ std::string table_csv(const Table& table) {
       const TableCell& cell = row[i];
       if (i > 0) csv += ',';
       csv += cell.value ? fmt::format("{:.9g}", *cell.value) : csv_quoted(cell.text);
+      if (live && i > 0) csv += fmt::format(",{}", csv_quoted(cell.live));
       if (spread && i > 0) csv += fmt::format(",{}", csv_quoted(cell.spread));
       if (reference && i > 0) csv += fmt::format(",{}", csv_quoted(cell.reference));
     }
@@ -176,7 +187,8 @@ std::string table_text(const Table& table) {
   std::vector<std::size_t> widths;
   for (std::size_t i = 0; i < table.head.size(); ++i) {
     widths.push_back(table.head[i].size());
-    for (const auto& row : table.rows) widths[i] = std::max(widths[i], shown(row[i], "-").size());
+    for (const auto& row : table.rows)
+      widths[i] = std::max(widths[i], (shown(row[i], "-") + live_of(row[i])).size());
   }
   std::string text;
   const auto add = [&](std::size_t i, const std::string& cell) {
@@ -187,7 +199,7 @@ std::string table_text(const Table& table) {
   };
   for (std::size_t i = 0; i < table.head.size(); ++i) add(i, table.head[i]);
   for (const auto& row : table.rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) add(i, shown(row[i], "-"));
+    for (std::size_t i = 0; i < row.size(); ++i) add(i, shown(row[i], "-") + live_of(row[i]));
   }
   return text;
 }
@@ -195,6 +207,7 @@ std::string table_text(const Table& table) {
 Json table_cell_json(const TableCell& cell) {
   Json json{{"text", cell.text}};
   if (cell.value) json["value"] = *cell.value;
+  if (!cell.live.empty()) json["live"] = cell.live;
   if (!cell.spread.empty()) json["spread"] = cell.spread;
   if (!cell.reference.empty()) json["reference"] = cell.reference;
   if (cell.bold) json["bold"] = true;

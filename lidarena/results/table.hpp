@@ -14,6 +14,7 @@ namespace lidarena::results {
 struct TableCell {
   std::string text;             ///< as shown; a dash if empty
   std::optional<double> value;  ///< the unrounded figure
+  std::string live;             ///< the figure as known at each scan, beside the final one
   std::string spread;           ///< range and runs of a median: "1.1 to 1.4, 8 of 8"
   std::string reference;        ///< a published figure, shown in brackets; empty = none
   bool bold = false;            ///< the table's note says what it marks

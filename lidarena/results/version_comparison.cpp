@@ -19,8 +19,8 @@ namespace lidarena::results {
 namespace {
 
 /// The figures that are compared; all are better when small.
-const std::array kCompared{&kDrift,       &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
-                           &kMapOutliers, &kCpuP95,     &kOwnMemory};
+const std::array kCompared{&kDrift,   &kLiveDrift,   &kOwnMapRmse, &kOwnMapOutliers,
+                           &kMapRmse, &kMapOutliers, &kCpuP95,     &kOwnMemory};
 
 const std::array kShortNames{std::pair{"drift", &kDrift}, std::pair{"map", &kMapRmse},
                              std::pair{"outliers", &kMapOutliers}, std::pair{"cpu", &kCpuP95},
@@ -67,12 +67,15 @@ std::optional<FigureChange> change_of(const Group& group, const std::vector<Pair
                                       const Figure& figure) {
   std::vector<RunFigure> before, after;
   std::vector<double> old_values, new_values;
+  std::map<std::string, std::vector<double>> by_world;
   for (const Pair& pair : pairs) {
     before.push_back(judged_figure(*pair.before, figure));
     after.push_back(judged_figure(*pair.after, figure));
     if (!before.back().value || !after.back().value) continue;
     old_values.push_back(*before.back().value);
     new_values.push_back(*after.back().value);
+    if (const auto ratio = log_ratio(old_values.back(), new_values.back()))
+      by_world[pair.after->world].push_back(*ratio);
   }
   if (old_values.empty()) return std::nullopt;
   FigureChange change{group.first,
@@ -81,8 +84,12 @@ std::optional<FigureChange> change_of(const Group& group, const std::vector<Pair
                       quantile(old_values, 0.5),
                       quantile(new_values, 0.5),
                       compare_paired(before, after),
+                      {},
                       std::nullopt};
-  change.p = change.paired.wilcoxon_p;
+  std::vector<std::vector<double>> strata;
+  for (auto& [world, ratios] : by_world) strata.push_back(std::move(ratios));
+  change.ratios = compare_strata(strata);
+  change.p = change.ratios.p;
   return change;
 }
 
@@ -99,7 +106,7 @@ void correct(std::vector<FigureChange>& changes) {
     FigureChange& change = *tested[k];
     change.p = corrected[k];
     if (corrected[k] < kLevel)
-      change.verdict = change.paired.b_ranks_smaller ? Verdict::kBetter : Verdict::kWorse;
+      change.verdict = change.ratios.b_is_smaller ? Verdict::kBetter : Verdict::kWorse;
   }
 }
 
@@ -117,6 +124,12 @@ LostRuns lost_of(const Group& group, const std::vector<Pair>& pairs) {
 
 /// "lost" if it is that of a lost run.
 Json number_json(double value) { return std::isinf(value) ? Json("lost") : Json(value); }
+
+Json ratio_json(std::optional<double> ratio) { return ratio ? number_json(*ratio) : Json(nullptr); }
+
+Json interval_json(const std::optional<Interval>& interval) {
+  return interval ? Json{number_json(interval->low), number_json(interval->high)} : Json(nullptr);
+}
 
 std::string percent_text(std::optional<double> percent) {
   return percent ? fmt::format("{:+.1f} %", *percent) : "";
@@ -184,9 +197,9 @@ Table table_of(const VersionComparison& comparison) {
       "comparison",
       "Before and after",
       fmt::format("Medians over pairs of runs on the same scene, flight and seed; a lost run "
-                  "is the worse one of its pair; better or worse by Wilcoxon's signed-rank test at "
-                  "{:.0f} % "
-                  "after Holm's correction, which here takes at least {} pairs.",
+                  "is the worse one of its pair; better or worse by Wilcoxon's test of log "
+                  "ratios, ranked within each world, at {:.0f} % after Holm's correction, which "
+                  "here takes at least {} pairs.",
                   100.0 * kLevel, comparison.pairs_needed()),
       {"sensor", "method", "figure", "before", "after", "change", "pairs", "p", "verdict"},
       {}};
@@ -213,6 +226,8 @@ Json to_json(const VersionComparison& comparison) {
                        {"after", number_json(change.after)},
                        {"change_percent", value_to_json(change.worsening_percent())},
                        {"pairs", change.paired.pairs},
+                       {"ratio", ratio_json(change.ratios.ratio)},
+                       {"ratio_95", interval_json(change.ratios.ratio_95)},
                        {"p", value_to_json(change.p)},
                        {"verdict", to_string(change.verdict)}});
   }

@@ -7,6 +7,7 @@
 
 #include "lidarena/results/run_record.hpp"
 #include "lidarena/results/statistics.hpp"
+#include "lidarena/results/stratified.hpp"
 #include "lidarena/results/table.hpp"
 
 /// The same runs of two studies side by side: two versions of a SLAM, two settings, two machines.
@@ -21,7 +22,8 @@ struct FigureChange {
   const Figure* figure = nullptr;
   double before = 0.0, after = 0.0;  ///< medians over the pairs, infinite where half are lost
   PairedComparison paired;           ///< of which `a` is before and `b` after
-  std::optional<double> p;           ///< of Wilcoxon's test, after Holm's correction
+  StratifiedComparison ratios;       ///< after / before, the worlds as strata
+  std::optional<double> p;           ///< of `ratios`, after Holm's correction
   Verdict verdict = Verdict::kNeither;
 
   /// Change of the median in %, positive = worse; empty if it was zero and is not, or is lost.
@@ -47,7 +49,7 @@ struct VersionComparison {
 
 /// Pairs each run of `after` with that of `before` on the same world, flight, mode and seed, with
 /// the same sensor and method; studies of a single method are compared whatever it is called. A
-/// figure is better or worse if Wilcoxon's signed-rank test says so at kLevel, after Holm's
+/// figure is better or worse if the test of stratified.hpp says so at kLevel, after Holm's
 /// correction for the number of figures.
 /// Throws InputError if no two runs are pairs.
 VersionComparison compare_versions(const StudyResults& before, const StudyResults& after);

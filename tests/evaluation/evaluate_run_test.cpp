@@ -207,13 +207,26 @@ TEST_F(EvaluateRun, ADivergedRunHasAReasonAndNoNumber) {
   EXPECT_TRUE(m["maps"]["own"].is_null());
 }
 
-TEST_F(EvaluateRun, WhatTheRunnerSaysOfTheRunCounts) {
+TEST_F(EvaluateRun, OfARunThatEndedItselfTheTrajectoryUntilThenIsScored) {
+  EXPECT_TRUE(evaluate()["ended_at_s"].is_null());
   run_.manifest.status = dataset::RunStatus::kDiverged;
-  run_.manifest.reason = "pose 12 is not finite";
+  run_.manifest.reason = "pose 100 is not finite";
+  const auto first = [](const Trajectory& all, std::size_t n) {
+    return Trajectory({all.poses().begin(), all.poses().begin() + static_cast<std::ptrdiff_t>(n)},
+                      "cut");
+  };
+  run_.trajectory = first(run_.trajectory, 100);
+  run_.live = first(run_.live, 100);
   const Json m = evaluate();
   EXPECT_EQ(m["status"], "diverged");
-  EXPECT_EQ(m["reason"], "pose 12 is not finite");
-  EXPECT_TRUE(m["final"].is_null());
+  EXPECT_EQ(m["reason"], "pose 100 is not finite");
+  EXPECT_NEAR(m["ended_at_s"], 9.9, 1e-9) << "100 poses, one each 0.1 s";
+  EXPECT_LT(m["final"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"], 1e-9);
+  EXPECT_GT(m["live"]["rpe"]["1m_at_poses"]["translation"]["rmse_m"], 1e-4);
+  EXPECT_NEAR(m["final"]["association"]["coverage"], 9.9 / 30.0, 0.01);
+  EXPECT_TRUE(m["maps"]["own"].is_null());
+  run_.trajectory = run_.live = Trajectory();
+  EXPECT_TRUE(evaluate()["final"].is_null());
 }
 
 TEST_F(EvaluateRun, NoPosesAndNoCommonTimeAreSaid) {

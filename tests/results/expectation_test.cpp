@@ -95,7 +95,7 @@ TEST(Expectation, ALostCellIsTheWorstAndTwoLostOnesAreNotCompared) {
   EXPECT_EQ(judged(results, "lowest: {algorithm: good}").evidence.at(0),
             "room, dear: lost (diverged), against 2 cm of bad");
   results = eight_runs();
-  for (RunRecord& run : results.rows) set_metrics(run, made_up::metrics_of(3.0, 60.0));
+  for (RunRecord& run : results.rows) set_metrics(run, made_up::metrics_of(300.0, 0.0));
   EXPECT_FALSE(judged(results, ratio + place).holds);
   EXPECT_THAT(judged(results, ratio + place).evidence.at(0), HasSubstr("lost with both"));
 }

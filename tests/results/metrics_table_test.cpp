@@ -106,6 +106,14 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
   EXPECT_THAT(text, HasSubstr("12.300 ms"));
 }
 
+TEST(MetricsText, OfARunThatEndedItselfItSaysWhen) {
+  ScoredRun run = run_of("run_a", "", "house", 1.25);
+  run.metrics.status = "diverged";
+  run.metrics.reason = "scan 46: the algorithm reported divergence";
+  run.metrics.ended_at_s = 4.6;
+  EXPECT_THAT(metrics_text(run), HasSubstr("it ended itself at 4.6 s; the figures are until then"));
+}
+
 TEST(MetricsText, AFigureThatMeansLittleSaysSo) {
   ScoredRun run = run_of("run_a", "", "house", 1.25);
   AteMetrics& ate = run.metrics.final->ate->posyaw;

@@ -37,6 +37,8 @@ TEST(CompareVersions, WhatGotWorseOnEveryPairIsWorseAndStandsFirst) {
   EXPECT_NEAR(drift.before, 1.45, 1e-9);
   EXPECT_NEAR(*drift.worsening_percent(), 20.0, 1e-9);
   EXPECT_EQ(drift.paired.pairs, 8U);
+  EXPECT_NEAR(*drift.ratios.ratio, 1.2, 1e-12);
+  EXPECT_NEAR(to_json(found).at("changes").at(0).at("ratio_95").at(0), 1.2, 1e-12);
   // Eight differences of one sign: 2 / 2^8. Of the figures here two differ (drift and map), so Holm
   // doubles the smaller of two equal ones and keeps the other at that.
   EXPECT_NEAR(*drift.p, 2.0 * 2.0 / 256.0, 1e-12);

@@ -65,6 +65,8 @@ struct RegistrationConfig {
   double proximity_weight = 0.1;
   double max_plane_distance_m = 0.3;
   double robust_kernel_scale_m = 0.1;
+  double max_translation_m = 5.0;
+  double max_rotation_deg = 30.0;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -92,6 +94,38 @@ struct RegistrationConfig {
       "times min_neighbors it is the decay length of proximity_weight's exponential", above(0));
     v("robust_kernel_scale_m", self.robust_kernel_scale_m, "m",
       "scale of the Cauchy kernel, on the weighted distance", above(0));
+    v("max_translation_m", self.max_translation_m, "m",
+      "a scan that moves farther is an error, at which the method ends", above(0));
+    v("max_rotation_deg", self.max_rotation_deg, "deg",
+      "so is one that rotates by more, within it or since the end of the last one",
+      Limits{0.0, 180.0});
+  }
+};
+
+/// The published program's robust registration: a scan whose registration is not trusted is
+/// registered again, from the initial guess, with more careful settings.
+struct RobustConfig {
+  bool enabled = false;
+  int attempts = 6;
+  double max_scan_rotation_deg = 3.0;
+  double max_rotation_deg = 3.0;
+  int minimal_level = 0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("enabled", self.enabled, "",
+      "register a scan again, with more careful settings, where it turns by more than the next two "
+      "limits, moves by more than 1 m or fails; keep scans that turn out of the map");
+    v("attempts", self.attempts, "", "number of registrations of a scan; the last one is accepted",
+      at_least(1));
+    v("max_scan_rotation_deg", self.max_scan_rotation_deg, "deg",
+      "rotation within a scan up to which a registration is trusted", Limits{0.0, 180.0});
+    v("max_rotation_deg", self.max_rotation_deg, "deg", "the same since the end of the last scan",
+      Limits{0.0, 180.0});
+    v("minimal_level", self.minimal_level, "",
+      "number of times that the settings of a scan's first attempt are made more careful; after "
+      "trouble it is one more",
+      Limits{0, 10});
   }
 };
 
@@ -132,7 +166,7 @@ struct MapConfig {
     v("radius_m", self.radius_m, "m", "points farther from the sensor are removed", above(0));
     v("always_insert", self.always_insert, "",
       "insert every scan; false: a scan that rotates by more than 3 deg is skipped, but at most "
-      "six in a row");
+      "six in a row (with robust.enabled: every scan that is not trusted for its rotation)");
   }
 };
 
@@ -140,6 +174,7 @@ struct MapConfig {
 struct Config {
   SamplingConfig sampling;
   RegistrationConfig registration;
+  RobustConfig robust;
   PriorConfig prior;
   MapConfig map;
 
@@ -147,6 +182,7 @@ struct Config {
   static void visit(Self& self, V&& v) {
     v("sampling", self.sampling, "", "which points are used");
     v("registration", self.registration, "", "how they are aligned with the map");
+    v("robust", self.robust, "", "registering again what is not trusted");
     v("prior", self.prior, "",
       "motion prior: weights relative to the mean squared error of a point");
     v("map", self.map, "", "the local map");

@@ -10,6 +10,7 @@
 #include "lidarena/odometry/ct_icp/prediction.hpp"
 #include "lidarena/odometry/ct_icp/quality.hpp"
 #include "lidarena/odometry/ct_icp/registration.hpp"
+#include "lidarena/odometry/ct_icp/robust.hpp"
 #include "lidarena/odometry/lidar_path.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
@@ -36,11 +37,21 @@ class CtIcp : public Odometry {
   bool starting() const { return scans_ < config_.sampling.initial_scans; }
   /// The result of a scan at which the method ends, or after it.
   ScanResult ended() const;
-  /// Aligns the keypoints with the map, if there is one.
-  Registration align(std::span<const TimedPoint> keypoints) const;
+  /// The registration of a scan, and what it took.
+  struct Attempts {
+    Registration found;
+    std::size_t keypoints = 0;  ///< of the last attempt
+    int count = 0;
+  };
+  /// Aligns the scan with the map, if there is one; where the robust registration is enabled, again
+  /// until an attempt is trusted or all are used.
+  Attempts align(std::span<const TimedPoint> frame) const;
+  /// One attempt.
+  Registration align(std::span<const TimedPoint> keypoints,
+                     const RegistrationConfig& settings) const;
   ScanStatus status_of(const Registration& found, std::size_t points) const;
   /// Stores the scan's motion, and inserts `frame` into the map; returns whether it did.
-  bool advance(const Registration& found, std::span<const TimedPoint> frame,
+  bool advance(const Attempts& aligned, std::span<const TimedPoint> frame,
                const estimation::ScanTimes& times);
 
   Config config_;
@@ -49,6 +60,7 @@ class CtIcp : public Odometry {
   LidarPath path_;
   std::vector<Eigen::Vector3f> registered_scan_;
   InsertionGate gate_;
+  RobustRegistration robust_;
   MotionHistory history_;
 
   int scans_ = 0;

@@ -8,25 +8,25 @@ namespace lidarena::odometry::ct_icp {
 
 namespace {
 
-// Limits of the published program, none of which its configuration files set.
-constexpr double kMaxTranslation = 5.0;              // m
-constexpr double kMaxRotation = 30.0 * kDegree;      // rad
+// Of the published program, whose reader of configuration files does not know them.
 constexpr double kInsertedRotation = 3.0 * kDegree;  // rad, from begin to end
 constexpr int kMaxSkipped = 5;                       // scans in a row
+
+}  // namespace
 
 double rotation_between(const Pose& a, const Pose& b) {
   return so3::angle(a.linear().transpose() * b.linear());
 }
 
-}  // namespace
-
-bool is_plausible(const ElasticMotion& motion, const Pose& last_end) {
+bool is_plausible(const ElasticMotion& motion, const Pose& last_end,
+                  const RegistrationConfig& limits) {
+  const double max_rotation = limits.max_rotation_deg * kDegree;
   const Pose& begin = motion.begin;
   const Pose& end = motion.end;
   return begin.matrix().allFinite() && end.matrix().allFinite() &&
-         (end.translation() - begin.translation()).norm() <= kMaxTranslation &&
-         rotation_between(begin, end) <= kMaxRotation &&
-         rotation_between(last_end, end) <= kMaxRotation;
+         (end.translation() - begin.translation()).norm() <= limits.max_translation_m &&
+         rotation_between(begin, end) <= max_rotation &&
+         rotation_between(last_end, end) <= max_rotation;
 }
 
 bool InsertionGate::admits(const ElasticMotion& motion) {

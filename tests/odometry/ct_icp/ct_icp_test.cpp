@@ -83,5 +83,14 @@ TEST(CtIcp, ARotationBeyondThirtyDegreesEndsItToo) {
   EXPECT_EQ(status, ScanStatus::kDiverged);
 }
 
+TEST(CtIcp, ARotationWithinTheConfiguredLimitDoesNot) {
+  Config config = indoor(lidar());
+  config.registration.max_rotation_deg = 120.0;
+  config.map.always_insert = true;
+  CtIcp odometry(config, lidar(), Parallel(1));
+  for (const Scan& scan : yawing(400.0))
+    EXPECT_NE(odometry.register_scan(scan).status, ScanStatus::kDiverged);
+}
+
 }  // namespace
 }  // namespace lidarena::odometry::ct_icp

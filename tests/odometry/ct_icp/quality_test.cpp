@@ -11,6 +11,7 @@ namespace lidarena::odometry::ct_icp {
 namespace {
 
 constexpr double kDegree = M_PI / 180.0;
+const RegistrationConfig kLimits;
 
 ElasticMotion motion_of(double degrees, double meters = 0.0) {
   return {Pose::Identity(), make_pose(so3::exp({0, 0, degrees * kDegree}), {meters, 0.0, 0.0})};
@@ -18,13 +19,24 @@ ElasticMotion motion_of(double degrees, double meters = 0.0) {
 
 TEST(CtIcpQuality, LimitsTheMotionOfAScan) {
   const Pose start = Pose::Identity();
-  EXPECT_TRUE(is_plausible(motion_of(29.0, 4.9), start));
-  EXPECT_FALSE(is_plausible(motion_of(31.0), start));
-  EXPECT_FALSE(is_plausible(motion_of(0.0, 5.1), start));
-  EXPECT_FALSE(is_plausible(motion_of(0.0, std::nan("")), start));
+  EXPECT_TRUE(is_plausible(motion_of(29.0, 4.9), start, kLimits));
+  EXPECT_FALSE(is_plausible(motion_of(31.0), start, kLimits));
+  EXPECT_FALSE(is_plausible(motion_of(0.0, 5.1), start, kLimits));
+  EXPECT_FALSE(is_plausible(motion_of(0.0, std::nan("")), start, kLimits));
   const Pose turned = make_pose(so3::exp({0, 0, -20.0 * kDegree}), Eigen::Vector3d::Zero());
-  EXPECT_TRUE(is_plausible(motion_of(9.0), turned));
-  EXPECT_FALSE(is_plausible(motion_of(11.0), turned)) << "31 deg from the end of the last scan";
+  EXPECT_TRUE(is_plausible(motion_of(9.0), turned, kLimits));
+  EXPECT_FALSE(is_plausible(motion_of(11.0), turned, kLimits))
+      << "31 deg from the end of the last scan";
+}
+
+TEST(CtIcpQuality, TheLimitsAreKeys) {
+  const Pose start = Pose::Identity();
+  RegistrationConfig wide;
+  wide.max_rotation_deg = 120.0;
+  wide.max_translation_m = 8.0;
+  EXPECT_TRUE(is_plausible(motion_of(119.0, 7.9), start, wide));
+  EXPECT_FALSE(is_plausible(motion_of(121.0), start, wide));
+  EXPECT_FALSE(is_plausible(motion_of(0.0, 8.1), start, wide));
 }
 
 TEST(CtIcpQuality, ScansThatTurnAreKeptOutUntilSixWere) {

@@ -33,6 +33,7 @@ export interface Run {
   differs: string[]; // those keys whose value is not that of the base
   seed: number;
   status: string;
+  ended_at_s: number | null; // when the method ended itself
   lost: string; // why the run is lost, as lidarena/results/lost.hpp defines it; empty if it is not
   mean_map: boolean; // the points of its own map are means of several returns
   command: string;
@@ -82,6 +83,7 @@ export interface Candidate {
 export interface Cell {
   text: string;
   value?: number;
+  live?: string; // the figure as known at each scan
   spread?: string;
   reference?: string;
   bold?: boolean;

@@ -27,8 +27,8 @@ function scores(candidates: Candidate[], weights: number[]): Map<Candidate, numb
 
 const name = (candidate: Candidate) => `${candidate.sensor} with ${label(candidate)}`;
 
-function cellElement({ text, spread }: Cell): HTMLElement {
-  return element("td", {}, text || "–", spread ? element("span", { className: "range" }, spread) : "");
+function cellElement({ text, live, spread }: Cell): HTMLElement {
+  return element("td", {}, (text || "–") + (live ? ` / ${live} live` : ""), spread ? element("span", { className: "range" }, spread) : "");
 }
 
 /** The columns of the table: the names, the criteria, and the own map among them. */

@@ -21,8 +21,8 @@ const DEFINITIONS =
   "Drift (RPE): the true path is cut into segments of 1 m that begin and end at estimated poses; in each, the estimated motion is compared with the true one; " +
   "root mean square over all segments. ATE: distance between the two paths after aligning them. Map: point-to-mesh distance to the same mesh that was scanned, of " +
   "the method's own map or of sampled returns, placed along the estimated path. Figures are those of the final trajectory unless they are called live; metrics.json in each run's folder also " +
-  "holds those of other segment lengths and alignments, and the id of each definition. A run is lost if it has no scored result, if more than half of its own map " +
-  "lies beyond 20 cm, or if it drifts by more than 1 m per m; it counts as the worst run of its cell everywhere. CPU time is that of all threads; 100 % is one core. " +
+  "holds those of other segment lengths and alignments, and the id of each definition. A run is lost if it has no result of the whole flight, if a figure " +
+  "of its path is not finite, or if it drifts by more than 1 m or 20 degrees per m; it counts as the worst run of its cell everywhere. CPU time is that of all threads; 100 % is one core. " +
   "A share of 0 of N points has the upper bound 3/N, as if points were independent.";
 
 const marks = document.documentElement.dataset; // read by tests only

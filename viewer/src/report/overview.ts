@@ -12,6 +12,7 @@ import {
   grouped,
   keptOf,
   label,
+  LIVE_DRIFT,
   MAP_RMSE,
   MEMORY,
   OUTLIERS,
@@ -81,13 +82,23 @@ function runToOpen(page: Page, runs: Run[]): Run {
   return [...runs].sort((a, b) => far(a) - far(b))[0];
 }
 
-/** "2 diverged, 1 lost" */
+/** "2 diverged, 1 lost, 3 ended at 4.6 to 9.1 s" */
 function losses(runs: Run[]): string {
+  const ended = runs.flatMap((run) => (run.lost && run.ended_at_s !== null ? [run.ended_at_s] : []));
   const state = (run: Run) => (run.status === "ok" ? "lost" : run.status);
-  const bad = runs.filter((run) => run.lost);
-  return distinct(bad, state)
-    .map((name) => `${bad.filter((run) => state(run) === name).length} ${name}`)
-    .join(", ");
+  const bad = runs.filter((run) => run.lost && run.ended_at_s === null);
+  const words = distinct(bad, state).map((name) => `${bad.filter((run) => state(run) === name).length} ${name}`);
+  if (ended.length > 0) {
+    const times = [...new Set([Math.min(...ended), Math.max(...ended)].map((time) => time.toFixed(1)))];
+    words.push(`${ended.length} ended at ${times.join(" to ")} s`);
+  }
+  return words.join(", ");
+}
+
+/** " / 0.15 live" beside the final drift of a cell. */
+function liveText({ data, settings }: Page, runs: Run[]): string {
+  const live = settings.figure === DRIFT ? spreadOf(runs, figureOf(data, LIVE_DRIFT)) : null;
+  return live && Number.isFinite(live.median) ? ` / ${shown(live.median)} live` : "";
 }
 
 interface MatrixCell {
@@ -120,7 +131,7 @@ function matrixCell(page: Page, { runs, spread }: MatrixCell, values: number[], 
   );
   const open = button("", `open a run of ${runs[0].sensor} with ${label(runs[0])}`, () => page.change({ run: runToOpen(page, runs).name }));
   open.append(
-    element("span", { className: "value" }, shownShare(spread?.median, spread?.bound)),
+    element("span", { className: "value" }, shownShare(spread?.median, spread?.bound) + liveText(page, runs)),
     element(
       "span",
       { className: "range" },
@@ -159,7 +170,7 @@ function matrixNote({ data, runs, settings }: Page, best: string | null): HTMLEl
     "The range is from the best run to the worst; a lost run is the worst of its cell. " +
     `${info.more_is_better ? "Large" : "Small"} is good. ` +
     (best
-      ? "The frame is by Wilcoxon's test over the paired runs of all worlds, at 5 % after Holm's correction. "
+      ? "The frame is by a test of the paired runs of all worlds (log ratios, ranked within each world), at 5 % after Holm's correction for all figures. "
       : "No combination is shown by the test (at least 16 pairs of runs, 5 %) to be better than every other one in sight. ") +
     (means.length > 0 ? `The points of the own maps of ${means.join(", ")} are means of several returns, which removes noise. ` : "") +
     (most ? `Of large maps a sample is scored (${most[0]} of ${most[1]} points). ` : "") +

@@ -33,6 +33,7 @@ function cellElement(cell: ShownCell, first: boolean): HTMLElement {
   if (first) made.setAttribute("scope", "row");
   if (cell.bold) content.classList.add("bold");
   if (cell.underlined) content.classList.add("underlined");
+  if (cell.live) made.append(element("span", {}, ` / ${cell.live} live`));
   if (cell.spread) made.append(element("span", { className: "range" }, cell.spread));
   if (cell.reference) made.append(element("span", { className: "reference" }, ` (${cell.reference})`));
   return made;
