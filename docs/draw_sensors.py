@@ -77,7 +77,7 @@ def section(program, sensor):
 docs = pathlib.Path(__file__).parent
 page = HEAD
 for listed in told_by(sys.argv[1], "list", "sensors"):
-    if listed["name"].endswith(("_paper", "_full", "_vibrating")) or "1024x20" in listed["name"] or "512" in listed["name"]:
+    if listed["name"].endswith(("_paper", "_full", "_vibrating", "_harsh")) or "1024x20" in listed["name"] or "512" in listed["name"]:
         continue  # same pattern, or a thinned one, as a sensor that is drawn
     draw(docs / "images" / f"sensor_{listed['name']}.png", listed["name"])
     page += section(sys.argv[1], listed)

@@ -10,6 +10,7 @@
 
 #include "lidarena/base/angle.hpp"
 #include "lidarena/sensor/lidar_motion.hpp"
+#include "lidarena/sensor/lidar_shake.hpp"
 #include "lidarena/sensor/normal_pairs.hpp"
 
 namespace lidarena::sensor {
@@ -45,13 +46,26 @@ SensorConfig without_noise(SensorConfig config) {
   config.range_noise_m = 0.0;
   config.noise = {};
   config.returns.count = 1;
+  if (config.imu) config.imu->vibration_moves_lidar = false;
   return config;
+}
+
+SensorClock lidar_clock(const ClockConfig& config, Time period, const std::string& id,
+                        std::uint64_t seed) {
+  return {config.offset_s, config.drift, config.stamp_jitter_s, period, id, seed};
 }
 
 std::vector<Beam> first_beams(const ScanPattern& pattern) {
   std::vector<Beam> beams;
   pattern.beams(0, beams);
   return beams;
+}
+
+std::size_t channels_of(const ScanPattern& pattern) {
+  std::size_t channels = 0;
+  for (const Beam& beam : first_beams(pattern))
+    channels = std::max(channels, std::size_t{beam.ring} + 1);
+  return channels;
 }
 
 /// Of every group of `stride` values keeps the first counts[group], without gaps between groups.
@@ -95,6 +109,8 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
     : config_(noise ? config : without_noise(config)),
       pattern_(std::move(pattern)),
       random_(seed, stream_of((id + "/range").c_str())),
+      clock_(lidar_clock(config_.noise.clock, pattern_->period(), id, seed)),
+      bias_(config_.noise.bias, id, seed, channels_of(*pattern_)),
       signal_(config.noise.signal),
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
       beam_sigma_(kDegree * kSigmaOfFwhm *
@@ -105,6 +121,10 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       order_(first_beams(*pattern_)) {
   check_returns(config.noise, config.returns, config.name.empty() ? "sensor" : config.name);
   for (const Beam& beam : first_beams(*pattern_)) last_dt_ns_ = std::max(last_dt_ns_, beam.dt_ns);
+  if (config_.imu && config_.imu->vibration_moves_lidar) {
+    vibration_.emplace(*config_.imu, id + "/imu", seed);
+    if (vibration_->empty()) vibration_.reset();
+  }
   shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
   has_range_noise_ = config_.range_noise_m > 0.0 || config_.noise.near_range_noise_m > 0.0;
   needs_signal_ = sub_rays_.size() > 1 || config_.noise.dropouts ||
@@ -112,11 +132,13 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
                   config_.returns.intensity == IntensityKind::kSignal;
 }
 
-Time Lidar::stamp(std::uint64_t index) const {
+Time Lidar::begin(std::uint64_t index) const {
   return static_cast<std::int64_t>(index) * pattern_->period();
 }
 
-Time Lidar::last_firing(std::uint64_t index) const { return stamp(index) + Time{last_dt_ns_}; }
+Time Lidar::last_firing(std::uint64_t index) const {
+  return stamp(index) + Time{clock_.elapsed(last_dt_ns_)};
+}
 
 /// Sub-rays of a shot have similar directions and are stored next to each other; beams of a single
 /// ray are stored in casting order.
@@ -209,31 +231,46 @@ double Lidar::range_noise(std::size_t shot, std::size_t number, const Block& blo
                                           : block.range_noise.second(pair));
 }
 
-double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number,
+/// Bias of an echo by its channel and by the surface of its strongest part.
+double Lidar::range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                         const Block& block) const {
+  const std::size_t place = block.places[shot] + echo.sub_ray;
+  const world::Hit& hit = block.hits[place];
+  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
+  return bias_.range(block.shots[shot].ring, cosine, world.material(hit.triangle).reflectivity);
+}
+
+double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
                              const Block& block) const {
   const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
-  double range = echo.range;
+  double range = echo.range + bias;
   if (sigma > 0.0) range += sigma * range_noise(shot, number, block);
   const double step = config_.noise.range_step_m;
   return step > 0.0 ? step * std::nearbyint(range / step) : range;
 }
 
 Vector3f Lidar::reported_direction(std::size_t shot, const Block& block) const {
-  const Vector3f& direction = block.shots[shot].direction;
+  Vector3f direction = block.shots[shot].direction;
+  if (bias_.has_directions()) {
+    const Eigen::Vector2f& off = bias_.direction(block.shots[shot].ring);
+    direction = slightly_deflected(direction, off.x(), off.y());
+  }
   if (angle_sigma_ == 0.0F) return direction;
   return slightly_deflected(direction, angle_sigma_ * block.direction_noise.first(shot),
                             angle_sigma_ * block.direction_noise.second(shot));
 }
 
 /// Appends the point, and its truth, of the shot's echo `number`.
-void Lidar::report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const {
+void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                   std::size_t number, Block& block) const {
   const Beam& beam = block.shots[shot];
-  const double distance = measured_range(echo, shot, number, block) - block.axis_to_origin;
+  const double bias = bias_.has_ranges() ? range_bias(world, shot, echo, block) : 0.0;
+  const double distance = measured_range(echo, shot, number, bias, block) - block.axis_to_origin;
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
   Point point;
   point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
   point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
-  point.dt_ns = has_times(config_.mode) ? beam.dt_ns : 0;
+  point.dt_ns = has_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
   point.ring = beam.ring;
   point.echo = static_cast<std::uint8_t>(number);
   block.points[block.count++] = point;
@@ -269,11 +306,13 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
     block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
     if (sub_rays_.size() == 1) {
       const auto echo = receive_ray(world, shot, 0, block);
-      if (echo && is_detected(*echo, block.first_ray + shot, 0)) report(shot, *echo, 0, block);
+      if (echo && is_detected(*echo, block.first_ray + shot, 0))
+        report(world, shot, *echo, 0, block);
       continue;
     }
     receive(world, shot, block);
-    for (std::size_t k = 0; k < block.echoes.size(); ++k) report(shot, block.echoes[k], k, block);
+    for (std::size_t k = 0; k < block.echoes.size(); ++k)
+      report(world, shot, block.echoes[k], k, block);
   }
 }
 
@@ -308,12 +347,18 @@ Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, 
                     const Parallel& parallel, std::vector<PointTruth>* truth) const {
   std::vector<Beam> storage;
   const std::span<const Beam> shots = beams(index, storage);
-  const LidarMotion motion(flight, config_.body_from_lidar, stamp(index), last_dt_ns_,
-                           config_.mode == ScanMode::kRolling);
+  const bool rolling = config_.mode == ScanMode::kRolling;
+  const LidarMotion motion(flight, config_.body_from_lidar, begin(index), last_dt_ns_, rolling);
+  std::optional<LidarShake> shake;
+  if (vibration_) {
+    shake.emplace(*vibration_, flight, config_.imu->lidar_from_imu, begin(index),
+                  rolling ? last_dt_ns_ : 0);
+  }
+  const PoseAt world_from_lidar = [&](std::int32_t dt_ns) {
+    return shake ? motion.at(dt_ns) * shake->at(rolling ? dt_ns : 0) : motion.at(dt_ns);
+  };
   Scan scan = empty_scan(index);
-  shoot_all(
-      world, [&](std::int32_t dt_ns) { return motion.at(dt_ns); }, shots, index * shots.size(),
-      parallel, scan.points, truth);
+  shoot_all(world, world_from_lidar, shots, index * shots.size(), parallel, scan.points, truth);
   return scan;
 }
 

@@ -17,9 +17,12 @@
 #include "lidarena/sensor/beam_table.hpp"
 #include "lidarena/sensor/cast_order.hpp"
 #include "lidarena/sensor/echoes.hpp"
+#include "lidarena/sensor/lidar_bias.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
+#include "lidarena/sensor/sensor_clock.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/sensor/signal_model.hpp"
+#include "lidarena/sensor/vibration.hpp"
 #include "lidarena/world/surfaces.hpp"
 
 namespace lidarena::sensor {
@@ -38,26 +41,27 @@ class Lidar {
         std::uint64_t seed, bool noise);
 
   /// Scan `index`, which begins at index * period. Each shot is cast from the pose at its own
-  /// instant (see ScanMode); shots without a return are left out. Ranges are measured from the
+  /// instant (see ScanMode), on which vibration acts if it moves the LiDAR; stamp and times are
+  /// those of the LiDAR's clock. Shots without a return are left out. Ranges are measured from the
   /// sensor's axis (|beam origin| + distance along the beam); a return is kept if its true range is
   /// within the limits.
   ///
   /// The sub-rays of a beam are merged into echoes (merge_echoes). Each echo is detected or missed,
   /// depending on its signal; the detected ones are selected and numbered according to
-  /// ReturnConfig. Then range noise is added, the range is rounded, and angular noise is added to
-  /// the direction. `truth`, if given, receives what each point really hit, in point order; for a
-  /// mixed echo, what the sub-ray with the strongest signal hit.
+  /// ReturnConfig. Then bias and range noise are added, the range is rounded, and the errors of
+  /// the direction are added. `truth`, if given, receives what each point really hit, in point
+  /// order; for a mixed echo, what the sub-ray with the strongest signal hit.
   Scan measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
                const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 
   /// Appends the points of some shots of a scan to `points` (and `truth`). `first_ray` is the
   /// number of the first of `shots`, counted from the sensor's start. With this a scan can be
-  /// simulated piece by piece while the world moves.
+  /// simulated piece by piece while the world moves. Vibration is for the caller to add.
   void measure_part(const world::Surfaces& world, const PoseAt& world_from_lidar,
                     std::span<const Beam> shots, std::uint64_t first_ray,
                     std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
 
-  /// Scan `index` with its stamp, without points.
+  /// Scan `index` with its stamp by the LiDAR's clock, without points.
   Scan empty_scan(std::uint64_t index) const;
 
   const ScanPattern& pattern() const { return *pattern_; }
@@ -66,8 +70,12 @@ class Lidar {
     return table_.beams(index, storage);
   }
   const SensorConfig& config() const { return config_; }
-  Time stamp(std::uint64_t index) const;
-  /// Instant of the last firing of scan `index`, whether or not its points carry times.
+  /// True instant at which scan `index` begins.
+  Time begin(std::uint64_t index) const;
+  /// The same by the LiDAR's clock: the scan's stamp.
+  Time stamp(std::uint64_t index) const { return clock_.stamp(index, begin(index)); }
+  /// Instant, by the LiDAR's clock, of the last firing of scan `index`, whether or not its points
+  /// carry times.
   Time last_firing(std::uint64_t index) const;
 
  private:
@@ -77,7 +85,8 @@ class Lidar {
   std::optional<Echo> receive_ray(const world::Surfaces& world, std::size_t shot, std::size_t k,
                                   const Block& block) const;
   void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
-  void report(std::size_t shot, const Echo& echo, std::size_t number, Block& block) const;
+  void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
+              Block& block) const;
   void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
   void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
@@ -85,13 +94,18 @@ class Lidar {
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   void draw_noise(Block& block) const;
   double range_noise(std::size_t shot, std::size_t number, const Block& block) const;
-  double measured_range(const Echo& echo, std::size_t shot, std::size_t number,
+  double measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
                         const Block& block) const;
+  double range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                    const Block& block) const;
   Eigen::Vector3f reported_direction(std::size_t shot, const Block& block) const;
 
   SensorConfig config_;
   std::unique_ptr<ScanPattern> pattern_;
   CounterRandom random_;
+  SensorClock clock_;
+  LidarBias bias_;
+  std::optional<Vibration> vibration_;  ///< if it moves the LiDAR
   SignalModel signal_;
   std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically

@@ -64,16 +64,19 @@ LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   return info;
 }
 
-ImuInfo describe_imu(const ImuConfig& imu, const Pose& body_from_lidar, const std::string& id) {
+/// The IMU as the methods are told about it, see ToldConfig.
+ImuInfo describe_imu(const SensorConfig& sensor, const std::string& id) {
+  const ImuConfig& imu = *sensor.imu;
+  const ToldConfig& told = sensor.told;
   ImuInfo info;
   info.id = id;
   info.model = imu.model;
   info.rate_hz = imu.rate_hz;
-  info.gyro_noise_density = imu.gyro_noise_density;
-  info.accel_noise_density = imu.accel_noise_density;
-  info.gyro_bias_walk = imu.gyro_bias_walk;
-  info.accel_bias_walk = imu.accel_bias_walk;
-  info.body_from_imu = body_from_lidar * imu.lidar_from_imu;
+  info.gyro_noise_density = told.noise_factor * imu.gyro_noise_density;
+  info.accel_noise_density = told.noise_factor * imu.accel_noise_density;
+  info.gyro_bias_walk = told.bias_walk_factor * imu.gyro_bias_walk;
+  info.accel_bias_walk = told.bias_walk_factor * imu.accel_bias_walk;
+  info.body_from_imu = sensor.body_from_lidar * told.lidar_from_imu.value_or(imu.lidar_from_imu);
   return info;
 }
 
@@ -85,7 +88,7 @@ Rig make_rig(const std::vector<SensorConfig>& sensors) {
   for (const SensorConfig& sensor : sensors) {
     const std::string id = unique_name(sensor.name.empty() ? "lidar" : sensor.name, taken);
     rig.lidars.push_back(describe_lidar(sensor, id));
-    if (sensor.imu) rig.imus.push_back(describe_imu(*sensor.imu, sensor.body_from_lidar, id));
+    if (sensor.imu) rig.imus.push_back(describe_imu(sensor, id));
   }
   return rig;
 }

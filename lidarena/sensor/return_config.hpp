@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "lidarena/base/config.hpp"
+#include "lidarena/sensor/error_config.hpp"
 
 namespace lidarena::sensor {
 
@@ -61,6 +62,8 @@ struct NoiseConfig {
   bool dropouts = false;
   SignalConfig signal;
   BeamConfig beam;
+  BiasConfig bias{};
+  ClockConfig clock{};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -80,6 +83,8 @@ struct NoiseConfig {
     v("dropouts", self.dropouts, "", "weak echoes may be missed; needs signal");
     v("signal", self.signal, "", "data-sheet figures about weak signals");
     v("beam", self.beam, "", "width of the beam, for mixed pixels and multiple echoes");
+    v("bias", self.bias, "", "errors of ranges and directions that do not average out");
+    v("clock", self.clock, "", "errors of the LiDAR's clock; poses of the truth are at true time");
   }
 };
 

@@ -16,6 +16,18 @@ void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) 
   throw InputError(place, "facts.fov is empty", "keep each minimum below its maximum");
 }
 
+void check_imu(const std::optional<ImuConfig>& imu, const std::string& place) {
+  if (!imu) return;
+  if (imu->broadband.low_hz >= imu->broadband.high_hz)
+    throw InputError(place, "imu.broadband.low_hz is not below high_hz");
+  const bool bent = imu->gyro_nonlinearity > 0.0 && imu->gyro_range == 0.0;
+  const bool bent_too = imu->accel_nonlinearity > 0.0 && imu->accel_range == 0.0;
+  if (bent || bent_too) {
+    throw InputError(place, "an IMU's non-linearity is a share of its range, which is not given",
+                     "set imu.gyro_range and imu.accel_range");
+  }
+}
+
 /// Loads the beam table, or makes the path of the ray table absolute, so that the configuration
 /// does not depend on where its file is.
 void resolve_pattern_file(const fs::path& file, SensorConfig& sensor) {
@@ -116,6 +128,7 @@ SensorConfig load_sensor(const fs::path& file, const fs::path& shipped,
   }
   check_returns(sensor.noise, sensor.returns, file.string());
   check_fov(sensor.facts.fov, file.string());
+  check_imu(sensor.imu, file.string());
   make_pattern(sensor, file.string());  // throws if the model does not have this mode
   return sensor;
 }

@@ -9,6 +9,8 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/flight/flight.hpp"
+#include "lidarena/sensor/error_config.hpp"
 #include "lidarena/sensor/field_of_view.hpp"
 #include "lidarena/sensor/return_config.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
@@ -50,10 +52,9 @@ constexpr auto enum_names(ScanMode) {
                     std::pair{"official", ScanMode::kOfficial}};
 }
 
-/// A tone of the airframe's vibration, as measured by the IMU (the LiDAR is not affected): on each
-/// axis a sine with a phase of its own, drawn once per unit. The frequency is fixed, and there is
-/// no filter before sampling: a tone above half the IMU's rate is aliased, as in a part without an
-/// anti-aliasing filter.
+/// A tone of the airframe's vibration, as felt by the IMU: on each axis a sine with a phase of its
+/// own, drawn once per unit. The frequency is fixed. Without `bandwidth_hz` there is no filter
+/// before sampling: a tone above half the IMU's rate is aliased.
 struct VibrationTone {
   double frequency_hz = 100.0;
   Eigen::Vector3d accel_amplitude = Eigen::Vector3d::Zero();
@@ -73,8 +74,10 @@ struct VibrationTone {
 
 /// The IMU inside a LiDAR. Noise densities are continuous: a sample at rate f has the sigma
 /// density * sqrt(f). An error set to 0 is off. Order in which the errors are applied: vibration is
-/// added to the true values; scale and misalignment distort the sum; bias and white noise are
-/// added; the result is rounded to the resolution and limited to the range.
+/// added to the true values; the sum is delayed and low-pass filtered; scale, misalignment,
+/// g-sensitivity and non-linearity distort it; bias and white noise are added; the result is
+/// rounded to the resolution and limited to the range. Lost samples and jitter of stamps come last.
+/// Sources of the model: IEEE Std 1431-2004 (gyros), IEEE Std 1293-2018 (accelerometers).
 struct ImuConfig {
   std::string model;
   double rate_hz = 200.0;
@@ -92,7 +95,17 @@ struct ImuConfig {
   double accel_range = 0.0;
   double gyro_resolution = 0.0;
   double accel_resolution = 0.0;
+  double gyro_g_sensitivity = 0.0;
+  double gyro_nonlinearity = 0.0;
+  double accel_nonlinearity = 0.0;
+  double bandwidth_hz = 0.0;
+  double delay_s = 0.0;
+  double stamp_jitter_s = 0.0;
+  double lost_share = 0.0;
+  double gravity = flight::kGravity;
   std::vector<VibrationTone> vibration;
+  BroadbandConfig broadband;
+  bool vibration_moves_lidar = false;
   Pose lidar_from_imu = Pose::Identity();
 
   template <class Self, class V>
@@ -123,7 +136,29 @@ struct ImuConfig {
       "quantization step of the samples, 0 = none", at_least(0));
     v("accel_resolution", self.accel_resolution, "m/s^2",
       "quantization step of the samples, 0 = none", at_least(0));
+    v("gyro_g_sensitivity", self.gyro_g_sensitivity, "rad/s/(m/s^2)",
+      "sigma of each element of the matrix by which the gyro feels the specific force",
+      at_least(0));
+    v("gyro_nonlinearity", self.gyro_nonlinearity, "",
+      "sigma of each axis' quadratic error at gyro_range, as share of the range", at_least(0));
+    v("accel_nonlinearity", self.accel_nonlinearity, "",
+      "sigma of each axis' quadratic error at accel_range, as share of the range", at_least(0));
+    v("bandwidth_hz", self.bandwidth_hz, "Hz",
+      "-3 dB frequency of the low-pass before sampling (Butterworth, second order), 0 = none",
+      between(0, 1000));
+    v("delay_s", self.delay_s, "s", "a sample is this much older than its stamp says",
+      between(0, 1));
+    v("stamp_jitter_s", self.stamp_jitter_s, "s",
+      "sigma of the error of each sample's stamp, limited to 0.45 of the period", at_least(0));
+    v("lost_share", self.lost_share, "", "share of the samples that are lost, each by itself",
+      between(0, 0.9));
+    v("gravity", self.gravity, "m/s^2",
+      "gravity where the flight is; methods are not told (9.78 to 9.83 on the ground)",
+      between(9, 11));
     v("vibration", self.vibration, "", "vibration tones of the airframe");
+    v("broadband", self.broadband, "", "vibration with a spectrum that follows the rotors' speed");
+    v("vibration_moves_lidar", self.vibration_moves_lidar, "",
+      "true: LiDAR and IMU vibrate as one rigid body; false: the IMU alone feels the vibration");
     v("lidar_from_imu", self.lidar_from_imu, "m, quaternion", "x y z qx qy qz qw");
   }
 };
@@ -169,6 +204,7 @@ struct SensorConfig {
   ScanMode mode = ScanMode::kRolling;
   Pose body_from_lidar = Pose::Identity();
   std::optional<ImuConfig> imu;
+  ToldConfig told;
   SensorFacts facts;
 
   template <class Self, class V>
@@ -194,6 +230,7 @@ struct SensorConfig {
     v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
     v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
     v("imu", self.imu, "", "the IMU inside the LiDAR, if any");
+    v("told", self.told, "", "what the rig tells the methods where it differs from what is so");
     v("facts", self.facts, "", "weight, power, price, source");
   }
 };

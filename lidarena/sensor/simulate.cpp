@@ -43,8 +43,9 @@ class Simulation final : public EventSource {
       lidars_.push_back(std::move(stream));
       if (!sensor.imu) continue;
       const ImuInfo& info = rig.imus[imu++];
-      imus_.push_back(
-          {info.id, {*sensor.imu, info.body_from_imu, info.id, options.seed, options.noise}});
+      imus_.push_back({info.id,
+                       {*sensor.imu, sensor.body_from_lidar * sensor.imu->lidar_from_imu, info.id,
+                        options.seed, options.noise, sensor.noise.clock}});
     }
   }
 
@@ -70,10 +71,12 @@ class Simulation final : public EventSource {
 
   /// The IMU whose sample is next, on ties the first in the list; nullptr after the end.
   ImuStream* next_imu() {
-    const auto first = std::min_element(
-        imus_.begin(), imus_.end(),
-        [](const auto& a, const auto& b) { return a.imu.next_stamp() < b.imu.next_stamp(); });
-    return first == imus_.end() || first->imu.next_stamp() > end_ ? nullptr : &*first;
+    ImuStream* first = nullptr;
+    for (ImuStream& stream : imus_) {
+      if (stream.imu.next_true_time() > end_) continue;
+      if (first == nullptr || stream.imu.next_stamp() < first->imu.next_stamp()) first = &stream;
+    }
+    return first;
   }
 
   /// The LiDAR whose scan is due next; nullptr if there are no more scans.

@@ -27,14 +27,15 @@ struct SimulationOptions {
 
 /// The rig of these sensors on one body (each LiDAR with its IMU, if it has one). Ids are the
 /// sensors' names, made unique; a LiDAR and the IMU inside it share the id (topics /ID/points and
-/// /ID/imu). Throws InputError if a model does not have the configured mode.
+/// /ID/imu). The IMU is described as SensorConfig::told says. Throws InputError if a model does not
+/// have the configured mode.
 Rig make_rig(const std::vector<SensorConfig>& sensors);
 
 /// Simulates the measurements of a flight, each when it is requested, in the order that EventSource
 /// specifies; identical for the same seed on any number of threads. Keeps references to `world` and
-/// `flight`. Times count from the flight's start: scan k begins at k * period, and only complete
-/// scans are simulated. A scan is delivered once every IMU has delivered a sample at or after the
-/// scan's last firing (or has ended).
+/// `flight`. Times count from the flight's start, by the clock of each sensor: scan k begins at
+/// k * period of true time, and only complete scans are simulated. A scan is delivered once every
+/// IMU has delivered a sample at or after the scan's last firing (or has ended).
 std::unique_ptr<EventSource> simulate(const world::World& world, const flight::Flight& flight,
                                       const std::vector<SensorConfig>& sensors,
                                       const SimulationOptions& options, const Parallel& parallel);

@@ -37,8 +37,8 @@ void SteppedSensor::start_at(Time start) {
   scan_ = lidar_.empty_scan(index_);
   shots_ = lidar_.beams(index_, storage_);
   if (!config.imu) return;
-  imu_.emplace(*config.imu, config.body_from_lidar * config.imu->lidar_from_imu, id_, seed_,
-               noise_);
+  imu_.emplace(*config.imu, config.body_from_lidar * config.imu->lidar_from_imu, id_, seed_, noise_,
+               config.noise.clock);
 }
 
 void SteppedSensor::step(const world::Surfaces& world, const StampedPose& pose,
@@ -57,14 +57,13 @@ void SteppedSensor::step(const world::Surfaces& world, const StampedPose& pose,
 void SteppedSensor::cast(const world::Surfaces& world, const StampedPose& pose) {
   const StampedPose& last = *(poses_.end() - 2);
   const PoseAt world_from_lidar = [&](std::int32_t dt_ns) -> Pose {
-    return between(last, pose, scan_.stamp + Time{dt_ns}) * lidar_.config().body_from_lidar;
+    return between(last, pose, begin() + Time{dt_ns}) * lidar_.config().body_from_lidar;
   };
   const bool rolling = lidar_.config().mode == ScanMode::kRolling;
-  while (scan_.stamp <= pose.stamp) {
+  while (begin() <= pose.stamp) {
     if (!rolling && next_shot_ == 0) cast_frozen(world, world_from_lidar);
     const std::size_t first = next_shot_;
-    while (next_shot_ < shots_.size() &&
-           scan_.stamp + Time{shots_[next_shot_].dt_ns} <= pose.stamp) {
+    while (next_shot_ < shots_.size() && begin() + Time{shots_[next_shot_].dt_ns} <= pose.stamp) {
       ++next_shot_;
     }
     if (rolling && next_shot_ > first) {
@@ -108,11 +107,11 @@ void SteppedSensor::sample(std::vector<Event>& events) {
 
 /// Delivers a scan once an IMU sample at or after its last firing has been delivered.
 void SteppedSensor::deliver(std::vector<Event>& events) {
-  const auto is_covered = [&](const Scan& scan) {
-    const auto index = static_cast<std::uint64_t>(scan.stamp / lidar_.pattern().period());
+  const auto is_covered = [&] {
+    const std::uint64_t index = index_ - waiting_.size();  // of the first that waits
     return !imu_ || imu_->next_stamp() > imu_->first_stamp_from(lidar_.last_firing(index));
   };
-  while (!waiting_.empty() && is_covered(waiting_.front())) {
+  while (!waiting_.empty() && is_covered()) {
     events.push_back({id_, std::move(waiting_.front())});
     waiting_.erase(waiting_.begin());
   }

@@ -19,7 +19,8 @@ namespace lidarena::sensor {
 /// (interpolated linearly between two steps, with an error of at most a h^2 / 8: 1.3e-6 m at
 /// 10 m/s^2 and 1 ms), against the world at the end of the step. The noise of each shot equals that
 /// of simulate() for the same id and seed. Scan k begins at k * period of the simulator's clock;
-/// sample k of the IMU is at k / rate.
+/// sample k of the IMU is at k / rate. Vibration is felt by the IMU alone: it does not move the
+/// LiDAR here.
 class SteppedSensor {
  public:
   /// The first scan is the first one that begins at or after `start`. Throws InputError as
@@ -41,6 +42,8 @@ class SteppedSensor {
   void cast(const world::Surfaces& world, const StampedPose& pose);
   void cast_frozen(const world::Surfaces& world, const PoseAt& world_from_lidar);
   void finish_scan();
+  /// True instant at which the scan being simulated begins.
+  Time begin() const { return lidar_.begin(index_); }
   void sample(std::vector<Event>& events);
   void deliver(std::vector<Event>& events);
 

@@ -212,6 +212,9 @@ TEST(SensorConfig, ErrorsNameTheFileThePlaceAndTheRemedy) {
   EXPECT_THAT(failure("rate_hz: 30\n"), HasSubstr("whole"));
   EXPECT_THAT(failure("facts: {fov: {azimuth_min_deg: 180}}\n"), HasSubstr("facts.fov"));
   EXPECT_THAT(failure("rate_hz: 0.1\n"), HasSubstr("at least 0.5"));
+  EXPECT_THAT(failure("imu: {gyro_nonlinearity: 0.01}\n"), HasSubstr("imu.gyro_range"));
+  EXPECT_THAT(failure("imu: {broadband: {low_hz: 600}}\n"), HasSubstr("imu.broadband.low_hz"));
+  EXPECT_THAT(failure("noise: {clock: {offset_s: -1}}\n"), HasSubstr("clock.offset_s"));
   EXPECT_THROW(load_sensor("no_such_file.yaml"), InputError);
 }
 

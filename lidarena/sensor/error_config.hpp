@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#pragma once
+
+#include <optional>
+
+#include "lidarena/base/config.hpp"
+#include "lidarena/base/pose.hpp"
+
+/// Errors that data sheets do not state, and what a recording says where it differs from what is
+/// so. Each is off by default and draws from a random stream of its own.
+namespace lidarena::sensor {
+
+/// Errors of a LiDAR's ranges and directions that do not average out, see LidarBias. Sources:
+/// Glennie, Lichti, "Static calibration and analysis of the Velodyne HDL-64E S2" (Remote Sensing
+/// 2010) for those of unit and channel; Laconte et al., "Lidar measurement bias estimation via
+/// return waveform modelling" (ICRA 2019) for incidence; Pomerleau et al., "Noise characterization
+/// of depth sensors for surface inspections" (CARPI 2012) for reflectivity.
+struct BiasConfig {
+  double unit_m = 0.0;
+  double channel_m = 0.0;
+  double incidence_m = 0.0;
+  double reflectivity_m = 0.0;
+  double direction_deg = 0.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("unit_m", self.unit_m, "m", "sigma of the bias of all ranges, drawn once from the seed",
+      at_least(0));
+    v("channel_m", self.channel_m, "m",
+      "sigma of the bias of each channel's ranges, drawn once from the seed", at_least(0));
+    v("incidence_m", self.incidence_m, "m",
+      "bias of a range at 60 deg incidence; 0 at normal incidence, growing as 1 / cos - 1");
+    v("reflectivity_m", self.reflectivity_m, "m",
+      "bias of a 5 % target against a 50 % one, proportional to the logarithm of reflectivity");
+    v("direction_deg", self.direction_deg, "deg",
+      "sigma of the error of each channel's direction, horizontally and vertically, drawn once",
+      between(0, 1));
+  }
+};
+
+/// The clock of a LiDAR against true time, see SensorClock.
+struct ClockConfig {
+  double offset_s = 0.0;
+  double drift = 0.0;
+  double stamp_jitter_s = 0.0;
+  bool imu_shares = true;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("offset_s", self.offset_s, "s", "reading of the LiDAR's clock at the start of the flight",
+      between(0, 1));
+    v("drift", self.drift, "", "how much faster than true time the clock runs, e.g. 2.0e-5",
+      between(-0.01, 0.01));
+    v("stamp_jitter_s", self.stamp_jitter_s, "s",
+      "sigma of the error of each scan's stamp, limited to 0.45 of the scan's period", at_least(0));
+    v("imu_shares", self.imu_shares, "",
+      "true: the IMU's stamps have the same offset and drift; false: they are in true time");
+  }
+};
+
+/// Vibration with a continuous spectrum that follows the rotors' speed, see Vibration. The
+/// amplitudes grow with thrust; the rotors' frequency grows with its square root.
+struct BroadbandConfig {
+  Eigen::Vector3d accel_rms = Eigen::Vector3d::Zero();
+  Eigen::Vector3d gyro_rms = Eigen::Vector3d::Zero();
+  double rotor_hz = 126.3;
+  int blades = 2;
+  double spread = 0.05;
+  double floor_share = 0.3;
+  double low_hz = 10.0;
+  double high_hz = 500.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("accel_rms", self.accel_rms, "m/s^2", "RMS x y z in hover", at_least(0));
+    v("gyro_rms", self.gyro_rms, "rad/s", "RMS x y z in hover", at_least(0));
+    v("rotor_hz", self.rotor_hz, "Hz", "revolutions per second of the rotors in hover", above(0));
+    v("blades", self.blades, "", "blades of a rotor", between(1, 12));
+    v("spread", self.spread, "",
+      "relative width (sigma) of the peaks at the rotors' and the blades' frequency",
+      between(0.01, 1));
+    v("floor_share", self.floor_share, "",
+      "share of the variance that is spread evenly over the band; each peak has half of the rest",
+      between(0, 1));
+    v("low_hz", self.low_hz, "Hz", "lower end of the band", above(0));
+    v("high_hz", self.high_hz, "Hz", "upper end of the band", between(1, 2000));
+  }
+};
+
+/// What the recording and its rig tell the methods, where it differs from what is so.
+struct ToldConfig {
+  std::optional<Pose> lidar_from_imu;
+  double noise_factor = 1.0;
+  double bias_walk_factor = 1.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("lidar_from_imu", self.lidar_from_imu, "m, quaternion",
+      "mounting of the IMU as told, x y z qx qy qz qw; the LiDAR's mounting is told as it is");
+    v("noise_factor", self.noise_factor, "", "told noise densities of the IMU / true ones",
+      above(0));
+    v("bias_walk_factor", self.bias_walk_factor, "", "told random walks of the biases / true ones",
+      above(0));
+  }
+};
+
+}  // namespace lidarena::sensor
