@@ -82,6 +82,14 @@ TEST(Plan, EveryStudyShippedCanBePlanned) {
   }
 }
 
+TEST(Plan, TheTortureExperimentsCanBePlanned) {
+  const auto folder = kConfigs.parent_path() / "tests/studies/torture";
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const auto cells = planned_cells(load_study(entry.path()), configs());
+    EXPECT_FALSE(cells.empty()) << entry.path();
+  }
+}
+
 TEST(Plan, AnUnknownNameIsRefusedBeforeAnyWorkStarts) {
   const auto error = [](auto change) {
     StudySpec spec = small_spec();
