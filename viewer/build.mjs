@@ -16,6 +16,7 @@ if (!out || (flag && (flag !== "--cpp" || !cppFile))) {
 const ENTRIES = [
   { name: "view", file: "src/view/main.ts", platform: "browser" },
   { name: "report", file: "src/report/main.ts", platform: "browser" },
+  { name: "check", file: "src/report/check.ts", platform: "browser" },
   { name: "figures", file: "src/report/figures.ts", platform: "node" },
 ].filter((entry) => existsSync(path.join(here, entry.file)));
 

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "lidarena/base/so3.hpp"
+#include "lidarena/evaluation/diagnosis/spectrum.hpp"
 
 namespace lidarena::evaluation {
 namespace {
@@ -70,6 +71,13 @@ double RecordingCheck::since_start(Time time) const {
   if (!scans_.empty()) start = scans_.front();
   if (!samples_.empty()) start = std::min(start, samples_.front().stamp);
   return to_seconds(time - start);
+}
+
+double RecordingCheck::seconds() const {
+  double last = 0.0;
+  if (!scans_.empty()) last = since_start(scans_.back());
+  if (!samples_.empty()) last = std::max(last, since_start(samples_.back().stamp));
+  return last;
 }
 
 void RecordingCheck::check_gaps(const std::vector<Time>& stamps, const char* what, double longest_s,
@@ -182,12 +190,26 @@ void RecordingCheck::check_range(std::vector<Finding>& found) const {
       double most = 0.0;
       for (const ImuSample& s : samples_) most = std::max(most, std::abs((s.*q.member)[axis]));
       if (most < q.smallest) continue;
+      // Values pile up at a limit; a peak has more values some steps below its highest than at it.
+      constexpr std::size_t kOften = 3;
+      constexpr double kEqual = 1e-6, kBelow = 0.01;  // of the highest
+      constexpr double kSteps = 3.0;                  // of the sensor's resolution
       std::vector<Time> at_limit;
+      double next = 0.0;  // the highest value below the limit
       for (const ImuSample& s : samples_) {
-        if (std::abs((s.*q.member)[axis]) > 0.999 * most) at_limit.push_back(s.stamp);
+        const double size = std::abs((s.*q.member)[axis]);
+        if (size > (1.0 - kEqual) * most) {
+          at_limit.push_back(s.stamp);
+        } else {
+          next = std::max(next, size);
+        }
       }
-      constexpr std::size_t kOften = 3;  // a peak has one sample, a limit has many
-      if (at_limit.size() < kOften) continue;
+      const double low = most - std::max(kBelow * most, kSteps * (most - next));
+      const auto near = std::ranges::count_if(samples_, [&](const ImuSample& s) {
+        return std::abs((s.*q.member)[axis]) > low;
+      });
+      const std::size_t below = static_cast<std::size_t>(near) - at_limit.size();
+      if (at_limit.size() < kOften || at_limit.size() < below) continue;
       found.push_back({Severity::kFault, "imu_saturated",
                        fmt::format("the {} about axis {} is at {:.4g} {} in {} samples: the end of "
                                    "the sensor's range",
@@ -224,6 +246,34 @@ void RecordingCheck::check_vibration(std::vector<Finding>& found) const {
                    "damp the mount, or let the IMU filter below half its rate",
                    {{"FAST-LIO2", fmt::format("mapping/acc_cov: {:.2g}", rms * rms / rate)},
                     {"LIO-SAM", fmt::format("imuAccNoise: {:.2g}", rms / std::sqrt(rate))}}});
+}
+
+/// Lines of the accelerometer's spectrum, and power that rises towards half the rate.
+void RecordingCheck::check_spectrum(std::vector<Finding>& found) const {
+  constexpr double kStrong = 1.0;  // m/s^2 RMS
+  constexpr double kRise = 4.0, kTop_rms = 0.3;
+  const Spectrum spectrum = spectrum_of(samples_, &ImuSample::accel);
+  for (const Peak& peak : peaks_of(spectrum)) {
+    found.push_back({peak.rms > kStrong ? Severity::kWarning : Severity::kNote, "vibration_line",
+                     fmt::format("the accelerometer vibrates at {:.1f} Hz by {:.2g} m/s^2 RMS; a "
+                                 "tone above half its rate shows at another frequency",
+                                 peak.frequency_hz, peak.rms),
+                     peak.frequency_hz, "Hz", 0.0, 0.0,
+                     peak.rms > kStrong ? "balance the propellers, damp the mount" : ""});
+  }
+  if (spectrum.empty()) return;
+  const double rise = rise_to_nyquist(spectrum);
+  const double half_rate = spectrum.frequency_hz.back();
+  double power = 0.0;  // of the highest tenth
+  for (std::size_t i = spectrum.density.size() * 9 / 10; i < spectrum.density.size(); ++i)
+    power += spectrum.density[i] * spectrum.frequency_hz.front();
+  if (rise < kRise || std::sqrt(power) < kTop_rms) return;
+  found.push_back({Severity::kWarning, "may_alias",
+                   fmt::format("the accelerometer's power rises {:.0f} times towards half its rate "
+                               "({:.0f} Hz): vibration may alias",
+                               rise, half_rate),
+                   rise, "", 0.0, 0.0,
+                   "let the IMU filter below half its rate, or raise its rate"});
 }
 
 void RecordingCheck::check_start(std::vector<Finding>& found) const {
@@ -290,6 +340,7 @@ std::vector<Finding> RecordingCheck::findings() const {
   check_gravity(found);
   check_range(found);
   check_vibration(found);
+  check_spectrum(found);
   check_start(found);
   check_turns(found);
   return found;
@@ -297,9 +348,12 @@ std::vector<Finding> RecordingCheck::findings() const {
 
 std::vector<Finding> check_alignment(const ImuAlignment& alignment, const LidarInfo& lidar,
                                      const ImuInfo& imu) {
-  constexpr double kLate_s = 0.015, kVeryLate_s = 0.1, kDrift_s = 0.02;
-  constexpr double kTurned = 4.0 / kDegrees, kVeryTurned = 15.0 / kDegrees;
-  constexpr double kMaxMisfit = 0.5;  // of the rate; beyond, the two do not see one motion
+  constexpr double kVeryLate_s = 0.1, kVeryTurned = 15.0 / kDegrees;
+  constexpr double kMaxMisfit = 0.5;    // of the rate; beyond, the two do not see one motion
+  constexpr double kSmallMisfit = 0.1;  // of the rate; below, small differences are seen, too
+  const bool is_fine = alignment.misfit_rad_s < kSmallMisfit * alignment.rate_rad_s;
+  const double smallest_late_s = is_fine ? 0.005 : 0.015, smallest_drift_s = is_fine ? 0.005 : 0.02;
+  const double smallest_turn = (is_fine ? 1.0 : 4.0) / kDegrees;
   std::vector<Finding> found;
   if (alignment.misfit_rad_s > kMaxMisfit * alignment.rate_rad_s) {
     found.push_back({Severity::kFault, "imu_disagrees",
@@ -311,7 +365,19 @@ std::vector<Finding> check_alignment(const ImuAlignment& alignment, const LidarI
     return found;
   }
   const double late = alignment.late_s;
-  if (std::abs(late) > kLate_s) {
+  const double turned =
+      so3::angle(alignment.body_from_imu.transpose() * imu.body_from_imu.linear());
+  found.push_back({Severity::kNote, "imu_alignment",
+                   fmt::format("as the motion shows it, the IMU's stamps are {:.1f} ms late, its "
+                               "clock moves by {:.1f} ms from the first half to the second{}",
+                               1e3 * late, 1e3 * alignment.drift_s,
+                               alignment.axes_known
+                                   ? fmt::format(", its axes are {:.2f} deg from where the "
+                                                 "recording states them",
+                                                 kDegrees * turned)
+                                   : ", and its axes are not known, as the body turns about one"),
+                   1e3 * late, "ms", 0.0, 0.0, ""});
+  if (std::abs(late) > smallest_late_s) {
     found.push_back(
         {std::abs(late) > kVeryLate_s ? Severity::kFault : Severity::kWarning,
          "imu_delay",
@@ -326,16 +392,14 @@ std::vector<Finding> check_alignment(const ImuAlignment& alignment, const LidarI
           {"LIO-SAM",
            fmt::format("has no key: shift the stamps of imuTopic by {:.3f} s", -late)}}});
   }
-  if (std::abs(alignment.drift_s) > kDrift_s) {
+  if (std::abs(alignment.drift_s) > smallest_drift_s) {
     found.push_back({Severity::kWarning, "clock_drift",
                      fmt::format("the IMU's clock drifts by {:.3f} s from the first half to the "
                                  "second",
                                  alignment.drift_s),
                      alignment.drift_s, "s", 0.0, 0.0, "synchronize the clocks (PTP)"});
   }
-  const double turned =
-      so3::angle(alignment.body_from_imu.transpose() * imu.body_from_imu.linear());
-  if (alignment.axes_known && turned > kTurned) {
+  if (alignment.axes_known && turned > smallest_turn) {
     const Eigen::Quaterniond q(alignment.body_from_imu);
     const Eigen::Matrix3d r =
         alignment.body_from_imu.transpose() * lidar.body_from_lidar.linear();  // imu_from_lidar

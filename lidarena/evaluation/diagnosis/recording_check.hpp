@@ -40,12 +40,16 @@ class RecordingCheck {
   void add(const ImuSample& sample);
 
   const std::vector<ImuSample>& samples() const { return samples_; }
+  const std::vector<Time>& sweeps() const { return scans_; }  ///< their stamps
+  const std::vector<std::size_t>& points() const { return points_; }  ///< of each sweep
+  /// Since the first measurement, s.
+  double since_start(Time time) const;
+  double seconds() const;  ///< from the first measurement to the last
   /// Rates, gaps and jitter of stamps; the IMU's range, vibration, bias and the motion at the
   /// start; fast turns; sweeps of few points or without times.
   std::vector<Finding> findings() const;
 
  private:
-  double since_start(Time time) const;
   void check_scans(std::vector<Finding>& found) const;
   void check_gaps(const std::vector<Time>& stamps, const char* what, double longest_s,
                   std::vector<Finding>& found) const;
@@ -53,6 +57,7 @@ class RecordingCheck {
   void check_gravity(std::vector<Finding>& found) const;
   void check_range(std::vector<Finding>& found) const;
   void check_vibration(std::vector<Finding>& found) const;
+  void check_spectrum(std::vector<Finding>& found) const;
   void check_start(std::vector<Finding>& found) const;
   void check_turns(std::vector<Finding>& found) const;
 

@@ -2,7 +2,7 @@
 // Script of the report's page: draws all of it from the data in the page.
 import "../view/view.css";
 import "./report.css";
-import { element, whenInSight } from "../view/elements";
+import { element, jsonOf, whenInSight } from "../view/elements";
 import { blocksInPage, type SceneHeader } from "../view/scene";
 import { ChartBox } from "./chart_box";
 import { baseOf, cellOf, distinct, label, type ReportData, type Run, type Table } from "./data";
@@ -26,7 +26,6 @@ const DEFINITIONS =
   "A share of 0 of N points has the upper bound 3/N, as if points were independent.";
 
 const marks = document.documentElement.dataset; // read by tests only
-const jsonOf = <T>(id: string) => JSON.parse(document.getElementById(id)!.textContent!) as T;
 
 function scenesInPage(): WorldScene[] {
   const scenes: WorldScene[] = [];

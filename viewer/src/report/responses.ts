@@ -28,7 +28,8 @@ const valueOf = (run: Run, key: string) => run.varied[key] as Value;
 const textOf = (value: Value | Value[]) => (Array.isArray(value) ? `[${value.join(", ")}]` : String(value));
 
 /** The runs that differ from the base in no other key. */
-const within = (runs: Run[], keys: string[]) => runs.filter((run) => keys.every((key) => key in run.varied) && run.differs.every((key) => keys.includes(key)));
+const within = (runs: Run[], keys: string[]) =>
+  runs.filter((run) => keys.every((key) => key in run.varied) && run.differs.every((key) => keys.includes(key)));
 
 /** The values of a key: numbers by size, others in the order of the runs. */
 function valuesOf(runs: Run[], key: string): Value[] {
@@ -44,11 +45,20 @@ const lostNote = (runs: Run[]) => {
 function axisOf(values: Value[], key: string): { axis: (i: number) => Record<string, unknown>; place: (value: Value) => number } {
   const numbers = values.filter((value): value is number => typeof value === "number");
   if (numbers.length < values.length) {
-    const axis = (gridIndex: number) => ({ type: "category", gridIndex, data: values.map(textOf), name: key, nameLocation: "middle", nameGap: 22 });
+    const axis = (gridIndex: number) => ({
+      type: "category",
+      gridIndex,
+      data: values.map(textOf),
+      name: key,
+      nameLocation: "middle",
+      nameGap: 22,
+    });
     return { axis, place: (value) => values.findIndex((other) => textOf(other) === textOf(value)) };
   }
   const isLog = numbers[0] > 0 && numbers[numbers.length - 1] / numbers[0] >= LOG_FROM_RATIO;
-  const more = isLog ? { type: "log", min: numbers[0], max: numbers[numbers.length - 1] } : { min: numbers[0], max: numbers[numbers.length - 1] };
+  const more = isLog
+    ? { type: "log", min: numbers[0], max: numbers[numbers.length - 1] }
+    : { min: numbers[0], max: numbers[numbers.length - 1] };
   return { axis: (i) => valueAxis(i, key, { nameGap: 22, ...more }), place: (value) => value as number };
 }
 
@@ -93,7 +103,9 @@ function curve(all: Run[], world: string, key: string, figure: FigureOf): Figure
       });
       const color = sensorColor(sensor, sensors);
       const medians = spreads.map(({ x, median }) => [x, median]);
-      const ranges = spreads.filter(({ best, worst }) => Number.isFinite(worst) && best !== worst).map(({ x, best, worst }) => [x, best, worst]);
+      const ranges = spreads
+        .filter(({ best, worst }) => Number.isFinite(worst) && best !== worst)
+        .map(({ x, best, worst }) => [x, best, worst]);
       const more = { xAxisIndex: panel, yAxisIndex: panel, symbol: "circle", symbolSize: 6 };
       return [line(sensor, color, medians, more), whiskers(sensor, color, panel, ranges)];
     }),
@@ -147,7 +159,14 @@ function heatMap(all: Run[], world: string, [x, y]: [string, string], figure: Fi
     height: 250,
     tooltip: { trigger: "item" },
     xAxis: (gridIndex) => ({ type: "category", gridIndex, data: columns.map(textOf), name: x, nameLocation: "middle", nameGap: 22 }),
-    yAxis: (gridIndex, isLeft) => ({ type: "category", gridIndex, data: rows.map(textOf), name: isLeft ? y : "", nameLocation: "middle", nameGap: 40 }),
+    yAxis: (gridIndex, isLeft) => ({
+      type: "category",
+      gridIndex,
+      data: rows.map(textOf),
+      name: isLeft ? y : "",
+      nameLocation: "middle",
+      nameGap: 40,
+    }),
     series,
   });
   drawn.columns = ["method, sensor", `index of ${x}`, `index of ${y}`, figure.info.key];

@@ -3,6 +3,9 @@
 
 type Child = Node | string;
 
+/** The JSON in the element with this id. */
+export const jsonOf = <T>(id: string) => JSON.parse(document.getElementById(id)!.textContent!) as T;
+
 export function element<K extends keyof HTMLElementTagNameMap>(
   tag: K,
   properties: Record<string, unknown> = {},
