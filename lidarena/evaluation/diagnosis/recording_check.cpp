@@ -122,7 +122,7 @@ void RecordingCheck::check_scans(std::vector<Finding>& found) const {
          "join sweeps of high rates; check the LiDAR's range limits and its window"});
   }
   if (untimed_ > 0) {
-    found.push_back({2 * untimed_ > scans_.size() ? Severity::kFault : Severity::kWarning,
+    found.push_back({Severity::kWarning,
                      "no_point_times",
                      fmt::format("{} of {} sweeps have no times of their points and are not "
                                  "de-skewed",
@@ -131,7 +131,8 @@ void RecordingCheck::check_scans(std::vector<Finding>& found) const {
                      "sweeps",
                      0.0,
                      0.0,
-                     "let the driver publish the points with times",
+                     "let the driver publish the points with times, unless the motion within a "
+                     "sweep was removed before",
                      {{"KISS-ICP", "data.deskew: false"},
                       {"FAST-LIO2", "preprocess/lidar_type and preprocess/timestamp_unit"}}});
   }
