@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/world/model_folders.hpp"
 
+#include <charconv>
 #include <cstdlib>
 #include <sstream>
 
@@ -20,7 +21,28 @@ ModelFolders::ModelFolders(const fs::path& world_file, const std::vector<fs::pat
   }
 }
 
+/// With each %20 and the like as the character that it stands for (RFC 3986, 2.1).
+static std::string without_escapes(const std::string& uri) {
+  std::string text;
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    unsigned value = 0;
+    const char* digits = uri.data() + i + 1;
+    const bool is_escape = uri[i] == '%' && i + 2 < uri.size() &&
+                           std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2;
+    text += is_escape ? static_cast<char>(value) : uri[i];
+    if (is_escape) i += 2;
+  }
+  return text;
+}
+
 std::optional<fs::path> ModelFolders::find(const std::string& uri, const fs::path& base) const {
+  if (auto path = find_as_it_is(uri, base)) return path;
+  const std::string plain = without_escapes(uri);
+  return plain == uri ? std::nullopt : find_as_it_is(plain, base);
+}
+
+std::optional<fs::path> ModelFolders::find_as_it_is(const std::string& uri,
+                                                    const fs::path& base) const {
   const std::size_t colon = uri.find("://");
   const std::string scheme = colon == std::string::npos ? "" : uri.substr(0, colon);
   const fs::path path = colon == std::string::npos ? uri : uri.substr(colon + 3);

@@ -347,6 +347,14 @@ TEST_F(SdfWorld, FurtherFoldersAndTheEnvironmentAreSearched) {
   unsetenv("GAZEBO_MODEL_PATH");
 }
 
+TEST_F(SdfWorld, EscapesInUrisAreResolved) {
+  write_model("my house", "<link name='l'>" + visual(kUnitBox) + "</link>");
+  write_model("100%", "<link name='l'>" + visual(kUnitBox) + "</link>");
+  const TriangleMesh mesh = load(world_with(include("model://my%20house", "a", "1 2 3 0 0 0") +
+                                            include("model://100%", "b", "5 0 0 0 0 0")));
+  EXPECT_EQ(mesh.triangles.size(), 24U);
+}
+
 TEST_F(SdfWorld, AModelFileAloneIsAWorldToo) {
   folder_.write("models/box/meshes/box.obj", testing::box_obj());
   write_model("box", "<pose>1 0 0 0 0 0</pose><link name='l'><pose>0 1 0 0 0 0</pose>" +
