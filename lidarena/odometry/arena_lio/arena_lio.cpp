@@ -231,6 +231,7 @@ bool ArenaLio::stands(const std::vector<ImuSample>& samples, const State& predic
 void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
   State& state = estimate_.state;
   const Eigen::Matrix3d map_from_begin = state.rotation();
+  const estimation::ImuNoise noise = measured_noise_.at_least(noise_);
   track_.clear();
   for (const estimation::ImuInterval& interval : intervals) {
     constexpr auto kIntegration = estimation::Integration::kSecondOrder;
@@ -248,7 +249,7 @@ void ArenaLio::predict(const std::vector<estimation::ImuInterval>& intervals) {
         estimation::propagate(state, gyro, force + bias.accel, dt, kIntegration);
     estimate_.covariance =
         f * estimate_.covariance * f.transpose() +
-        estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise_, dt);
+        estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise, dt);
   }
   state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);

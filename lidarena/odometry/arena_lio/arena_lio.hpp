@@ -31,7 +31,10 @@ class ArenaLio : public Odometry {
     return {
         .needs_imu = true, .revises_past = true, .gravity_aligned = true, .publishes_scans = true};
   }
-  void register_imu(const ImuSample& sample) override { imu_.add(sample); }
+  void register_imu(const ImuSample& sample) override {
+    imu_.add(sample);
+    measured_noise_.add(sample);
+  }
   Trajectory trajectory() const override { return Trajectory(poses_, "arena_lio"); }
   std::vector<Eigen::Vector3f> map() const override;
   std::span<const Eigen::Vector3f> registered_scan() const override { return registered_scan_; }
@@ -103,7 +106,8 @@ class ArenaLio : public Odometry {
   Eigen::Matrix3d map_from_start_;  ///< rotation from the IMU's frame at the start to the map's
   Pose world_from_map_;
   Pose imu_from_lidar_;
-  estimation::ImuNoise noise_;
+  estimation::ImuNoise noise_;  ///< as told, with its factors
+  estimation::MeasuredNoise measured_noise_;
   Parallel parallel_;
 
   estimation::ImuBuffer imu_;

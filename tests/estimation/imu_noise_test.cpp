@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/estimation/imu_noise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace lidarena::estimation {
+namespace {
+
+ImuSample sample_at(double t, const Eigen::Vector3d& gyro, const Eigen::Vector3d& accel) {
+  ImuSample sample;
+  sample.stamp = from_seconds(t);
+  sample.gyro = gyro;
+  sample.accel = accel;
+  return sample;
+}
+
+class MeasuredNoiseTest : public testing::TestWithParam<double> {};
+
+TEST_P(MeasuredNoiseTest, OfWhiteNoiseIsItsDensity) {
+  const double rate_hz = GetParam(), density = 0.05;
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, density * std::sqrt(rate_hz));
+  MeasuredNoise measured;
+  double mean_square = 0.0;
+  int counted = 0;
+  for (int i = 0; i < 20 * static_cast<int>(rate_hz); ++i) {
+    const Eigen::Vector3d n(noise(random), noise(random), noise(random));
+    measured.add(sample_at(i / rate_hz, 0.1 * n, n));
+    if (i < 2 * static_cast<int>(rate_hz)) continue;
+    mean_square += std::pow(measured.at_least({}).accel_density, 2);
+    ++counted;
+  }
+  EXPECT_NEAR(std::sqrt(mean_square / counted), density, 0.03 * density);
+  const ImuNoise now = measured.at_least({});
+  EXPECT_NEAR(now.gyro_density, 0.1 * now.accel_density, 1e-6 * density);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, MeasuredNoiseTest, testing::Values(100.0, 200.0, 1000.0));
+
+TEST(MeasuredNoise, OfMotionIsFarBelowADataSheets) {
+  // 5 rad/s and 15 m/s^2 at 2 Hz, more than a quadcopter at its limits.
+  MeasuredNoise measured;
+  for (int i = 0; i < 1000; ++i) {
+    const double wave = std::sin(2.0 * std::numbers::pi * 2.0 * i / 200.0);
+    measured.add(sample_at(i / 200.0, {5.0 * wave, 0.0, 0.0}, {0.0, 15.0 * wave, 9.81}));
+  }
+  EXPECT_LT(measured.at_least({}).gyro_density, 7.85e-5);
+  EXPECT_LT(measured.at_least({}).accel_density, 9.81e-4);
+}
+
+TEST(MeasuredNoise, StatedDensitiesHoldWhereTheyAreLarger) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> noise(0.0, 1.0);
+  MeasuredNoise measured;
+  for (int i = 0; i < 400; ++i)
+    measured.add(sample_at(i / 200.0, Eigen::Vector3d::Zero(), {noise(random), 0.0, 9.81}));
+  const ImuNoise told{0.01, 1e-3, 1e-5, 1e-4};
+  const ImuNoise both = measured.at_least(told);
+  EXPECT_EQ(both.gyro_density, told.gyro_density);
+  EXPECT_GT(both.accel_density, 0.02);
+  EXPECT_EQ(both.gyro_bias_walk, told.gyro_bias_walk);
+  EXPECT_EQ(both.accel_bias_walk, told.accel_bias_walk);
+}
+
+TEST(MeasuredNoise, AStepAcrossAGapIsNoNoise) {
+  MeasuredNoise measured;
+  for (int i = 0; i < 400; ++i) {
+    const double t = i / 200.0 + (i < 200 ? 0.0 : 0.5);
+    measured.add(sample_at(t, Eigen::Vector3d::Zero(), {i < 200 ? 0.0 : 8.0, 0.0, 9.81}));
+  }
+  EXPECT_LT(measured.at_least({}).accel_density, 1e-12);
+}
+
+}  // namespace
+}  // namespace lidarena::estimation
