@@ -27,6 +27,8 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"external",
        [] { return schema_document<stages::ExternalProgram>("A SLAM program of others"); }},
       {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }},
+      {"recording",
+       [] { return schema_document<study::StudyRecording>("A recording of a study"); }},
       {"run", [] { return schema_document<dataset::RunManifest>("manifest.json of a run"); }},
       {"dataset",
        [] { return schema_document<dataset::DatasetManifest>("manifest.json of a dataset"); }},
@@ -66,7 +68,7 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
   auto out = std::make_shared<std::string>();
   verb->add_option(
       "kind", *kind,
-      "world, flight, sensor, beams, study, external, run, dataset, metrics, or an algorithm");
+      "world, flight, sensor, beams, study, external, recording, run, dataset, metrics, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,
