@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -114,11 +115,10 @@ std::string note_of(const StudyResults& results, const std::string& world, const
   std::string note = fmt::format(
       "Medians over flights and seeds; behind them the range from the best run to the worst and "
       "how many of how many runs kept tracking: a lost run is the worst of its cell. \"ended at "
-      "4.6 "
-      "s [3.5]\": the methods ended themselves, with the drift until then. Bold: the best sensor "
-      "for each algorithm; underlined: the best algorithm for each sensor, where the paired runs "
-      "of this world pass Wilcoxon's test of log ratios (5 % after Holm's correction for all {} "
-      "tests of this page; here: {}). In brackets: published figures.",
+      "4.6 s [3.5]\": the methods ended themselves, with the drift until then. Bold: the best "
+      "sensor for each algorithm; underlined: the best algorithm for each sensor, where the "
+      "paired runs of this world pass Wilcoxon's test of log ratios (5 % after Holm's correction "
+      "for all {} tests of these tables; here: {}). In brackets: published figures.",
       claims.tests(), claims.words(kind.figure, world));
   if (&kind.figure == &results::kOwnMapRmse || &kind.figure == &results::kOwnMapOutliers) {
     const std::string means = methods_with_mean_maps(results);
@@ -241,7 +241,10 @@ std::vector<Table> figure_tables(const StudyResults& results, const std::string&
   for (const Kind& kind : kKinds) {
     if (is_told(results, kind)) told.push_back(&kind.figure);
   }
-  const std::array drifts{&results::kDrift, &results::kLiveDrift};
+  std::vector<const results::Figure*> drifts;
+  std::ranges::copy_if(told, std::back_inserter(drifts), [](const results::Figure* figure) {
+    return figure == &results::kDrift || figure == &results::kLiveDrift;
+  });
   const PageClaims claims(cells, told, drifts);
   for (const Kind& kind : kKinds) {
     if (std::ranges::find(told, &kind.figure) == told.end()) continue;

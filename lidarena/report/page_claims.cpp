@@ -126,8 +126,8 @@ std::vector<Table> PageClaims::ratio_tables(const Figure& figure,
     table.note = fmt::format(
         "Row divided by column over the same flights of all worlds: the Hodges-Lehmann ratio, and "
         "in brackets its interval at 95 %. Ranks are taken within each world. Bold: better, at 5 "
-        "% after Holm's correction for all {} tests of this page. Pairs of two lost runs are not "
-        "counted.",
+        "% after Holm's correction for all {} tests of these tables. Pairs of two lost runs are "
+        "no pairs.",
         tests());
     tables.push_back(std::move(table));
   };

@@ -266,7 +266,8 @@ TEST_P(OdometryConformance, HowTheSensorIsMountedDoesNotMatter) {
 }
 
 TEST_P(OdometryConformance, StandingStillItStaysPut) {
-  const Recording still{.motion = [](double) { return synthetic::flight(0.0); }};
+  // beams that change from scan to scan make point-to-point methods wander (KISS-ICP's README)
+  const Recording still{.motion = [](double) { return synthetic::flight(0.0); }, .repeating = true};
   expect_as_measured(Situation::kStanding, largest_motion(play(still).trajectory));
 }
 

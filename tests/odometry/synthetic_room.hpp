@@ -43,7 +43,7 @@ struct Recording {
   double range_noise_m = 0.01;
   Time epoch{1'000'000'000};
   std::size_t points_per_scan = 10240;
-  bool repeating = true;    ///< false: the beams of each scan are between those of the others
+  bool repeating = false;   ///< false: the beams of each scan are between those of the others
   std::uint64_t seed = 17;  ///< of the noise
   double gyro_noise_density = 0.0;   ///< rad/s/sqrt(Hz)
   double accel_noise_density = 0.0;  ///< m/s^2/sqrt(Hz)
