@@ -27,6 +27,10 @@ std::vector<std::string> keys_of(WorldKind kind) {
       return {"kind", "seed", "vary", "house"};
     case WorldKind::kCave:
       return {"kind", "seed", "vary", "cave"};
+    case WorldKind::kMine:
+      return {"kind", "seed", "vary", "mine"};
+    case WorldKind::kForest:
+      return {"kind", "seed", "vary", "forest"};
     case WorldKind::kMesh:
       return {"kind", "file", "up_axis"};
     case WorldKind::kSdf:
@@ -41,9 +45,12 @@ WorldConfig read_world_config(const fs::path& file) {
   read_config(node, config);
   if (!node.is_map() || !node.find("kind")) {
     throw InputError(file.string(), "the key 'kind' is missing",
-                     "set kind to house, cave, mesh or sdf");
+                     "set kind to house, cave, mine, forest, mesh or sdf");
   }
-  node.reject_unknown(keys_of(config.kind));
+  std::vector<std::string> keys = keys_of(config.kind);
+  keys.insert(keys.end(), {"movers", "people"});
+  node.reject_unknown(keys);
+  for (const world::MoverConfig& mover : config.movers) world::check_mover(mover, file.string());
   const bool needs_file = config.kind == WorldKind::kMesh || config.kind == WorldKind::kSdf;
   if (needs_file && config.file.empty()) {
     throw InputError(file.string(), "the key 'file' is missing",
@@ -74,6 +81,12 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
     case WorldKind::kCave:
       model = make_cave(config.vary ? drawn_cave(config.cave, seed) : config.cave, seed);
       break;
+    case WorldKind::kMine:
+      model = make_mine(config.vary ? drawn_mine(config.mine, seed) : config.mine, seed);
+      break;
+    case WorldKind::kForest:
+      model = make_forest(config.vary ? drawn_forest(config.forest, seed) : config.forest, seed);
+      break;
     case WorldKind::kMesh:
       model.mesh = world::load_mesh(base / config.file, config.up_axis);
       break;
@@ -81,6 +94,8 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
       model.mesh = world::load_sdf(base / config.file, sdf_options(config, base, options), log);
       break;
   }
+  model.movers = config.movers;
+  model.people = config.people;
   return model;
 }
 
