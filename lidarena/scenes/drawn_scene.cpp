@@ -69,6 +69,17 @@ ForestConfig drawn_forest(ForestConfig config, std::uint64_t seed) {
   return config;
 }
 
+HallConfig drawn_hall(HallConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn hall"));
+  config.rows = 2 * random.integer(1, 4) + 1;
+  config.length_m = random.uniform(35.0, 80.0);
+  config.aisle_m = random.uniform(2.6, 4.0);
+  config.levels = random.integer(2, 4);
+  config.height_m = 1.6 * config.levels + random.uniform(2.0, 5.0);
+  config.filling = random.uniform(0.4, 1.0);
+  return config;
+}
+
 std::vector<Eigen::Vector3d> drawn_route(std::vector<Eigen::Vector3d> route, std::uint64_t seed) {
   SequentialRandom random(seed, stream_of("drawn route"));
   const double start = random.uniform();

@@ -7,6 +7,7 @@
 
 #include "lidarena/scenes/cave.hpp"
 #include "lidarena/scenes/forest.hpp"
+#include "lidarena/scenes/hall.hpp"
 #include "lidarena/scenes/house.hpp"
 #include "lidarena/scenes/mine.hpp"
 
@@ -24,6 +25,9 @@ MineConfig drawn_mine(MineConfig config, std::uint64_t seed);
 
 /// The forest with its density, kinds of trees, undergrowth and ground drawn from `seed`.
 ForestConfig drawn_forest(ForestConfig config, std::uint64_t seed);
+
+/// The hall with its size, aisles, shelves and filling drawn from `seed`.
+HallConfig drawn_hall(HallConfig config, std::uint64_t seed);
 
 /// A closed route (the last point equals the first, m) that begins at a point of `route` and goes
 /// in a direction drawn from `seed`. An open route is only turned around or not.
