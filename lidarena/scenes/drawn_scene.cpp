@@ -80,6 +80,18 @@ HallConfig drawn_hall(HallConfig config, std::uint64_t seed) {
   return config;
 }
 
+OfficeConfig drawn_office(OfficeConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn office"));
+  config.offices = random.integer(6, 14);
+  config.office_width_m = random.uniform(3.0, 4.5);
+  config.office_depth_m = random.uniform(4.0, 6.0);
+  config.corridor_m = random.uniform(2.0, 2.8);
+  config.core_m = random.uniform(3.0, 8.0);
+  config.height_m = random.uniform(2.6, 3.2);
+  config.open_doors = random.uniform(0.0, 1.0);
+  return config;
+}
+
 std::vector<Eigen::Vector3d> drawn_route(std::vector<Eigen::Vector3d> route, std::uint64_t seed) {
   SequentialRandom random(seed, stream_of("drawn route"));
   const double start = random.uniform();

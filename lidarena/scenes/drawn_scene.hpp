@@ -10,6 +10,7 @@
 #include "lidarena/scenes/hall.hpp"
 #include "lidarena/scenes/house.hpp"
 #include "lidarena/scenes/mine.hpp"
+#include "lidarena/scenes/office.hpp"
 
 namespace lidarena::scenes {
 
@@ -28,6 +29,9 @@ ForestConfig drawn_forest(ForestConfig config, std::uint64_t seed);
 
 /// The hall with its size, aisles, shelves and filling drawn from `seed`.
 HallConfig drawn_hall(HallConfig config, std::uint64_t seed);
+
+/// The office with its number of rooms, their sizes and the share of open doors drawn from `seed`.
+OfficeConfig drawn_office(OfficeConfig config, std::uint64_t seed);
 
 /// A closed route (the last point equals the first, m) that begins at a point of `route` and goes
 /// in a direction drawn from `seed`. An open route is only turned around or not.

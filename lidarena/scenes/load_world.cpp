@@ -33,6 +33,8 @@ std::vector<std::string> keys_of(WorldKind kind) {
       return {"kind", "seed", "vary", "forest"};
     case WorldKind::kHall:
       return {"kind", "seed", "vary", "hall"};
+    case WorldKind::kOffice:
+      return {"kind", "seed", "vary", "office"};
     case WorldKind::kMesh:
       return {"kind", "file", "up_axis"};
     case WorldKind::kSdf:
@@ -47,7 +49,7 @@ WorldConfig read_world_config(const fs::path& file) {
   read_config(node, config);
   if (!node.is_map() || !node.find("kind")) {
     throw InputError(file.string(), "the key 'kind' is missing",
-                     "set kind to house, cave, mine, forest, hall, mesh or sdf");
+                     "set kind to house, cave, mine, forest, hall, office, mesh or sdf");
   }
   std::vector<std::string> keys = keys_of(config.kind);
   keys.insert(keys.end(), {"movers", "people"});
@@ -91,6 +93,9 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
       break;
     case WorldKind::kHall:
       model = make_hall(config.vary ? drawn_hall(config.hall, seed) : config.hall, seed);
+      break;
+    case WorldKind::kOffice:
+      model = make_office(config.vary ? drawn_office(config.office, seed) : config.office, seed);
       break;
     case WorldKind::kMesh:
       model.mesh = world::load_mesh(base / config.file, config.up_axis);

@@ -13,18 +13,19 @@
 #include "lidarena/scenes/hall.hpp"
 #include "lidarena/scenes/house.hpp"
 #include "lidarena/scenes/mine.hpp"
+#include "lidarena/scenes/office.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/mover_config.hpp"
 #include "lidarena/world/sdf_world.hpp"
 
 namespace lidarena::scenes {
 
-enum class WorldKind { kHouse, kCave, kMine, kForest, kHall, kMesh, kSdf };
+enum class WorldKind { kHouse, kCave, kMine, kForest, kHall, kOffice, kMesh, kSdf };
 constexpr auto enum_names(WorldKind) {
   return std::array{std::pair{"house", WorldKind::kHouse}, std::pair{"cave", WorldKind::kCave},
                     std::pair{"mine", WorldKind::kMine},   std::pair{"forest", WorldKind::kForest},
-                    std::pair{"hall", WorldKind::kHall},   std::pair{"mesh", WorldKind::kMesh},
-                    std::pair{"sdf", WorldKind::kSdf}};
+                    std::pair{"hall", WorldKind::kHall},   std::pair{"office", WorldKind::kOffice},
+                    std::pair{"mesh", WorldKind::kMesh},   std::pair{"sdf", WorldKind::kSdf}};
 }
 
 /// A world file (see configs/worlds). Each kind has its own keys; keys of another kind are errors.
@@ -37,6 +38,7 @@ struct WorldConfig {
   MineConfig mine;
   ForestConfig forest;
   HallConfig hall;
+  OfficeConfig office;
   std::string file;
   world::UpAxis up_axis = world::UpAxis::kFile;
   world::ShapeKind shapes = world::ShapeKind::kVisual;
@@ -47,7 +49,8 @@ struct WorldConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("kind", self.kind, "", "house, cave, mine, forest, hall: procedural; mesh, sdf: from a file");
+    v("kind", self.kind, "",
+      "house, cave, mine, forest, hall, office: procedural; mesh, sdf: from a file");
     v("seed", self.seed, "", "seed of a procedural world");
     v("vary", self.vary, "",
       "draw the procedural world's parameters from the seed; they replace those given here");
@@ -56,6 +59,7 @@ struct WorldConfig {
     v("mine", self.mine, "", "parameters of kind mine");
     v("forest", self.forest, "", "parameters of kind forest");
     v("hall", self.hall, "", "parameters of kind hall");
+    v("office", self.office, "", "parameters of kind office");
     v("file", self.file, "", "the mesh or SDF file, relative to this file");
     v("up_axis", self.up_axis, "", "up axis of a mesh: file (as specified by its format), y or z");
     v("shapes", self.shapes, "", "shapes to load from an SDF world: visual or collision");

@@ -83,7 +83,7 @@ TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
   EXPECT_THAT(error_of("a.yaml", "kind: mesh\nfile: room.obj\nseed: 3\n"),
               AllOf(HasSubstr("a.yaml:3"), HasSubstr("seed")));
   EXPECT_THAT(error_of("a.yaml", "kind: cave\nfile: room.obj\n"), HasSubstr("a.yaml:2"));
-  EXPECT_THAT(error_of("a.yaml", "kind: hut\n"), HasSubstr("house, cave, mesh, sdf"));
+  EXPECT_THAT(error_of("a.yaml", "kind: hut\n"), HasSubstr("house, cave, mine, forest, hall, office, mesh, sdf"));
   EXPECT_THAT(error_of("a.yaml", "file: room.obj\n"), HasSubstr("kind"));
   EXPECT_THAT(error_of("a.yaml", "kind: mesh\n"), HasSubstr("the key 'file' is missing"));
   EXPECT_THAT(error_of("a.yaml", ""), HasSubstr("kind"));
