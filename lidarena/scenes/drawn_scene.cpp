@@ -50,7 +50,7 @@ MineConfig drawn_mine(MineConfig config, std::uint64_t seed) {
   config.spacing_m = random.uniform(18.0, 26.0);
   config.height_m = random.uniform(2.6, 3.6);
   config.relief_m = random.uniform(0.0, 1.5);
-  config.branches = random.uniform(0.3, 1.0);
+  config.branches = random.uniform(0.6, 1.0);
   config.supports = random.uniform(0.0, 1.0);
   config.roughness_1m_m = random.uniform(0.04, 0.2);
   config.roughness_03m_m = random.uniform(0.01, 0.08);
