@@ -30,9 +30,11 @@
 #include "lidarena/dataset/dataset.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/flight/spline_flight.hpp"
+#include "lidarena/sensor/imu.hpp"
 #include "lidarena/sensor/lidar.hpp"
 #include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/simulate.hpp"
+#include "lidarena/world/living_world.hpp"
 #include "lidarena/world/world.hpp"
 
 namespace lidarena {
@@ -139,7 +141,17 @@ struct Stage {
 };
 
 enum Sensor { kMid360, kOs0 };
-enum Effects { kGeometry, kFrozen, kRangeNoise, kSheet, kSplitBeam };
+enum Effects {
+  kGeometry,
+  kFrozen,
+  kRangeNoise,
+  kSheet,
+  kSplitBeam,
+  kBias,
+  kClock,
+  kShake,
+  kMovers
+};
 
 sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
   sensor::SensorConfig config;
@@ -161,6 +173,14 @@ sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
   if (effects == kSplitBeam) {
     config.noise.beam = {.sub_rays = 7, .width_deg = 0.35, .height_deg = 0.35};
     config.returns.count = 2;
+  }
+  if (effects == kBias) config.noise.bias = {0.01, 0.01, 0.01, 0.01, 0.01};
+  if (effects == kClock) config.noise.clock = {0.001, 1e-5, 1e-4, true};
+  if (effects == kShake) {
+    sensor::ImuConfig& imu = config.imu.emplace();
+    imu.vibration_moves_lidar = true;
+    imu.broadband.accel_rms = {2, 2, 2};
+    imu.broadband.gyro_rms = {0.02, 0.02, 0.02};
   }
   return config;
 }
@@ -228,6 +248,13 @@ void cast_bare(const std::vector<RTCRayHit8>& packets, const Parallel& parallel)
   });
 }
 
+std::vector<world::MoverConfig> five_people() {
+  std::vector<world::MoverConfig> people(5);
+  for (std::size_t i = 0; i < people.size(); ++i)
+    people[i].path = {{3.0 * static_cast<double>(i) - 6.0, 2, -3}, {0, -2, -3}};
+  return people;
+}
+
 void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   const Stage& stage = Stage::get();
   const Parallel parallel(static_cast<int>(state.range(0)));
@@ -236,12 +263,14 @@ void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   // Always the same scan in mid-flight; caches between scans are filled after the first run.
   const std::uint64_t index = static_cast<std::uint64_t>(to_seconds(stage.flight.duration()) * 4.0);
   const auto packets = packets_of(lidar, config, index);
+  const world::LivingWorld living(stage.world, five_people());
+  const world::Surfaces& world =
+      effects == kMovers ? static_cast<const world::Surfaces&>(living) : stage.world;
   Stopwatch bare, measured;
   for (auto _ : state) {
     bare.time([&] { cast_bare(packets, parallel); });
-    measured.time([&] {
-      benchmark::DoNotOptimize(lidar.measure(stage.world, stage.flight, index, parallel));
-    });
+    measured.time(
+        [&] { benchmark::DoNotOptimize(lidar.measure(world, stage.flight, index, parallel)); });
   }
   const auto shots = static_cast<double>(packets.size() * kPacketSize);
   state.counters["bare"] = shots / bare.processor_s;
@@ -254,11 +283,10 @@ constexpr int kRuns = 25;  // runs per row, of which the minimum time is reporte
 
 void register_rows() {
   const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
-  const std::pair<const char*, Effects> effects[] = {{"geometry", kGeometry},
-                                                     {"frozen", kFrozen},
-                                                     {"range_noise", kRangeNoise},
-                                                     {"sheet", kSheet},
-                                                     {"split_beam", kSplitBeam}};
+  const std::pair<const char*, Effects> effects[] = {
+      {"geometry", kGeometry}, {"frozen", kFrozen},        {"range_noise", kRangeNoise},
+      {"sheet", kSheet},       {"split_beam", kSplitBeam}, {"sheet_bias", kBias},
+      {"sheet_clock", kClock}, {"sheet_shake", kShake},    {"sheet_movers", kMovers}};
   for (const auto& sensor : sensors) {
     for (const auto& effect : effects) {
       const std::string name = std::string("measure/") + sensor.first + "/" + effect.first;
@@ -364,6 +392,28 @@ void motion(benchmark::State& state) {
   }
 }
 BENCHMARK(motion)->Unit(benchmark::kMillisecond);
+
+/// A second of an IMU at 200 Hz.
+enum ImuEffects { kNoErrors, kImuSheet, kBandwidth, kBroadband, kDistortion, kTiming };
+void imu_second(benchmark::State& state, ImuEffects effects) {
+  sensor::ImuConfig config;
+  config.gyro_noise_density = 1e-4;
+  config.accel_noise_density = 1e-3;
+  if (effects == kBandwidth) config.bandwidth_hz = 100.0;
+  if (effects == kBroadband) config.broadband.accel_rms = {2, 2, 2};
+  if (effects == kDistortion) config.gyro_g_sensitivity = 1e-4;
+  if (effects == kTiming) config.stamp_jitter_s = config.delay_s = config.lost_share = 0.001;
+  sensor::Imu imu(config, Pose::Identity(), "imu", 1, effects != kNoErrors);
+  for (auto _ : state) {
+    for (int i = 0; i < 200; ++i) benchmark::DoNotOptimize(imu.measure(Stage::get().flight));
+  }
+}
+BENCHMARK_CAPTURE(imu_second, no_errors, kNoErrors)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(imu_second, sheet, kImuSheet)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(imu_second, bandwidth, kBandwidth)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(imu_second, broadband, kBroadband)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(imu_second, distortion, kDistortion)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(imu_second, timing, kTiming)->Unit(benchmark::kMillisecond);
 
 /// Comparison of bare calls: single rays, and packets of eight rays in casting order.
 void bare_one_by_one(benchmark::State& state, Sensor sensor) {

@@ -25,6 +25,7 @@ struct SimulationRecord {
   std::vector<std::string> sensor_sources;
   std::vector<Json> sensors;
   Json routes;
+  std::vector<Json> movers;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -42,6 +43,8 @@ struct SimulationRecord {
     v("sensor_sources", self.sensor_sources, "", "files of the sensors");
     v("sensors", self.sensors, "", "complete settings of each sensor, see the schema of a sensor");
     v("routes", self.routes, "", "the world's routes");
+    v("movers", self.movers, "",
+      "what moves in the world, with what was drawn, see the schema of a world");
   }
 };
 

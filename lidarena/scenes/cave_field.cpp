@@ -132,7 +132,8 @@ SparseField CaveField::sample() const {
   return field;
 }
 
-void project_onto_surface(world::TriangleMesh& mesh, const CaveField& field, double step) {
+void project_onto_surface(world::TriangleMesh& mesh,
+                          const std::function<double(const Eigen::Vector3d&)>& field, double step) {
   const double h = 0.5 * step;
   for (Eigen::Vector3d& p : mesh.vertices) {
     double value = field(p);

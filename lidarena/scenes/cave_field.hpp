@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -54,6 +55,7 @@ class CaveField {
 /// Moves the vertices of a surface net onto the field's zero surface by two Newton steps along the
 /// gradient, each at most half a grid step. The vertices then also show the roughness that is finer
 /// than the grid.
-void project_onto_surface(world::TriangleMesh& mesh, const CaveField& field, double step);
+void project_onto_surface(world::TriangleMesh& mesh,
+                          const std::function<double(const Eigen::Vector3d&)>& field, double step);
 
 }  // namespace lidarena::scenes

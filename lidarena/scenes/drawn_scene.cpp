@@ -43,6 +43,55 @@ CaveConfig drawn_cave(CaveConfig config, std::uint64_t seed) {
   return config;
 }
 
+MineConfig drawn_mine(MineConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn mine"));
+  config.columns = random.integer(3, 5);
+  config.rows = random.integer(2, 4);
+  config.spacing_m = random.uniform(18.0, 26.0);
+  config.height_m = random.uniform(2.6, 3.6);
+  config.relief_m = random.uniform(0.0, 1.5);
+  config.branches = random.uniform(0.6, 1.0);
+  config.supports = random.uniform(0.0, 1.0);
+  config.roughness_1m_m = random.uniform(0.04, 0.2);
+  config.roughness_03m_m = random.uniform(0.01, 0.08);
+  return config;
+}
+
+ForestConfig drawn_forest(ForestConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn forest"));
+  config.size_m = random.uniform(50.0, 80.0);
+  config.trees_per_ha = random.uniform(250.0, 1000.0);
+  config.conifers = random.uniform();
+  config.undergrowth = random.uniform(0.0, 2.0);
+  config.relief_m = random.uniform(0.0, 4.0);
+  config.roughness_2m_m = random.uniform(0.05, 0.35);
+  config.roughness_04m_m = random.uniform(0.02, 0.1);
+  return config;
+}
+
+HallConfig drawn_hall(HallConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn hall"));
+  config.rows = 2 * random.integer(1, 4) + 1;
+  config.length_m = random.uniform(35.0, 80.0);
+  config.aisle_m = random.uniform(2.6, 4.0);
+  config.levels = random.integer(2, 4);
+  config.height_m = 1.6 * config.levels + random.uniform(2.0, 5.0);
+  config.filling = random.uniform(0.4, 1.0);
+  return config;
+}
+
+OfficeConfig drawn_office(OfficeConfig config, std::uint64_t seed) {
+  SequentialRandom random(seed, stream_of("drawn office"));
+  config.offices = random.integer(6, 14);
+  config.office_width_m = random.uniform(3.0, 4.5);
+  config.office_depth_m = random.uniform(4.0, 6.0);
+  config.corridor_m = random.uniform(2.0, 2.8);
+  config.core_m = random.uniform(3.0, 8.0);
+  config.height_m = random.uniform(2.6, 3.2);
+  config.open_doors = random.uniform(0.0, 1.0);
+  return config;
+}
+
 std::vector<Eigen::Vector3d> drawn_route(std::vector<Eigen::Vector3d> route, std::uint64_t seed) {
   SequentialRandom random(seed, stream_of("drawn route"));
   const double start = random.uniform();

@@ -21,6 +21,7 @@ struct HouseConfig {
   bool high_rooms = true;
   double furnishing = 1;
   bool panes = true;
+  bool ceilings = true;
   double variation_m = 0.25;
   bool symmetric = false;
   double detail = 1;
@@ -42,6 +43,8 @@ struct HouseConfig {
     v("furnishing", self.furnishing, "", "share of the furniture that is there", between(0, 1));
     v("panes", self.panes, "",
       "close the windows with glass panes; otherwise rays leave the house through them");
+    v("ceilings", self.ceilings, "",
+      "false: rooms are open to the sky, and nothing hangs from a ceiling");
     v("variation_m", self.variation_m, "m", "maximum random displacement of inner walls and doors",
       between(0, 0.3));
     v("symmetric", self.symmetric, "",
@@ -56,8 +59,8 @@ struct HouseConfig {
 /// The house covers [0, width] x [0, depth] (center lines of the outer walls), floor at z = 0. Its
 /// one route is closed (the last point equals the first) and passes through every room and every
 /// door, straight from 0.8 m before the door to 0.8 m behind it. It keeps 0.5 m from furniture and
-/// 0.4 m from door posts. With panes, every ray from inside hits a surface. The same (config, seed)
-/// give bit-identical results.
+/// 0.4 m from door posts. With panes and ceilings, every ray from inside hits a surface. The same
+/// (config, seed) give bit-identical results.
 world::WorldModel make_house(const HouseConfig& config, std::uint64_t seed);
 
 }  // namespace lidarena::scenes

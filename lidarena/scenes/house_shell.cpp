@@ -182,6 +182,7 @@ world::TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config
   world::TriangleMesh mesh =
       shape::box({-half, -half, -kSlab}, {config.width_m + half, config.depth_m + half, 0});
   for (const Room& room : plan.rooms) {
+    if (!config.ceilings) break;
     mesh.append(shape::box({room.floor.min().x(), room.floor.min().y(), room.height},
                            {room.floor.max().x(), room.floor.max().y(), room.height + kSlab}));
   }

@@ -27,6 +27,14 @@ std::vector<std::string> keys_of(WorldKind kind) {
       return {"kind", "seed", "vary", "house"};
     case WorldKind::kCave:
       return {"kind", "seed", "vary", "cave"};
+    case WorldKind::kMine:
+      return {"kind", "seed", "vary", "mine"};
+    case WorldKind::kForest:
+      return {"kind", "seed", "vary", "forest"};
+    case WorldKind::kHall:
+      return {"kind", "seed", "vary", "hall"};
+    case WorldKind::kOffice:
+      return {"kind", "seed", "vary", "office"};
     case WorldKind::kMesh:
       return {"kind", "file", "up_axis"};
     case WorldKind::kSdf:
@@ -41,14 +49,16 @@ WorldConfig read_world_config(const fs::path& file, const std::vector<std::strin
   read_config(node, config);
   if (!node.is_map() || !node.find("kind")) {
     throw InputError(file.string(), "the key 'kind' is missing",
-                     "set kind to house, cave, mesh or sdf");
+                     "set kind to house, cave, mine, forest, hall, office, mesh or sdf");
   }
-  node.reject_unknown(keys_of(config.kind));
+  std::vector<std::string> keys = keys_of(config.kind);
+  keys.insert(keys.end(), {"movers", "people"});
+  node.reject_unknown(keys);
   for (const std::string& assignment : set) {
-    ConfigNode::parse(assignment_as_yaml(assignment), "--set " + assignment)
-        .reject_unknown(keys_of(config.kind));
+    ConfigNode::parse(assignment_as_yaml(assignment), "--set " + assignment).reject_unknown(keys);
     set_field(config, assignment);
   }
+  for (const world::MoverConfig& mover : config.movers) world::check_mover(mover, file.string());
   const bool needs_file = config.kind == WorldKind::kMesh || config.kind == WorldKind::kSdf;
   if (needs_file && config.file.empty()) {
     throw InputError(file.string(), "the key 'file' is missing",
@@ -74,6 +84,10 @@ WorldConfig drawn_config(const fs::path& file, const WorldOptions& options) {
   if (config.vary) {
     config.house = drawn_house(config.house, config.seed);
     config.cave = drawn_cave(config.cave, config.seed);
+    config.mine = drawn_mine(config.mine, config.seed);
+    config.forest = drawn_forest(config.forest, config.seed);
+    config.hall = drawn_hall(config.hall, config.seed);
+    config.office = drawn_office(config.office, config.seed);
   }
   for (const std::string& assignment : options.set) set_field(config, assignment);
   return config;
@@ -90,6 +104,18 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
     case WorldKind::kCave:
       model = make_cave(config.cave, config.seed);
       break;
+    case WorldKind::kMine:
+      model = make_mine(config.mine, config.seed);
+      break;
+    case WorldKind::kForest:
+      model = make_forest(config.forest, config.seed);
+      break;
+    case WorldKind::kHall:
+      model = make_hall(config.hall, config.seed);
+      break;
+    case WorldKind::kOffice:
+      model = make_office(config.office, config.seed);
+      break;
     case WorldKind::kMesh:
       model.mesh = world::load_mesh(base / config.file, config.up_axis);
       break;
@@ -97,6 +123,8 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
       model.mesh = world::load_sdf(base / config.file, sdf_options(config, base, options), log);
       break;
   }
+  model.movers = config.movers;
+  model.people = config.people;
   return model;
 }
 

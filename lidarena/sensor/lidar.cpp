@@ -23,6 +23,7 @@ using Eigen::Vector3f;
 constexpr std::size_t kShotsPerBlock = 1024;
 constexpr std::size_t kPartsPerScan =
     32;  // number of parts that a scan is split into for the threads
+constexpr std::size_t kShotsPerInstant = 256;              // of a world that moves
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
 
 /// Purposes of a ray's random numbers; each further echo uses the next kDraws values.
@@ -87,6 +88,7 @@ void close_gaps(std::vector<T>& values, std::size_t stride,
 
 /// Working data of a block of shots of a scan.
 struct Lidar::Block {
+  Time begin{0};  ///< of the scan
   std::span<const Beam> shots;
   std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
   Point* points = nullptr;      ///< space for the maximum number of points
@@ -294,12 +296,26 @@ void Lidar::draw_noise(Block& block) const {
   if (angle_sigma_ > 0.0F) block.direction_noise.draw(random_, block.first_ray, shots, kAngle);
 }
 
+/// Casts all rays of the block. If the world moves, those of some 256 shots at a time.
+void Lidar::cast(const world::Surfaces& world, Block& block) const {
+  const double max_range = config_.max_range_m - start_offset(config_);
+  const std::size_t split = sub_rays_.size(), count = block.shots.size();
+  const std::size_t tiles = std::max<std::size_t>(1, kShotsPerInstant / order_.tile());
+  const std::size_t part = world.moves() ? tiles * order_.tile() : count;
+  for (std::size_t first = 0; first < count; first += part) {
+    const std::size_t size = std::min(part, count - first);
+    const Time middle{config_.mode == ScanMode::kRolling ? block.shots[first + size / 2].dt_ns : 0};
+    const std::span rays = std::span(block.rays).subspan(first * split, size * split);
+    const std::span hits = std::span(block.hits).subspan(first * split, size * split);
+    world.cast_at(block.begin + middle, rays, max_range, hits, world::RayOrder::kNeighbors);
+  }
+}
+
 void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
                   Block& block) const {
   place_rays(block);
   aim(world_from_lidar, block);
-  world.cast(block.rays, config_.max_range_m - start_offset(config_), block.hits,
-             world::RayOrder::kNeighbors);
+  cast(world, block);
   block.count = 0;
   draw_noise(block);
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
@@ -317,7 +333,7 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
 }
 
 /// Replaces `points` (and `truth`) by the points of the shots.
-void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
+void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar, Time begin,
                       std::span<const Beam> shots, std::uint64_t first_ray,
                       const Parallel& parallel, std::vector<Point>& points,
                       std::vector<PointTruth>* truth) const {
@@ -330,11 +346,12 @@ void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lid
   parallel.for_blocks(counts.size(), blocks_together, [&](std::size_t first, std::size_t last) {
     Block block;
     for (std::size_t i = first; i < last; ++i) {
-      const std::size_t begin = i * shots_per_block_;
-      block.shots = shots.subspan(begin, std::min(shots_per_block_, shots.size() - begin));
-      block.first_ray = first_ray + begin;
-      block.points = points.data() + begin * max_points;
-      if (truth != nullptr) block.truth = truth->data() + begin * max_points;
+      const std::size_t from = i * shots_per_block_;
+      block.begin = begin;
+      block.shots = shots.subspan(from, std::min(shots_per_block_, shots.size() - from));
+      block.first_ray = first_ray + from;
+      block.points = points.data() + from * max_points;
+      if (truth != nullptr) block.truth = truth->data() + from * max_points;
       shoot(world, world_from_lidar, block);
       counts[i] = block.count;
     }
@@ -358,7 +375,8 @@ Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, 
     return shake ? motion.at(dt_ns) * shake->at(rolling ? dt_ns : 0) : motion.at(dt_ns);
   };
   Scan scan = empty_scan(index);
-  shoot_all(world, world_from_lidar, shots, index * shots.size(), parallel, scan.points, truth);
+  shoot_all(world, world_from_lidar, begin(index), shots, index * shots.size(), parallel,
+            scan.points, truth);
   return scan;
 }
 
@@ -374,7 +392,7 @@ void Lidar::measure_part(const world::Surfaces& world, const PoseAt& world_from_
                          std::vector<Point>& points, std::vector<PointTruth>* truth) const {
   std::vector<Point> more;
   std::vector<PointTruth> more_truth;
-  shoot_all(world, world_from_lidar, shots, first_ray, Parallel(1), more,
+  shoot_all(world, world_from_lidar, Time{0}, shots, first_ray, Parallel(1), more,
             truth == nullptr ? nullptr : &more_truth);
   points.insert(points.end(), more.begin(), more.end());
   if (truth != nullptr) truth->insert(truth->end(), more_truth.begin(), more_truth.end());

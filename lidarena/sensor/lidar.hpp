@@ -40,7 +40,8 @@ class Lidar {
   Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern, const std::string& id,
         std::uint64_t seed, bool noise);
 
-  /// Scan `index`, which begins at index * period. Each shot is cast from the pose at its own
+  /// Scan `index`, which begins at index * period. The world is that of each shot's time, to 0.7 ms
+  /// (1 mm of a person who walks). Each shot is cast from the pose at its own
   /// instant (see ScanMode), on which vibration acts if it moves the LiDAR; stamp and times are
   /// those of the LiDAR's clock. Shots without a return are left out. Ranges are measured from the
   /// sensor's axis (|beam origin| + distance along the beam); a return is kept if its true range is
@@ -88,9 +89,10 @@ class Lidar {
   void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
               Block& block) const;
   void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
-  void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar,
+  void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar, Time begin,
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
                  std::vector<Point>& points, std::vector<PointTruth>* truth) const;
+  void cast(const world::Surfaces& world, Block& block) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   void draw_noise(Block& block) const;
   double range_noise(std::size_t shot, std::size_t number, const Block& block) const;

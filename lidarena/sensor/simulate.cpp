@@ -23,7 +23,7 @@ struct LidarStream {
 
 class Simulation final : public EventSource {
  public:
-  Simulation(const world::World& world, const flight::Flight& flight,
+  Simulation(const world::Surfaces& world, const flight::Flight& flight,
              const std::vector<SensorConfig>& sensors, const SimulationOptions& options,
              const Parallel& parallel)
       : world_(world),
@@ -100,7 +100,7 @@ class Simulation final : public EventSource {
     return covered;
   }
 
-  const world::World& world_;
+  const world::Surfaces& world_;
   const flight::Flight& flight_;
   Parallel parallel_;
   ScanTruthSink* truth_;
@@ -111,7 +111,7 @@ class Simulation final : public EventSource {
 
 }  // namespace
 
-std::unique_ptr<EventSource> simulate(const world::World& world, const flight::Flight& flight,
+std::unique_ptr<EventSource> simulate(const world::Surfaces& world, const flight::Flight& flight,
                                       const std::vector<SensorConfig>& sensors,
                                       const SimulationOptions& options, const Parallel& parallel) {
   return std::make_unique<Simulation>(world, flight, sensors, options, parallel);

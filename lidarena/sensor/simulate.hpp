@@ -13,7 +13,7 @@
 #include "lidarena/base/rig.hpp"
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
-#include "lidarena/world/world.hpp"
+#include "lidarena/world/surfaces.hpp"
 
 namespace lidarena::sensor {
 
@@ -36,7 +36,7 @@ Rig make_rig(const std::vector<SensorConfig>& sensors);
 /// `flight`. Times count from the flight's start, by the clock of each sensor: scan k begins at
 /// k * period of true time, and only complete scans are simulated. A scan is delivered once every
 /// IMU has delivered a sample at or after the scan's last firing (or has ended).
-std::unique_ptr<EventSource> simulate(const world::World& world, const flight::Flight& flight,
+std::unique_ptr<EventSource> simulate(const world::Surfaces& world, const flight::Flight& flight,
                                       const std::vector<SensorConfig>& sensors,
                                       const SimulationOptions& options, const Parallel& parallel);
 

@@ -14,11 +14,13 @@
 #include "lidarena/dataset/trajectories/tum.hpp"
 #include "lidarena/evaluation/map/scored_returns.hpp"
 #include "lidarena/flight/make_flight.hpp"
+#include "lidarena/flight/people.hpp"
 #include "lidarena/scenes/drawn_scene.hpp"
 #include "lidarena/scenes/load_world.hpp"
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/stages/read_ahead.hpp"
 #include "lidarena/stages/scene_settings.hpp"
+#include "lidarena/world/living_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
 #include "lidarena/world/world.hpp"
@@ -35,9 +37,13 @@ struct Scene {
   world::WorldModel model;  ///< its mesh is moved into `world`
   std::unique_ptr<world::World> world;
   std::unique_ptr<flight::Flight> flight;
+  std::unique_ptr<world::LivingWorld> living;  ///< null if nothing moves
   std::vector<sensor::SensorConfig> sensors;
   sensor::SimulationOptions options;
 
+  const world::Surfaces& surfaces() const {
+    return living ? static_cast<const world::Surfaces&>(*living) : *world;
+  }
   Time duration() const {
     return options.duration > Time{0} ? std::min(options.duration, flight->duration())
                                       : flight->duration();
@@ -46,6 +52,22 @@ struct Scene {
     return static_cast<std::size_t>(to_seconds(duration()) * lidar.rate_hz + 1e-6);
   }
 };
+
+/// Draws the world's people, and lets all that moves move. Drawn are they from the seed of the
+/// noise: the same building has others in each flight.
+void add_movers(Scene& scene, LogSink& log) {
+  std::vector<world::MoverConfig>& movers = scene.model.movers;
+  if (scene.model.people > 0) {
+    const auto people =
+        flight::draw_people(*scene.world, *scene.flight, scene.model.people, scene.options.seed);
+    if (static_cast<int>(people.size()) < scene.model.people) {
+      log.warn(fmt::format("free floor was found for {} of {} people", people.size(),
+                           scene.model.people));
+    }
+    movers.insert(movers.end(), people.begin(), people.end());
+  }
+  if (!movers.empty()) scene.living = std::make_unique<world::LivingWorld>(*scene.world, movers);
+}
 
 std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& flight_file,
                                   std::vector<sensor::SensorConfig> sensors,
@@ -59,6 +81,7 @@ std::unique_ptr<Scene> make_scene(world::WorldModel model, const fs::path& fligh
                                       flight_settings);
   scene->sensors = std::move(sensors);
   scene->options = options;
+  add_movers(*scene, log);
   return scene;
 }
 
@@ -67,8 +90,8 @@ class SimulatedSource : public EventSource {
  public:
   SimulatedSource(std::unique_ptr<Scene> scene, const Parallel& parallel)
       : scene_(std::move(scene)),
-        events_(sensor::simulate(*scene_->world, *scene_->flight, scene_->sensors, scene_->options,
-                                 parallel)) {}
+        events_(sensor::simulate(scene_->surfaces(), *scene_->flight, scene_->sensors,
+                                 scene_->options, parallel)) {}
   std::optional<Event> next() override { return events_->next(); }
 
  private:
@@ -101,6 +124,7 @@ dataset::DatasetManifest manifest_of(const SimulateRequest& request, const Scene
   }
   record.routes = Json::array();
   for (const auto& route : scene.model.routes) record.routes.push_back(value_to_json(route));
+  for (const auto& mover : scene.model.movers) record.movers.push_back(to_json(mover));
   return manifest;
 }
 
@@ -165,7 +189,7 @@ std::unique_ptr<EventSource> simulated(const Scene& scene, TruthSinks* sinks,
                                        const Parallel& parallel) {
   sensor::SimulationOptions options = scene.options;
   options.truth = sinks;
-  return sensor::simulate(*scene.world, *scene.flight, scene.sensors, options, parallel);
+  return sensor::simulate(scene.surfaces(), *scene.flight, scene.sensors, options, parallel);
 }
 
 void write_events(const SimulateRequest& request, const Scene& scene, dataset::HitsWriter* hits,
@@ -273,6 +297,7 @@ std::unique_ptr<Scene> scene_of(const fs::path& folder, const dataset::Simulatio
   model.mesh = world::load_mesh(folder / "world.ply");
   const std::string place = (folder / "manifest.json").string();
   read_value(ConfigNode::parse(record.routes.dump(), place), model.routes, {});
+  read_value(ConfigNode::parse(Json(record.movers).dump(), place), model.movers, {});
   std::vector<sensor::SensorConfig> sensors;
   read_value(ConfigNode::parse(Json(record.sensors).dump(), place), sensors, {});
   for (sensor::SensorConfig& s : sensors) {

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "lidarena/base/time.hpp"
 #include "lidarena/world/material.hpp"
 
 namespace lidarena::world {
@@ -39,6 +40,13 @@ class Surfaces {
   /// Triangles are hit from both sides.
   virtual void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                     RayOrder order = RayOrder::kAny) const = 0;
+  /// The same at `t` after the start of the flight; surfaces that do not move ignore it.
+  virtual void cast_at(Time /*t*/, std::span<const Ray> rays, double max_range, std::span<Hit> hits,
+                       RayOrder order = RayOrder::kAny) const {
+    cast(rays, max_range, hits, order);
+  }
+  /// Whether cast_at() depends on the time.
+  virtual bool moves() const { return false; }
   /// Material of the surface with the triangle index of a hit.
   virtual const Material& material(std::uint32_t triangle) const = 0;
 };

@@ -297,6 +297,32 @@ TEST(House, WithoutPanesRaysLeaveThroughTheWindows) {
   EXPECT_LT(lost, 0.2);
 }
 
+TEST(House, WithoutCeilingsTheSkyOpensAndTheRestStays) {
+  HouseConfig config = coarse_house();
+  config.high_rooms = false;
+  const world::WorldModel closed = make_house(config, 1);
+  config.ceilings = false;
+  const world::WorldModel open = make_house(config, 1);
+  EXPECT_EQ(open.routes, closed.routes);
+  const world::World under_roof(closed.mesh, "closed"), under_sky(open.mesh, "open");
+  SequentialRandom random(1);
+  int lost = 0;
+  for (int i = 0; i < 4000; ++i) {
+    const auto& route = closed.routes[0];
+    const world::Ray ray{route[static_cast<std::size_t>(i) % route.size()],
+                         world::testing::random_direction(random).cast<float>()};
+    world::Hit a, b;
+    under_roof.cast({&ray, 1}, 100, {&a, 1});
+    under_sky.cast({&ray, 1}, 100, {&b, 1});
+    const double height = ray.origin.z() + static_cast<double>(a.range * ray.direction.z());
+    if (height < 1.5) {  // below the lamps
+      EXPECT_NEAR(a.range, b.range, 1e-4F);
+    }
+    lost += b.valid() ? 0 : 1;
+  }
+  EXPECT_GT(lost, 600);
+}
+
 /// True when the object stands on the floor, hangs on a wall or from the ceiling, or lies on
 /// another's table top.
 bool is_held(const PlacedObject& object, const std::vector<PlacedObject>& all,

@@ -83,11 +83,23 @@ TEST_F(LoadWorld, KeysOfAnotherKindAreRefused) {
   EXPECT_THAT(error_of("a.yaml", "kind: mesh\nfile: room.obj\nseed: 3\n"),
               AllOf(HasSubstr("a.yaml:3"), HasSubstr("seed")));
   EXPECT_THAT(error_of("a.yaml", "kind: cave\nfile: room.obj\n"), HasSubstr("a.yaml:2"));
-  EXPECT_THAT(error_of("a.yaml", "kind: hut\n"), HasSubstr("house, cave, mesh, sdf"));
+  EXPECT_THAT(error_of("a.yaml", "kind: hut\n"),
+              HasSubstr("house, cave, mine, forest, hall, office, mesh, sdf"));
   EXPECT_THAT(error_of("a.yaml", "file: room.obj\n"), HasSubstr("kind"));
   EXPECT_THAT(error_of("a.yaml", "kind: mesh\n"), HasSubstr("the key 'file' is missing"));
   EXPECT_THAT(error_of("a.yaml", ""), HasSubstr("kind"));
   EXPECT_THAT(error_of("a.yaml", "kind: cave\ncave: {loops: -1}\n"), HasSubstr("out of range"));
+}
+
+TEST_F(LoadWorld, AnyKindHasThingsThatMove) {
+  const std::string cart = "movers: [{name: cart, kind: box, path: [[1, 2, 0], [3, 2, 0]]}]\n";
+  const auto file = folder_.write("busy.yaml", "kind: hall\nhall: {rows: 1}\npeople: 3\n" + cart);
+  const world::WorldModel hall = load_world(file, {}, log_);
+  EXPECT_EQ(hall.people, 3);
+  ASSERT_EQ(hall.movers.size(), 1U);
+  EXPECT_EQ(hall.movers[0].kind, world::MoverKind::kBox);
+  EXPECT_EQ(hall.movers[0].path[1], Eigen::Vector3d(3, 2, 0));
+  EXPECT_THAT(error_of("a.yaml", "kind: house\nmovers: [{name: ghost}]\n"), HasSubstr("ghost"));
 }
 
 TEST_F(LoadWorld, AHouseHasItsParametersAndItsRoute) {
