@@ -39,7 +39,7 @@ class MeasuredNoise {
   std::deque<ImuSample> last_;  ///< without a gap, at most five
   double measured_s_ = 0.0;     ///< how long the mean has run
   double gyro_power_ = 0.0;     ///< square of the density, mean of the axes
-  double accel_power_ = 0.0;    ///< likewise
+  double accel_power_ = 0.0;    ///< the same of the accelerometer
 };
 
 }  // namespace lidarena::estimation
