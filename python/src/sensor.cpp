@@ -97,7 +97,8 @@ void bind_flight(py::module_& m) {
 
 void bind_sensor(py::module_& m) {
   bind_config<sensor::SensorConfig>(m, "Sensor", "A LiDAR, its mounting, its noise and its IMU.");
-  m.def("load_sensor_file", &sensor::load_sensor, py::arg("file"), py::arg("shipped"));
+  m.def("load_sensor_file", &sensor::load_sensor, py::arg("file"), py::arg("shipped"),
+        py::arg("set") = std::vector<std::string>());
   m.def("make_rig", &sensor::make_rig, py::arg("sensors"), "The rig of these sensors on one body.");
   py::class_<sensor::Lidar>(m, "Lidar", "A simulated LiDAR that moves through a world.")
       .def(py::init([](const sensor::SensorConfig& sensor, std::uint64_t seed, bool noise) {
