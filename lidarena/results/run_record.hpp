@@ -30,7 +30,7 @@ struct RunRecord {
   std::string mode;  ///< timing mode of the sensors if the study sets one: "rolling", ...
   std::string variation;             ///< what differs from the base of the study; empty: nothing
   Json varied = Json::object();      ///< each key that the study varies, with its value in this run
-  std::vector<std::string> differs;  ///< those keys whose value is not that of the base
+  std::vector<std::string> differs;  ///< those whose value is not that of the base, or a set's name
   std::uint64_t seed = 0;
   std::string status = "ok";  ///< ok, diverged, failed, not scored, ...
   std::string reason;

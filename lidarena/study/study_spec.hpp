@@ -131,7 +131,8 @@ struct PlannedRun {
   std::vector<std::string> set;          ///< "KIND.key=value" of the flight, over its files
   std::string variation;                 ///< what differs from the base, in words; empty: nothing
   Json varied = Json::object();          ///< each key that the study varies, with its value here
-  std::vector<std::string> differs;      ///< keys of `varied` whose value is not that of the base
+  /// Keys of `varied` whose value is not that of the base; of a named set, its name.
+  std::vector<std::string> differs;
   std::string method_part;               ///< of the name: settings of the method
   std::string recording;                 ///< name of the recording; empty: the flight is simulated
   std::uint64_t seed = 1;

@@ -169,6 +169,7 @@ PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variati
                                 const std::vector<Variation>& all) {
   PlannedRun cell = base;
   for (const Variation& other : all) {
+    if (!other.name.empty()) continue;
     for (const auto& [key, value] : other.settings) {
       const std::string kind = kind_of(key);
       if (!applies_to(base, kind) || cell.varied.contains(key)) continue;
@@ -179,8 +180,10 @@ PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variati
   for (const auto& [key, value] : variation.settings) {
     const std::string kind = kind_of(key);
     if (!applies_to(base, kind) || !changes(base, key, value)) continue;
-    cell.varied[key] = value;
-    cell.differs.push_back(key);
+    if (variation.name.empty()) {
+      cell.varied[key] = value;
+      cell.differs.push_back(key);
+    }
     if (is_of_method(base, kind)) {
       cell.settings[key_in(kind, key)] = value;
       of_method.push_back(text_of(key, value));
@@ -190,7 +193,10 @@ PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variati
     }
     cell.variation += (cell.variation.empty() ? "" : ", ") + text_of(key, value);
   }
-  if (!cell.variation.empty() && !variation.name.empty()) cell.variation = variation.name;
+  if (!cell.variation.empty() && !variation.name.empty()) {
+    cell.variation = variation.name;
+    cell.differs = {variation.name};
+  }
   cell.dataset += name_part(variation.name, of_flight);
   cell.method_part = name_part(variation.name, of_method);
   return cell;

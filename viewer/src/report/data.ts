@@ -30,7 +30,7 @@ export interface Run {
   preset: string; // with the timing mode of the sensors, if the study sets one
   variation: string; // what differs from the base of the study; empty: nothing
   varied: Record<string, unknown>; // each key that the study varies, with its value in this run
-  differs: string[]; // those keys whose value is not that of the base
+  differs: string[]; // those keys whose value is not that of the base; of a named set, its name
   seed: number;
   status: string;
   ended_at_s: number | null; // when the method ended itself

@@ -18,6 +18,7 @@ import {
 } from "./data";
 import { line, panels, sensorColor, valueAxis, type Figure } from "./figure_parts";
 
+const SETS = "sets"; // in place of a key: the names of sets
 const SHOWN = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE];
 const LOG_FROM_RATIO = 20; // of the largest value to the smallest: a logarithmic axis
 const LOST = { visualMap: false, itemStyle: { color: "#c9ced6" }, label: { formatter: "lost" } };
@@ -83,48 +84,57 @@ const whiskers = (name: string, color: string, panel: number, data: number[][]) 
   },
 });
 
-/** A figure against the values of one key: a panel per method, a line per sensor. */
-function curve(all: Run[], world: string, key: string, figure: FigureOf): Figure | null {
-  const runs = within(all, [key]).filter((run) => run.world === world);
-  const values = valuesOf(runs, key);
+/** The series of a panel: medians by value, with their ranges. */
+function cellsOf(same: Run[], values: Value[], of: (run: Run) => Value, place: (value: Value) => number, figure: FigureOf) {
+  const cells = grouped(same, (run) => textOf(of(run)));
+  const spreads = values.flatMap((value) => {
+    const spread = spreadOf(cells.get(textOf(value)) ?? [], figure);
+    return spread && Number.isFinite(spread.median) ? [{ x: place(value), ...spread }] : [];
+  });
+  const ranges = spreads
+    .filter(({ best, worst }) => Number.isFinite(worst) && best !== worst)
+    .map(({ x, best, worst }) => [x, best, worst]);
+  return { medians: spreads.map(({ x, median }) => [x, median]), ranges };
+}
+
+/** A figure against the values of one key, or by the names of sets: a panel per method, a line per sensor. */
+function curve(runs: Run[], world: string, key: string, of: (run: Run) => Value, figure: FigureOf): Figure | null {
+  const isSets = key === SETS;
+  const values = isSets ? distinct(runs, of) : valuesOf(runs, key);
   const methods = distinct(runs, label);
   const sensors = distinct(runs, (run) => run.sensor);
   if (values.length < 2 || !runs.some((run) => figure.of(run) !== null)) return null;
-  const { axis, place } = axisOf(values, key);
+  const { axis, place } = axisOf(values, isSets ? "" : key);
   const series = methods.flatMap((method, panel) =>
     sensors.flatMap((sensor) => {
-      const cells = grouped(
-        runs.filter((run) => label(run) === method && run.sensor === sensor),
-        (run) => textOf(valueOf(run, key)),
-      );
-      const spreads = values.flatMap((value) => {
-        const spread = spreadOf(cells.get(textOf(value)) ?? [], figure);
-        return spread && Number.isFinite(spread.median) ? [{ x: place(value), ...spread }] : [];
-      });
+      const same = runs.filter((run) => label(run) === method && run.sensor === sensor);
+      const { medians, ranges } = cellsOf(same, values, of, place, figure);
       const color = sensorColor(sensor, sensors);
-      const medians = spreads.map(({ x, median }) => [x, median]);
-      const ranges = spreads
-        .filter(({ best, worst }) => Number.isFinite(worst) && best !== worst)
-        .map(({ x, best, worst }) => [x, best, worst]);
-      const more = { xAxisIndex: panel, yAxisIndex: panel, symbol: "circle", symbolSize: 6 };
+      const joined = isSets ? { lineStyle: { width: 0 } } : {};
+      const more = { xAxisIndex: panel, yAxisIndex: panel, symbol: "circle", symbolSize: 6, ...joined };
       return [line(sensor, color, medians, more), whiskers(sensor, color, panel, ranges)];
     }),
   );
-  return panels({
+  const drawn = panels({
     id: `response-${world}-${key}-${figure.info.key}`,
-    title: `${figure.info.label} against ${key}, ${world}`,
+    title: isSets ? `${figure.info.label} by variation, ${world}` : `${figure.info.label} against ${key}, ${world}`,
     world,
-    caption: `Median over flights and seeds; bars reach from the best run to the worst. All other keys as in the base.${lostNote(runs)}`,
+    caption: `Median over flights and seeds; bars reach from the best run to the worst. ${isSets ? "Base: nothing varied." : "All other keys as in the base."}${lostNote(runs)}`,
     names: methods,
     legend: sensors,
-    columns: 4,
-    width: 290,
-    height: 230,
+    columns: isSets ? 3 : 4,
+    width: isSets ? 400 : 290,
+    height: isSets ? 300 : 230,
     tooltip: { trigger: "item" },
-    xAxis: axis,
+    xAxis: (i) => ({
+      ...axis(i),
+      ...(isSets ? { axisLabel: { rotate: 40, interval: 0, fontSize: 9, width: 120, overflow: "truncate" } } : {}),
+    }),
     yAxis: (i, isLeft) => valueAxis(i, isLeft ? figure.info.unit : "", { nameGap: 40, min: 0 }),
     series,
   });
+  if (isSets) (drawn.option.grid as { height: number }[]).forEach((grid) => (grid.height -= 70));
+  return drawn;
 }
 
 /** A figure against two keys: a panel per method and sensor. */
@@ -182,8 +192,11 @@ export function responsesOf(data: ReportData, runs: Run[], world: string): (Figu
   const keys = [...new Set(runs.flatMap((run) => Object.keys(run.varied)))];
   const figures = SHOWN.map((key) => figureOf(data, key));
   const pairs = keys.flatMap((a, i) => keys.slice(i + 1).map((b): [string, string] => [a, b]));
+  const here = runs.filter((run) => run.world === world);
+  const sets = here.filter((run) => run.differs.every((name) => name === run.variation));
   return [
-    ...keys.flatMap((key) => figures.map((figure) => curve(runs, world, key, figure))),
+    ...figures.map((figure) => curve(sets, world, SETS, (run) => run.variation || "base", figure)),
+    ...keys.flatMap((key) => figures.map((figure) => curve(within(here, [key]), world, key, (run) => valueOf(run, key), figure))),
     ...pairs.flatMap((pair) => figures.map((figure) => heatMap(runs, world, pair, figure))),
   ];
 }
