@@ -80,8 +80,8 @@ Json study_info(const fs::path& file, const stages::ConfigFolder& configs) {
   if (kinds.empty()) {
     throw InputError(file.string(),
                      "what it describes does not follow from its keys (" + keys +
-                         "): tried as world, flight, sensor, beams, study, external program and "
-                         "settings of each algorithm",
+                         "): tried as world, flight, sensor, beams, study, recording, external "
+                         "program and settings of each algorithm",
                      "lidarena schema KIND prints the keys of a kind");
   }
   throw InputError(file.string(),
@@ -127,6 +127,8 @@ Json yaml_info(const fs::path& file, const stages::ConfigFolder& configs,
   if (kind == "sensor") return sensor_info(configs.load_sensor(file.string()));
   if (kind == "beams") return beams_info(sensor::load_spinning_head(file));
   if (kind == "study") return study_info(file, configs);
+  if (kind == "recording")
+    return {{"kind", kind}, {"recording", to_json(load_config<study::StudyRecording>(file))}};
   if (kind == "flight")
     return {{"kind", kind}, {"flight", to_json(load_config<flight::FlightConfig>(file))}};
   return {{"kind", "external program"},

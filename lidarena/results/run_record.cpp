@@ -87,7 +87,7 @@ std::vector<std::string> sensors_beside(const Json& study, const Json& run) {
   std::vector<std::string> sensors;
   for (const Json& other : study.at("runs")) {
     const auto sensor = other.at("sensor").get<std::string>();
-    if (other.at("dataset") == run.at("dataset") &&
+    if (other.value("dataset", "") == run.value("dataset", "") &&
         std::ranges::find(sensors, sensor) == sensors.end())
       sensors.push_back(sensor);
   }

@@ -193,8 +193,8 @@ void RecordingCheck::check_range(std::vector<Finding>& found) const {
       if (most < q.smallest) continue;
       // Values pile up at a limit; a peak has more values some steps below its highest than at it.
       constexpr std::size_t kOften = 3;
-      constexpr double kEqual = 1e-6, kBelow = 0.01;  // of the highest
-      constexpr double kSteps = 3.0;                  // of the sensor's resolution
+      constexpr double kEqual = 1e-6, kBelow = 0.01, kFarBelow = 0.1;  // of the highest
+      constexpr double kSteps = 3.0;                                   // of the sensor's resolution
       std::vector<Time> at_limit;
       double next = 0.0;  // the highest value below the limit
       for (const ImuSample& s : samples_) {
@@ -205,7 +205,8 @@ void RecordingCheck::check_range(std::vector<Finding>& found) const {
           next = std::max(next, size);
         }
       }
-      const double low = most - std::max(kBelow * most, kSteps * (most - next));
+      const double low =
+          most - std::clamp(kSteps * (most - next), kBelow * most, kFarBelow * most);
       const auto near = std::ranges::count_if(samples_, [&](const ImuSample& s) {
         return std::abs((s.*q.member)[axis]) > low;
       });
