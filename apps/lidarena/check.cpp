@@ -65,7 +65,8 @@ void add_check(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--imu-topic", o->request.read.imu_topic, "Topic of the IMU to check");
   verb->add_option("--layout", o->request.read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));
-  verb->add_option("--rate", o->request.read.rate_hz, "Sweeps per second, for a folder without times")
+  verb->add_option("--rate", o->request.read.rate_hz,
+                   "Sweeps per second, for a folder without times")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   verb->add_flag("!--no-motion", o->request.motion,

@@ -221,8 +221,8 @@ std::vector<results::ScoredRun> score_all(const EvaluateOptions& o, const Parall
   const stages::ScoreParts parts = score_parts_of(o.score);
   const std::optional<stages::GivenTruth> truth = given_truth(o, log);
   for (const std::string& folder : o.runs) {
-    runs.push_back(score_folder(folder, parts, o.runs.size() == 1, truth ? &*truth : nullptr,
-                                parallel, log));
+    runs.push_back(
+        score_folder(folder, parts, o.runs.size() == 1, truth ? &*truth : nullptr, parallel, log));
   }
   if (o.trajectories.empty()) return runs;
   const Files files(o);

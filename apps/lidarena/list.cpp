@@ -173,7 +173,8 @@ void add_list(CLI::App& app, Common& common, int& exit_code) {
   auto filter = std::make_shared<SensorFilter>();
   verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms, studies or recordings")
       ->required()
-      ->check(CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies", "recordings"}));
+      ->check(
+          CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies", "recordings"}));
   const auto add_limit = [verb](const char* name, double& limit, const char* what) {
     return verb->add_option(name, limit, what)->check(CLI::PositiveNumber);
   };

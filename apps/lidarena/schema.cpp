@@ -66,9 +66,9 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
       "JSON Schema of a kind of YAML file or of metrics.json: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
-  verb->add_option(
-      "kind", *kind,
-      "world, flight, sensor, beams, study, external, recording, run, dataset, metrics, or an algorithm");
+  verb->add_option("kind", *kind,
+                   "world, flight, sensor, beams, study, external, recording, run, dataset, "
+                   "metrics, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

@@ -88,8 +88,7 @@ Table runs_table(const results::StudyResults& results, const std::string& world)
     std::vector<TableCell> cells{
         word(fmt::format("{}, {}, {}{}{}", row.sensor, results::label_of(row), row.seed,
                          row.variation.empty() ? "" : ", ", row.variation)),
-        word(lost.empty() ? "ok" : lost),
-        number(results::coverage_of(row))};
+        word(lost.empty() ? "ok" : lost), number(results::coverage_of(row))};
     for (const results::Figure* figure : kShown) cells.push_back(figure_cell(row, *figure));
     table.rows.push_back(std::move(cells));
   }
@@ -108,13 +107,14 @@ Table failures_table(const results::StudyResults& results) {
 }
 
 Table usual_table(const results::StudyResults& results, const std::string& world) {
-  Table table{"usual-" + world,
-              "By the usual names: " + world,
-              "APE: RMSE of the positions after alignment by SE(3). RTF: real-time factor, seconds of "
-              "data per second of computing. Success rate: runs that kept tracking. Medians over "
-              "flights and seeds.",
-              {"sensor, method", "APE, m", "RPE per second, m", "RTF", "success rate, %"},
-              {}};
+  Table table{
+      "usual-" + world,
+      "By the usual names: " + world,
+      "APE: RMSE of the positions after alignment by SE(3). RTF: real-time factor, seconds of "
+      "data per second of computing. Success rate: runs that kept tracking. Medians over "
+      "flights and seeds.",
+      {"sensor, method", "APE, m", "RPE per second, m", "RTF", "success rate, %"},
+      {}};
   const auto median = [](const results::Spread& spread) {
     return spread.median ? std::optional(0.01 * *spread.median) : std::nullopt;
   };
@@ -130,11 +130,10 @@ Table usual_table(const results::StudyResults& results, const std::string& world
           return cells.spread(world, sensor, algorithm, figure);
         };
         const results::Spread ape = spread(results::kAte);
-        table.rows.push_back({word(sensor + ", " + results::label_of(*runs.front())),
-                              number(median(ape)), number(median(spread(rpe))),
-                              number(spread(rtf).median),
-                              number(100.0 * static_cast<double>(ape.kept) /
-                                     static_cast<double>(ape.runs))});
+        table.rows.push_back(
+            {word(sensor + ", " + results::label_of(*runs.front())), number(median(ape)),
+             number(median(spread(rpe))), number(spread(rtf).median),
+             number(100.0 * static_cast<double>(ape.kept) / static_cast<double>(ape.runs))});
       }
     }
   }

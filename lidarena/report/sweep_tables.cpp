@@ -46,12 +46,13 @@ results::TableCell cell_of(const StudyResults& results, const std::string& world
 Table table_of(const StudyResults& results, const std::string& world,
                const std::vector<std::string>& variations, const std::vector<std::string>& columns,
                const results::Figure& figure) {
-  Table table{fmt::format("sweep-{}-{}", figure.key, world),
-              fmt::format("{}, {}: {}, by variation", figure.label, figure.unit, world),
-              "Medians over flights and seeds; behind them the range from the best run to the worst "
-              "and how many of how many runs kept tracking. An empty cell is that of the base.",
-              {"variation"},
-              {}};
+  Table table{
+      fmt::format("sweep-{}-{}", figure.key, world),
+      fmt::format("{}, {}: {}, by variation", figure.label, figure.unit, world),
+      "Medians over flights and seeds; behind them the range from the best run to the worst "
+      "and how many of how many runs kept tracking. An empty cell is that of the base.",
+      {"variation"},
+      {}};
   table.head.insert(table.head.end(), columns.begin(), columns.end());
   for (const std::string& variation : variations) {
     std::vector<results::TableCell> row{results::word(variation.empty() ? "base" : variation)};
@@ -65,7 +66,8 @@ Table table_of(const StudyResults& results, const std::string& world,
 }  // namespace
 
 std::vector<Table> sweep_tables(const StudyResults& results) {
-  const auto variations = distinct(results.rows, [](const RunRecord& run) { return run.variation; });
+  const auto variations =
+      distinct(results.rows, [](const RunRecord& run) { return run.variation; });
   std::vector<Table> tables;
   if (variations.size() < 2) return tables;
   const auto columns = distinct(results.rows, column_of);

@@ -52,9 +52,17 @@ KnownRow row_of(const std::map<std::string, std::string>& cells, const std::stri
     if (text(column).empty()) return std::nullopt;
     return dataset::finite_number(text(column), place + ": " + column);
   };
-  KnownRow row{text("run"),    text("key"),    text("algorithm"), text("preset"),
-               text("sensor"), text("status"), text("reason"),    {},
-               {},             {},             {},
+  KnownRow row{text("run"),
+               text("key"),
+               text("algorithm"),
+               text("preset"),
+               text("sensor"),
+               text("status"),
+               text("reason"),
+               {},
+               {},
+               {},
+               {},
                {}};
   value_from_json(Json(text("own_map")), row.own_map, place);
   row.coverage_percent = value("coverage_percent");

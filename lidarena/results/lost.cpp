@@ -35,7 +35,8 @@ std::string lost_by_figures(const Run& run) {
 }  // namespace
 
 std::string lost_reason(const RunMetrics& metrics) {
-  if (!metrics.is_ok() && metrics.ended_at_s) return ended_text(*metrics.ended_at_s, metrics.reason);
+  if (!metrics.is_ok() && metrics.ended_at_s)
+    return ended_text(*metrics.ended_at_s, metrics.reason);
   if (!metrics.is_ok()) return metrics.status_and_reason();
   return lost_by_figures(metrics);
 }

@@ -247,8 +247,9 @@ std::string results_csv(const StudyResults& results) {
     if (!varied.empty()) row.push_back(word(r.variation));
     for (const std::string& key : varied) {
       const Json value = r.varied.value(key, Json());
-      row.push_back(word(value.is_null() ? "" : value.is_string() ? value.get<std::string>()
-                                                                  : value.dump()));
+      row.push_back(word(value.is_null()     ? ""
+                         : value.is_string() ? value.get<std::string>()
+                                             : value.dump()));
     }
     if (has_keys) {
       row.push_back(word(r.manifest ? value_to_json(r.manifest->own_map).get<std::string>() : ""));

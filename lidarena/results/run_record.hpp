@@ -27,8 +27,8 @@ struct RunRecord {
   std::string name;  ///< name of the run's folder
   std::filesystem::path folder;
   std::string world, flight, sensor, algorithm, preset;
-  std::string mode;  ///< timing mode of the sensors if the study sets one: "rolling", ...
-  std::string variation;             ///< what differs from the base of the study; empty: nothing
+  std::string mode;       ///< timing mode of the sensors if the study sets one: "rolling", ...
+  std::string variation;  ///< what differs from the base of the study; empty: nothing
   Json varied = Json::object();      ///< each key that the study varies, with its value in this run
   std::vector<std::string> differs;  ///< those whose value is not that of the base, or a set's name
   std::uint64_t seed = 0;

@@ -17,8 +17,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kLoopStep = 2.0;       // m
-constexpr double kLoopHeight = 1.8;     // m above the highest ground within kLoopStep
+constexpr double kLoopStep = 2.0;        // m
+constexpr double kLoopHeight = 1.8;      // m above the highest ground within kLoopStep
 constexpr double kTrunkClearance = 1.2;  // m, from the route to a trunk's surface, on the ground
 constexpr double kLowClearance = 0.6;    // m, from the route to low things, in plan
 constexpr double kBetweenTrees = 1.4;    // m

@@ -268,8 +268,8 @@ std::vector<std::filesystem::path> sensor_files(const std::filesystem::path& fil
 /// Reads a sensor file, as in configs/sensors, over its base if it names one (see sensor_files()).
 /// The name is never that of the base. A beam table is read into `beam_table`, and the
 /// `pattern_file` of a livox_csv is made absolute, so that the configuration does not depend on
-/// where its file is. `set`: "key=value", applied last. Throws InputError naming file, line and key if a key is unknown, a value is
-/// out of range, or the values contradict each other.
+/// where its file is. `set`: "key=value", applied last. Throws InputError naming file, line and key
+/// if a key is unknown, a value is out of range, or the values contradict each other.
 SensorConfig load_sensor(const std::filesystem::path& file,
                          const std::filesystem::path& shipped = {},
                          const std::vector<std::string>& set = {});

@@ -176,8 +176,15 @@ CheckReport check_recording(const CheckRequest& request, const Parallel& paralle
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
   evaluation::RecordingCheck check;
   Watched events(*dataset.events, lidar->id, imu == nullptr ? "" : imu->id, check);
-  CheckReport report{request.recording.string(), lidar->id, imu == nullptr ? "" : imu->id,
-                     0.0, {}, {}, {}, {}, dataset.topics};
+  CheckReport report{request.recording.string(),
+                     lidar->id,
+                     imu == nullptr ? "" : imu->id,
+                     0.0,
+                     {},
+                     {},
+                     {},
+                     {},
+                     dataset.topics};
   std::vector<Finding>& found = report.findings;
   Trajectory trajectory;
   if (request.motion) {

@@ -363,9 +363,8 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   options.noise = request.noise;
 
   // The flight is checked before anything is written.
-  const auto scene =
-      make_scene(std::move(model), request.flight, std::move(sensors), options, scene_seed,
-                 set.flight, log);
+  const auto scene = make_scene(std::move(model), request.flight, std::move(sensors), options,
+                                scene_seed, set.flight, log);
   if (request.seconds > 0 && options.duration > scene->flight->duration()) {
     log.warn(fmt::format("the flight ends after {:.1f} s; {:.1f} s were requested",
                          to_seconds(scene->flight->duration()), request.seconds));

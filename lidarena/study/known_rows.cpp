@@ -32,8 +32,7 @@ void write_run(const Task& task, const results::KnownRow& row) {
 
 KnownRows take_known_rows(const StudyPlan& plan, const fs::path& out, const fs::path& csv) {
   std::map<std::string, results::KnownRow> rows;
-  for (results::KnownRow& row : results::read_known_rows(csv))
-    rows[row.name] = std::move(row);
+  for (results::KnownRow& row : results::read_known_rows(csv)) rows[row.name] = std::move(row);
   const Tasks tasks(plan, out);
   KnownRows known;
   for (const PlanUnit& unit : plan.units) {

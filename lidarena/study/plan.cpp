@@ -97,12 +97,11 @@ std::vector<PlanUnit> units_of_cells(const StudyPlan& plan, const stages::Config
     const PlannedRun& cell = plan.cells[i];
     const auto [place, is_new] = places.emplace(cell.dataset, units.size());
     if (is_new) {
-      const auto [bytes, is_unknown] = data.try_emplace({cell.recording + cell.flight, cell.seconds}, 0U);
+      const auto [bytes, is_unknown] =
+          data.try_emplace({cell.recording + cell.flight, cell.seconds}, 0U);
       if (is_unknown) bytes->second = data_bytes(plan.spec, cell, configs);
-      units.push_back({.dataset = cell.dataset,
-                       .cells = {},
-                       .data_bytes = bytes->second,
-                       .flight = {}});
+      units.push_back(
+          {.dataset = cell.dataset, .cells = {}, .data_bytes = bytes->second, .flight = {}});
     }
     units[place->second].cells.push_back(i);
     units[place->second].seconds += plan.seconds[i];

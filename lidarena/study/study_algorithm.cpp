@@ -33,8 +33,8 @@ std::vector<StudyAlgorithm> split_by_values(const StudyAlgorithm& method) {
     for (const Json& single : value) {
       StudyAlgorithm one = method;
       one.set[key] = single;
-      one.as = (method.as.empty() ? parse_algorithm(method.name).algorithm : method.as) + "-" + key +
-               "=" + text_of_value(single);
+      one.as = (method.as.empty() ? parse_algorithm(method.name).algorithm : method.as) + "-" +
+               key + "=" + text_of_value(single);
       std::ranges::move(split_by_values(one), std::back_inserter(methods));
     }
     return methods;

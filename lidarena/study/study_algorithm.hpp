@@ -27,7 +27,8 @@ struct StudyAlgorithm {
     v("name", self.name, "", "NAME or NAME:PRESET, or an external program's name");
     v("as", self.as, "", "its name in the results; needed if the method is flown several times");
     v("set", self.set, "",
-      "KEY: VALUE of its settings; a list where one value is expected makes a method of each value");
+      "KEY: VALUE of its settings; a list where one value is expected makes a method of each "
+      "value");
     v("parts", self.parts, "", "scans in which each sweep is handed over, as run --parts",
       between(1, 100));
   }

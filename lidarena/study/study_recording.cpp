@@ -24,9 +24,9 @@ std::string absolute(const StudyRecording& recording, const char* key, const std
   if (path.empty())
     throw InputError(place, std::string("has no ") + key, std::string("add ") + key + ": FILE");
   if (!fs::exists(path))
-    throw InputError(place, std::string(key) + ": " + path + " does not exist",
-                     recording.source.empty() ? "check the path"
-                                              : "it can be had from " + recording.source);
+    throw InputError(
+        place, std::string(key) + ": " + path + " does not exist",
+        recording.source.empty() ? "check the path" : "it can be had from " + recording.source);
   return fs::absolute(path).lexically_normal().string();
 }
 

@@ -130,8 +130,8 @@ results::CellFilter names_of(const StudySpec& spec) {
 
 double shots_per_second(const std::string& sensor, const stages::ConfigFolder& configs,
                         const std::vector<std::string>& set = {}) {
-  const auto pattern = sensor::make_pattern(sensor::load_sensor(
-      configs.resolve("sensors", sensor), configs.root() / "sensors", set));
+  const auto pattern = sensor::make_pattern(
+      sensor::load_sensor(configs.resolve("sensors", sensor), configs.root() / "sensors", set));
   return static_cast<double>(pattern->beams_per_scan()) / to_seconds(pattern->period());
 }
 
@@ -268,8 +268,8 @@ CellEstimate estimate(const StudySpec& spec, const PlannedRun& cell,
     return {kSecondsOfRun + kSecondsOfShot * shots, kMegabytesOfRun, kMapMegabytesOfShot * shots};
   }
   const double seconds = expected_seconds(cell, configs);
-  const double shots = seconds * shots_per_second(cell.sensor, configs,
-                                                  settings_of(cell, configs).sensors.front());
+  const double shots =
+      seconds * shots_per_second(cell.sensor, configs, settings_of(cell, configs).sensors.front());
   if (!stages::scores_maps(spec.score))
     return {kSecondsOfTrack + kSecondsOfTrackSecond * seconds + kSecondsOfTrackedShot * shots,
             kMegabytesOfTrackSecond * seconds, 0.0};

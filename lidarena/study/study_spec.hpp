@@ -100,12 +100,14 @@ struct StudySpec {
     v("scenes", self.scenes, "", "worlds and the flights through them");
     v("recordings", self.recordings, "", "recordings with their true trajectories");
     v("sensors", self.sensors, "", "names in configs/sensors, or files");
-    v("algorithms", self.algorithms, "", "NAME or NAME:PRESET, an external program's name, or a map");
+    v("algorithms", self.algorithms, "",
+      "NAME or NAME:PRESET, an external program's name, or a map");
     v("seeds", self.seeds, "", "seeds of the noise");
     v("new_scenes", self.new_scenes, "",
       "each seed also has its own world (of a generated one), route and gusts");
     v("vary", self.vary, "",
-      "KIND.KEY: [VALUE, ...] where KIND is world, flight, sensor, imu, algorithm, or the name of a "
+      "KIND.KEY: [VALUE, ...] where KIND is world, flight, sensor, imu, algorithm, or the name of "
+      "a "
       "sensor or method of the study");
     v("vary_as", self.vary_as, "",
       "each: each value alone; grid: all combinations of the values; the base is always flown");
@@ -125,16 +127,16 @@ struct PlannedRun {
   std::string name;     ///< folder below runs/
   std::string dataset;  ///< folder below datasets/
   std::string world, flight, sensor, algorithm, preset;
-  std::string as;                        ///< name of the method in the results; empty: algorithm
-  Json settings = Json::object();        ///< of the method, over its preset
-  int parts = 1;                         ///< scans in which each sweep is handed over
-  std::vector<std::string> set;          ///< "KIND.key=value" of the flight, over its files
-  std::string variation;                 ///< what differs from the base, in words; empty: nothing
-  Json varied = Json::object();          ///< each key that the study varies, with its value here
+  std::string as;                  ///< name of the method in the results; empty: algorithm
+  Json settings = Json::object();  ///< of the method, over its preset
+  int parts = 1;                   ///< scans in which each sweep is handed over
+  std::vector<std::string> set;    ///< "KIND.key=value" of the flight, over its files
+  std::string variation;           ///< what differs from the base, in words; empty: nothing
+  Json varied = Json::object();    ///< each key that the study varies, with its value here
   /// Keys of `varied` whose value is not that of the base; of a named set, its name.
   std::vector<std::string> differs;
-  std::string method_part;               ///< of the name: settings of the method
-  std::string recording;                 ///< name of the recording; empty: the flight is simulated
+  std::string method_part;  ///< of the name: settings of the method
+  std::string recording;    ///< name of the recording; empty: the flight is simulated
   std::uint64_t seed = 1;
   double seconds = 0.0;                  ///< of flight, 0 = all of it
   bool allow_missing = false;            ///< parts of the world
@@ -179,10 +181,10 @@ const stages::ExternalProgram* find_external(const StudySpec& spec, const std::s
 /// base has a base.
 StudySpec load_study(const std::filesystem::path& file);
 
-/// All cells, in the order of scenes, seeds, modes, variations, sensors, algorithms. A cell in which
-/// no setting of a variation changes anything is that of the base, planned once. Throws InputError
-/// if the study is incomplete or contradictory, a name in it does not exist, or a key or value of a
-/// variation is not allowed.
+/// All cells, in the order of scenes, seeds, modes, variations, sensors, algorithms. A cell in
+/// which no setting of a variation changes anything is that of the base, planned once. Throws
+/// InputError if the study is incomplete or contradictory, a name in it does not exist, or a key or
+/// value of a variation is not allowed.
 std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::ConfigFolder& configs);
 
 /// The published figures that a study names: a file, or a name in configs/studies. Columns world,
@@ -198,8 +200,8 @@ struct Shard {
 };
 /// From "K/N"; throws InputError otherwise.
 Shard parse_shard(const std::string& text);
-/// Expected cost of a cell, from the length of its flight and its sensor's shots per second, or from
-/// the size of its recording.
+/// Expected cost of a cell, from the length of its flight and its sensor's shots per second, or
+/// from the size of its recording.
 struct CellEstimate {
   double seconds = 0.0;    ///< on two cores; algorithms differ by a factor of 3
   double record_mb = 0.0;  ///< trajectories, metrics, its share of the flight

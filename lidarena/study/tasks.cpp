@@ -189,16 +189,15 @@ Task Tasks::run(const PlanUnit& unit, std::size_t index) const {
   Json score_key = code_.of("scorer");
   const bool scores_maps = stages::scores_maps(plan_.spec.score);
   if (!scores_maps) score_key["parts"] = "trajectory";
-  task.steps.push_back({"score", score_key, task.folder / "metrics.json",
-                        [folder = task.folder.string(), scores_maps,
-                         recording = recording_of(plan_.spec, cell)] {
-                          std::vector<std::string> call{"evaluate", folder};
-                          if (!scores_maps) call.insert(call.end(), {"--score", "trajectory"});
-                          if (recording != nullptr)
-                            std::ranges::move(truth_arguments_of(*recording),
-                                              std::back_inserter(call));
-                          return call;
-                        }});
+  task.steps.push_back(
+      {"score", score_key, task.folder / "metrics.json",
+       [folder = task.folder.string(), scores_maps, recording = recording_of(plan_.spec, cell)] {
+         std::vector<std::string> call{"evaluate", folder};
+         if (!scores_maps) call.insert(call.end(), {"--score", "trajectory"});
+         if (recording != nullptr)
+           std::ranges::move(truth_arguments_of(*recording), std::back_inserter(call));
+         return call;
+       }});
   return task;
 }
 

@@ -44,8 +44,8 @@ std::string name_part(const std::string& name, const std::vector<std::string>& s
   std::ranges::replace_if(
       part,
       [](unsigned char c) {
-        return std::isalnum(c) == 0 && std::string_view("._-+=,").find(static_cast<char>(c)) ==
-                                           std::string_view::npos;
+        return std::isalnum(c) == 0 &&
+               std::string_view("._-+=,").find(static_cast<char>(c)) == std::string_view::npos;
       },
       '_');
   return "-" + part;
@@ -76,7 +76,8 @@ std::vector<Variation> grid_of(const Json& vary) {
 
 std::vector<Variation> variations_of(const StudySpec& spec) {
   if (!spec.vary.is_object())
-    throw InputError("study: vary", "is not a map", "write vary: {sensor.range_noise_m: [0, 0.01]}");
+    throw InputError("study: vary", "is not a map",
+                     "write vary: {sensor.range_noise_m: [0, 0.01]}");
   std::vector<Variation> all(1);
   if (spec.vary_as == VaryAs::kGrid && !spec.vary.empty()) {
     std::ranges::move(grid_of(spec.vary), std::back_inserter(all));
@@ -110,9 +111,10 @@ bool CellSettings::applies_to(const PlannedRun& base, const std::string& kind) c
   if (std::ranges::find(known, kind) == known.end()) {
     const std::string nearest = nearest_word(kind, known);
     throw InputError("study: vary: " + kind, "is not what a study can vary",
-                     nearest.empty() ? "a key begins with world, flight, sensor, imu, algorithm, or "
-                                       "the name of a sensor or method of the study"
-                                     : "did you mean '" + nearest + "'?");
+                     nearest.empty()
+                         ? "a key begins with world, flight, sensor, imu, algorithm, or "
+                           "the name of a sensor or method of the study"
+                         : "did you mean '" + nearest + "'?");
   }
   return kind == fs::path(base.sensor).stem() || kind == base.label();
 }
@@ -160,8 +162,7 @@ const Json& CellSettings::configuration(const PlannedRun& base, const std::strin
 bool CellSettings::changes(const PlannedRun& base, const std::string& key, const Json& value) {
   const std::string kind = kind_of(key);
   const Json& before = configuration(base, kind, "");
-  const Json& after =
-      configuration(base, kind, stages::assignment_of(key_in(kind, key), value));
+  const Json& after = configuration(base, kind, stages::assignment_of(key_in(kind, key), value));
   return before != after || (kind == "world" && value_at(before, "vary") == true);
 }
 

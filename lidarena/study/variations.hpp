@@ -33,8 +33,8 @@ class CellSettings {
 
   /// The base cell with the settings of the variation that change it: `set` those of its flight,
   /// `settings` those of its method. Its `varied` has each key that the study varies (not those
-  /// of named sets), with the value that holds in this cell. Throws InputError for an unknown KIND or key, and for a value
-  /// out of range.
+  /// of named sets), with the value that holds in this cell. Throws InputError for an unknown KIND
+  /// or key, and for a value out of range.
   PlannedRun varied(const PlannedRun& base, const Variation& variation,
                     const std::vector<Variation>& all);
 

@@ -18,7 +18,8 @@ class ModelFolders {
 
   /// The file or folder that `uri` refers to: model://NAME/..., package://NAME/..., file://PATH or
   /// a plain path. Relative file:// and plain paths are searched in `base` first. Empty when there
-  /// is no such file or folder. Escapes (my%20house) are resolved where no file has them in its name.
+  /// is no such file or folder. Escapes (my%20house) are resolved where no file has them in its
+  /// name.
   std::optional<std::filesystem::path> find(const std::string& uri,
                                             const std::filesystem::path& base) const;
 

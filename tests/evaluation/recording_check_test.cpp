@@ -179,7 +179,8 @@ TEST(AlignImu, ALateClockIsMeasuredWithItsSign) {
     const auto alignment = align_imu(trajectory_of(20.0), samples_of(20.0, late_s));
     ASSERT_TRUE(alignment.has_value());
     EXPECT_NEAR(alignment->late_s, late_s, 2e-3);
-    EXPECT_THAT(keys_of(problems_of(check_alignment(*alignment, {}, {}))), testing::ElementsAre("imu_delay"));
+    EXPECT_THAT(keys_of(problems_of(check_alignment(*alignment, {}, {}))),
+                testing::ElementsAre("imu_delay"));
   }
 }
 
@@ -219,7 +220,8 @@ TEST(AlignImu, AnImuOfAnotherBodyDisagrees) {
   }
   const auto alignment = align_imu(trajectory_of(20.0), samples);
   ASSERT_TRUE(alignment.has_value());
-  EXPECT_THAT(keys_of(problems_of(check_alignment(*alignment, {}, {}))), testing::ElementsAre("imu_disagrees"));
+  EXPECT_THAT(keys_of(problems_of(check_alignment(*alignment, {}, {}))),
+              testing::ElementsAre("imu_disagrees"));
 }
 
 }  // namespace

@@ -58,8 +58,7 @@ TEST(Spectrum, ALineIsFoundAtItsFrequencyWithItsRms) {
 }
 
 TEST(Spectrum, ASteadyValueAndAShortRecordingHaveNone) {
-  const Spectrum still =
-      spectrum_of(sampled(20.0, [](double) { return 9.81; }), &ImuSample::accel);
+  const Spectrum still = spectrum_of(sampled(20.0, [](double) { return 9.81; }), &ImuSample::accel);
   EXPECT_NEAR(variance_of(still), 0.0, 1e-12) << "a mean is no vibration";
   EXPECT_TRUE(spectrum_of(sampled(2.0, [](double) { return 1.0; }), &ImuSample::accel).empty());
 }

@@ -75,9 +75,8 @@ TEST(CheckRecording, LateStampsAreFoundToAMillisecond) {
 
 TEST(CheckRecording, AClockThatDriftsIsFound) {
   // 1,000 ppm over 20 s: the halves lie 10 ms apart.
-  const auto found =
-      findings_of("house_aggressive", "livox_mid360",
-                  {"sensor.noise.clock={drift: 0.001, imu_shares: false}"}, 20.0);
+  const auto found = findings_of("house_aggressive", "livox_mid360",
+                                 {"sensor.noise.clock={drift: 0.001, imu_shares: false}"}, 20.0);
   ASSERT_THAT(keys_of(found), Contains("clock_drift"));
   EXPECT_NEAR(finding(found, "clock_drift").value, -0.01, 0.002);
 }
@@ -88,7 +87,8 @@ TEST(CheckRecording, AnImuThatClipsIsFoundAndOnePeakIsNot) {
   EXPECT_NEAR(finding(found, "imu_saturated").value, 3.0, 1e-9);
   const auto rounded = findings_of("house_aggressive", "livox_mid360",
                                    {"imu.gyro_resolution=0.05", "imu.accel_resolution=0.2"});
-  EXPECT_THAT(keys_of(rounded), ::testing::Not(Contains("imu_saturated"))) << "coarse steps have flat peaks";
+  EXPECT_THAT(keys_of(rounded), ::testing::Not(Contains("imu_saturated")))
+      << "coarse steps have flat peaks";
 }
 
 TEST(CheckRecording, AStartInMotionIsFound) {
@@ -107,8 +107,8 @@ TEST(CheckRecording, StampsThatJitterAreFound) {
 }
 
 TEST(CheckRecording, ASlowImuAndABiasAreFound) {
-  const auto found = findings_of("house", "livox_mid360",
-                                 {"imu.rate_hz=50", "imu.gyro_turn_on_bias=0.1"});
+  const auto found =
+      findings_of("house", "livox_mid360", {"imu.rate_hz=50", "imu.gyro_turn_on_bias=0.1"});
   EXPECT_THAT(keys_of(found), Contains("imu_rate"));
   EXPECT_THAT(keys_of(found), Contains("gyro_bias"));
 }

@@ -120,14 +120,13 @@ TEST(SplitSweeps, RefusesSweepsWithoutTimes) {
 }
 
 TEST(SceneSettings, AreSplitByWhatTheyAreOf) {
-  const SceneSettings settings = scene_settings(
-      {"world.house.detail=2", "flight.style=brisk", "sensor.max_range_m=9", "imu.rate_hz=100",
-       "b.range_noise_m=0.1"},
-      {"sensors/a.yaml", "b.yaml"});
+  const SceneSettings settings =
+      scene_settings({"world.house.detail=2", "flight.style=brisk", "sensor.max_range_m=9",
+                      "imu.rate_hz=100", "b.range_noise_m=0.1"},
+                     {"sensors/a.yaml", "b.yaml"});
   EXPECT_EQ(settings.world, std::vector<std::string>{"house.detail=2"});
   EXPECT_EQ(settings.flight, std::vector<std::string>{"style=brisk"});
-  EXPECT_EQ(settings.sensors[0],
-            (std::vector<std::string>{"max_range_m=9", "imu.rate_hz=100"}));
+  EXPECT_EQ(settings.sensors[0], (std::vector<std::string>{"max_range_m=9", "imu.rate_hz=100"}));
   EXPECT_EQ(settings.sensors[1],
             (std::vector<std::string>{"max_range_m=9", "imu.rate_hz=100", "range_noise_m=0.1"}));
   for (const char* wrong : {"house.detail=2", "max_range_m=2", "sensor=2", "c.max_range_m=3"})

@@ -56,15 +56,14 @@ TEST(Variations, EachValueIsACellAndTheValueOfTheBaseIsTheBase) {
   // The Mid-360's own range noise is 0.02 m.
   const auto cells =
       planned_cells(spec_of("vary: {sensor.range_noise_m: [0, 0.01, 0.02, 0.04]}"), configs());
-  EXPECT_THAT(variations(cells), ElementsAre("", "sensor.range_noise_m=0",
-                                             "sensor.range_noise_m=0.01",
-                                             "sensor.range_noise_m=0.04"));
+  EXPECT_THAT(variations(cells),
+              ElementsAre("", "sensor.range_noise_m=0", "sensor.range_noise_m=0.01",
+                          "sensor.range_noise_m=0.04"));
   EXPECT_EQ(cells[0].varied["sensor.range_noise_m"], 0.02);
   EXPECT_THAT(cells[0].set, IsEmpty());
   EXPECT_EQ(cells[3].varied["sensor.range_noise_m"], 0.04);
   EXPECT_THAT(cells[3].set, ElementsAre("sensor.range_noise_m=0.04"));
-  EXPECT_EQ(cells[3].name,
-            "house-house-s1-sensor.range_noise_m=0.04-livox_mid360-kiss_icp-indoor");
+  EXPECT_EQ(cells[3].name, "house-house-s1-sensor.range_noise_m=0.04-livox_mid360-kiss_icp-indoor");
   EXPECT_EQ(cells[3].dataset, "house-house-s1-sensor.range_noise_m=0.04");
 }
 
@@ -108,10 +107,10 @@ TEST(Variations, OfOneSensorAreThoseOfItsCellsAlone) {
 }
 
 TEST(Variations, NamedSetsAreFlownBesideTheBase) {
-  const auto cells = planned_cells(
-      spec_of("sets: [{name: blind, set: {sensor.max_range_m: 5, imu.rate_hz: 100}}, "
-              "{name: as it is, set: {sensor.range_noise_m: 0.02}}]"),
-      configs());
+  const auto cells =
+      planned_cells(spec_of("sets: [{name: blind, set: {sensor.max_range_m: 5, imu.rate_hz: 100}}, "
+                            "{name: as it is, set: {sensor.range_noise_m: 0.02}}]"),
+                    configs());
   EXPECT_THAT(variations(cells), ElementsAre("", "blind"));
   EXPECT_THAT(cells[1].set, ElementsAre("sensor.max_range_m=5", "imu.rate_hz=100"));
 }
@@ -143,10 +142,10 @@ TEST(Variations, MistakesAreNamedBeforeAnythingRuns) {
 }
 
 TEST(StudyAlgorithm, HasSettingsAndANameOfItsOwn) {
-  const auto cells = planned_cells(
-      spec_of("algorithms: [kiss_icp, {name: kiss_icp, as: kiss_fine, parts: 2, set: "
-              "{voxel_size_m: [0.2, 0.3], max_range_m: 30}}]"),
-      configs());
+  const auto cells =
+      planned_cells(spec_of("algorithms: [kiss_icp, {name: kiss_icp, as: kiss_fine, parts: 2, set: "
+                            "{voxel_size_m: [0.2, 0.3], max_range_m: 30}}]"),
+                    configs());
   ASSERT_EQ(cells.size(), 3U);
   EXPECT_EQ(cells[0].label(), "kiss_icp");
   EXPECT_EQ(cells[1].label(), "kiss_fine-voxel_size_m=0.2");
@@ -163,8 +162,8 @@ std::map<std::string, std::string> tables_of(const std::filesystem::path& study)
   files["results.csv"] = dataset::read_bytes(study / "results.csv");
   for (const auto& entry : std::filesystem::directory_iterator(study / "tables")) {
     const std::string name = entry.path().filename().string();
-    const bool is_of_flights = name.starts_with("sensors") || name.starts_with("commands") ||
-                               name.starts_with("decision");
+    const bool is_of_flights =
+        name.starts_with("sensors") || name.starts_with("commands") || name.starts_with("decision");
     if (!is_of_flights) files[name] = dataset::read_bytes(entry.path());
   }
   return files;
@@ -222,17 +221,18 @@ TEST(Recordings, AreScoredAgainstTheirOwnTruth) {
   ASSERT_EQ(run_study(spec_of(""), configs(), scratch.path() / "flown", options, log).runs, 1U);
   stages::Command simulate;
   const std::filesystem::path data = scratch.path() / "data";
-  simulate.arguments = {LIDARENA_BINARY, "simulate", "--world", "house", "--flight", "house",
-                        "--seconds", "1", "--sensor", "livox_mid360", "--configs",
-                        kConfigs.string(), "--out", data.string()};
+  simulate.arguments = {LIDARENA_BINARY, "simulate",        "--world", "house",      "--flight",
+                        "house",         "--seconds",       "1",       "--sensor",   "livox_mid360",
+                        "--configs",     kConfigs.string(), "--out",   data.string()};
   ASSERT_EQ(stages::answer_of(simulate).end.exit_code, 0);
   StudySpec spec;
-  read_config(ConfigNode::parse("recordings: [{name: mine, file: '" + (data / "data.mcap").string() +
-                                    "', truth: '" + (data / "truth.tum").string() +
-                                    "'}]\nalgorithms: [kiss_icp]\n"
-                                    "vary: {kiss_icp.voxel_size_m: [0.3], sensor.max_range_m: [5]}",
-                                "study"),
-              spec);
+  read_config(
+      ConfigNode::parse("recordings: [{name: mine, file: '" + (data / "data.mcap").string() +
+                            "', truth: '" + (data / "truth.tum").string() +
+                            "'}]\nalgorithms: [kiss_icp]\n"
+                            "vary: {kiss_icp.voxel_size_m: [0.3], sensor.max_range_m: [5]}",
+                        "study"),
+      spec);
   const auto out = scratch.path() / "out";
   const StudyOutcome outcome = run_study(spec, configs(), out, options, log);
   EXPECT_EQ(outcome.runs, 2U) << "the base and the other voxels; a sensor cannot be changed";
@@ -290,9 +290,10 @@ TEST(VariedSimulation, WhatIsNotVariedKeepsItsNoiseToTheByte) {
   const auto fly = [&](const std::string& name, std::vector<std::string> more) {
     stages::Command simulate;
     const std::filesystem::path out = scratch.path() / name;
-    simulate.arguments = {LIDARENA_BINARY, "simulate", "--world", "house", "--flight", "house",
-                          "--seconds", "0.5", "--sensor", "livox_mid360", "--sensor",
-                          "ouster_os0_32", "--configs", kConfigs.string(), "--out", out.string()};
+    simulate.arguments = {LIDARENA_BINARY, "simulate",        "--world",   "house",
+                          "--flight",      "house",           "--seconds", "0.5",
+                          "--sensor",      "livox_mid360",    "--sensor",  "ouster_os0_32",
+                          "--configs",     kConfigs.string(), "--out",     out.string()};
     simulate.arguments.insert(simulate.arguments.end(), more.begin(), more.end());
     EXPECT_EQ(stages::answer_of(simulate).end.exit_code, 0) << name;
     return dataset::open_dataset(out);

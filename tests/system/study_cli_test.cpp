@@ -161,8 +161,7 @@ TEST_F(Cli, ASweepOfThreeLinesIsFlownAndMistakesInItAreNamedBefore) {
   EXPECT_EQ(flown.exit_code, 0) << flown.err;
   EXPECT_THAT(flown.out, AllOf(HasSubstr("sensor.range_noise_m=0 "),
                                HasSubstr("sensor.range_noise_m=0.05"), HasSubstr("3 runs")));
-  EXPECT_TRUE(std::filesystem::exists(
-      folder_.path() / "noise/tables/sweep-cpu_load-house.csv"));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "noise/tables/sweep-cpu_load-house.csv"));
 }
 
 TEST_F(Cli, ARunInPartsOfItsSweepsAndScoredAgainstAGivenTruth) {
@@ -176,8 +175,8 @@ TEST_F(Cli, ARunInPartsOfItsSweepsAndScoredAgainstAGivenTruth) {
   const Outcome scored = call("evaluate halves --truth data/truth.tum --score trajectory --json");
   EXPECT_EQ(scored.exit_code, 0) << scored.err;
   EXPECT_EQ(json(scored)["final"]["association"]["estimates"], 40) << "20 scans in halves";
-  const Outcome lever =
-      call("evaluate halves --truth data/truth.tum --lever 1,0,0,0,0,0,1 --score trajectory --json");
+  const Outcome lever = call(
+      "evaluate halves --truth data/truth.tum --lever 1,0,0,0,0,0,1 --score trajectory --json");
   EXPECT_EQ(json(lever)["frames"]["lever"], "1,0,0,0,0,0,1");
   EXPECT_EQ(call("evaluate halves --lever 1,0,0,0,0,0,1").exit_code, 2);
   EXPECT_EQ(call("run theirs data --external none.yaml --parts 2 --out x").exit_code, 2);

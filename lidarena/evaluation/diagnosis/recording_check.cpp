@@ -205,11 +205,9 @@ void RecordingCheck::check_range(std::vector<Finding>& found) const {
           next = std::max(next, size);
         }
       }
-      const double low =
-          most - std::clamp(kSteps * (most - next), kBelow * most, kFarBelow * most);
-      const auto near = std::ranges::count_if(samples_, [&](const ImuSample& s) {
-        return std::abs((s.*q.member)[axis]) > low;
-      });
+      const double low = most - std::clamp(kSteps * (most - next), kBelow * most, kFarBelow * most);
+      const auto near = std::ranges::count_if(
+          samples_, [&](const ImuSample& s) { return std::abs((s.*q.member)[axis]) > low; });
       const std::size_t below = static_cast<std::size_t>(near) - at_limit.size();
       if (at_limit.size() < kOften || at_limit.size() < below) continue;
       found.push_back({Severity::kFault, "imu_saturated",

@@ -40,7 +40,7 @@ class RecordingCheck {
   void add(const ImuSample& sample);
 
   const std::vector<ImuSample>& samples() const { return samples_; }
-  const std::vector<Time>& sweeps() const { return scans_; }  ///< their stamps
+  const std::vector<Time>& sweeps() const { return scans_; }          ///< their stamps
   const std::vector<std::size_t>& points() const { return points_; }  ///< of each sweep
   /// Since the first measurement, s.
   double since_start(Time time) const;

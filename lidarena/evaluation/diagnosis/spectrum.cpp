@@ -67,8 +67,8 @@ Spectrum spectrum_of(std::span<const ImuSample> samples, Eigen::Vector3d ImuSamp
 }
 
 std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t most) {
-  constexpr double kHigh = 10.0;           // times the surroundings
-  constexpr double kLowest_hz = 5.0;       // below is the motion itself
+  constexpr double kHigh = 10.0;            // times the surroundings
+  constexpr double kLowest_hz = 5.0;        // below is the motion itself
   constexpr std::ptrdiff_t kHalfWidth = 3;  // bins of a peak: Hann's window widens a line
   std::vector<Peak> peaks;
   const auto count = static_cast<std::ptrdiff_t>(spectrum.density.size());
@@ -101,9 +101,8 @@ std::vector<Peak> peaks_of(const Spectrum& spectrum, std::size_t most) {
 double rise_to_nyquist(const Spectrum& spectrum) {
   const auto part = [&](double from, double to) {
     const auto size = static_cast<double>(spectrum.density.size());
-    return std::vector<double>(
-        spectrum.density.begin() + static_cast<std::ptrdiff_t>(from * size),
-        spectrum.density.begin() + static_cast<std::ptrdiff_t>(to * size));
+    return std::vector<double>(spectrum.density.begin() + static_cast<std::ptrdiff_t>(from * size),
+                               spectrum.density.begin() + static_cast<std::ptrdiff_t>(to * size));
   };
   if (spectrum.density.size() < 20) return 1.0;
   const std::vector<double> top = part(0.9, 1.0);
