@@ -27,6 +27,7 @@ set(sources
   dataset/messages/livox_message.cpp dataset/points/lzf.cpp dataset/mcap/mcap_info.cpp dataset/mcap/mcap_reader.cpp
   dataset/mcap/mcap_records.cpp dataset/mcap/mcap_writer.cpp dataset/md5.cpp dataset/messages/message_stream.cpp
   dataset/part_file.cpp dataset/points/pcd.cpp dataset/points/ply.cpp dataset/messages/point_cloud2.cpp
+  dataset/messages/point_times.cpp dataset/read_report.cpp dataset/recording_parts.cpp dataset/sqlite/db3_reader.cpp
   dataset/points/point_file_text.cpp dataset/points/point_table.cpp dataset/recording.cpp
   dataset/recording_source.cpp dataset/recording_store.cpp dataset/messages/ros_definitions.cpp
   dataset/messages/ros_messages.cpp dataset/mcap/rosbag2_metadata.cpp dataset/stream_merge.cpp
