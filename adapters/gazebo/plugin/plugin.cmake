@@ -32,7 +32,7 @@ set(sources
   dataset/recording_source.cpp dataset/recording_store.cpp dataset/messages/ros_definitions.cpp
   dataset/messages/ros_messages.cpp dataset/mcap/rosbag2_metadata.cpp dataset/stream_merge.cpp
   dataset/points/sweep_dataset.cpp dataset/points/sweep_file.cpp
-  dataset/points/sweep_store.cpp dataset/single_lidar.cpp dataset/text_file.cpp dataset/trajectories/trajectory_rows.cpp dataset/trajectories/tum.cpp)
+  dataset/points/sweep_store.cpp dataset/points/sweeps.cpp dataset/single_lidar.cpp dataset/text_file.cpp dataset/trajectories/trajectory_rows.cpp dataset/trajectories/tum.cpp)
 list(TRANSFORM sources PREPEND ${root}/lidarena/)
 set(plugin_sources mesh_shapes.cpp plugin_config.cpp recorder.cpp sensor_run.cpp topic_output.cpp)
 list(TRANSFORM plugin_sources PREPEND ${CMAKE_CURRENT_LIST_DIR}/)
