@@ -255,8 +255,8 @@ Shard parse_shard(const std::string& text) {
 
 CellEstimate estimate(const StudySpec& spec, const PlannedRun& cell,
                       const stages::ConfigFolder& configs) {
-  // Measured on flights of 20, 60 and 300 s; at 60 s, algorithms differ by a factor of about 3.
-  constexpr double kSecondsOfRun = 8.0, kSecondsOfFlightSecond = 0.4, kSecondsOfShot = 0.27e-6;
+  // Means of five methods on flights of 20 and 40 s; methods differ by a factor of about 2.
+  constexpr double kSecondsOfRun = 2.0, kSecondsOfFlightSecond = 0.22, kSecondsOfShot = 0.07e-6;
   constexpr double kMegabytesOfRun = 20.0;
   constexpr double kMapMegabytesOfFlightSecond = 1.0, kMapMegabytesOfShot = 1e-6;
   // Without maps.
