@@ -94,6 +94,19 @@ std::vector<std::string> sensors_beside(const Json& study, const Json& run) {
   return sensors;
 }
 
+/// With all digits, so that a row that is read again has the same figures.
+TableCell exact(std::optional<double> value) {
+  return word(value && std::isfinite(*value) ? fmt::format("{}", *value) : "");
+}
+
+/// The bounds of all shares of zero, by the figure's key.
+std::map<std::string, double> zero_bounds_of(const RunRecord& run) {
+  std::map<std::string, double> bounds;
+  for (const Figure& figure : figures())
+    if (const auto bound = zero_bound_of(run, figure)) bounds[figure.key] = *bound;
+  return bounds;
+}
+
 }  // namespace
 
 std::optional<double> value_of(const RunRecord& run, const Figure& figure) {
@@ -209,19 +222,6 @@ StudyResults merged(std::vector<StudyResults> parts) {
     }
   }
   return all;
-}
-
-/// With all digits, so that a row that is read again has the same figures.
-static TableCell exact(std::optional<double> value) {
-  return word(value && std::isfinite(*value) ? fmt::format("{}", *value) : "");
-}
-
-/// The bounds of all shares of zero, by the figure's key.
-static std::map<std::string, double> zero_bounds_of(const RunRecord& run) {
-  std::map<std::string, double> bounds;
-  for (const Figure& figure : figures())
-    if (const auto bound = zero_bound_of(run, figure)) bounds[figure.key] = *bound;
-  return bounds;
 }
 
 std::string results_csv(const StudyResults& results) {

@@ -96,11 +96,11 @@ struct ToldConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("lidar_from_imu", self.lidar_from_imu, "m, quaternion",
-      "mounting of the IMU as told, x y z qx qy qz qw; the LiDAR's mounting is told as it is");
-    v("noise_factor", self.noise_factor, "", "told noise densities of the IMU / true ones",
-      above(0));
-    v("bias_walk_factor", self.bias_walk_factor, "", "told random walks of the biases / true ones",
-      above(0));
+      "mounting of the IMU that methods get, x y z qx qy qz qw; they get the LiDAR's true one");
+    v("noise_factor", self.noise_factor, "",
+      "noise densities of the IMU that methods get / true ones", above(0));
+    v("bias_walk_factor", self.bias_walk_factor, "",
+      "random walks of the biases that methods get / true ones", above(0));
   }
 };
 

@@ -64,7 +64,7 @@ LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   return info;
 }
 
-/// The IMU as the methods are told about it, see ToldConfig.
+/// The description of the IMU that methods get, see ToldConfig.
 ImuInfo describe_imu(const SensorConfig& sensor, const std::string& id) {
   const ImuConfig& imu = *sensor.imu;
   const ToldConfig& told = sensor.told;

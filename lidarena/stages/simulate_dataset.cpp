@@ -53,8 +53,8 @@ struct Scene {
   }
 };
 
-/// Draws the world's people, and lets all that moves move. Drawn are they from the seed of the
-/// noise: the same building has others in each flight.
+/// Draws the world's people and adds all movers to the scene. The seed of the noise draws the
+/// people: the same building has others in each flight.
 void add_movers(Scene& scene, LogSink& log) {
   std::vector<world::MoverConfig>& movers = scene.model.movers;
   if (scene.model.people > 0) {

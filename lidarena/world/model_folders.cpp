@@ -9,20 +9,10 @@ namespace lidarena::world {
 
 namespace fs = std::filesystem;
 
-ModelFolders::ModelFolders(const fs::path& world_file, const std::vector<fs::path>& further) {
-  const fs::path here = fs::absolute(world_file).lexically_normal().parent_path();
-  folders_ = {here.parent_path() / "models", here / "models", here, here.parent_path()};
-  folders_.insert(folders_.end(), further.begin(), further.end());
-  if (const char* variable = std::getenv("GAZEBO_MODEL_PATH")) {
-    std::istringstream paths(variable);
-    for (std::string path; std::getline(paths, path, ':');) {
-      if (!path.empty()) folders_.emplace_back(path);
-    }
-  }
-}
+namespace {
 
 /// With each %20 and the like as the character that it stands for (RFC 3986, 2.1).
-static std::string without_escapes(const std::string& uri) {
+std::string without_escapes(const std::string& uri) {
   std::string text;
   for (std::size_t i = 0; i < uri.size(); ++i) {
     unsigned value = 0;
@@ -33,6 +23,20 @@ static std::string without_escapes(const std::string& uri) {
     if (is_escape) i += 2;
   }
   return text;
+}
+
+}  // namespace
+
+ModelFolders::ModelFolders(const fs::path& world_file, const std::vector<fs::path>& further) {
+  const fs::path here = fs::absolute(world_file).lexically_normal().parent_path();
+  folders_ = {here.parent_path() / "models", here / "models", here, here.parent_path()};
+  folders_.insert(folders_.end(), further.begin(), further.end());
+  if (const char* variable = std::getenv("GAZEBO_MODEL_PATH")) {
+    std::istringstream paths(variable);
+    for (std::string path; std::getline(paths, path, ':');) {
+      if (!path.empty()) folders_.emplace_back(path);
+    }
+  }
 }
 
 std::optional<fs::path> ModelFolders::find(const std::string& uri, const fs::path& base) const {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // The surface of a mesh that rays hit, and how much of it a map has.
 #include "lidarena/evaluation/map/completeness.hpp"
-#include "tests/evaluation/listed_sources.hpp"
+#include "tests/listed_sources.hpp"
 
 #include <gtest/gtest.h>
 #include "tests/evaluation/two_threads.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/evaluation/map/evaluate_map.hpp"
-#include "tests/evaluation/listed_sources.hpp"
+#include "tests/listed_sources.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/evaluation/map/reproject.hpp"
-#include "tests/evaluation/listed_sources.hpp"
+#include "tests/listed_sources.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <csignal>
 
 #include "lidarena/base/error.hpp"
-#include "tests/evaluation/listed_sources.hpp"
+#include "tests/listed_sources.hpp"
 #include "tests/temporary_folder.hpp"
 
 namespace lidarena::evaluation {

@@ -11,6 +11,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/stages/process_memory.hpp"
+#include "tests/listed_sources.hpp"
 #include "tests/odometry/synthetic_room.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -18,19 +19,6 @@ namespace lidarena::stages {
 namespace {
 
 namespace synthetic = odometry::synthetic;
-
-class ListSource : public EventSource {
- public:
-  explicit ListSource(std::vector<Event> events) : events_(std::move(events)) {}
-  std::optional<Event> next() override {
-    if (next_ == events_.size()) return std::nullopt;
-    return events_[next_++];
-  }
-
- private:
-  std::vector<Event> events_;
-  std::size_t next_ = 0;
-};
 
 class KeepingSink : public LogSink {
  public:
@@ -102,7 +90,7 @@ std::vector<Event> ten_scans() {
 
 TEST(Run, KeepsLiveAndFinalPosesTheMapTheStatusesAndTheResources) {
   Walker walker;
-  ListSource source(ten_scans());
+  listed::Events source(ten_scans());
   KeepingSink sink;
   const RunResult result = record_run(walker, source, {.scan_count = 10}, sink);
   EXPECT_TRUE(walker.finished);
@@ -141,7 +129,7 @@ class LeaningWalker final : public Walker {
 
 TEST(Run, TheFinalFilesAreLeveledOnceAndTheLiveOnesAreAsTheyWere) {
   LeaningWalker walker;
-  ListSource source(ten_scans());
+  listed::Events source(ten_scans());
   KeepingSink sink;
   const dataset::RunFiles files = record_run(walker, source, {}, sink).files;
   const Pose leveled = walker.leveled_from_world();
@@ -156,7 +144,7 @@ TEST(Run, AMapThatIsWrittenWhileScansComeIsTheOneOfTheMemory) {
   const TemporaryFolder folder;
   KeepingSink sink;
   LeaningWalker walker, again;
-  ListSource source(ten_scans()), source_again(ten_scans());
+  listed::Events source(ten_scans()), source_again(ten_scans());
   const auto in_memory = record_run(walker, source, {}, sink).files.map.points;
   const std::filesystem::path file = folder.path() / "map.ply";
   const auto files = record_run(again, source_again, {}, sink, {.file = file}).files;
@@ -167,7 +155,7 @@ TEST(Run, AMapThatIsWrittenWhileScansComeIsTheOneOfTheMemory) {
 
 TEST(Run, AMapThatIsNotWantedIsNotKept) {
   Walker walker;
-  ListSource source(ten_scans());
+  listed::Events source(ten_scans());
   KeepingSink sink;
   EXPECT_TRUE(record_run(walker, source, {}, sink, {.is_kept = false}).files.map.points.empty());
 }
@@ -175,7 +163,7 @@ TEST(Run, AMapThatIsNotWantedIsNotKept) {
 TEST(Run, AMethodThatDoesNotPublishScansIsAskedForItsMap) {
   Walker walker;
   walker.publishes = false;
-  ListSource source(ten_scans());
+  listed::Events source(ten_scans());
   LogSink sink;
   EXPECT_EQ(record_run(walker, source, {}, sink).files.map.points,
             (std::vector<Eigen::Vector3f>{{7, 7, 7}}));
@@ -183,7 +171,7 @@ TEST(Run, AMethodThatDoesNotPublishScansIsAskedForItsMap) {
 
 TEST(Run, TheMapKeepsTheFirstPointOfAVoxel) {
   Walker walker;
-  ListSource source(ten_scans());
+  listed::Events source(ten_scans());
   LogSink sink;
   const RunResult result = record_run(walker, source, {}, sink, {.voxel_size_m = 4.0});
   // x from 1 to 10 is in the cells 0 to 3, 4 to 7 and 8 to 11, at y = 0 and y = 5
@@ -196,7 +184,7 @@ TEST(Run, StopsWhereTheMethodDivergesAndKeepsWhatCameBefore) {
   for (const bool says_so : {true, false}) {
     Walker walker;
     (says_so ? walker.diverges_at : walker.not_finite_at) = 4;
-    ListSource source(ten_scans());
+    listed::Events source(ten_scans());
     KeepingSink sink;
     const RunResult result = record_run(walker, source, {}, sink);
     EXPECT_EQ(walker.scans, 4) << "no scans are fed after divergence";
@@ -227,11 +215,11 @@ TEST(Run, OtherSensorsAreLeftOutAndTheFirstImuIsTaken) {
   }
   LogSink sink;
   Walker first;
-  ListSource again(events);
+  listed::Events again(events);
   EXPECT_EQ(record_run(first, again, {.lidar_id = "a"}, sink).summary.scans, 5U);
   EXPECT_EQ(first.imu_samples, 5);
   Walker named;
-  ListSource once_more(events);
+  listed::Events once_more(events);
   record_run(named, once_more, {.lidar_id = "a", .imu_id = "imu2"}, sink);
   EXPECT_EQ(named.imu_samples, 10);
 }
@@ -241,7 +229,7 @@ TEST(Run, ScansOutOfOrderAreSkippedWithAWarning) {
   events.insert(events.begin() + 5, events[2]);
   events.insert(events.begin() + 5, events[4]);
   Walker walker;
-  ListSource source(events);
+  listed::Events source(events);
   KeepingSink sink;
   EXPECT_EQ(record_run(walker, source, {}, sink).summary.scans, 10U);
   EXPECT_EQ(sink.warnings.size(), 2U);
@@ -258,7 +246,7 @@ TEST(Run, APacedMethodThatIsLateLosesScansButNoImuSample) {
   LogSink sink;
   Walker late;
   late.seconds_per_scan = 5e-3;  // five scans arrive in that time
-  ListSource source(events);
+  listed::Events source(events);
   const RunResult result = record_run(late, source, {.paced = true}, sink);
   EXPECT_GE(result.summary.dropped, 12U);  // four each time
   EXPECT_EQ(result.summary.scans + result.summary.dropped, 20U);
@@ -268,13 +256,13 @@ TEST(Run, APacedMethodThatIsLateLosesScansButNoImuSample) {
 
   Walker unhurried;
   unhurried.seconds_per_scan = 5e-3;
-  ListSource again(events);
+  listed::Events again(events);
   EXPECT_EQ(record_run(unhurried, again, {}, sink).summary.scans, 20U);
 }
 
 TEST(Run, NothingGivesNothing) {
   Walker walker;
-  ListSource source({});
+  listed::Events source;
   LogSink sink;
   const RunResult result = record_run(walker, source, {}, sink);
   EXPECT_EQ(result.summary.scans, 0U);
@@ -283,7 +271,7 @@ TEST(Run, NothingGivesNothing) {
 
 TEST(Run, KissIcpIsDrivenFromARecording) {
   const synthetic::Recording recording{.seconds = 2.0};
-  ListSource source(synthetic::record(recording));
+  listed::Events source(synthetic::record(recording));
   LogSink sink;
   auto made = odometry::make_odometry({.algorithm = "kiss_icp"}, synthetic::rig_of(recording), "",
                                       Parallel(1));

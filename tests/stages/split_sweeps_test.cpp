@@ -8,24 +8,12 @@
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/stages/scene_settings.hpp"
+#include "tests/listed_sources.hpp"
 
 namespace lidarena::stages {
 namespace {
 
 using std::chrono::milliseconds;
-
-class Listed : public EventSource {
- public:
-  explicit Listed(std::vector<Event> events) : events_(std::move(events)) {}
-  std::optional<Event> next() override {
-    if (next_ == events_.size()) return std::nullopt;
-    return events_[next_++];
-  }
-
- private:
-  std::vector<Event> events_;
-  std::size_t next_ = 0;
-};
 
 Event imu(int ms) {
   ImuSample sample;
@@ -62,7 +50,7 @@ std::vector<Event> all_of(EventSource& source) {
 }
 
 TEST(SplitSweeps, LosesAndMovesNoPointAndNoSample) {
-  SplitSweeps source(std::make_unique<Listed>(recording()), "lidar", 3);
+  SplitSweeps source(std::make_unique<listed::Events>(recording()), "lidar", 3);
   std::vector<float> positions;
   std::size_t samples = 0, scans = 0;
   for (const Event& event : all_of(source)) {
@@ -85,7 +73,7 @@ TEST(SplitSweeps, LosesAndMovesNoPointAndNoSample) {
 }
 
 TEST(SplitSweeps, APartComesAfterTheSamplesThatSpanItAndBeforeLaterOnes) {
-  SplitSweeps source(std::make_unique<Listed>(recording()), "lidar", 2);
+  SplitSweeps source(std::make_unique<listed::Events>(recording()), "lidar", 2);
   Time last_imu{-1};
   std::vector<Time> seen;
   for (const Event& event : all_of(source)) {
@@ -105,7 +93,7 @@ TEST(SplitSweeps, APartComesAfterTheSamplesThatSpanItAndBeforeLaterOnes) {
 
 TEST(SplitSweeps, OtherSensorsEmptySweepsAndTheEndPassThrough) {
   std::vector<Event> events{imu(0), sweep(0, "other"), {"lidar", Scan{}}, imu(5)};
-  SplitSweeps source(std::make_unique<Listed>(events), "lidar", 2);
+  SplitSweeps source(std::make_unique<listed::Events>(events), "lidar", 2);
   const auto passed = all_of(source);
   ASSERT_EQ(passed.size(), 4U);
   EXPECT_EQ(passed[1].sensor_id, "other");
@@ -115,7 +103,7 @@ TEST(SplitSweeps, OtherSensorsEmptySweepsAndTheEndPassThrough) {
 TEST(SplitSweeps, RefusesSweepsWithoutTimes) {
   Event untimed = sweep(0);
   for (Point& point : std::get<Scan>(untimed.data).points) point.dt_ns = 0;
-  SplitSweeps source(std::make_unique<Listed>(std::vector<Event>{untimed}), "lidar", 2);
+  SplitSweeps source(std::make_unique<listed::Events>(std::vector<Event>{untimed}), "lidar", 2);
   EXPECT_THROW(source.next(), InputError);
 }
 

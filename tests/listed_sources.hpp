@@ -4,12 +4,13 @@
 #include <deque>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "lidarena/base/event.hpp"
 #include "lidarena/base/point_truth.hpp"
 
 /// Sources that return the items that a test has put into a list.
-namespace lidarena::evaluation::listed {
+namespace lidarena::listed {
 
 /// Removes and returns the first of `items`; empty when there is none.
 template <class Item>
@@ -28,8 +29,10 @@ class Truths : public ScanTruthSource {
 
 class Events : public EventSource {
  public:
+  Events() = default;
+  explicit Events(const std::vector<Event>& list) : events(list.begin(), list.end()) {}
   std::optional<Event> next() override { return take_first(events); }
   std::deque<Event> events;
 };
 
-}  // namespace lidarena::evaluation::listed
+}  // namespace lidarena::listed
