@@ -89,6 +89,9 @@ std::vector<Variation> variations_of(const StudySpec& spec) {
     if (set.name.empty() || set.name.find('/') != std::string::npos)
       throw InputError("study: sets", "a set has the name '" + set.name + "'",
                        "give each a name without '/', since a folder is named after it");
+    if (std::ranges::find(all, set.name, &Variation::name) != all.end())
+      throw InputError("study: sets", "two sets have the name '" + set.name + "'",
+                       "give each a name of its own, since tables tell them apart by it");
     if (!set.set.is_object())
       throw InputError("study: sets: " + set.name, "has no settings",
                        "write set: {sensor.range_noise_m: 0.01}");
@@ -120,9 +123,7 @@ bool CellSettings::applies_to(const PlannedRun& base, const std::string& kind) c
 }
 
 Json CellSettings::load(const PlannedRun& base, const std::string& kind,
-                        const std::string& assignment) const {
-  std::vector<std::string> set;
-  if (!assignment.empty()) set.push_back(assignment);
+                        const std::vector<std::string>& set) const {
   if (kind == "world") return scenes::world_config(configs_.resolve("worlds", base.world), set);
   if (kind == "flight")
     return to_json(flight::load_flight(configs_.resolve("flights", base.flight), set));
@@ -140,17 +141,19 @@ Json CellSettings::load(const PlannedRun& base, const std::string& kind,
   return odometry::configuration_of(request, rig.lidars.front());
 }
 
-/// The cell's configuration of this kind, with one setting over it if it is not empty.
+/// The cell's configuration of this kind with the assignments over it.
 const Json& CellSettings::configuration(const PlannedRun& base, const std::string& kind,
-                                        const std::string& assignment) {
-  std::string file = kind + "|" + base.sensor;
+                                        const std::vector<std::string>& set) {
+  std::string file = "sensor|" + base.sensor;
   if (kind == "world") file = "world|" + base.world;
   if (kind == "flight") file = "flight|" + base.flight;
-  if (is_of_method(base, kind)) file += "|" + base.label() + "|" + base.preset;
-  const auto [place, is_new] = loaded_.try_emplace(file + "|" + assignment);
+  if (is_of_method(base, kind))
+    file = "algorithm|" + base.sensor + "|" + base.label() + "|" + base.preset;
+  for (const std::string& assignment : set) file += "|" + assignment;
+  const auto [place, is_new] = loaded_.try_emplace(file);
   if (!is_new) return place->second;
   try {
-    place->second = load(base, kind, assignment);
+    place->second = load(base, kind, set);
   } catch (const InputError& error) {
     loaded_.erase(place);
     throw InputError("study: vary", error.what());
@@ -158,12 +161,36 @@ const Json& CellSettings::configuration(const PlannedRun& base, const std::strin
   return place->second;
 }
 
-/// Whether the cell is another one with this setting. What the seed draws is never the same.
-bool CellSettings::changes(const PlannedRun& base, const std::string& key, const Json& value) {
+/// The assignments of the variation to the configuration that `kind` is of, in their order.
+std::vector<std::string> CellSettings::assignments(const PlannedRun& base, const std::string& kind,
+                                                   const Variation& variation) const {
+  const auto file_of = [&](const std::string& of) {
+    if (of == "world" || of == "flight") return of;
+    return std::string(is_of_method(base, of) ? "algorithm" : "sensor");
+  };
+  std::vector<std::string> set;
+  for (const auto& [key, value] : variation.settings) {
+    const std::string other = kind_of(key);
+    if (applies_to(base, other) && file_of(other) == file_of(kind))
+      set.push_back(stages::assignment_of(key_in(other, key), value));
+  }
+  return set;
+}
+
+/// Whether the cell is another one without this setting of its variation. What the seed draws is
+/// never the same.
+bool CellSettings::changes(const PlannedRun& base, const std::string& key, const Json& value,
+                           const Variation& variation) {
   const std::string kind = kind_of(key);
-  const Json& before = configuration(base, kind, "");
-  const Json& after = configuration(base, kind, stages::assignment_of(key_in(kind, key), value));
-  return before != after || (kind == "world" && value_at(before, "vary") == true);
+  std::vector<std::string> set = assignments(base, kind, variation);
+  const Json with = configuration(base, kind, set);
+  if (kind == "world" && value_at(configuration(base, kind, {}), "vary") == true) return true;
+  std::erase(set, stages::assignment_of(key_in(kind, key), value));
+  try {
+    return configuration(base, kind, set) != with;
+  } catch (const InputError&) {
+    return true;  // the others are valid with this one only
+  }
 }
 
 PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variation,
@@ -174,13 +201,13 @@ PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variati
     for (const auto& [key, value] : other.settings) {
       const std::string kind = kind_of(key);
       if (!applies_to(base, kind) || cell.varied.contains(key)) continue;
-      cell.varied[key] = value_at(configuration(base, kind, ""), key_in(kind, key));
+      cell.varied[key] = value_at(configuration(base, kind, {}), key_in(kind, key));
     }
   }
   std::vector<std::string> of_flight, of_method;
   for (const auto& [key, value] : variation.settings) {
     const std::string kind = kind_of(key);
-    if (!applies_to(base, kind) || !changes(base, key, value)) continue;
+    if (!applies_to(base, kind) || !changes(base, key, value, variation)) continue;
     if (variation.name.empty()) {
       cell.varied[key] = value;
       cell.differs.push_back(key);

@@ -18,7 +18,8 @@ struct Variation {
 };
 
 /// All variations of a study: the base, which has no settings, then those of its file in their
-/// order. Throws InputError for an empty list, a value that is not a list, or a set without a name.
+/// order. Throws InputError for an empty list, a value that is not a list, or a set without a name
+/// of its own.
 std::vector<Variation> variations_of(const StudySpec& spec);
 
 /// Puts variations into cells. KIND is world, flight, sensor, imu (that inside the sensor), or
@@ -41,9 +42,13 @@ class CellSettings {
  private:
   bool applies_to(const PlannedRun& base, const std::string& kind) const;
   const Json& configuration(const PlannedRun& base, const std::string& kind,
-                            const std::string& assignment);
-  Json load(const PlannedRun& base, const std::string& kind, const std::string& assignment) const;
-  bool changes(const PlannedRun& base, const std::string& key, const Json& value);
+                            const std::vector<std::string>& set);
+  Json load(const PlannedRun& base, const std::string& kind,
+            const std::vector<std::string>& set) const;
+  std::vector<std::string> assignments(const PlannedRun& base, const std::string& kind,
+                                       const Variation& variation) const;
+  bool changes(const PlannedRun& base, const std::string& key, const Json& value,
+               const Variation& variation);
 
   const StudySpec& spec_;
   const std::vector<StudyAlgorithm>& methods_;

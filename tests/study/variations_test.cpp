@@ -115,6 +115,20 @@ TEST(Variations, NamedSetsAreFlownBesideTheBase) {
   EXPECT_THAT(cells[1].set, ElementsAre("sensor.max_range_m=5", "imu.rate_hz=100"));
 }
 
+TEST(Variations, SettingsOfASetAreCheckedTogether) {
+  // The Mid-360 measures from 0.1 to 70 m: 80 m is valid only together with 100 m, 6 and 5 m only
+  // apart.
+  const auto cells = planned_cells(spec_of("sets: [{name: far, set: {sensor.min_range_m: 80, "
+                                           "sensor.max_range_m: 100}}]"),
+                                   configs());
+  EXPECT_THAT(variations(cells), ElementsAre("", "far"));
+  EXPECT_THAT(cells[1].set, ElementsAre("sensor.min_range_m=80", "sensor.max_range_m=100"));
+  EXPECT_THAT(error_of("sets: [{name: none, set: {sensor.min_range_m: 6, sensor.max_range_m: 5}}]"),
+              HasSubstr("min_range_m is not below max_range_m"));
+  EXPECT_THAT(error_of("vary: {sensor.min_range_m: [6], sensor.max_range_m: [5]}\nvary_as: grid"),
+              HasSubstr("min_range_m is not below max_range_m"));
+}
+
 TEST(Variations, WhatTheSeedDrawsIsNeverTakenForTheBase) {
   StudySpec spec = spec_of("vary: {world.house.detail: [2]}\nnew_scenes: true");
   spec.scenes = {{"test_house", "house_aggressive", 1.0}};
@@ -133,6 +147,9 @@ TEST(Variations, MistakesAreNamedBeforeAnythingRuns) {
   EXPECT_THAT(error_of("vary: {sensor.range_noise_m: [much]}"), HasSubstr("not a finite number"));
   EXPECT_THAT(error_of("vary: {algorithm.voxel_siz_m: [1]}"), HasSubstr("did you mean"));
   EXPECT_THAT(error_of("vary: {world.house.detail: [-3]}"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of("sets: [{name: a, set: {sensor.max_range_m: 5}}, "
+                       "{name: a, set: {sensor.max_range_m: 7}}]"),
+              HasSubstr("two sets have the name 'a'"));
   EXPECT_THAT(error_of("sets: [{name: '', set: {sensor.max_range_m: 5}}]"),
               HasSubstr("without '/'"));
   EXPECT_THAT(error_of("algorithms: [{name: kiss_icp, set: {voxel_size: 1}}]"),
