@@ -1,40 +1,54 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The TypeScript types of the metrics that the report's page shows, from their JSON schema: `lidarena schema metrics |
-// node metrics_types.mjs` prints src/report/metrics.d.ts; with --check it exits 1 if that file differs.
+// The TypeScript types of the data of the report's page, from its JSON schema: `lidarena schema report |
+// node page_types.mjs` prints src/report/page.d.ts; with --check it exits 1 if that file differs.
 import { readFileSync } from "node:fs";
 import { format, resolveConfig } from "prettier";
 
-const FILE = new URL("src/report/metrics.d.ts", import.meta.url).pathname;
-const TYPES = {
-  ErrorsOverTime: ["final", "errors_over_time", "ate_se3"],
-  ResourcesOverTime: ["resources", "over_time"],
-  DistanceHistogram: ["maps", "own", "se3", "histogram"],
-};
+const FILE = new URL("src/report/page.d.ts", import.meta.url).pathname;
 
-const object = (schema) => schema.anyOf?.find((type) => type.type === "object") ?? schema;
-const arrayOf = (schema) => (schema.type === "array" ? `${arrayOf(schema.items)}[]` : schema.type === "integer" ? "number" : schema.type);
+const interfaces = new Map();
 
-function fieldsOf(schema) {
-  return Object.entries(schema.properties).map(
-    ([name, field]) => (field.description ? `/** ${field.description} */\n` : "") + `${name}: ${arrayOf(field)};\n`,
-  );
+/** The name of the struct's interface, which is its title. */
+function interfaceOf(schema, name = schema.title) {
+  if (interfaces.has(name)) return name;
+  interfaces.set(name, "");
+  const fields = Object.entries(schema.properties).map(([key, field]) => {
+    const doc = field.description ? `/** ${field.description} */\n` : "";
+    const leftOut = schema.$comment !== undefined;
+    return `${doc}${key}${leftOut ? "?" : ""}: ${typeOf(leftOut ? notNull(field) : field)};\n`;
+  });
+  const doc = schema.$comment ? `/** ${schema.$comment} */\n` : "";
+  interfaces.set(name, `${doc}export interface ${name} {\n${fields.join("")}}\n`);
+  return name;
+}
+
+const notNull = (schema) => schema.anyOf?.find(({ type }) => type !== "null") ?? schema;
+
+function typeOf(schema) {
+  if (schema.anyOf) return [...new Set(schema.anyOf.map(typeOf).join(" | ").split(" | "))].join(" | ");
+  if (schema.enum) return schema.enum.map((value) => JSON.stringify(value)).join(" | ");
+  if (schema.title) return interfaceOf(schema);
+  if (schema.type === "array") {
+    const item = typeOf(schema.items);
+    return schema.minItems ? `[${Array(schema.minItems).fill(item).join(", ")}]` : `(${item})[]`;
+  }
+  if (schema.type === "object") return `Record<string, ${typeOf(schema.additionalProperties)}>`;
+  if (schema.type === "integer") return "number";
+  if (!schema.type) return schema.default instanceof Object ? "Record<string, unknown>" : "unknown";
+  return schema.type;
 }
 
 let input = "";
 for await (const part of process.stdin) input += part;
-const all = JSON.parse(input);
-const types = Object.entries(TYPES).map(([name, path]) => {
-  const schema = path.reduce((outer, key) => object(object(outer).properties[key]), all);
-  return `export interface ${name} {\n${fieldsOf(schema).join("")}}\n`;
-});
+interfaceOf(JSON.parse(input), "ReportData");
 const text = await format(
   `// SPDX-License-Identifier: BSD-3-Clause
-// Made by viewer/metrics_types.mjs from the field lists of lidarena/results.\n\n${types.join("\n")}`,
+// Made by viewer/page_types.mjs from the field lists of lidarena/report/page_data.hpp.\n\n${[...interfaces.values()].join("\n")}`,
   { ...(await resolveConfig(FILE)), filepath: FILE },
 );
 if (process.argv[2] !== "--check") {
   process.stdout.write(text);
 } else if (text !== readFileSync(FILE, "utf8")) {
-  console.error(`${FILE} differs: lidarena schema metrics | node viewer/metrics_types.mjs > viewer/src/report/metrics.d.ts`);
+  console.error(`${FILE} differs: lidarena schema report | node viewer/page_types.mjs > viewer/src/report/page.d.ts`);
   process.exit(1);
 }

@@ -10,6 +10,7 @@
 #include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
+#include "lidarena/report/page_data.hpp"
 #include "lidarena/results/run_metrics.hpp"
 #include "lidarena/scenes/world_config.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
@@ -33,7 +34,9 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"dataset",
        [] { return schema_document<dataset::DatasetManifest>("manifest.json of a dataset"); }},
       {"metrics",
-       [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }}};
+       [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }},
+      {"report",
+       [] { return schema_document<report::ReportData>("report.json of a report of Lidarena"); }}};
   for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
     all[info.name] = [name = info.name] { return odometry::algorithm_schema(name); };
   }
@@ -61,14 +64,13 @@ int write_all(const std::filesystem::path& folder) {
 }  // namespace
 
 void add_schema(CLI::App& app, Common& common, int& exit_code) {
-  auto* verb = app.add_subcommand(
-      "schema",
-      "JSON Schema of a kind of YAML file or of metrics.json: keys, units, defaults, limits");
+  auto* verb =
+      app.add_subcommand("schema", "JSON Schema of a kind of file: keys, units, defaults, limits");
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
   verb->add_option("kind", *kind,
                    "world, flight, sensor, beams, study, external, recording, run, dataset, "
-                   "metrics, or an algorithm");
+                   "metrics, report, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

@@ -37,7 +37,8 @@ std::vector<std::string> nearest_kinds(const ConfigNode& node) {
   std::vector<std::string> nearest;
   std::ptrdiff_t most = 1;
   for (const auto& [kind, make] : schemas()) {
-    if (kind == "metrics" || kind == "run" || kind == "dataset") continue;  // JSON files
+    if (kind == "metrics" || kind == "report" || kind == "run" || kind == "dataset")
+      continue;  // JSON files
     const Json schema = make();
     const auto count = std::ranges::count_if(
         node.keys(), [&](const std::string& key) { return has_place_for(schema, node, key); });

@@ -23,7 +23,8 @@ inline void read_value(const ConfigNode& node, Json& out, const Limits&) { out =
 /// The value of a key, which may be a path ("group.key"); null if there is none.
 Json value_at(const Json& config, std::string_view key);
 
-/// Null if the struct has a function empty() that is true.
+/// Null if the struct has a function empty() that is true. Fields with their default value are left
+/// out if the struct has kOmitsDefaults.
 template <ConfigStruct C>
 Json to_json(const C& config);
 
@@ -86,6 +87,13 @@ Json to_json(const C& config) {
   C::visit(config,
            [&](std::string_view name, const auto& member, std::string_view, std::string_view,
                Limits = {}) { json[std::string(name)] = value_to_json(member); });
+  if constexpr (requires { C::kOmitsDefaults; }) {
+    const C defaults{};
+    C::visit(defaults, [&](std::string_view name, const auto& member, auto&&...) {
+      const auto field = json.find(std::string(name));
+      if (*field == value_to_json(member)) json.erase(field);
+    });
+  }
   return json;
 }
 

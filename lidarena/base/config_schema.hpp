@@ -17,7 +17,7 @@ template <class T>
 Json schema_of_value(const T& value, const Limits& limits);
 
 /// JSON Schema of one struct: its keys with units, descriptions, defaults and limits; other keys
-/// are not allowed.
+/// are not allowed. The title is the struct's kTitle, if it has one.
 template <ConfigStruct C>
 Json schema_of(const C& config = {}) {
   Json properties = Json::object();
@@ -30,7 +30,12 @@ Json schema_of(const C& config = {}) {
     field["default"] = value_to_json(member);
     properties[std::string(name)] = std::move(field);
   });
-  return {{"type", "object"}, {"additionalProperties", false}, {"properties", properties}};
+  Json schema = Json::object();
+  if constexpr (requires { C::kTitle; }) schema["title"] = C::kTitle;
+  if constexpr (requires { C::kOmitsDefaults; })
+    schema["$comment"] = "Keys with their default value are left out.";
+  schema.update({{"type", "object"}, {"additionalProperties", false}, {"properties", properties}});
+  return schema;
 }
 
 namespace schema {

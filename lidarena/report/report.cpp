@@ -31,6 +31,8 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
     if (!results.expect.empty()) tables.push_back(expectations_table(results, variant));
     add(figure_tables(results, variant));
   }
+  for (const std::string& world : results::StudyCells(results, "").worlds())
+    tables.push_back(usual_table(results, world));
   add(timing_tables(results));
   return tables;
 }
@@ -39,7 +41,7 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
 std::vector<results::Table> lists(const results::StudyResults& results) {
   std::vector<results::Table> tables{failures_table(results), commands_table(results)};
   for (const std::string& world : results::StudyCells(results, "").worlds())
-    tables.insert(tables.end(), {runs_table(results, world), usual_table(results, world)});
+    tables.push_back(runs_table(results, world));
   return tables;
 }
 
@@ -50,7 +52,7 @@ void write_tables(const std::vector<results::Table>& tables, const std::filesyst
     dataset::write_text_file(folder / (table.id + ".csv"), table_csv(table));
     dataset::write_text_file(folder / (table.id + ".md"), table_markdown(table));
     dataset::write_text_file(folder / (table.id + ".tex"), table_latex(table));
-    dataset::write_json(folder / (table.id + ".json"), table_json(table));
+    dataset::write_json(folder / (table.id + ".json"), to_json(table));
   }
 }
 
@@ -70,7 +72,7 @@ ReportFiles write_report(const std::vector<std::filesystem::path>& folders,
   dataset::write_text_file(files.csv, results::results_csv(results));
   write_tables(tables, folder / "tables");
   write_tables(lists(results), folder / "tables");
-  WebPage page{results.title, "report", report_data(results, tables, folder), {}};
+  WebPage page{results.title, "report", to_json(report_data(results, tables, folder)), {}};
   files.page = folder / "report.json";
   dataset::write_json(files.page, page.data);
   if (has_viewer()) {

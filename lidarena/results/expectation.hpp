@@ -99,6 +99,7 @@ std::vector<Judgement> shortfalls(const StudyResults& results);
 
 /// A figure that somebody else has published; empty names stand for all.
 struct ReferenceFigure {
+  static constexpr const char* kTitle = "ReferenceFigure";
   std::string world, sensor, algorithm, figure;
   double value = 0.0;
 

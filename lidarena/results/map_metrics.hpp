@@ -17,6 +17,7 @@ namespace lidarena::results {
 
 /// Counts of the distances up to 20 cm.
 struct DistanceHistogram {
+  static constexpr const char* kTitle = "DistanceHistogram";
   static constexpr double kBin_m = 0.01;  ///< width of a bin
   static constexpr std::size_t kBins = 20;
   double bin_m = kBin_m;

@@ -31,6 +31,7 @@ struct MemoryMetrics {
 
 /// Columns; each row is the maximum of `largest_of` consecutive scans.
 struct ResourcesOverTime {
+  static constexpr const char* kTitle = "ResourcesOverTime";
   std::size_t largest_of = 1;
   std::vector<double> t_s, latency_s;
   std::vector<std::uint64_t> rss_bytes, pss_bytes, own_bytes, map_bytes, scan_buffer_bytes,

@@ -204,29 +204,4 @@ std::string table_text(const Table& table) {
   return text;
 }
 
-Json table_cell_json(const TableCell& cell) {
-  Json json{{"text", cell.text}};
-  if (cell.value) json["value"] = *cell.value;
-  if (!cell.live.empty()) json["live"] = cell.live;
-  if (!cell.spread.empty()) json["spread"] = cell.spread;
-  if (!cell.reference.empty()) json["reference"] = cell.reference;
-  if (cell.bold) json["bold"] = true;
-  if (cell.underlined) json["underlined"] = true;
-  return json;
-}
-
-Json table_json(const Table& table) {
-  Json rows = Json::array();
-  for (const auto& row : table.rows) {
-    Json cells = Json::array();
-    for (const TableCell& cell : row) cells.push_back(table_cell_json(cell));
-    rows.push_back(std::move(cells));
-  }
-  return {{"id", table.id},
-          {"title", table.title},
-          {"note", table.note},
-          {"head", table.head},
-          {"rows", rows}};
-}
-
 }  // namespace lidarena::results

@@ -12,6 +12,8 @@ namespace lidarena::results {
 
 /// A cell of a table: a figure or a text.
 struct TableCell {
+  static constexpr const char* kTitle = "Cell";
+  static constexpr bool kOmitsDefaults = true;
   std::string text;             ///< as shown; a dash if empty
   std::optional<double> value;  ///< the unrounded figure
   std::string live;             ///< the figure as known at each scan, beside the final one
@@ -19,6 +21,17 @@ struct TableCell {
   std::string reference;        ///< a published figure, shown in brackets; empty = none
   bool bold = false;            ///< the table's note says what it marks
   bool underlined = false;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("text", self.text, "", "as shown");
+    v("value", self.value, "", "not rounded");
+    v("live", self.live, "", "the figure as known at each scan");
+    v("spread", self.spread, "", "range and runs of a median");
+    v("reference", self.reference, "", "a published figure");
+    v("bold", self.bold, "", "");
+    v("underlined", self.underlined, "", "");
+  }
 };
 
 /// A cell with a text.
@@ -35,6 +48,7 @@ TableCell spread_cell(const Spread& spread);
 /// A table of CSV, JSON, Markdown and LaTeX files, of a terminal and of the report's page. The
 /// first column names rows.
 struct Table {
+  static constexpr const char* kTitle = "Table";
   std::string id;     ///< name of its files
   std::string title;  ///< may be empty, as the note
   std::string note;   ///< unit, what is bold
@@ -43,6 +57,15 @@ struct Table {
 
   /// Whether some cell has this part.
   bool has(std::string TableCell::*part) const;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("id", self.id, "", "name of its files");
+    v("title", self.title, "", "");
+    v("note", self.note, "", "");
+    v("head", self.head, "", "");
+    v("rows", self.rows, "", "");
+  }
 };
 
 /// `text` as a cell of a CSV file, quoted if necessary.
@@ -55,7 +78,5 @@ std::string table_markdown(const Table& table);
 std::string table_latex(const Table& table);
 /// Aligned for a terminal, without title and note.
 std::string table_text(const Table& table);
-Json table_json(const Table& table);
-Json table_cell_json(const TableCell& cell);
 
 }  // namespace lidarena::results

@@ -197,6 +197,7 @@ struct HoverJitter {
 /// Columns; each row is the largest error of `largest_of` consecutive ones, so that no peak is
 /// lost.
 struct ErrorsOverTime {
+  static constexpr const char* kTitle = "ErrorsOverTime";
   std::vector<double> t_s, translation_m, rotation_rad;
   std::size_t largest_of = 1;
   bool empty() const { return t_s.empty(); }

@@ -288,7 +288,7 @@ TEST(ReportData, HasTheFiguresOfEveryRunUnderTheirKeysAndTheRankingOfWhatWasTrie
   results.rows[1].status = "diverged";
   results.rows[1].reason = "lost";
   results.rows[1].metrics.reset();
-  const Json data = report_data(results, {decision_table(results, "cave")}, ".");
+  const Json data = to_json(report_data(results, {decision_table(results, "cave")}, "."));
   ASSERT_EQ(data.at("runs").size(), results.rows.size());
   const Json& figures = data.at("figures");
   for (std::size_t i = 0; i < results.rows.size(); ++i) {
@@ -314,7 +314,7 @@ TEST(ReportData, HasTheFiguresOfEveryRunUnderTheirKeysAndTheRankingOfWhatWasTrie
 }
 
 TEST(ReportData, SaysWhichCellsAreBetterThanWhichAndTheBoundsOfZeroShares) {
-  const Json data = report_data(eight_seeds(1.5), {}, ".");
+  const Json data = to_json(report_data(eight_seeds(1.5), {}, "."));
   const Json& cells = data.at("claims").at("cells");
   std::set<std::string> better;
   for (const Json& pair : data.at("claims").at("better").at(results::kDrift.key)) {
@@ -338,14 +338,14 @@ TEST(ReportData, ACurveKeepsItsPeakAndALongStudyHasNone) {
     errors.translation_m.push_back(i == 1234 ? 7.5 : 0.25);
     errors.rotation_rad.push_back(0.0);
   }
-  const Json curve = report_data(results, {}, ".").at("runs").at(0).at("error");
+  const Json curve = to_json(report_data(results, {}, ".")).at("runs").at(0).at("error");
   const auto values = curve.at("translation_m").get<std::vector<double>>();
   EXPECT_LE(values.size(), 400U);
   EXPECT_EQ(curve.at("t_s").size(), values.size());
   EXPECT_EQ(curve.at("largest_of"), 8);
   EXPECT_EQ(*std::max_element(values.begin(), values.end()), 7.5);
   results.rows.resize(6000, results.rows[0]);
-  EXPECT_TRUE(report_data(results, {}, ".").at("runs").at(0).at("error").is_null());
+  EXPECT_TRUE(to_json(report_data(results, {}, ".")).at("runs").at(0).at("error").is_null());
 }
 
 TEST(ReportData, EventsAreThoseOfTheirFileInstantsAndTheLongestFirst) {
@@ -353,7 +353,9 @@ TEST(ReportData, EventsAreThoseOfTheirFileInstantsAndTheLongestFirst) {
   results::StudyResults results = results_of_the_paper();
   results.rows.resize(1);
   results.rows[0].folder = folder.path();
-  const auto events = [&] { return report_data(results, {}, ".").at("runs").at(0).at("events"); };
+  const auto events = [&] {
+    return to_json(report_data(results, {}, ".")).at("runs").at(0).at("events");
+  };
   EXPECT_TRUE(events().is_null()) << "not known";
   using dataset::RunEventKind;
   dataset::write_events(folder.path() / "events.csv", {{0.5, 0.25, RunEventKind::kFastTurn, 80.0}});
@@ -378,7 +380,7 @@ TEST(WebPage, NeedsNoNetworkAndTheDataCannotBreakOutOfIt) {
   results.title = "</title><script>alert(1)</script>";
   const TemporaryFolder folder;
   const std::filesystem::path file = folder.path() / "page.html";
-  write_page(file, {results.title, "report", report_data(results, {}, folder.path()), {}});
+  write_page(file, {results.title, "report", to_json(report_data(results, {}, folder.path())), {}});
   std::ifstream in(file);
   const std::string page((std::istreambuf_iterator<char>(in)), std::istreambuf_iterator<char>());
   EXPECT_LT(page.size(), 5'000'000U) << "with hardly any run it is the page's own weight";

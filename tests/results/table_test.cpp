@@ -28,7 +28,7 @@ TEST(Table, EachFormatHasTheFiguresTheMarksAndThePapers) {
   EXPECT_THAT(table_latex(table), HasSubstr("\\textbf{1.23} (1.08) & \\underline{5.90e-04} \\\\"));
   EXPECT_EQ(table_text(table), "sensor   x_1  y\na,b     1.23  5.90e-04\nc          7  -\n");
   EXPECT_THAT(table_latex(table), HasSubstr("sensor & x\\_1 & y"));
-  EXPECT_EQ(table_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
+  EXPECT_EQ(lidarena::to_json(table).at("rows").at(0).at(1).at("value"), 1.2345);
 }
 
 TEST(Table, ACellOfRunsHasItsRangeAndHowManyWereKept) {

@@ -19,7 +19,7 @@ import {
   type Run,
 } from "./data";
 import { base, binAxis, groups, legendOf, line, panels, sensorColor, timeAxis, valueAxis, type Figure } from "./figure_parts";
-import type { DistanceHistogram } from "./metrics";
+import type { DistanceHistogram } from "./page";
 import { responsesOf } from "./responses";
 
 const THRESHOLD = "#e0a800";

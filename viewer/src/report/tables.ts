@@ -23,12 +23,12 @@ export const word = (text: string): Cell => ({ text });
 function compare(a: Cell, b: Cell): number {
   if (a.value !== undefined && b.value !== undefined) return a.value - b.value;
   if (a.value !== undefined || b.value !== undefined) return a.value !== undefined ? -1 : 1; // figures first
-  return a.text.localeCompare(b.text);
+  return (a.text ?? "").localeCompare(b.text ?? "");
 }
 
 function cellElement(cell: ShownCell, first: boolean): HTMLElement {
   const isText = cell.value === undefined;
-  const content = cell.open ? button(cell.text, `open ${cell.text}`, cell.open) : element("span", {}, cell.text || "–");
+  const content = cell.open ? button(cell.text ?? "", `open ${cell.text}`, cell.open) : element("span", {}, cell.text || "–");
   const made = element(first ? "th" : "td", { className: isText ? "text" : "" }, content);
   if (first) made.setAttribute("scope", "row");
   if (cell.bold) content.classList.add("bold");
