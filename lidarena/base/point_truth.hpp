@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -12,6 +13,17 @@
 
 namespace lidarena {
 
+/// Classes of returns that are not of a surface in their direction, as values of
+/// PointTruth::triangle. Their position is where the return seems to come from, their normal points
+/// to the sensor.
+inline constexpr std::uint32_t kAir = 0xFFFF'FFFE;    ///< fog, dust or a drop of rain
+inline constexpr std::uint32_t kGhost = 0xFFFF'FFFD;  ///< a mirror image, or a reflector's halo
+
+/// Whether a return is of a mesh of so many triangles, not of a mover, the air or a ghost.
+constexpr bool is_of_world(std::uint32_t triangle, std::size_t triangles) {
+  return triangle < triangles;
+}
+
 /// Ground truth of one simulated return: the surface point that was hit; 32 bytes. For evaluation
 /// only: stored apart from the measurements (topic /truth/SENSOR/hits), never passed to an
 /// estimator.
@@ -19,7 +31,8 @@ struct PointTruth {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  ///< m, world frame, on the surface
   float range = 0.0F;  ///< m, true value, by the sensor's definition of range
   Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, world frame, towards the sensor
-  std::uint32_t triangle = 0;                        ///< index in the world mesh
+  std::uint32_t triangle =
+      0;  ///< index in the world mesh; or of a mover, see LivingWorld; or a class
 };
 static_assert(sizeof(PointTruth) == 32);
 

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <fstream>
@@ -22,8 +23,10 @@ constexpr std::string_view kMagic = "lidarena hits 1\n";
 
 struct ScanHeader {
   std::int64_t stamp_ns = 0;
-  std::uint64_t returns = 0;
+  std::uint64_t returns = 0;  ///< their number, with kHasClasses if their triangles follow
 };
+
+constexpr std::uint64_t kHasClasses = std::uint64_t{1} << 63U;
 
 /// Position and normal.
 using Row = std::array<float, 6>;
@@ -31,6 +34,12 @@ using Row = std::array<float, 6>;
 Row row_of(const PointTruth& hit) {
   return {hit.position.x(), hit.position.y(), hit.position.z(),
           hit.normal.x(),   hit.normal.y(),   hit.normal.z()};
+}
+
+bool has_classes(const ScanTruth& truth) {
+  return std::ranges::any_of(truth.points, [](const PointTruth& hit) {
+    return hit.triangle == kAir || hit.triangle == kGhost;
+  });
 }
 
 PointTruth hit_of(const Row& row) {
@@ -61,12 +70,17 @@ class HitsReader final : public ScanTruthSource {
     if (left_ == 0) return std::nullopt;
     std::array<ScanHeader, 1> header;
     read(header);
-    if (header[0].returns > left_ / sizeof(Row)) fail();
-    rows_.resize(header[0].returns);
+    const std::uint64_t returns = header[0].returns & ~kHasClasses;
+    if (returns > left_ / sizeof(Row)) fail();
+    rows_.resize(returns);
     read(rows_);
     ScanTruth truth{sensor_, Time{header[0].stamp_ns}, {}};
     truth.points.reserve(rows_.size());
     for (const Row& row : rows_) truth.points.push_back(hit_of(row));
+    if (returns == header[0].returns) return truth;
+    triangles_.resize(returns);
+    read(triangles_);
+    for (std::size_t i = 0; i < returns; ++i) truth.points[i].triangle = triangles_[i];
     return truth;
   }
 
@@ -88,6 +102,7 @@ class HitsReader final : public ScanTruthSource {
   std::ifstream in_;
   std::uintmax_t left_;
   std::vector<Row> rows_;
+  std::vector<std::uint32_t> triangles_;
 };
 
 }  // namespace
@@ -107,9 +122,14 @@ void HitsWriter::write(const ScanTruth& truth) {
   std::vector<Row> rows;
   rows.reserve(truth.points.size());
   for (const PointTruth& hit : truth.points) rows.push_back(row_of(hit));
-  const ScanHeader header{truth.stamp.count(), rows.size()};
+  const bool classes = has_classes(truth);
+  const ScanHeader header{truth.stamp.count(), rows.size() | (classes ? kHasClasses : 0)};
   file.write(std::as_bytes(std::span(&header, 1)));
   file.write(std::as_bytes(std::span(rows)));
+  if (!classes) return;
+  std::vector<std::uint32_t> triangles;
+  for (const PointTruth& hit : truth.points) triangles.push_back(hit.triangle);
+  file.write(std::as_bytes(std::span(triangles)));
 }
 
 void HitsWriter::commit() {

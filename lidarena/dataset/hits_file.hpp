@@ -17,7 +17,8 @@ inline constexpr const char* kHitsEnding = "_hits.bin";  ///< of the files' name
 
 /// Writes what the scored returns of each LiDAR hit, beside the measurements of a dataset:
 /// SENSOR_hits.bin. No recording that a method is given contains it; the scorer reads it. Per
-/// return 24 bytes: position and normal of the surface (PointTruth without range and triangle).
+/// return 24 bytes: position and normal of the surface (PointTruth without range and triangle). A
+/// scan with returns of the air or ghosts has also 4 bytes per return: PointTruth::triangle.
 class HitsWriter final : public ScanTruthSink {
  public:
   /// Throws InputError when the folder is missing or read-only.

@@ -36,6 +36,37 @@ void write_hits(const std::filesystem::path& folder) {
   writer.commit();
 }
 
+TEST(HitsFile, KeepsTheClassesOfAScanAndTakesFourBytesPerReturnForThemOnlyThere) {
+  const TemporaryFolder folder, plain;
+  HitsWriter writer(folder.path(), two_lidars()), without(plain.path(), two_lidars());
+  for (int scan = 0; scan < 3; ++scan) {
+    ScanTruth truth = truth_of("front", scan, 5);
+    without.write(truth);
+    if (scan == 1) truth.points[2].triangle = kAir;
+    if (scan == 1) truth.points[4].triangle = kGhost;
+    writer.write(truth);
+  }
+  writer.commit();
+  without.commit();
+  const auto read = open_hits(folder.path(), "front");
+  for (int scan = 0; scan < 3; ++scan) {
+    const std::optional<ScanTruth> truth = read->next();
+    ASSERT_TRUE(truth.has_value());
+    ASSERT_EQ(truth->points.size(), 5U);
+    for (std::size_t i = 0; i < 5; ++i) {
+      const bool of_world = is_of_world(truth->points[i].triangle, 100);
+      EXPECT_EQ(of_world, scan != 1 || (i != 2 && i != 4));
+    }
+    if (scan == 1) EXPECT_EQ(truth->points[2].triangle, kAir);
+    if (scan == 1) EXPECT_EQ(truth->points[4].triangle, kGhost);
+  }
+  EXPECT_FALSE(read->next().has_value());
+  const auto size = [](const TemporaryFolder& in) {
+    return std::filesystem::file_size(in.path() / ("front" + std::string(kHitsEnding)));
+  };
+  EXPECT_EQ(size(folder), size(plain) + 5 * 4);
+}
+
 TEST(HitsFile, ReadsBackWhatWasWrittenForEachLidar) {
   const TemporaryFolder folder;
   write_hits(folder.path());
