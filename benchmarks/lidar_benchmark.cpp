@@ -150,6 +150,7 @@ enum Effects {
   kBias,
   kClock,
   kShake,
+  kDrift,
   kMovers
 };
 
@@ -176,6 +177,7 @@ sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
   }
   if (effects == kBias) config.noise.bias = {0.01, 0.01, 0.01, 0.01, 0.01};
   if (effects == kClock) config.noise.clock = {0.001, 1e-5, 1e-4, true};
+  if (effects == kDrift) config.noise.drift = {0.02, 0.0, 0.001, 10.0, 1200.0};
   if (effects == kShake) {
     sensor::ImuConfig& imu = config.imu.emplace();
     imu.vibration_moves_lidar = true;
@@ -286,7 +288,8 @@ void register_rows() {
   const std::pair<const char*, Effects> effects[] = {
       {"geometry", kGeometry}, {"frozen", kFrozen},        {"range_noise", kRangeNoise},
       {"sheet", kSheet},       {"split_beam", kSplitBeam}, {"sheet_bias", kBias},
-      {"sheet_clock", kClock}, {"sheet_shake", kShake},    {"sheet_movers", kMovers}};
+      {"sheet_clock", kClock}, {"sheet_shake", kShake},    {"sheet_movers", kMovers},
+      {"sheet_drift", kDrift}};
   for (const auto& sensor : sensors) {
     for (const auto& effect : effects) {
       const std::string name = std::string("measure/") + sensor.first + "/" + effect.first;

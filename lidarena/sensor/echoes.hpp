@@ -16,7 +16,7 @@ struct Echo {
   double range;   ///< m, from the sensor's axis; mean over the parts, weighted by signal
   double energy;  ///< share of the beam's energy times backscatter(); sum of the parts
   double signal;  ///< see SignalModel; sum of the parts
-  std::uint32_t sub_ray = 0;  ///< the sub-ray with the strongest signal
+  std::uint32_t sub_ray = 0;  ///< the part (sub-ray) with the strongest signal
 };
 
 /// Offsets of a beam's sub-rays from its axis, (horizontal, vertical), in units of the Gaussian

@@ -38,6 +38,30 @@ struct BiasConfig {
   }
 };
 
+/// Drift of all ranges while the sensor's temperature changes, see range_drift(). Sources: Ye,
+/// Borenstein, "Characterization of a 2-D laser scanner" (ICRA 2002), Kneip et al.,
+/// "Characterization of the compact Hokuyo URG-04LX" (ICRA 2009): ranges settle within an hour or
+/// more from switching on; Glennie, Lichti, "Temporal stability of the Velodyne HDL-64E S2" (Remote
+/// Sensing 2011) for the temperature.
+struct DriftConfig {
+  double warm_up_m = 0.0;
+  double on_for_s = 0.0;
+  double per_kelvin_m = 0.0;
+  double change_k = 0.0;
+  double time_constant_s = 1200.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("warm_up_m", self.warm_up_m, "m", "bias of all ranges when the LiDAR is switched on");
+    v("on_for_s", self.on_for_s, "s", "time from switching on to the start of the flight",
+      at_least(0));
+    v("per_kelvin_m", self.per_kelvin_m, "m/K", "change of all ranges with temperature");
+    v("change_k", self.change_k, "K",
+      "step of the air's temperature at the start of the flight, which the LiDAR follows");
+    v("time_constant_s", self.time_constant_s, "s", "of the LiDAR's temperature", above(0));
+  }
+};
+
 /// The clock of a LiDAR against true time, see SensorClock.
 struct ClockConfig {
   double offset_s = 0.0;

@@ -9,9 +9,10 @@
 #include <utility>
 
 #include "lidarena/base/angle.hpp"
+#include "lidarena/sensor/lidar_block.hpp"
 #include "lidarena/sensor/lidar_motion.hpp"
 #include "lidarena/sensor/lidar_shake.hpp"
-#include "lidarena/sensor/normal_pairs.hpp"
+#include "lidarena/sensor/range_drift.hpp"
 
 namespace lidarena::sensor {
 namespace {
@@ -25,22 +26,6 @@ constexpr std::size_t kPartsPerScan =
     32;  // number of parts that a scan is split into for the threads
 constexpr std::size_t kShotsPerInstant = 256;              // of a world that moves
 constexpr double kSigmaOfFwhm = 1.0 / 2.3548200450309493;  // Gaussian: 1 / (2 sqrt(2 ln 2))
-
-/// Purposes of a ray's random numbers; each further echo uses the next kDraws values.
-enum LidarDraw : std::uint32_t { kRange, kDetection, kAngle, kSpin, kDraws };
-
-std::uint32_t draw_of(LidarDraw draw, std::size_t echo) {
-  return draw + kDraws * static_cast<std::uint32_t>(echo);
-}
-
-/// Distance from a beam's origin at which its ray starts: 0, except in kOfficial. That mode
-/// reproduces a fault of the official plugin: rays start at the minimum range, and the range is
-/// measured from there.
-double start_offset(const SensorConfig& config) {
-  return config.mode == ScanMode::kOfficial ? config.min_range_m : 0.0;
-}
-
-bool has_times(ScanMode mode) { return mode == ScanMode::kRolling || mode == ScanMode::kFrozen; }
 
 /// The configuration without measurement errors, with a single echo.
 SensorConfig without_noise(SensorConfig config) {
@@ -86,26 +71,6 @@ void close_gaps(std::vector<T>& values, std::size_t stride,
 
 }  // namespace
 
-/// Working data of a block of shots of a scan.
-struct Lidar::Block {
-  Time begin{0};  ///< of the scan
-  std::span<const Beam> shots;
-  std::uint64_t first_ray = 0;  ///< number of the first shot since the sensor's start
-  Point* points = nullptr;      ///< space for the maximum number of points
-  PointTruth* truth = nullptr;  ///< same size, or nullptr
-  std::size_t count = 0;        ///< number of points so far
-  // Reused from block to block to avoid reallocation.
-  std::vector<std::uint32_t> places;  ///< index in `rays` of each shot's first sub-ray
-  std::vector<world::Ray> rays;       ///< in casting order
-  std::vector<world::Hit> hits;
-  NormalPairs range_noise;      ///< of the first echoes; two consecutive shots share a pair
-  NormalPairs direction_noise;  ///< to the left and upwards, by shot
-  // Of the current shot.
-  double axis_to_origin = 0.0;  ///< m; ranges are measured from the sensor's axis
-  std::vector<Echo> parts;
-  std::vector<Echo> echoes;
-};
-
 Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
              const std::string& id, std::uint64_t seed, bool noise)
     : config_(noise ? config : without_noise(config)),
@@ -129,8 +94,8 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
   }
   shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
   has_range_noise_ = config_.range_noise_m > 0.0 || config_.noise.near_range_noise_m > 0.0;
-  needs_signal_ = sub_rays_.size() > 1 || config_.noise.dropouts ||
-                  config_.noise.weak_signal_noise ||
+  is_simple_ = sub_rays_.size() == 1 && config_.noise.bounces == 0;
+  needs_signal_ = !is_simple_ || config_.noise.dropouts || config_.noise.weak_signal_noise ||
                   config_.returns.intensity == IntensityKind::kSignal;
 }
 
@@ -187,108 +152,6 @@ void Lidar::aim(const PoseAt& pose_at, Block& block) const {
   }
 }
 
-/// Return of sub-ray `k` of a shot, if there is one within the range limits.
-std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t shot,
-                                       std::size_t k, const Block& block) const {
-  const std::size_t place = block.places[shot] + k;
-  const world::Hit& hit = block.hits[place];
-  if (!hit.valid()) return std::nullopt;
-  const double range = block.axis_to_origin + static_cast<double>(hit.range);
-  if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
-  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
-  const double energy = energy_of_ray_ * world::backscatter(world.material(hit.triangle), cosine);
-  const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
-  return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
-}
-
-/// Fills block.echoes with the detected echoes of a shot of several sub-rays, in reporting order.
-void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block) const {
-  block.echoes.clear();
-  block.parts.clear();
-  for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
-    const auto part = receive_ray(world, shot, k, block);
-    if (part) block.parts.push_back(*part);
-  }
-  if (block.parts.empty()) return;
-  merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
-  std::size_t number = 0;
-  std::erase_if(block.echoes, [&](const Echo& echo) {
-    return !is_detected(echo, block.first_ray + shot, number++);
-  });
-  choose_echoes(config_.returns, block.echoes);
-}
-
-bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {
-  if (!config_.noise.dropouts) return true;
-  const double probability = signal_.detection_probability(echo.signal);
-  return probability >= 1.0 || random_.uniform(ray, draw_of(kDetection, number)) < probability;
-}
-
-/// Range noise of an echo, in sigmas.
-double Lidar::range_noise(std::size_t shot, std::size_t number, const Block& block) const {
-  const std::uint64_t ray = block.first_ray + shot;
-  if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
-  const std::uint64_t pair = ray / 2 - block.first_ray / 2;
-  return static_cast<double>(ray % 2 == 0 ? block.range_noise.first(pair)
-                                          : block.range_noise.second(pair));
-}
-
-/// Bias of an echo by its channel and by the surface of its strongest part.
-double Lidar::range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
-                         const Block& block) const {
-  const std::size_t place = block.places[shot] + echo.sub_ray;
-  const world::Hit& hit = block.hits[place];
-  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
-  return bias_.range(block.shots[shot].ring, cosine, world.material(hit.triangle).reflectivity);
-}
-
-double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
-                             const Block& block) const {
-  const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
-  double range = echo.range + bias;
-  if (sigma > 0.0) range += sigma * range_noise(shot, number, block);
-  const double step = config_.noise.range_step_m;
-  return step > 0.0 ? step * std::nearbyint(range / step) : range;
-}
-
-Vector3f Lidar::reported_direction(std::size_t shot, const Block& block) const {
-  Vector3f direction = block.shots[shot].direction;
-  if (bias_.has_directions()) {
-    const Eigen::Vector2f& off = bias_.direction(block.shots[shot].ring);
-    direction = slightly_deflected(direction, off.x(), off.y());
-  }
-  if (angle_sigma_ == 0.0F) return direction;
-  return slightly_deflected(direction, angle_sigma_ * block.direction_noise.first(shot),
-                            angle_sigma_ * block.direction_noise.second(shot));
-}
-
-/// Appends the point, and its truth, of the shot's echo `number`.
-void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& echo,
-                   std::size_t number, Block& block) const {
-  const Beam& beam = block.shots[shot];
-  const double bias = bias_.has_ranges() ? range_bias(world, shot, echo, block) : 0.0;
-  const double distance = measured_range(echo, shot, number, bias, block) - block.axis_to_origin;
-  const bool raw = config_.returns.intensity == IntensityKind::kSignal;
-  Point point;
-  point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
-  point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
-  point.dt_ns = has_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
-  point.ring = beam.ring;
-  point.echo = static_cast<std::uint8_t>(number);
-  block.points[block.count++] = point;
-  if (block.truth == nullptr) return;
-  const std::size_t place = block.places[shot] + echo.sub_ray;
-  const world::Hit& hit = block.hits[place];
-  const double distance_to_surface = static_cast<double>(hit.range);
-  const Vector3d to_surface = distance_to_surface * block.rays[place].direction.cast<double>();
-  block.truth[block.count - 1] = {
-      .position = (block.rays[place].origin + to_surface).cast<float>(),
-      .range =
-          static_cast<float>(block.axis_to_origin + distance_to_surface + start_offset(config_)),
-      .normal = hit.normal,
-      .triangle = hit.triangle};
-}
-
 /// Normal random numbers come in pairs; two consecutive shots share one for their ranges.
 void Lidar::draw_noise(Block& block) const {
   const std::size_t shots = block.shots.size();
@@ -318,18 +181,7 @@ void Lidar::shoot(const world::Surfaces& world, const PoseAt& world_from_lidar,
   cast(world, block);
   block.count = 0;
   draw_noise(block);
-  for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
-    block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
-    if (sub_rays_.size() == 1) {
-      const auto echo = receive_ray(world, shot, 0, block);
-      if (echo && is_detected(*echo, block.first_ray + shot, 0))
-        report(world, shot, *echo, 0, block);
-      continue;
-    }
-    receive(world, shot, block);
-    for (std::size_t k = 0; k < block.echoes.size(); ++k)
-      report(world, shot, block.echoes[k], k, block);
-  }
+  collect(world, block);
 }
 
 /// Replaces `points` (and `truth`) by the points of the shots.
@@ -345,6 +197,7 @@ void Lidar::shoot_all(const world::Surfaces& world, const PoseAt& world_from_lid
   const std::size_t blocks_together = std::max<std::size_t>(1, counts.size() / kPartsPerScan);
   parallel.for_blocks(counts.size(), blocks_together, [&](std::size_t first, std::size_t last) {
     Block block;
+    block.drift = range_drift(config_.noise.drift, begin);
     for (std::size_t i = first; i < last; ++i) {
       const std::size_t from = i * shots_per_block_;
       block.begin = begin;
@@ -392,7 +245,8 @@ void Lidar::measure_part(const world::Surfaces& world, const PoseAt& world_from_
                          std::vector<Point>& points, std::vector<PointTruth>* truth) const {
   std::vector<Point> more;
   std::vector<PointTruth> more_truth;
-  shoot_all(world, world_from_lidar, Time{0}, shots, first_ray, Parallel(1), more,
+  const Time of_scan = begin(first_ray / pattern_->beams_per_scan());
+  shoot_all(world, world_from_lidar, of_scan, shots, first_ray, Parallel(1), more,
             truth == nullptr ? nullptr : &more_truth);
   points.insert(points.end(), more.begin(), more.end());
   if (truth != nullptr) truth->insert(truth->end(), more_truth.begin(), more_truth.end());

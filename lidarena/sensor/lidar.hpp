@@ -81,10 +81,18 @@ class Lidar {
 
  private:
   struct Block;
+  struct Seen;
   void place_rays(Block& block) const;
   void aim(const PoseAt& world_from_lidar, Block& block) const;
   std::optional<Echo> receive_ray(const world::Surfaces& world, std::size_t shot, std::size_t k,
                                   const Block& block) const;
+  Echo echo_of(const world::Material& material, double cosine, double share, double range,
+               std::uint32_t source) const;
+  void look_beyond(const world::Surfaces& world, std::size_t shot, std::size_t k,
+                   Block& block) const;
+  Time time_of(std::size_t shot, const Block& block) const;
+  Seen seen(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+            const Block& block) const;
   void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
   void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
               Block& block) const;
@@ -93,6 +101,7 @@ class Lidar {
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
                  std::vector<Point>& points, std::vector<PointTruth>* truth) const;
   void cast(const world::Surfaces& world, Block& block) const;
+  void collect(const world::Surfaces& world, Block& block) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   void draw_noise(Block& block) const;
   double range_noise(std::size_t shot, std::size_t number, const Block& block) const;
@@ -115,6 +124,7 @@ class Lidar {
   float angle_sigma_;                      ///< rad
   bool has_range_noise_ = false;
   bool needs_signal_ = false;
+  bool is_simple_ = true;  ///< a shot has one ray, which ends at the first surface
   BeamTable table_;
   CastOrder order_;
   std::size_t shots_per_block_;

@@ -64,6 +64,8 @@ struct NoiseConfig {
   BeamConfig beam;
   BiasConfig bias{};
   ClockConfig clock{};
+  DriftConfig drift{};
+  int bounces = 0;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -85,6 +87,10 @@ struct NoiseConfig {
     v("beam", self.beam, "", "width of the beam, for mixed pixels and multiple echoes");
     v("bias", self.bias, "", "errors of ranges and directions that do not average out");
     v("clock", self.clock, "", "errors of the LiDAR's clock; poses of the truth are at true time");
+    v("drift", self.drift, "", "warm-up of the LiDAR, and its temperature");
+    v("bounces", self.bounces, "",
+      "surfaces that may mirror a ray or let it pass until it ends, 0 = it ends at the first one",
+      between(0, 4));
   }
 };
 

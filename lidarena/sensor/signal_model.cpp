@@ -35,7 +35,7 @@ void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
     throw InputError(place, "noise.beam.sub_rays needs a beam with a width",
                      "set noise.beam.width_deg and height_deg");
   }
-  if (returns.count > 1 && beam.sub_rays == 1) {
+  if (returns.count > 1 && beam.sub_rays == 1 && noise.bounces == 0) {
     throw InputError(place, "returns.count above 1 needs a beam of several sub-rays",
                      "set noise.beam.sub_rays, width_deg and height_deg");
   }

@@ -16,19 +16,42 @@ namespace lidarena::world {
 
 namespace {
 
-/// The material in a comment written by save_ply(): "material REFLECTIVITY SPECULAR NAME"; empty
-/// for other comments.
+/// Removes "KEY=VALUE " from the start of `text` and returns the value; 0 if it does not begin so.
+double take_value(std::string& text, const std::string& key) {
+  std::istringstream words(text);
+  std::string word;
+  words >> word >> std::ws;
+  double value = 0.0;
+  if (!word.starts_with(key + "=")) return value;
+  std::istringstream(word.substr(key.size() + 1)) >> value;
+  text.erase(0, std::min(text.size(), word.size() + 1));
+  return value;
+}
+
+/// The material in a comment written by save_ply(): "material REFLECTIVITY SPECULAR NAME", before
+/// the name "transmission=X " and "retro=X " where they are not 0; empty for other comments.
 std::optional<Material> parse_material(const std::string& comment) {
   std::istringstream words(comment);
   std::string keyword;
   Material material;
   words >> keyword >> material.reflectivity >> material.specular >> std::ws;
   const auto is_share = [](double x) { return x >= 0.0 && x <= 1.0; };
-  if (keyword != "material" || !std::getline(words, material.name) ||
-      !is_share(material.reflectivity) || !is_share(material.specular)) {
+  if (keyword != "material" || !std::getline(words, material.name)) return std::nullopt;
+  material.transmission = take_value(material.name, "transmission");
+  material.retro = take_value(material.name, "retro");
+  if (!is_share(material.reflectivity) || !is_share(material.specular) ||
+      !is_share(material.transmission) || !(material.retro >= 0.0)) {
     return std::nullopt;
   }
   return material;
+}
+
+std::string comment_of(const Material& material) {
+  std::string text =
+      fmt::format("comment material {} {} ", material.reflectivity, material.specular);
+  if (material.transmission > 0.0) text += fmt::format("transmission={} ", material.transmission);
+  if (material.retro > 0.0) text += fmt::format("retro={} ", material.retro);
+  return text + material.name + "\n";
 }
 
 void read_vertices(const PlyElement& element, PlyReader& reader, TriangleMesh& mesh) {
@@ -133,10 +156,7 @@ void save_ply(const std::filesystem::path& file, const TriangleMesh& mesh) {
   std::ofstream out(part, std::ios::binary | std::ios::trunc);
   const bool has_materials = !mesh.material_ids.empty();
   out << "ply\nformat binary_little_endian 1.0\ncomment meters, z up\n";
-  for (const Material& material : mesh.palette) {
-    out << fmt::format("comment material {} {} {}\n", material.reflectivity, material.specular,
-                       material.name);
-  }
+  for (const Material& material : mesh.palette) out << comment_of(material);
   out << "element vertex " << mesh.vertices.size()
       << "\nproperty double x\nproperty double y\nproperty double z\n"
       << "element face " << mesh.triangles.size() << "\nproperty list uchar uint vertex_indices\n"

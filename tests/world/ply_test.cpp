@@ -53,6 +53,9 @@ TEST(Ply, MaterialsAreKept) {
   TriangleMesh screen = testing::box_mesh({2, 0, 0}, {3, 1, 1});
   screen.paint({"dark screen, 1/3", 1.0 / 3.0, 0.1});
   boxes.append(screen);
+  TriangleMesh pane = testing::box_mesh({4, 0, 0}, {5, 1, 1});
+  pane.paint({"pane with a sign", 0.1, 0.9, 1.0 / 7.0, 812.5});
+  boxes.append(pane);
   save_ply(file, boxes);
   const TriangleMesh back = read_ply(file);
   EXPECT_EQ(back.triangles, boxes.triangles);
@@ -74,7 +77,8 @@ TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {
   EXPECT_THAT(input_error_of([&] { read_ply(folder.path() / "bad.ply"); }),
               HasSubstr("material index 7, number of materials: 1"));
   for (const char* comment :
-       {"", "comment material 5 0 brighter than white\n", "comment materials: none\n"}) {
+       {"", "comment material 5 0 brighter than white\n",
+        "comment material 0.5 0 transmission=1.5 too clear\n", "comment materials: none\n"}) {
     folder.write("foreign.ply", face(comment));
     EXPECT_TRUE(read_ply(folder.path() / "foreign.ply").material_ids.empty()) << comment;
   }

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: BSD-3-Clause
+// From the hits of a block of rays to points.
+#include <algorithm>
+#include <cmath>
+
+#include "lidarena/sensor/lidar_block.hpp"
+
+namespace lidarena::sensor {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// Return of sub-ray `k` of a shot, if there is one within the range limits.
+std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t shot,
+                                       std::size_t k, const Block& block) const {
+  const std::size_t place = block.places[shot] + k;
+  const world::Hit& hit = block.hits[place];
+  if (!hit.valid()) return std::nullopt;
+  const double range = block.axis_to_origin + static_cast<double>(hit.range);
+  if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
+  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
+  return echo_of(world.material(hit.triangle), cosine, 1.0, range, static_cast<std::uint32_t>(k));
+}
+
+/// The part of a sub-ray's light that comes back from a surface, `share` of it on the way.
+Echo Lidar::echo_of(const world::Material& material, double cosine, double share, double range,
+                    std::uint32_t source) const {
+  double energy = share * energy_of_ray_ * world::backscatter(material, cosine);
+  if (config_.noise.bounces > 0) energy *= std::pow(entering_share(material, cosine), 2);
+  const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
+  return {range, energy, signal, source};
+}
+
+/// Adds to block.parts what sub-ray `k` of a shot sees through panes and in mirrors.
+void Lidar::look_beyond(const world::Surfaces& world, std::size_t shot, std::size_t k,
+                        Block& block) const {
+  const std::size_t place = block.places[shot] + k;
+  const world::Ray& ray = block.rays[place];
+  const world::Hit& first = block.hits[place];
+  if (!first.valid()) return;
+  const world::Material& surface = world.material(first.triangle);
+  if (surface.transmission == 0.0 && surface.specular == 0.0) return;
+  const double farthest = config_.max_range_m - block.axis_to_origin;
+  block.ends.clear();
+  follow_light(world, time_of(shot, block), ray, first, config_.noise.bounces, farthest,
+               block.ends);
+  for (const PathEnd& end : block.ends) {
+    const double range = block.axis_to_origin + end.length;
+    if (range < config_.min_range_m || range > config_.max_range_m) continue;
+    const world::Material& material = world.material(end.hit.triangle);
+    const auto source = static_cast<std::uint32_t>(sub_rays_.size() + block.beyond.size());
+    block.parts.push_back(echo_of(material, end.cosine, end.share, range, source));
+    block.beyond.push_back({.direction = ray.direction,
+                            .distance = end.length,
+                            .normal = end.mirrored ? Vector3f(-ray.direction) : end.hit.normal,
+                            .triangle = end.mirrored ? kGhost : end.hit.triangle,
+                            .cosine = end.cosine,
+                            .reflectivity = material.reflectivity});
+  }
+}
+
+/// Instant of a shot, of a world that moves.
+Time Lidar::time_of(std::size_t shot, const Block& block) const {
+  const bool rolling = config_.mode == ScanMode::kRolling;
+  return block.begin + Time{rolling ? block.shots[shot].dt_ns : 0};
+}
+
+/// What the strongest part of an echo is of.
+Lidar::Seen Lidar::seen(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                        const Block& block) const {
+  if (echo.sub_ray >= sub_rays_.size()) return block.beyond[echo.sub_ray - sub_rays_.size()];
+  const std::size_t place = block.places[shot] + echo.sub_ray;
+  const world::Hit& hit = block.hits[place];
+  const Vector3f& direction = block.rays[place].direction;
+  return {.direction = direction,
+          .distance = static_cast<double>(hit.range),
+          .normal = hit.normal,
+          .triangle = hit.triangle,
+          .cosine = -static_cast<double>(hit.normal.dot(direction)),
+          .reflectivity = world.material(hit.triangle).reflectivity};
+}
+
+/// Fills block.echoes with the detected echoes of a shot, in reporting order.
+void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block) const {
+  block.echoes.clear();
+  block.parts.clear();
+  block.beyond.clear();
+  for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
+    const auto part = receive_ray(world, shot, k, block);
+    if (part) block.parts.push_back(*part);
+    if (config_.noise.bounces > 0) look_beyond(world, shot, k, block);
+  }
+  if (block.parts.empty()) return;
+  if (sub_rays_.size() == 1 && block.parts.size() == 1) {
+    block.echoes = block.parts;  // to the last bit what is_simple_ gives
+  } else {
+    merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.echoes);
+  }
+  std::size_t number = 0;
+  std::erase_if(block.echoes, [&](const Echo& echo) {
+    return !is_detected(echo, block.first_ray + shot, number++);
+  });
+  choose_echoes(config_.returns, block.echoes);
+}
+
+bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {
+  if (!config_.noise.dropouts) return true;
+  const double probability = signal_.detection_probability(echo.signal);
+  return probability >= 1.0 || random_.uniform(ray, draw_of(kDetection, number)) < probability;
+}
+
+/// Range noise of an echo, in sigmas.
+double Lidar::range_noise(std::size_t shot, std::size_t number, const Block& block) const {
+  const std::uint64_t ray = block.first_ray + shot;
+  if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
+  const std::uint64_t pair = ray / 2 - block.first_ray / 2;
+  return static_cast<double>(ray % 2 == 0 ? block.range_noise.first(pair)
+                                          : block.range_noise.second(pair));
+}
+
+/// Bias of an echo by its channel and by the surface of its strongest part.
+double Lidar::range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                         const Block& block) const {
+  const Seen surface = seen(world, shot, echo, block);
+  return bias_.range(block.shots[shot].ring, surface.cosine, surface.reflectivity);
+}
+
+double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
+                             const Block& block) const {
+  const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
+  double range = echo.range + bias;
+  if (sigma > 0.0) range += sigma * range_noise(shot, number, block);
+  const double step = config_.noise.range_step_m;
+  return step > 0.0 ? step * std::nearbyint(range / step) : range;
+}
+
+Vector3f Lidar::reported_direction(std::size_t shot, const Block& block) const {
+  Vector3f direction = block.shots[shot].direction;
+  if (bias_.has_directions()) {
+    const Eigen::Vector2f& off = bias_.direction(block.shots[shot].ring);
+    direction = slightly_deflected(direction, off.x(), off.y());
+  }
+  if (angle_sigma_ == 0.0F) return direction;
+  return slightly_deflected(direction, angle_sigma_ * block.direction_noise.first(shot),
+                            angle_sigma_ * block.direction_noise.second(shot));
+}
+
+/// Appends the point, and its truth, of the shot's echo `number`.
+void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& echo,
+                   std::size_t number, Block& block) const {
+  const Beam& beam = block.shots[shot];
+  const double bias =
+      block.drift + (bias_.has_ranges() ? range_bias(world, shot, echo, block) : 0.0);
+  const double distance = measured_range(echo, shot, number, bias, block) - block.axis_to_origin;
+  const bool raw = config_.returns.intensity == IntensityKind::kSignal;
+  Point point;
+  point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
+  point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
+  point.dt_ns = has_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
+  point.ring = beam.ring;
+  point.echo = static_cast<std::uint8_t>(number);
+  block.points[block.count++] = point;
+  if (block.truth == nullptr) return;
+  const Seen surface = seen(world, shot, echo, block);
+  const Vector3d& origin = block.rays[block.places[shot]].origin;  // of all rays of the shot
+  const Vector3d to_surface = surface.distance * surface.direction.cast<double>();
+  block.truth[block.count - 1] = {
+      .position = (origin + to_surface).cast<float>(),
+      .range = static_cast<float>(block.axis_to_origin + surface.distance + start_offset(config_)),
+      .normal = surface.normal,
+      .triangle = surface.triangle};
+}
+
+/// Makes points of the hits of the block.
+void Lidar::collect(const world::Surfaces& world, Block& block) const {
+  for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
+    block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
+    if (is_simple_) {
+      const auto echo = receive_ray(world, shot, 0, block);
+      if (echo && is_detected(*echo, block.first_ray + shot, 0))
+        report(world, shot, *echo, 0, block);
+      continue;
+    }
+    receive(world, shot, block);
+    for (std::size_t k = 0; k < block.echoes.size(); ++k)
+      report(world, shot, block.echoes[k], k, block);
+  }
+}
+
+}  // namespace lidarena::sensor
