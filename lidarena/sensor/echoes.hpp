@@ -17,6 +17,7 @@ struct Echo {
   double energy;  ///< share of the beam's energy times backscatter(); sum of the parts
   double signal;  ///< see SignalModel; sum of the parts
   std::uint32_t sub_ray = 0;  ///< the part (sub-ray) with the strongest signal
+  bool is_stray = false;      ///< of the air or of a halo: it uses no random number of others
 };
 
 /// Offsets of a beam's sub-rays from its axis, (horizontal, vertical), in units of the Gaussian

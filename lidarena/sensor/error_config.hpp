@@ -62,6 +62,28 @@ struct DriftConfig {
   }
 };
 
+/// What is in the air, see Air. Fog, dust: Rasshofer et al. 2011, Hahner et al. 2021; rain:
+/// Marshall, Palmer 1948. The lidar ratio of fog is theirs (ln(20) / 0.046); dust has 40 to 60 sr
+/// (Tesche et al., "Vertically resolved separation of dust and smoke", 2009).
+struct AirConfig {
+  double visibility_m = 0.0;
+  double lidar_ratio_sr = 65.0;
+  double rain_mm_h = 0.0;
+  double overlap_m = 1.0;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("visibility_m", self.visibility_m, "m",
+      "meteorological optical range in fog or dust, 0 = clear; dense fog: 50", at_least(0));
+    v("lidar_ratio_sr", self.lidar_ratio_sr, "sr",
+      "extinction / backscatter of the particles; fog 65, dust 50", between(5, 200));
+    v("rain_mm_h", self.rain_mm_h, "mm/h", "rain; heavy rain: 25", between(0, 200));
+    v("overlap_m", self.overlap_m, "m",
+      "range from which the receiver sees all of the beam; nothing of the air below 0.9 of it",
+      between(0, 20));
+  }
+};
+
 /// The clock of a LiDAR against true time, see SensorClock.
 struct ClockConfig {
   double offset_s = 0.0;

@@ -79,6 +79,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       clock_(lidar_clock(config_.noise.clock, pattern_->period(), id, seed)),
       bias_(config_.noise.bias, id, seed, channels_of(*pattern_)),
       signal_(config.noise.signal),
+      stray_random_(seed, stream_of((id + "/strays").c_str())),
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
       beam_sigma_(kDegree * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
@@ -94,7 +95,10 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
   }
   shots_per_block_ = order_.tile() * std::max<std::size_t>(1, kShotsPerBlock / order_.tile());
   has_range_noise_ = config_.range_noise_m > 0.0 || config_.noise.near_range_noise_m > 0.0;
-  is_simple_ = sub_rays_.size() == 1 && config_.noise.bounces == 0;
+  if (has_particles(config_.noise.air)) {
+    air_.emplace(config_.noise, signal_, config_.min_range_m, config_.max_range_m, id, seed);
+  }
+  is_simple_ = sub_rays_.size() == 1 && config_.noise.bounces == 0 && !air_;
   needs_signal_ = !is_simple_ || config_.noise.dropouts || config_.noise.weak_signal_noise ||
                   config_.returns.intensity == IntensityKind::kSignal;
 }

@@ -14,6 +14,7 @@
 #include "lidarena/base/random.hpp"
 #include "lidarena/base/scan.hpp"
 #include "lidarena/flight/flight.hpp"
+#include "lidarena/sensor/air.hpp"
 #include "lidarena/sensor/beam_table.hpp"
 #include "lidarena/sensor/cast_order.hpp"
 #include "lidarena/sensor/echoes.hpp"
@@ -95,7 +96,7 @@ class Lidar {
             const Block& block) const;
   void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
   void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
-              Block& block) const;
+              std::size_t draw, Block& block) const;
   void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
   void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar, Time begin,
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
@@ -104,7 +105,11 @@ class Lidar {
   void collect(const world::Surfaces& world, Block& block) const;
   bool is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const;
   void draw_noise(Block& block) const;
-  double range_noise(std::size_t shot, std::size_t number, const Block& block) const;
+  void add_stray(std::size_t shot, double range, double energy, std::uint32_t kind,
+                 Block& block) const;
+  void add_air(std::size_t shot, Block& block) const;
+  double range_noise(const Echo& echo, std::size_t shot, std::size_t number,
+                     const Block& block) const;
   double measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
                         const Block& block) const;
   double range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
@@ -118,6 +123,8 @@ class Lidar {
   LidarBias bias_;
   std::optional<Vibration> vibration_;  ///< if it moves the LiDAR
   SignalModel signal_;
+  CounterRandom stray_random_;             ///< noise of the ranges of strays
+  std::optional<Air> air_;                 ///< if there is anything in it
   std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
   double energy_of_ray_;                   ///< of a sub-ray, as share of the beam's energy

@@ -60,6 +60,7 @@ struct Lidar::Block {
   std::vector<Echo> parts;      ///< Echo::sub_ray beyond the sub-rays counts in `beyond`
   std::vector<PathEnd> ends;
   std::vector<Seen> beyond;
+  std::vector<Air::Return> air;
   std::vector<Echo> echoes;
 };
 

@@ -27,6 +27,7 @@ Echo Lidar::echo_of(const world::Material& material, double cosine, double share
                     std::uint32_t source) const {
   double energy = share * energy_of_ray_ * world::backscatter(material, cosine);
   if (config_.noise.bounces > 0) energy *= std::pow(entering_share(material, cosine), 2);
+  if (air_) energy *= air_->passed(range);
   const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
   return {range, energy, signal, source};
 }
@@ -90,7 +91,6 @@ void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block
     if (part) block.parts.push_back(*part);
     if (config_.noise.bounces > 0) look_beyond(world, shot, k, block);
   }
-  if (block.parts.empty()) return;
   if (sub_rays_.size() == 1 && block.parts.size() == 1) {
     block.echoes = block.parts;  // to the last bit what is_simple_ gives
   } else {
@@ -100,7 +100,42 @@ void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block
   std::erase_if(block.echoes, [&](const Echo& echo) {
     return !is_detected(echo, block.first_ray + shot, number++);
   });
+  if (air_) add_air(shot, block);
   choose_echoes(config_.returns, block.echoes);
+}
+
+/// Adds a return from nowhere in the world to the echoes, in the order of ranges, unless the pulse
+/// of a stronger one covers it.
+void Lidar::add_stray(std::size_t shot, double range, double energy, std::uint32_t kind,
+                      Block& block) const {
+  if (range < config_.min_range_m || range > config_.max_range_m) return;
+  const double signal = signal_.signal(energy, range);
+  const double pulse = config_.noise.beam.pulse_length_m;
+  for (const Echo& echo : block.echoes) {
+    if (std::abs(echo.range - range) <= pulse && echo.signal >= signal) return;
+  }
+  const Vector3f direction = block.rays[block.places[shot]].direction;
+  const auto source = static_cast<std::uint32_t>(sub_rays_.size() + block.beyond.size());
+  block.beyond.push_back({.direction = direction,
+                          .distance = range - block.axis_to_origin,
+                          .normal = -direction,
+                          .triangle = kind});
+  const auto behind = std::ranges::upper_bound(block.echoes, range, {}, &Echo::range);
+  block.echoes.insert(behind, {range, energy, signal, source, true});
+}
+
+/// Adds the returns of the air before the farthest surface that the beam meets.
+void Lidar::add_air(std::size_t shot, Block& block) const {
+  double farthest = 0.0;
+  for (std::size_t k = 0; k < sub_rays_.size(); ++k) {
+    const world::Hit& hit = block.hits[block.places[shot] + k];
+    const double range = static_cast<double>(hit.range) + block.axis_to_origin;
+    farthest = std::max(farthest, hit.valid() ? range : config_.max_range_m);
+  }
+  block.air.clear();
+  air_->add_returns(block.first_ray + shot, farthest, block.air);
+  for (const Air::Return& found : block.air)
+    add_stray(shot, found.range, found.energy, kAir, block);
 }
 
 bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {
@@ -110,8 +145,10 @@ bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number)
 }
 
 /// Range noise of an echo, in sigmas.
-double Lidar::range_noise(std::size_t shot, std::size_t number, const Block& block) const {
+double Lidar::range_noise(const Echo& echo, std::size_t shot, std::size_t number,
+                          const Block& block) const {
   const std::uint64_t ray = block.first_ray + shot;
+  if (echo.is_stray) return stray_random_.normals(ray, echo.sub_ray)[0];
   if (number > 0) return random_.normals(ray / 2, draw_of(kRange, number))[ray % 2];
   const std::uint64_t pair = ray / 2 - block.first_ray / 2;
   return static_cast<double>(ray % 2 == 0 ? block.range_noise.first(pair)
@@ -129,7 +166,7 @@ double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t num
                              const Block& block) const {
   const double sigma = range_sigma(config_.range_noise_m, config_.noise, echo.range, echo.signal);
   double range = echo.range + bias;
-  if (sigma > 0.0) range += sigma * range_noise(shot, number, block);
+  if (sigma > 0.0) range += sigma * range_noise(echo, shot, number, block);
   const double step = config_.noise.range_step_m;
   return step > 0.0 ? step * std::nearbyint(range / step) : range;
 }
@@ -145,13 +182,13 @@ Vector3f Lidar::reported_direction(std::size_t shot, const Block& block) const {
                             angle_sigma_ * block.direction_noise.second(shot));
 }
 
-/// Appends the point, and its truth, of the shot's echo `number`.
+/// Appends the point, and its truth, of the shot's echo `number`, whose range noise is `draw`.
 void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& echo,
-                   std::size_t number, Block& block) const {
+                   std::size_t number, std::size_t draw, Block& block) const {
   const Beam& beam = block.shots[shot];
   const double bias =
       block.drift + (bias_.has_ranges() ? range_bias(world, shot, echo, block) : 0.0);
-  const double distance = measured_range(echo, shot, number, bias, block) - block.axis_to_origin;
+  const double distance = measured_range(echo, shot, draw, bias, block) - block.axis_to_origin;
   const bool raw = config_.returns.intensity == IntensityKind::kSignal;
   Point point;
   point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
@@ -178,12 +215,15 @@ void Lidar::collect(const world::Surfaces& world, Block& block) const {
     if (is_simple_) {
       const auto echo = receive_ray(world, shot, 0, block);
       if (echo && is_detected(*echo, block.first_ray + shot, 0))
-        report(world, shot, *echo, 0, block);
+        report(world, shot, *echo, 0, 0, block);
       continue;
     }
     receive(world, shot, block);
-    for (std::size_t k = 0; k < block.echoes.size(); ++k)
-      report(world, shot, block.echoes[k], k, block);
+    std::size_t of_world = 0;
+    for (std::size_t k = 0; k < block.echoes.size(); ++k) {
+      const Echo& echo = block.echoes[k];
+      report(world, shot, echo, k, echo.is_stray ? 0 : of_world++, block);
+    }
   }
 }
 

@@ -66,6 +66,7 @@ struct NoiseConfig {
   ClockConfig clock{};
   DriftConfig drift{};
   int bounces = 0;
+  AirConfig air{};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -91,6 +92,7 @@ struct NoiseConfig {
     v("bounces", self.bounces, "",
       "surfaces that may mirror a ray or let it pass until it ends, 0 = it ends at the first one",
       between(0, 4));
+    v("air", self.air, "", "fog, dust and rain; needs signal");
   }
 };
 
@@ -121,6 +123,11 @@ struct ReturnConfig {
       "at its rated range");
   }
 };
+
+/// Whether there is anything in the air.
+inline bool has_particles(const AirConfig& air) {
+  return air.visibility_m > 0.0 || air.rain_mm_h > 0.0;
+}
 
 /// Throws InputError (place `place`) if the settings contradict each other.
 void check_returns(const NoiseConfig& noise, const ReturnConfig& returns, const std::string& place);

@@ -57,8 +57,8 @@ TEST(HitsFile, KeepsTheClassesOfAScanAndTakesFourBytesPerReturnForThemOnlyThere)
       const bool of_world = is_of_world(truth->points[i].triangle, 100);
       EXPECT_EQ(of_world, scan != 1 || (i != 2 && i != 4));
     }
-    if (scan == 1) EXPECT_EQ(truth->points[2].triangle, kAir);
-    if (scan == 1) EXPECT_EQ(truth->points[4].triangle, kGhost);
+    EXPECT_EQ(truth->points[2].triangle, scan == 1 ? kAir : 0U);
+    EXPECT_EQ(truth->points[4].triangle, scan == 1 ? kGhost : 0U);
   }
   EXPECT_FALSE(read->next().has_value());
   const auto size = [](const TemporaryFolder& in) {
