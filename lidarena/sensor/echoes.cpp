@@ -18,6 +18,11 @@ std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
   return offsets;
 }
 
+double glare_angle(double half_angle, double u) {
+  const double rest = 1.0 - u;
+  return half_angle * std::sqrt((1.0 / (rest * rest) - 1.0) / 3.0);
+}
+
 Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles) {
   Eigen::Vector3d left = Eigen::Vector3d::UnitZ().cross(axis);
   const double length = left.norm();

@@ -25,6 +25,14 @@ struct Echo {
 /// (i + 1/2) / n; successive angles differ by the golden angle (Vogel 1979).
 std::vector<Eigen::Vector2d> sub_ray_offsets(int count);
 
+/// Angle, rad, within which the share `u` of the light is that scatters within a LiDAR, half of it
+/// within `half_angle`:
+///   u = 1 - 1 / sqrt(1 + 3 (angle / half_angle)^2),
+/// a profile with wide wings (Moffat, "A theoretical investigation of focal stellar images", 1969,
+/// with the exponent 3/2), such as scattering surfaces have. The spread is the same everywhere in a
+/// scene, as in Gump et al., "Ghosts in the point clouds" (CVPR 2026).
+double glare_angle(double half_angle, double u);
+
 /// Direction of a sub-ray: the unit vector `axis` rotated by the small angles (angles.x, angles.y),
 /// rad, to its left and upwards.
 Eigen::Vector3d deflected(const Eigen::Vector3d& axis, const Eigen::Vector2d& angles);

@@ -84,6 +84,23 @@ struct AirConfig {
   }
 };
 
+/// Light that scatters within the LiDAR: a small share of each beam goes to directions beside it,
+/// and comes back from there. Retroreflectors return enough of it to be seen (blooming, glare). See
+/// glare_angle().
+struct BloomingConfig {
+  double share = 0.0;
+  double half_angle_deg = 1.5;
+  int rays = 8;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("share", self.share, "", "share of the light that scatters, e.g. 0.005", between(0, 0.5));
+    v("half_angle_deg", self.half_angle_deg, "deg", "half of that light is within this angle",
+      between(0.01, 20));
+    v("rays", self.rays, "", "number of rays per shot that sample it", between(1, 64));
+  }
+};
+
 /// The clock of a LiDAR against true time, see SensorClock.
 struct ClockConfig {
   double offset_s = 0.0;

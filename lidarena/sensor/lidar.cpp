@@ -80,6 +80,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       bias_(config_.noise.bias, id, seed, channels_of(*pattern_)),
       signal_(config.noise.signal),
       stray_random_(seed, stream_of((id + "/strays").c_str())),
+      glare_random_(seed, stream_of((id + "/glare").c_str())),
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
       beam_sigma_(kDegree * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
@@ -98,7 +99,8 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
   if (has_particles(config_.noise.air)) {
     air_.emplace(config_.noise, signal_, config_.min_range_m, config_.max_range_m, id, seed);
   }
-  is_simple_ = sub_rays_.size() == 1 && config_.noise.bounces == 0 && !air_;
+  is_simple_ = sub_rays_.size() == 1 && config_.noise.bounces == 0 && !air_ &&
+               config_.noise.blooming.share == 0.0;
   needs_signal_ = !is_simple_ || config_.noise.dropouts || config_.noise.weak_signal_noise ||
                   config_.returns.intensity == IntensityKind::kSignal;
 }

@@ -108,6 +108,8 @@ class Lidar {
   void add_stray(std::size_t shot, double range, double energy, std::uint32_t kind,
                  Block& block) const;
   void add_air(std::size_t shot, Block& block) const;
+  void add_halo(const world::Surfaces& world, std::size_t shot, Block& block) const;
+  void aim_glare(std::size_t shot, Block& block) const;
   double range_noise(const Echo& echo, std::size_t shot, std::size_t number,
                      const Block& block) const;
   double measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
@@ -123,8 +125,9 @@ class Lidar {
   LidarBias bias_;
   std::optional<Vibration> vibration_;  ///< if it moves the LiDAR
   SignalModel signal_;
-  CounterRandom stray_random_;             ///< noise of the ranges of strays
-  std::optional<Air> air_;                 ///< if there is anything in it
+  CounterRandom stray_random_;  ///< noise of the ranges of strays
+  std::optional<Air> air_;      ///< if there is anything in it
+  CounterRandom glare_random_;
   std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
   double energy_of_ray_;                   ///< of a sub-ray, as share of the beam's energy

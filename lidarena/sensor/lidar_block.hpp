@@ -61,6 +61,9 @@ struct Lidar::Block {
   std::vector<PathEnd> ends;
   std::vector<Seen> beyond;
   std::vector<Air::Return> air;
+  std::vector<world::Ray> glare;  ///< beside the beam
+  std::vector<world::Hit> glare_hits;
+  std::vector<Echo> halo;
   std::vector<Echo> echoes;
 };
 

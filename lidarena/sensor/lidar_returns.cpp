@@ -2,13 +2,23 @@
 // From the hits of a block of rays to points.
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/sensor/lidar_block.hpp"
 
 namespace lidarena::sensor {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+
+namespace {
+
+constexpr double kWidestGlare = 1.0;  // rad; no light comes from farther beside a beam
+constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
+enum GlareDraw : std::uint32_t { kGlareSpin, kGlareShift, kGlareDetection };
+
+}  // namespace
 
 /// Return of sub-ray `k` of a shot, if there is one within the range limits.
 std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t shot,
@@ -101,6 +111,8 @@ void Lidar::receive(const world::Surfaces& world, std::size_t shot, Block& block
     return !is_detected(echo, block.first_ray + shot, number++);
   });
   if (air_) add_air(shot, block);
+  if (config_.noise.blooming.share > 0.0 && world.has_retroreflectors())
+    add_halo(world, shot, block);
   choose_echoes(config_.returns, block.echoes);
 }
 
@@ -136,6 +148,49 @@ void Lidar::add_air(std::size_t shot, Block& block) const {
   air_->add_returns(block.first_ray + shot, farthest, block.air);
   for (const Air::Return& found : block.air)
     add_stray(shot, found.range, found.energy, kAir, block);
+}
+
+/// Rays that sample the light which scatters beside a shot's beam.
+void Lidar::aim_glare(std::size_t shot, Block& block) const {
+  const BloomingConfig& blooming = config_.noise.blooming;
+  const world::Ray& beam = block.rays[block.places[shot]];
+  const std::uint64_t ray = block.first_ray + shot;
+  const double spin = 2.0 * std::numbers::pi * glare_random_.uniform(ray, kGlareSpin);
+  const double shift = glare_random_.uniform(ray, kGlareShift);
+  block.glare.clear();
+  for (int i = 0; i < blooming.rays; ++i) {
+    const double angle =
+        glare_angle(kDegree * blooming.half_angle_deg, (i + shift) / blooming.rays);
+    if (angle > kWidestGlare) continue;
+    const double turn = spin + i * kGoldenAngle;
+    const Eigen::Vector2d offset =
+        std::tan(angle) * Eigen::Vector2d(std::cos(turn), std::sin(turn));
+    const Vector3d direction = deflected(beam.direction.cast<double>(), offset);
+    block.glare.push_back({beam.origin, direction.cast<float>()});
+  }
+  block.glare_hits.resize(block.glare.size());
+}
+
+/// Adds what retroreflectors beside a shot's beam return.
+void Lidar::add_halo(const world::Surfaces& world, std::size_t shot, Block& block) const {
+  const BloomingConfig& blooming = config_.noise.blooming;
+  aim_glare(shot, block);
+  world.cast_at(time_of(shot, block), block.glare, config_.max_range_m, block.glare_hits);
+  block.parts.clear();
+  for (std::size_t i = 0; i < block.glare.size(); ++i) {
+    const world::Hit& hit = block.glare_hits[i];
+    if (!hit.valid() || world.material(hit.triangle).retro == 0.0) continue;
+    const double cosine = -static_cast<double>(hit.normal.dot(block.glare[i].direction));
+    const double range = block.axis_to_origin + static_cast<double>(hit.range);
+    const double share = blooming.share / blooming.rays / energy_of_ray_;
+    block.parts.push_back(echo_of(world.material(hit.triangle), cosine, share, range, 0));
+  }
+  merge_echoes(block.parts, config_.noise.beam.pulse_length_m, block.halo);
+  for (std::uint32_t i = 0; i < block.halo.size(); ++i) {
+    const double probability = signal_.detection_probability(block.halo[i].signal);
+    if (glare_random_.uniform(block.first_ray + shot, kGlareDetection + i) >= probability) continue;
+    add_stray(shot, block.halo[i].range, block.halo[i].energy, kGhost, block);
+  }
 }
 
 bool Lidar::is_detected(const Echo& echo, std::uint64_t ray, std::size_t number) const {

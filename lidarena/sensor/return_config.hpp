@@ -67,6 +67,7 @@ struct NoiseConfig {
   DriftConfig drift{};
   int bounces = 0;
   AirConfig air{};
+  BloomingConfig blooming{};
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -93,6 +94,7 @@ struct NoiseConfig {
       "surfaces that may mirror a ray or let it pass until it ends, 0 = it ends at the first one",
       between(0, 4));
     v("air", self.air, "", "fog, dust and rain; needs signal");
+    v("blooming", self.blooming, "", "halos of retroreflectors; needs signal");
   }
 };
 

@@ -35,15 +35,16 @@ void check_returns(const NoiseConfig& noise, const ReturnConfig& returns,
     throw InputError(place, "noise.beam.sub_rays needs a beam with a width",
                      "set noise.beam.width_deg and height_deg");
   }
-  if (!rated && has_particles(noise.air)) {
-    throw InputError(place, "noise.air needs the rated ranges",
+  const bool has_strays = has_particles(noise.air) || noise.blooming.share > 0.0;
+  if (!rated && has_strays) {
+    throw InputError(place, "noise.air and noise.blooming need the rated ranges",
                      "set noise.signal.range_at_10_m and range_at_80_m");
   }
   if (noise.air.rain_mm_h > 0.0 && (beam.width_deg == 0.0 || beam.height_deg == 0.0)) {
     throw InputError(place, "noise.air.rain_mm_h needs a beam with a width",
                      "set noise.beam.width_deg and height_deg");
   }
-  const bool is_single = beam.sub_rays == 1 && noise.bounces == 0 && !has_particles(noise.air);
+  const bool is_single = beam.sub_rays == 1 && noise.bounces == 0 && !has_strays;
   if (returns.count > 1 && is_single) {
     throw InputError(place, "returns.count above 1 needs a beam of several sub-rays",
                      "set noise.beam.sub_rays, width_deg and height_deg");

@@ -24,6 +24,7 @@ class LivingWorld : public Surfaces {
   void cast_at(Time t, std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                RayOrder order = RayOrder::kAny) const override;
   bool moves() const override { return !movers_.empty(); }
+  bool has_retroreflectors() const override { return still_.has_retroreflectors(); }
   const Material& material(std::uint32_t triangle) const override;
 
  private:

@@ -47,6 +47,8 @@ class Surfaces {
   }
   /// Whether cast_at() depends on the time.
   virtual bool moves() const { return false; }
+  /// Whether a material has a `retro` above 0; true if not known.
+  virtual bool has_retroreflectors() const { return true; }
   /// Material of the surface with the triangle index of a hit.
   virtual const Material& material(std::uint32_t triangle) const = 0;
 };

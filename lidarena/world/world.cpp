@@ -84,6 +84,11 @@ const Material& World::material(std::uint32_t triangle) const {
   return impl_->mesh.material(triangle);
 }
 
+bool World::has_retroreflectors() const {
+  const auto returns = [](const Material& material) { return material.retro > 0.0; };
+  return std::ranges::any_of(impl_->mesh.palette, returns);
+}
+
 void World::cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
                  RayOrder order) const {
   constexpr std::size_t kBlock = 64;  // rays; their hits stay cached until normals are looked up

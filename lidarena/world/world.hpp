@@ -49,6 +49,7 @@ class World : public Surfaces {
   void cast(std::span<const Ray> rays, double max_range, std::span<Hit> hits,
             RayOrder order = RayOrder::kAny) const override;
   const Material& material(std::uint32_t triangle) const override;
+  bool has_retroreflectors() const override;
   /// Nearest surface point of each point within `max_distance` meters, computed in double precision
   /// from the mesh itself; of triangles equally near, the one with the lower index. Points that are
   /// not finite have none. Fastest when consecutive points of the list are close together.
