@@ -69,8 +69,10 @@ WorldConfig read_world_config(const fs::path& file, const std::vector<std::strin
 
 world::SdfOptions sdf_options(const WorldConfig& config, const fs::path& base,
                               const WorldOptions& options) {
-  world::SdfOptions sdf{
-      options.shapes.value_or(config.shapes), {}, options.allow_missing || config.allow_missing};
+  world::SdfOptions sdf{options.shapes.value_or(config.shapes),
+                        {},
+                        options.allow_missing || config.allow_missing,
+                        config.materials};
   for (const std::string& path : config.model_paths) sdf.model_paths.push_back(base / path);
   sdf.model_paths.insert(sdf.model_paths.end(), options.model_paths.begin(),
                          options.model_paths.end());
@@ -117,7 +119,7 @@ world::WorldModel load_configured(const fs::path& file, const WorldOptions& opti
       model = make_office(config.office, config.seed);
       break;
     case WorldKind::kMesh:
-      model.mesh = world::load_mesh(base / config.file, config.up_axis);
+      model.mesh = world::load_mesh(base / config.file, config.up_axis, config.materials);
       break;
     case WorldKind::kSdf:
       model.mesh = world::load_sdf(base / config.file, sdf_options(config, base, options), log);

@@ -44,6 +44,7 @@ struct WorldConfig {
   world::ShapeKind shapes = world::ShapeKind::kVisual;
   std::vector<std::string> model_paths;
   bool allow_missing = false;
+  world::MaterialSource materials = world::MaterialSource::kDefault;
   std::vector<world::MoverConfig> movers;
   int people = 0;
 
@@ -67,6 +68,9 @@ struct WorldConfig {
       "additional folders to search for model://NAME, relative to this file");
     v("allow_missing", self.allow_missing, "",
       "warn about missing models and meshes and load the world without them, instead of failing");
+    v("materials", self.materials, "",
+      "of mesh files other than PLY and of SDF's laser_retro: default = each surface diffuse with "
+      "50 % reflectivity, file = as stated there");
     v("movers", self.movers, "", "bodies that move: people, doors, boxes");
     v("people", self.people, "",
       "number of people who walk in sight of the flight, drawn from the seed of the noise",

@@ -88,21 +88,33 @@ void check_precision(const aiMesh& source, const Eigen::Affine3d& placement,
 }
 
 void collect(const aiScene& scene, const aiNode& node, const Eigen::Affine3d& world_from_parent,
-             const std::string& name, std::vector<MeshPart>& parts) {
+             const std::string& name, MaterialSource materials, std::vector<MeshPart>& parts) {
   const Eigen::Affine3d world_from_node = world_from_parent * to_eigen(node.mTransformation);
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
     const aiMesh& source = *scene.mMeshes[node.mMeshes[i]];
     check_precision(source, world_from_node, name);
     TriangleMesh surface = to_mesh(source, world_from_node);
     if (surface.empty()) continue;
+    if (materials == MaterialSource::kFile)
+      surface.paint(file_material(*scene.mMaterials[source.mMaterialIndex]));
     parts.push_back({node.mName.C_Str(), source.mName.C_Str(), std::move(surface)});
   }
   for (unsigned i = 0; i < node.mNumChildren; ++i) {
-    collect(scene, *node.mChildren[i], world_from_node, name, parts);
+    collect(scene, *node.mChildren[i], world_from_node, name, materials, parts);
   }
 }
 
-std::vector<MeshPart> import_parts(const std::filesystem::path& file, UpAxis up) {
+void check_number(const aiScene& scene, const std::string& name) {
+  constexpr unsigned kMost = 255;  // of a mesh, beside Material{}
+  if (scene.mNumMaterials <= kMost) return;
+  throw InputError(name,
+                   "has " + std::to_string(scene.mNumMaterials) + " materials, " +
+                       std::to_string(kMost) + " are possible",
+                   "merge some, or load it without them: materials: default");
+}
+
+std::vector<MeshPart> import_parts(const std::filesystem::path& file, UpAxis up,
+                                   MaterialSource materials) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, up != UpAxis::kFile);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_USE_COLLADA_NAMES, true);
@@ -111,8 +123,10 @@ std::vector<MeshPart> import_parts(const std::filesystem::path& file, UpAxis up)
     throw InputError(file.string(),
                      std::string("cannot be read as a mesh: ") + importer.GetErrorString());
   }
+  if (materials == MaterialSource::kFile) check_number(*scene, file.string());
   std::vector<MeshPart> parts;
-  collect(*scene, *scene->mRootNode, upright_from_file(ending_of(file), up), file.string(), parts);
+  collect(*scene, *scene->mRootNode, upright_from_file(ending_of(file), up), file.string(),
+          materials, parts);
   return parts;
 }
 
@@ -135,7 +149,8 @@ bool is_mesh_file(const std::filesystem::path& file) {
   return std::ranges::find(kEndings, ending_of(file)) != kEndings.end();
 }
 
-std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up) {
+std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up,
+                                      MaterialSource materials) {
   if (!is_mesh_file(file)) {
     throw InputError(file.string(), "this file extension is not that of a supported mesh format",
                      "use .obj, .ply, .stl, .dae, .gltf or .glb");
@@ -144,15 +159,15 @@ std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis 
     throw InputError(file.string(), "there is no such file", "check the path");
   }
   std::vector<MeshPart> parts =
-      ending_of(file) == ".ply" ? ply_parts(file, up) : import_parts(file, up);
+      ending_of(file) == ".ply" ? ply_parts(file, up) : import_parts(file, up, materials);
   if (parts.empty()) {
     throw InputError(file.string(), "has no faces", "use a mesh of faces, not of points or lines");
   }
   return parts;
 }
 
-TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up) {
-  std::vector<MeshPart> parts = load_mesh_parts(file, up);
+TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up, MaterialSource materials) {
+  std::vector<MeshPart> parts = load_mesh_parts(file, up, materials);
   if (parts.size() == 1) return std::move(parts.front().surface);
   TriangleMesh mesh;
   for (const MeshPart& part : parts) mesh.append(part.surface);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lidarena/base/config.hpp"
+#include "lidarena/world/file_material.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
 namespace lidarena::world {
@@ -35,10 +36,13 @@ bool is_mesh_file(const std::filesystem::path& file);
 /// are split into triangles, points and lines are skipped, equal vertices are merged (except in
 /// PLY). Degenerate triangles are kept (see clean_mesh). Only PLY is read in double precision; for
 /// the others InputError is thrown when single precision would move a vertex by more than 5 mm.
-/// Throws InputError when the file is missing, cannot be read, or has no faces.
-std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up = UpAxis::kFile);
+/// PLY has its materials (see read_ply()), the others have theirs on request. Throws InputError
+/// when the file is missing, cannot be read, or has no faces.
+std::vector<MeshPart> load_mesh_parts(const std::filesystem::path& file, UpAxis up = UpAxis::kFile,
+                                      MaterialSource materials = MaterialSource::kDefault);
 
 /// All parts as one mesh.
-TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up = UpAxis::kFile);
+TriangleMesh load_mesh(const std::filesystem::path& file, UpAxis up = UpAxis::kFile,
+                       MaterialSource materials = MaterialSource::kDefault);
 
 }  // namespace lidarena::world

@@ -34,6 +34,13 @@ Pose to_eigen(const ignition::math::Pose3d& pose) {
   return make_pose(Eigen::Quaterniond(q.W(), q.X(), q.Y(), q.Z()), to_eigen(pose.Pos()));
 }
 
+/// The value of a visual or a collision; 0 if it has none.
+template <class Shape>
+double laser_retro_of(const Shape& shape) {
+  const sdf::ElementPtr element = shape.Element();
+  return element && element->HasElement("laser_retro") ? element->Get<double>("laser_retro") : 0.0;
+}
+
 using FindFile = std::function<std::string(const std::string&)>;
 
 /// Workaround for sdformat 12, which looks up an <include> inside an included file by its
@@ -92,6 +99,8 @@ class SdfLoader {
   void add_shape(const Shape& shape, const Pose& world_from_link, const std::string& name);
   void add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape, const std::string& name);
   const std::vector<MeshPart>& parts_of(const fs::path& mesh_file);
+  void add(TriangleMesh surface, const Pose& placement,
+           const Eigen::Vector3d& scale = Eigen::Vector3d::Ones());
   Pose resolved(const sdf::SemanticPose& pose, const std::string& name) const;
   void add_polyline(const sdf::ElementPtr& polyline, const Pose& world_from_shape);
   void add_missing(const std::string& what) { ++missing_[what]; }
@@ -106,7 +115,13 @@ class SdfLoader {
   std::map<std::string, int> missing_;                    ///< what is missing, and how many times
   std::vector<std::string> unsupported_;                  ///< shapes of kinds that are not read
   SavedState state_;
+  double laser_retro_ = 0.0;  ///< of the current shape; 0: not given
 };
+
+void SdfLoader::add(TriangleMesh surface, const Pose& placement, const Eigen::Vector3d& scale) {
+  if (laser_retro_ > 0.0) surface.paint(laser_retro_material(laser_retro_));
+  mesh_.append(surface, placement, scale);
+}
 
 sdf::Root SdfLoader::parse() {
   std::ifstream in(file_);
@@ -237,19 +252,19 @@ void SdfLoader::add_shape(const Shape& shape, const Pose& world_from_link,
   const Pose placement = world_from_link * resolved(shape.SemanticPose(), name);
   const sdf::Geometry* geometry = shape.Geom();
   if (geometry == nullptr) return;
+  laser_retro_ = options_.materials == MaterialSource::kFile ? laser_retro_of(shape) : 0.0;
   if (const auto* box = geometry->BoxShape()) {
-    mesh_.append(box_shape(to_eigen(box->Size())), placement);
+    add(box_shape(to_eigen(box->Size())), placement);
   } else if (const auto* cylinder = geometry->CylinderShape()) {
-    mesh_.append(cylinder_shape(cylinder->Radius(), cylinder->Length()), placement);
+    add(cylinder_shape(cylinder->Radius(), cylinder->Length()), placement);
   } else if (const auto* sphere = geometry->SphereShape()) {
-    mesh_.append(sphere_shape(sphere->Radius()), placement);
+    add(sphere_shape(sphere->Radius()), placement);
   } else if (const auto* ellipsoid = geometry->EllipsoidShape()) {
-    mesh_.append(ellipsoid_shape(to_eigen(ellipsoid->Radii())), placement);
+    add(ellipsoid_shape(to_eigen(ellipsoid->Radii())), placement);
   } else if (const auto* capsule = geometry->CapsuleShape()) {
-    mesh_.append(capsule_shape(capsule->Radius(), capsule->Length()), placement);
+    add(capsule_shape(capsule->Radius(), capsule->Length()), placement);
   } else if (const auto* plane = geometry->PlaneShape()) {
-    mesh_.append(plane_shape(to_eigen(plane->Normal()), {plane->Size().X(), plane->Size().Y()}),
-                 placement);
+    add(plane_shape(to_eigen(plane->Normal()), {plane->Size().X(), plane->Size().Y()}), placement);
   } else if (const auto* mesh = geometry->MeshShape()) {
     add_mesh(*mesh, placement, name);
   } else if (geometry->Element() && geometry->Element()->GetFirstElement()) {
@@ -267,7 +282,7 @@ void SdfLoader::add_polyline(const sdf::ElementPtr& polyline, const Pose& world_
     const auto p = point->Get<ignition::math::Vector2d>();
     outline.emplace_back(p.X(), p.Y());
   }
-  mesh_.append(prism_shape(outline, polyline->Get<double>("height")), world_from_shape);
+  add(prism_shape(outline, polyline->Get<double>("height")), world_from_shape);
 }
 
 const std::vector<MeshPart>& SdfLoader::parts_of(const fs::path& mesh_file) {
@@ -275,7 +290,7 @@ const std::vector<MeshPart>& SdfLoader::parts_of(const fs::path& mesh_file) {
   if (known != mesh_files_.end()) return known->second;
   std::vector<MeshPart> parts;
   try {
-    parts = load_mesh_parts(mesh_file, UpAxis::kZ);
+    parts = load_mesh_parts(mesh_file, UpAxis::kZ, options_.materials);
   } catch (const InputError& error) {
     if (!options_.allow_missing) throw;
     log_.warn(error.what());
@@ -304,7 +319,7 @@ void SdfLoader::add_mesh(const sdf::Mesh& shape, const Pose& world_from_shape,
   if (shape.CenterSubmesh() && !shape.Submesh().empty()) {
     placement.translate(-scale.cwiseProduct(chosen.bounds().center()));
   }
-  mesh_.append(chosen, placement, scale);
+  add(chosen, placement, scale);
 }
 
 void SdfLoader::report_missing() {

@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/log.hpp"
+#include "lidarena/world/file_material.hpp"
 #include "lidarena/world/triangle_mesh.hpp"
 
 namespace lidarena::world {
@@ -27,6 +28,8 @@ struct SdfOptions {
   /// Warn about missing models and meshes and unsupported shapes and load the rest, instead of
   /// throwing.
   bool allow_missing = false;
+  /// Of mesh files, and of shapes with a <laser_retro>, which has precedence.
+  MaterialSource materials = MaterialSource::kDefault;
 };
 
 /// All shapes of an SDF world (or of a model.sdf) as one mesh in the world frame, with nested

@@ -144,6 +144,27 @@ TEST_F(SdfWorld, MeshesAreScaledAndTakenAsTheyStand) {
   EXPECT_NEAR(testing::signed_volume(mesh), 12.0, 1e-5);
 }
 
+TEST_F(SdfWorld, LaserRetroIsTheMaterialOfItsShapeOnRequest) {
+  const auto shape = [](const std::string& kind, const std::string& name,
+                        const std::string& retro) {
+    return "<" + kind + " name='" + name + "'>" + retro + "<geometry>" + kUnitBox +
+           "</geometry></" + kind + ">";
+  };
+  const std::string world =
+      world_with("<model name='m'><link name='l'>" + shape("visual", "plain", "") +
+                 shape("visual", "dark", "<laser_retro>51</laser_retro>") +
+                 shape("collision", "sign", "<laser_retro>2550</laser_retro>") + "</link></model>");
+  EXPECT_TRUE(load(world).material_ids.empty());
+  SdfOptions options;
+  options.materials = MaterialSource::kFile;
+  const TriangleMesh visuals = load(world, options);
+  ASSERT_EQ(visuals.triangles.size(), 24U);
+  EXPECT_EQ(visuals.material(0), Material{});
+  EXPECT_DOUBLE_EQ(visuals.material(12).reflectivity, 0.2);
+  options.shapes = ShapeKind::kCollision;
+  EXPECT_DOUBLE_EQ(load(world, options).material(0).retro, 9.0);
+}
+
 TEST_F(SdfWorld, AMirroringScaleKeepsNormalsOutward) {
   folder_.write("worlds/box.obj", testing::box_obj());
   const TriangleMesh mesh = load(world_of("<mesh><uri>box.obj</uri><scale>-1 1 1</scale></mesh>"));
