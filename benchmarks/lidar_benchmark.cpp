@@ -151,6 +151,9 @@ enum Effects {
   kClock,
   kShake,
   kDrift,
+  kAir,
+  kBounces,
+  kBlooming,
   kMovers
 };
 
@@ -178,6 +181,12 @@ sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
   if (effects == kBias) config.noise.bias = {0.01, 0.01, 0.01, 0.01, 0.01};
   if (effects == kClock) config.noise.clock = {0.001, 1e-5, 1e-4, true};
   if (effects == kDrift) config.noise.drift = {0.02, 0.0, 0.001, 10.0, 1200.0};
+  if (effects == kAir) {
+    config.noise.air = {.visibility_m = 200.0, .rain_mm_h = 10.0};
+    config.noise.beam.width_deg = config.noise.beam.height_deg = 0.2;
+  }
+  if (effects == kBounces) config.noise.bounces = 2;
+  if (effects == kBlooming) config.noise.blooming = {0.005, 1.5, 8};
   if (effects == kShake) {
     sensor::ImuConfig& imu = config.imu.emplace();
     imu.vibration_moves_lidar = true;
@@ -257,6 +266,26 @@ std::vector<world::MoverConfig> five_people() {
   return people;
 }
 
+/// The room with a wet floor (the lowest eighth of its rows) and 1,416 triangles of signs.
+const world::World& glossy_room() {
+  static const world::World world = [] {
+    world::TriangleMesh mesh = Stage::get().mesh;
+    const std::size_t wet = mesh.triangles.size() / 8, row = 2 * 708;
+    mesh.palette = {world::Material{}, world::materials::kWetFloor, world::materials::kSign};
+    mesh.material_ids.assign(mesh.triangles.size(), 0);
+    std::fill_n(mesh.material_ids.begin(), wet, std::uint8_t{1});
+    std::fill_n(mesh.material_ids.begin() + static_cast<std::ptrdiff_t>(4 * wet), row,
+                std::uint8_t{2});
+    return world::World(std::move(mesh));
+  }();
+  return world;
+}
+
+const world::Surfaces& world_for(Effects effects, const world::Surfaces& living) {
+  if (effects == kMovers) return living;
+  return effects == kBounces || effects == kBlooming ? glossy_room() : Stage::get().world;
+}
+
 void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   const Stage& stage = Stage::get();
   const Parallel parallel(static_cast<int>(state.range(0)));
@@ -266,8 +295,7 @@ void measure(benchmark::State& state, Sensor sensor, Effects effects) {
   const std::uint64_t index = static_cast<std::uint64_t>(to_seconds(stage.flight.duration()) * 4.0);
   const auto packets = packets_of(lidar, config, index);
   const world::LivingWorld living(stage.world, five_people());
-  const world::Surfaces& world =
-      effects == kMovers ? static_cast<const world::Surfaces&>(living) : stage.world;
+  const world::Surfaces& world = world_for(effects, living);
   Stopwatch bare, measured;
   for (auto _ : state) {
     bare.time([&] { cast_bare(packets, parallel); });
@@ -286,10 +314,13 @@ constexpr int kRuns = 25;  // runs per row, of which the minimum time is reporte
 void register_rows() {
   const std::pair<const char*, Sensor> sensors[] = {{"mid360", kMid360}, {"os0_128_2048", kOs0}};
   const std::pair<const char*, Effects> effects[] = {
-      {"geometry", kGeometry}, {"frozen", kFrozen},        {"range_noise", kRangeNoise},
-      {"sheet", kSheet},       {"split_beam", kSplitBeam}, {"sheet_bias", kBias},
-      {"sheet_clock", kClock}, {"sheet_shake", kShake},    {"sheet_movers", kMovers},
-      {"sheet_drift", kDrift}};
+      {"geometry", kGeometry},      {"frozen", kFrozen},
+      {"range_noise", kRangeNoise}, {"sheet", kSheet},
+      {"split_beam", kSplitBeam},   {"sheet_bias", kBias},
+      {"sheet_clock", kClock},      {"sheet_shake", kShake},
+      {"sheet_movers", kMovers},    {"sheet_drift", kDrift},
+      {"sheet_air", kAir},          {"sheet_bounces", kBounces},
+      {"sheet_blooming", kBlooming}};
   for (const auto& sensor : sensors) {
     for (const auto& effect : effects) {
       const std::string name = std::string("measure/") + sensor.first + "/" + effect.first;

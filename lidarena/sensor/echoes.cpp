@@ -8,7 +8,6 @@
 namespace lidarena::sensor {
 
 std::vector<Eigen::Vector2d> sub_ray_offsets(int count) {
-  constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
   std::vector<Eigen::Vector2d> offsets;
   for (int i = 0; i < count; ++i) {
     // The share of a two-dimensional Gaussian within radius r is 1 - exp(-r^2 / 2).

@@ -3,12 +3,16 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
 #include "lidarena/sensor/return_config.hpp"
 
 namespace lidarena::sensor {
+
+inline constexpr double kGoldenAngle =
+    std::numbers::pi * (3.0 - 2.23606797749978969);  ///< rad, pi (3 - sqrt 5)
 
 /// Return of one sub-ray of a beam, or one pulse as the receiver sees it: the sum of the returns
 /// (parts) that it cannot separate.

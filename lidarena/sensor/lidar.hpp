@@ -52,7 +52,9 @@ class Lidar {
   /// depending on its signal; the detected ones are selected and numbered according to
   /// ReturnConfig. Then bias and range noise are added, the range is rounded, and the errors of
   /// the direction are added. `truth`, if given, receives what each point really hit, in point
-  /// order; for a mixed echo, what the sub-ray with the strongest signal hit.
+  /// order; for a mixed echo, what the sub-ray with the strongest signal hit. Surfaces that are
+  /// seen beyond others, the air and halos (NoiseConfig: bounces, air, blooming) give further
+  /// echoes.
   Scan measure(const world::Surfaces& world, const flight::Flight& flight, std::uint64_t index,
                const Parallel& parallel, std::vector<PointTruth>* truth = nullptr) const;
 

@@ -15,7 +15,6 @@ using Eigen::Vector3f;
 namespace {
 
 constexpr double kWidestGlare = 1.0;  // rad; no light comes from farther beside a beam
-constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.23606797749978969);  // 3 - sqrt 5
 enum GlareDraw : std::uint32_t { kGlareSpin, kGlareShift, kGlareDetection };
 
 }  // namespace

@@ -27,9 +27,9 @@ double entering_share(const world::Material& material, double cos_incidence);
 /// counts twice: mirrored_share() squared, or (transmission * entering_share()) squared. Ways that
 /// bring back less than a thousandth are left out. Geometric optics; a pane does not refract (1 cm
 /// of glass shifts a ray by up to 3 mm), and what is mirrored is mirrored as by a plane mirror.
-/// The ghosts that result are those of Yun, Sim, "Virtual point removal for large-scale 3D point
-/// clouds" (IEEE Access 2019), Koch et al., "Detection and purging of specular reflective and
-/// transparent object influences in 3D range measurements" (ISPRS 2017).
+/// The ghosts that result are those of Yun, Sim, "Reflection removal for large-scale 3D point
+/// clouds" (CVPR 2018), and Koch et al., "Detection and purging of specular reflective and
+/// transparent object influences in 3D range measurements" (ISPRS Archives 2017).
 void follow_light(const world::Surfaces& world, Time t, const world::Ray& ray,
                   const world::Hit& first, int bounces, double max_length,
                   std::vector<PathEnd>& ends);

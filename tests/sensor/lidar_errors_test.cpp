@@ -338,9 +338,13 @@ TEST(ErrorsOfTheirOwn, OneThatIsSwitchedOnChangesNoOtherNoise) {
       {0.2, [](SensorConfig& c) { c.noise.bias.incidence_m = 0.01; }},
       {0.1, [](SensorConfig& c) { c.noise.bias.reflectivity_m = 0.01; }},
       {0.1, [](SensorConfig& c) { c.noise.bias.direction_deg = 0.01; }},
-      {0.0, [](SensorConfig& c) {
+      {0.0,
+       [](SensorConfig& c) {
          c.noise.clock = {0.002, 1e-4, 1e-3, true};
-       }}};
+       }},
+      {0.1, [](SensorConfig& c) { c.noise.drift.warm_up_m = 0.01; }},
+      {0.0, [](SensorConfig& c) { c.noise.bounces = 2; }},
+      {0.0, [](SensorConfig& c) { c.noise.blooming.share = 0.01; }}};
   for (const auto& [largest, change] : switches) {
     SensorConfig config = plain;
     change(config);
@@ -365,6 +369,10 @@ TEST(ErrorsOfTheirOwn, AreOffWithoutNoise) {
   SensorConfig harsh = plain;
   harsh.noise.bias = {0.1, 0.1, 0.1, 0.1, 0.5};
   harsh.noise.clock = {0.1, 1e-3, 0.01, true};
+  harsh.noise.drift.warm_up_m = 0.1;
+  harsh.noise.bounces = 2;
+  harsh.noise.air.visibility_m = 20;
+  harsh.noise.blooming.share = 0.1;
   harsh.imu->broadband.accel_rms = {9, 9, 9};
   harsh.imu->vibration_moves_lidar = true;
   harsh.imu->bandwidth_hz = 20;

@@ -575,6 +575,39 @@ TEST(Blooming, CostsNothingWithoutRetroreflectors) {
   EXPECT_TRUE(same(received(config, room).scan, received(plain, room).scan));
 }
 
+/// A room with a sign, a wet floor and a pane, in fog and rain, seen by beams of several sub-rays.
+TEST(Surroundings, AreTheSameOnAnyNumberOfThreadsAndInAnyPieces) {
+  const world::World world =
+      world_of({traffic_sign(), upright(12, kWhiteWall), upright(3, kPane),
+                sheet({-40, -40, -1}, {80, 0, 0}, {0, 80, 0}, world::materials::kWetFloor)});
+  SensorConfig config = that_blooms(0.01, 4);
+  config.noise.air = fog(150.0);
+  config.noise.air.rain_mm_h = 30.0;
+  config.noise.bounces = 2;
+  config.noise.drift.warm_up_m = 0.02;
+  config.noise.beam.sub_rays = 3;
+  config.noise.dropouts = true;
+  config.range_noise_m = 0.02;
+  config.returns.count = 3;
+  const Lidar lidar = make_lidar(config);
+  const auto flight = rest(Pose::Identity(), 4000);
+  const Scan scan = lidar.measure(world, flight, 7, kOneThread);
+  EXPECT_TRUE(same(scan, lidar.measure(world, flight, 7, Parallel(3))));
+  std::vector<Beam> storage;
+  const std::span<const Beam> beams = lidar.beams(7, storage);
+  Scan pieces = lidar.empty_scan(7);
+  std::vector<PointTruth> truth;
+  for (std::size_t first = 0; first < beams.size(); first += 777) {
+    const std::size_t count = std::min<std::size_t>(777, beams.size() - first);
+    lidar.measure_part(
+        world, [&](std::int32_t) { return config.body_from_lidar; }, beams.subspan(first, count),
+        7 * beams.size() + first, pieces.points, &truth);
+  }
+  EXPECT_TRUE(same(scan, pieces));
+  for (const std::uint32_t kind : {kAir, kGhost})
+    EXPECT_GT(std::ranges::count(truth, kind, &PointTruth::triangle), 100) << kind;
+}
+
 TEST(Air, NeedsTheFiguresThatItIsComputedFrom) {
   SensorConfig config = in_air(fog(100));
   config.noise.signal = {};
