@@ -3,7 +3,7 @@
 """Draws what panes, fog and retroreflectors do to a LiDAR. usage: draw_surroundings.py PROGRAM FOLDER
 
 Writes pane_ghosts.png, fog.png and blooming.png to FOLDER: gray points are of surfaces, red ones ghosts and halos, blue ones of the air,
-the green dot is the sensor. Each is one scan, placed by its truth.
+the green dot is the sensor. Returns are placed by their truth.
 """
 import math
 import pathlib
@@ -49,15 +49,18 @@ def write_world(file, boxes):
     file.write_text("\n".join(lines) + "\n")
 
 
-def simulate(program, folder, world, flight, noise, sensor="ouster_os0_128_2048"):
-    """Position (m, world) and class of each return of the first scan."""
-    (folder / "drawn.yaml").write_text(f"base: {sensor}\nimu: null\nnoise: {noise}\n")
-    out = folder / "dataset"
-    subprocess.run([program, "simulate", world, flight, folder / "drawn.yaml", "--out", out, "--seconds", "0.2", "--format", "pcd",
-                    "--truth", "--overwrite"], check=True, stdout=subprocess.DEVNULL)
-    data = sorted(out.rglob("*hits*/*.pcd"))[0].read_bytes()
-    body = data[data.index(b"DATA binary\n") + 12:]
-    return [(row[0:3], row[7]) for row in struct.iter_unpack("<7fI", body)]
+def simulate(program, folder, world, flight, sensor, seconds, settings):
+    """Position (m, world) and class of each return."""
+    out = folder / world.stem
+    subprocess.run([program, "simulate", "--world", world, "--flight", flight, "--sensor", sensor, "--set", "sensor.imu=null",
+                    *(f"--set=sensor.{setting}" for setting in settings), "--seconds", seconds, "--format", "pcd", "--truth", "--out", out],
+                   check=True, stdout=subprocess.DEVNULL)
+    returns = []
+    for file in sorted(out.rglob("hits/*.pcd")):
+        data = file.read_bytes()
+        rows = struct.iter_unpack("<7fI", data[data.index(b"DATA binary\n") + 12:])
+        returns += [(row[0:3], row[7]) for row in rows]
+    return returns
 
 
 def draw(file, returns, project, sensor):
@@ -74,7 +77,7 @@ def draw(file, returns, project, sensor):
             color = COLORS.get(triangle, GRAY)
             pixel = project(position)
             if color in kinds and pixel:
-                mark(pixel, color, 0)
+                mark(pixel, color, 1)
     if sensor:
         mark(sensor, GREEN, 4)
     write_png(file, pixels)
@@ -109,17 +112,17 @@ def main(program, images):
                            ((-5, 4, 0), (3, 4.1, 3), 0), ((3, -4, 0), (3.01, 4, 3), 1), ((-1, 1, 0), (0.5, 2, 1.8), 0),
                            ((-3, -3, 0), (-2, -2, 2), 0), ((5.5, -2, 0), (6.5, -1, 2), 0)])
         project = from_above((2.5, 0), 40, (0.3, 2.8))
-        returns = simulate(program, folder, room, flight, "{bounces: 4}")
+        returns = simulate(program, folder, room, flight, "livox_mid360", "1", ["noise.bounces=4", "returns.choice=last"])
         draw(images / "pane_ghosts.png", returns, project, project((0, 0, 1.5)))
         house = pathlib.Path(__file__).parent.parent / "configs/worlds/house.yaml"
         route = folder / "route.yaml"
         route.write_text("kind: route\n")
-        returns = simulate(program, folder, house, route, "{air: {visibility_m: 15}}", "livox_mid360")
-        draw(images / "fog.png", returns, from_above((0, 0), 20, (0, 2.2)), None)
+        returns = simulate(program, folder, house, route, "livox_mid360", "1", ["noise.air.visibility_m=10"])
+        draw(images / "fog.png", returns, from_above((3.5, 3), 36, (0, 2.2)), None)
         hall = folder / "hall.ply"
         write_world(hall, [((-20, -15, 0), (25, 15, 8), 0), ((8, -0.4, 1.1), (8.05, 0.4, 1.9), 2), ((8.05, -0.05, 0), (8.1, 0.05, 1.9), 0)])
-        returns = simulate(program, folder, hall, flight, "{blooming: {share: 0.01, half_angle_deg: 1.5, rays: 16}}")
-        draw(images / "blooming.png", returns, from_sensor((0, 0, 1.5), 30), None)
+        returns = simulate(program, folder, hall, flight, "ouster_os0_128_2048", "0.2", ["noise.blooming.share=0.01", "noise.blooming.rays=16"])
+        draw(images / "blooming.png", returns, from_sensor((0, 0, 1.6), 30), None)
 
 
 main(sys.argv[1], pathlib.Path(sys.argv[2]))
