@@ -94,8 +94,8 @@ class Lidar {
   void look_beyond(const world::Surfaces& world, std::size_t shot, std::size_t k,
                    Block& block) const;
   Time time_of(std::size_t shot, const Block& block) const;
-  Seen seen(const world::Surfaces& world, std::size_t shot, const Echo& echo,
-            const Block& block) const;
+  double share_on_the_way(const world::Material& material, double cosine, double range) const;
+  PointTruth truth_of(std::size_t shot, const Echo& echo, const Block& block) const;
   void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
   void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
               std::size_t draw, Block& block) const;

@@ -28,17 +28,25 @@ std::optional<Echo> Lidar::receive_ray(const world::Surfaces& world, std::size_t
   const double range = block.axis_to_origin + static_cast<double>(hit.range);
   if (range < config_.min_range_m || range > config_.max_range_m) return std::nullopt;
   const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
-  return echo_of(world.material(hit.triangle), cosine, 1.0, range, static_cast<std::uint32_t>(k));
+  const world::Material& material = world.material(hit.triangle);
+  double energy = energy_of_ray_ * world::backscatter(material, cosine);
+  if (!is_simple_) energy *= share_on_the_way(material, cosine, range);
+  const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
+  return Echo{range, energy, signal, static_cast<std::uint32_t>(k)};
+}
+
+/// Share of the light that enters the surface at `range` and comes back through the air.
+double Lidar::share_on_the_way(const world::Material& material, double cosine, double range) const {
+  const double enters = config_.noise.bounces > 0 ? entering_share(material, cosine) : 1.0;
+  return enters * enters * (air_ ? air_->passed(range) : 1.0);
 }
 
 /// The part of a sub-ray's light that comes back from a surface, `share` of it on the way.
 Echo Lidar::echo_of(const world::Material& material, double cosine, double share, double range,
                     std::uint32_t source) const {
-  double energy = share * energy_of_ray_ * world::backscatter(material, cosine);
-  if (config_.noise.bounces > 0) energy *= std::pow(entering_share(material, cosine), 2);
-  if (air_) energy *= air_->passed(range);
-  const double signal = needs_signal_ ? signal_.signal(energy, range) : 0.0;
-  return {range, energy, signal, source};
+  const double energy = share * energy_of_ray_ * world::backscatter(material, cosine) *
+                        share_on_the_way(material, cosine, range);
+  return {range, energy, signal_.signal(energy, range), source};
 }
 
 /// Adds to block.parts what sub-ray `k` of a shot sees through panes and in mirrors.
@@ -73,21 +81,6 @@ void Lidar::look_beyond(const world::Surfaces& world, std::size_t shot, std::siz
 Time Lidar::time_of(std::size_t shot, const Block& block) const {
   const bool rolling = config_.mode == ScanMode::kRolling;
   return block.begin + Time{rolling ? block.shots[shot].dt_ns : 0};
-}
-
-/// What the strongest part of an echo is of.
-Lidar::Seen Lidar::seen(const world::Surfaces& world, std::size_t shot, const Echo& echo,
-                        const Block& block) const {
-  if (echo.sub_ray >= sub_rays_.size()) return block.beyond[echo.sub_ray - sub_rays_.size()];
-  const std::size_t place = block.places[shot] + echo.sub_ray;
-  const world::Hit& hit = block.hits[place];
-  const Vector3f& direction = block.rays[place].direction;
-  return {.direction = direction,
-          .distance = static_cast<double>(hit.range),
-          .normal = hit.normal,
-          .triangle = hit.triangle,
-          .cosine = -static_cast<double>(hit.normal.dot(direction)),
-          .reflectivity = world.material(hit.triangle).reflectivity};
 }
 
 /// Fills block.echoes with the detected echoes of a shot, in reporting order.
@@ -212,8 +205,15 @@ double Lidar::range_noise(const Echo& echo, std::size_t shot, std::size_t number
 /// Bias of an echo by its channel and by the surface of its strongest part.
 double Lidar::range_bias(const world::Surfaces& world, std::size_t shot, const Echo& echo,
                          const Block& block) const {
-  const Seen surface = seen(world, shot, echo, block);
-  return bias_.range(block.shots[shot].ring, surface.cosine, surface.reflectivity);
+  const std::uint16_t ring = block.shots[shot].ring;
+  if (echo.sub_ray >= sub_rays_.size()) {
+    const Seen& beyond = block.beyond[echo.sub_ray - sub_rays_.size()];
+    return bias_.range(ring, beyond.cosine, beyond.reflectivity);
+  }
+  const std::size_t place = block.places[shot] + echo.sub_ray;
+  const world::Hit& hit = block.hits[place];
+  const double cosine = -static_cast<double>(hit.normal.dot(block.rays[place].direction));
+  return bias_.range(ring, cosine, world.material(hit.triangle).reflectivity);
 }
 
 double Lidar::measured_range(const Echo& echo, std::size_t shot, std::size_t number, double bias,
@@ -251,12 +251,21 @@ void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& e
   point.ring = beam.ring;
   point.echo = static_cast<std::uint8_t>(number);
   block.points[block.count++] = point;
-  if (block.truth == nullptr) return;
-  const Seen surface = seen(world, shot, echo, block);
-  const Vector3d& origin = block.rays[block.places[shot]].origin;  // of all rays of the shot
+  if (block.truth != nullptr) block.truth[block.count - 1] = truth_of(shot, echo, block);
+}
+
+/// What the strongest part of an echo is of.
+PointTruth Lidar::truth_of(std::size_t shot, const Echo& echo, const Block& block) const {
+  const bool is_direct = echo.sub_ray < sub_rays_.size();
+  const std::size_t place = block.places[shot] + (is_direct ? echo.sub_ray : 0);
+  const world::Ray& ray = block.rays[place];
+  const world::Hit& hit = block.hits[place];
+  const Seen surface =
+      is_direct ? Seen{ray.direction, static_cast<double>(hit.range), hit.normal, hit.triangle}
+                : block.beyond[echo.sub_ray - sub_rays_.size()];
   const Vector3d to_surface = surface.distance * surface.direction.cast<double>();
-  block.truth[block.count - 1] = {
-      .position = (origin + to_surface).cast<float>(),
+  return {
+      .position = (ray.origin + to_surface).cast<float>(),
       .range = static_cast<float>(block.axis_to_origin + surface.distance + start_offset(config_)),
       .normal = surface.normal,
       .triangle = surface.triangle};
