@@ -36,8 +36,7 @@ std::vector<Eigen::Vector3f> averages(const std::vector<Eigen::Vector3f>& points
 }
 
 map::LocalPlanes map_of_box() {
-  map::LocalPlanes made(
-      {config().map_cell_size_m, config().max_cell_points, config().map_radius_m});
+  map::LocalPlanes made(config().map.options());
   made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
   return made;
 }

@@ -28,7 +28,7 @@ std::vector<Slice> slices(const Scan& scan) {
 }
 
 map::LocalPlanes map_of_box() {
-  map::LocalPlanes made({.cell_size = config().map_cell_size_m});
+  map::LocalPlanes made(config().map.options());
   made.insert(positions(scan_of(400'000, 1)), Eigen::Vector3f(0, 0, 0));
   return made;
 }

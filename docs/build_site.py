@@ -15,7 +15,7 @@ import subprocess
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-ALGORITHMS = ("kiss_icp", "ct_icp", "fast_lio2", "lio_sam", "arena_lo", "arena_lio")
+ALGORITHMS = ("kiss_icp", "kiss_icp_head", "ct_icp", "fast_lio2", "lio_sam", "arena_lo", "arena_lio")
 
 
 def limits(field):

@@ -10,6 +10,7 @@
 #include "lidarena/odometry/ct_icp/ct_icp.hpp"
 #include "lidarena/odometry/fast_lio2/fast_lio2.hpp"
 #include "lidarena/odometry/kiss_icp/kiss_icp.hpp"
+#include "lidarena/odometry/kiss_icp_head/kiss_icp_head.hpp"
 #include "lidarena/odometry/lio_sam/lio_sam.hpp"
 #include "lidarena/odometry/with_loop.hpp"
 
@@ -52,12 +53,20 @@ using PresetTable = std::vector<std::pair<std::string, Config (*)(const LidarInf
 struct Kiss {
   using Config = kiss_icp::Config;
   static PresetTable<Config> presets() {
-    return {
-        {"indoor", kiss_icp::indoor}, {"published", kiss_icp::published}, {"head", kiss_icp::head}};
+    return {{"indoor", kiss_icp::indoor}, {"published", kiss_icp::published}};
   }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
     return std::make_unique<kiss_icp::KissIcp>(config, lidar, parallel);
+  }
+};
+
+struct KissHead {
+  using Config = kiss_icp_head::Config;
+  static PresetTable<Config> presets() { return {{"", kiss_icp_head::published}}; }
+  static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
+                                         const Parallel& parallel) {
+    return std::make_unique<kiss_icp_head::KissIcpHead>(config, lidar, parallel);
   }
 };
 
@@ -156,6 +165,7 @@ std::vector<std::string> preset_names() {
 /// What a preset of version 0.1.0 is today.
 std::string successor_of(const std::string& algorithm, const std::string& preset) {
   if (!algorithm.starts_with("kiss_icp")) return "";
+  if (preset == "head") return "it is the method kiss_icp_head";
   if (preset == "original")
     return "nearest to it is the preset published, whose de-skewing is off as shipped";
   return preset == "improved" ? "it was removed; arena_lo is more accurate" : "";
@@ -252,6 +262,7 @@ std::vector<Algorithm> algorithms() {
   return {
       plain<Kiss>("kiss_icp", "LiDAR only: point-to-point ICP against a voxel map (Vizzo 2023)",
                   false),
+      plain<KissHead>("kiss_icp_head", "LiDAR only: KISS-ICP as its program of late 2025", false),
       plain<Ct>("ct_icp", "LiDAR only: elastic scans to planes of a voxel map (Dellenbach 2022)",
                 false),
       plain<FastLio>("fast_lio2",
@@ -264,6 +275,8 @@ std::vector<Algorithm> algorithms() {
                      false),
       plain<ArenaLio>("arena_lio", "our own, LiDAR and IMU: iterated Kalman filter", true),
       looped<Kiss>("kiss_icp+loop", "KISS-ICP with our loop closure around it", false),
+      looped<KissHead>("kiss_icp_head+loop", "KISS-ICP of 2025 with our loop closure around it",
+                       false),
       looped<FastLio>("fast_lio2+loop", "FAST-LIO2 with our loop closure around it", true),
       looped<ArenaLo>("arena_lo+loop", "arena_lo with our loop closure around it", false),
       looped<ArenaLio>("arena_lio+loop", "arena_lio with our loop closure around it", true),

@@ -60,7 +60,7 @@ TEST(OdometryFactory, OverridesWinOverTheFileAndTheFileOverThePreset) {
   const TemporaryFolder folder;
   const auto file = folder.write("kiss.yaml", "voxel_size_m: 0.4\nmax_iterations: 7\n");
   const Json config =
-      make({"kiss_icp", "head", file.string(), {"max_iterations=9", "deskew=false"}}).config;
+      make({"kiss_icp", "published", file.string(), {"max_iterations=9", "deskew=false"}}).config;
   EXPECT_EQ(config.at("voxel_size_m"), 0.4);
   EXPECT_EQ(config.at("max_iterations"), 9);
   EXPECT_EQ(config.at("deskew"), false);
@@ -88,26 +88,26 @@ TEST(OdometryFactory, RefusalsNameTheNearestWord) {
   EXPECT_THAT(refusal({"kis_icp", "indoor", "", {}}), HasSubstr("did you mean 'kiss_icp'"));
   EXPECT_THAT(refusal({"orb_slam", "indoor", "", {}}),
               AllOf(HasSubstr("orb_slam"), HasSubstr("use one of")));
-  EXPECT_THAT(refusal({"kiss_icp", "haed", "", {}}),
-              HasSubstr("use one of indoor, published, head"));
-  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size=1"}}),
+  EXPECT_THAT(refusal({"kiss_icp", "publised", "", {}}), HasSubstr("use one of indoor, published"));
+  EXPECT_THAT(refusal({"kiss_icp", "published", "", {"voxel_size=1"}}),
               HasSubstr("did you mean 'voxel_size_m'"));
-  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"voxel_size_m=-1"}}), HasSubstr("above 0"));
-  EXPECT_THAT(refusal({"kiss_icp", "head", "", {"release=x"}}), HasSubstr("v0_2, head"));
-  EXPECT_THAT(refusal({"kiss_icp", "head", "/no/such.yaml", {}}), HasSubstr("/no/such.yaml"));
-  EXPECT_THAT(refusal({"kiss_icp", "head", "", {}}, "os0"),
+  EXPECT_THAT(refusal({"kiss_icp", "published", "", {"voxel_size_m=-1"}}), HasSubstr("above 0"));
+  EXPECT_THAT(refusal({"kiss_icp", "published", "/no/such.yaml", {}}), HasSubstr("/no/such.yaml"));
+  EXPECT_THAT(refusal({"kiss_icp", "published", "", {}}, "os0"),
               AllOf(HasSubstr("os0"), HasSubstr("use one of lidar")));
 }
 
 TEST(OdometryFactory, AFormerPresetIsRefusedWithItsSuccessor) {
   EXPECT_THAT(refusal({"kiss_icp", "original", "", {}}), HasSubstr("the preset published"));
   EXPECT_THAT(refusal({"kiss_icp", "improved", "", {}}), HasSubstr("arena_lo"));
+  EXPECT_THAT(refusal({"kiss_icp", "head", "", {}}), HasSubstr("the method kiss_icp_head"));
   EXPECT_THAT(refusal({"arena_lio", "improved", "", {}}), HasSubstr("leave it out"));
 }
 
 TEST(OdometryFactory, TheDefaultPresetIsNamedWhereThereIsOne) {
   EXPECT_EQ(with_default_preset({.algorithm = "kiss_icp"}).preset, "indoor");
-  EXPECT_EQ(with_default_preset({.algorithm = "kiss_icp", .preset = "head"}).preset, "head");
+  EXPECT_EQ(with_default_preset({.algorithm = "kiss_icp", .preset = "published"}).preset,
+            "published");
   EXPECT_EQ(with_default_preset({.algorithm = "arena_lo"}).preset, "");
   EXPECT_EQ(with_default_preset({.algorithm = "not_ours"}).preset, "");
 }

@@ -126,7 +126,7 @@ TEST(Fidelity, InTheCaveWithTheMid360) {
   const CalmFlight flight("cave", "livox_mid360", "mid360");
   expect_like_program(flight, {"kiss_icp", "published"}, "kiss_v0.2_published", kMillimeter, 15.0);
   expect_like_program(flight, {"kiss_icp", "indoor"}, "kiss_v0.2_indoor");
-  expect_like_program(flight, {"kiss_icp", "head"}, "kiss_head_published", 1e-4, kSeconds);
+  expect_like_program(flight, {"kiss_icp_head", ""}, "kiss_head_published", 1e-4, kSeconds);
   expect_like_program(flight, {"ct_icp", "indoor"}, "ct_icp_handheld");
   expect_like_program(flight, {"fast_lio2", "published"}, "fast_lio2_published", kMillimeter, 8.0);
   expect_like_program(flight, {"fast_lio2", "indoor"}, "fast_lio2_0.2m", kMillimeter, 8.0);
@@ -135,7 +135,7 @@ TEST(Fidelity, InTheCaveWithTheMid360) {
 
 TEST(Fidelity, InTheHouseWithTheMid360) {
   const CalmFlight flight("house", "livox_mid360", "mid360");
-  expect_like_program(flight, {"kiss_icp", "head"}, "kiss_head_published", 1e-4, kSeconds);
+  expect_like_program(flight, {"kiss_icp_head", ""}, "kiss_head_published", 1e-4, kSeconds);
   expect_like_program(flight, {"ct_icp", "indoor"}, "ct_icp_handheld");
   expect_like_program(flight, {"fast_lio2", "published"}, "fast_lio2_published", kMillimeter, 2.5);
   expect_like_program(flight, {"fast_lio2", "indoor"}, "fast_lio2_0.2m", kMillimeter, 10.0);

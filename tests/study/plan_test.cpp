@@ -55,7 +55,7 @@ StudySpec small_spec() {
   StudySpec spec;
   spec.scenes = {{"house", "house", 5.0}};
   spec.sensors = {"livox_mid360", "ouster_os0_128"};
-  spec.algorithms = {"kiss_icp", "kiss_icp:head"};
+  spec.algorithms = {"kiss_icp", "kiss_icp:published"};
   spec.seeds = {1, 2};
   return spec;
 }
@@ -64,7 +64,7 @@ TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
   const std::vector<PlannedRun> cells = planned_cells(small_spec(), configs());
   ASSERT_EQ(cells.size(), 8U);
   EXPECT_EQ(cells[0].name, "house-house-s1-livox_mid360-kiss_icp-indoor");
-  EXPECT_EQ(cells[1].preset, "head");
+  EXPECT_EQ(cells[1].preset, "published");
   std::set<std::string> names;
   std::set<std::string> datasets;
   for (const PlannedRun& cell : cells) {

@@ -3,6 +3,8 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/odometry/plane_map_config.hpp"
+#include "lidarena/odometry/tracking.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
@@ -10,14 +12,12 @@ struct Config {
   double min_range_m = 0.3;
   double scan_voxel_size_m = 0.2;
   int max_scan_points = 4000;
-  double map_cell_size_m = 0.3;
-  int max_cell_points = 400;
-  double map_radius_m = 150.0;
+  PlaneMapConfig map;
 
   int max_iterations = 3;
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets; the plane's variance is added
   double kernel_scale_m = 0.05;
-  double min_inlier_share = 0.75;
+  TrackingConfig tracking;
   bool estimate_extrinsics = true;
 
   bool calibrate_gyro = true;
@@ -34,25 +34,14 @@ struct Config {
       "upper limit on the averaged points of a scan, taken evenly from all; bounds the time of a "
       "scan",
       at_least(100));
-    v("map_cell_size_m", self.map_cell_size_m, "m",
-      "edge of a cell of the map, which has one plane; where there are few planes, cells of three "
-      "times this edge are used",
-      above(0));
-    v("max_cell_points", self.max_cell_points, "",
-      "points after which a cell of the map does not change any more", at_least(10));
-    v("map_radius_m", self.map_radius_m, "m",
-      "half the edge of the box around the sensor outside of which cells are removed", above(0));
+    PlaneMapConfig::visit(self.map, v);
     v("max_iterations", self.max_iterations, "",
       "maximum number of iterations of the filter's update", at_least(0));
     v("point_variance_m2", self.point_variance_m2, "m^2",
       "variance of a point's distance from its plane, without the plane's own", above(0));
     v("kernel_scale_m", self.kernel_scale_m, "m",
       "distance from its plane at which a point has a quarter of its weight", above(0));
-    v("min_inlier_share", self.min_inlier_share, "",
-      "a scan is not added to the map when the share of its points that lie on their planes is "
-      "smaller than this times the usual share; after fifteen such scans in a row the status is "
-      "diverged",
-      between(0, 1));
+    TrackingConfig::visit(self.tracking, v);
     v("estimate_extrinsics", self.estimate_extrinsics, "",
       "also estimate the LiDAR's pose relative to the IMU; the body stays where the LiDAR is told "
       "to be on it");

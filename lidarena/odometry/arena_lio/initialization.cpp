@@ -39,10 +39,11 @@ State::Matrix initial_covariance(bool still) {
 
 }  // namespace
 
-std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar) {
+std::optional<Initialization> start_from(const std::vector<ImuSample>& samples,
+                                         const Pose& imu_from_lidar) {
   const estimation::ImuStatistics imu = estimation::statistics(samples);
   if (imu.count < kSamples || !(imu.mean_accel.norm() > 0.0)) return std::nullopt;
-  Start start;
+  Initialization start;
   start.accel_scale = estimation::accel_scale_of(imu, kGravity);
   start.still = estimation::is_at_rest(imu, kGravity, start.accel_scale);
   State& state = start.estimate.state;

@@ -13,7 +13,7 @@
 namespace lidarena::odometry::arena_lio {
 
 /// Result of the initialization.
-struct Start {
+struct Initialization {
   estimation::StateEstimate estimate;
   double accel_scale = 1.0;  ///< factor from the IMU's accelerations to m/s^2
   bool still = false;
@@ -23,7 +23,8 @@ struct Start {
 /// rate, and the part of the accelerometer's bias along gravity from the magnitude of the mean
 /// force. Velocity and biases of a moving sensor are unknown, and their covariance is large. The
 /// world is the IMU's frame. Nothing if there are too few samples or they show no acceleration.
-std::optional<Start> start_from(const std::vector<ImuSample>& samples, const Pose& imu_from_lidar);
+std::optional<Initialization> start_from(const std::vector<ImuSample>& samples,
+                                         const Pose& imu_from_lidar);
 
 /// The motion through the intervals that ends in `state`, by the IMU backwards. `accel_scale`:
 /// factor to m/s^2.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lo/arena_lo.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <utility>
 
@@ -15,11 +14,8 @@ constexpr double kStartSpeed = 5.0;        // m/s, standard deviation before any
 constexpr double kStartRate = 1.0;         // rad/s, likewise
 constexpr double kStartPose = 1e-6;        // m and rad: the first pose defines the map's frame
 constexpr std::size_t kMinMatches = 50;    // points near planes; with fewer, a scan is not used
-constexpr double kDegenerate = 0.01;       // minimum share of a direction; isotropic: 1/3
-constexpr double kShareMemory = 0.1;       // weight of a scan in the usual share of inliers
 constexpr std::size_t kStartScans = 3;     // the map begins anew with each of them, see README.md
 constexpr int kStartPasses = 5;            // over the first two scans
-constexpr int kLostScans = 15;             // in a row that contradict the map: tracking is lost
 constexpr double kLostMotionFactor = 0.5;  // on the velocity after each scan without registration
 
 estimation::MotionEstimate start(const Config& config) {
@@ -31,13 +27,6 @@ estimation::MotionEstimate start(const Config& config) {
   return {{}, deviation.cwiseAbs2().asDiagonal()};
 }
 
-/// Share of the least observed direction in the information about the position.
-double weakest_share(const Measurement& measurement) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
-      Eigen::Matrix3d(measurement.equations.hessian.topLeftCorner<3, 3>()), Eigen::EigenvaluesOnly);
-  return directions.eigenvalues()[0] / directions.eigenvalues().sum();
-}
-
 }  // namespace
 
 ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel)
@@ -45,7 +34,8 @@ ArenaLo::ArenaLo(const Config& config, const LidarInfo& lidar, Parallel parallel
       body_from_lidar_(lidar.body_from_lidar),
       parallel_(std::move(parallel)),
       known_{start(config), Time{0}},
-      map_({config.map_cell_size_m, config.max_cell_points, config.map_radius_m}),
+      map_(config.map.options()),
+      tracking_(config.tracking),
       scan_duration_(from_seconds(1.0 / lidar.rate_hz)) {}
 
 ScanResult ArenaLo::track(const Scan& scan) {
@@ -119,16 +109,13 @@ ScanStatus ArenaLo::status_of(const Measurement& measurement, std::size_t points
   if (measurement.near_planes < kMinMatches) return ScanStatus::kTooFewPoints;
   const double share =
       static_cast<double>(measurement.on_planes) / static_cast<double>(measurement.near_planes);
-  const bool contradicts = share < config_.min_inlier_share * usual_share_.value_or(share);
-  contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
-  if (contradicting_scans_ > kLostScans) return ScanStatus::kDiverged;
-  if (contradicts) return ScanStatus::kDegenerate;
-  usual_share_ = usual_share_.value_or(share) * (1.0 - kShareMemory) + kShareMemory * share;
-  return weakest_share(measurement) < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
+  const ScanStatus status =
+      tracking_.judge(share, measurement.equations.hessian.topLeftCorner<3, 3>());
+  return tracking_.is_lost() ? ScanStatus::kDiverged : status;
 }
 
 bool ArenaLo::is_used(ScanStatus status) const {
-  return status != ScanStatus::kTooFewPoints && contradicting_scans_ == 0;
+  return status != ScanStatus::kTooFewPoints && !tracking_.contradicts();
 }
 
 Steps ArenaLo::coasted(const std::vector<Slice>& slices, Time end) const {

@@ -13,6 +13,7 @@
 #include "lidarena/odometry/arena_lo/registration.hpp"
 #include "lidarena/odometry/arena_lo/slices.hpp"
 #include "lidarena/odometry/odometry.hpp"
+#include "lidarena/odometry/tracking.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
@@ -81,8 +82,7 @@ class ArenaLo : public Odometry {
   map::LocalPlanes map_;
   std::optional<Opening> opening_;  ///< from the first scan to the second
   std::size_t scans_mapped_ = 0;
-  int contradicting_scans_ = 0;        ///< in a row
-  std::optional<double> usual_share_;  ///< running mean of the share of points on their planes
+  Tracking tracking_;
 
   std::vector<StampedPose> poses_;
   std::vector<Eigen::Vector3f> registered_scan_;

@@ -7,7 +7,7 @@ Config settings_for(const LidarInfo& lidar) {
   Config config;
   config.min_range_m = lidar.min_range_m;
   config.max_range_m = lidar.max_range_m;
-  config.map_radius_m = 1.5 * lidar.max_range_m;
+  config.map.radius_m = 1.5 * lidar.max_range_m;
   return config;
 }
 

@@ -3,6 +3,8 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/rig.hpp"
+#include "lidarena/odometry/plane_map_config.hpp"
+#include "lidarena/odometry/tracking.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
@@ -13,15 +15,13 @@ struct Config {
   double scan_voxel_size_m = 0.1;
   int max_scan_points = 12000;
 
-  double map_cell_size_m = 0.2;
-  int max_cell_points = 400;
-  double map_radius_m = 150.0;
+  PlaneMapConfig map{.cell_size_m = 0.2};
 
   int max_passes = 2;
   double first_kernel_scale_m = 0.1;
   double kernel_scale_m = 0.05;
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets
-  double min_inlier_share = 0.75;
+  TrackingConfig tracking;
 
   double acceleration_m_s2 = 3.0;
   double acceleration_time_s = 0.3;
@@ -40,14 +40,7 @@ struct Config {
       "upper limit on the averages of all slices of a scan, taken evenly from all; bounds the time "
       "of a scan",
       at_least(100));
-    v("map_cell_size_m", self.map_cell_size_m, "m",
-      "edge of a cell of the map, which has one plane for each side it is seen from; where there "
-      "is none, cells of three times this edge are used",
-      above(0));
-    v("max_cell_points", self.max_cell_points, "",
-      "points after which a cell of the map does not change any more", at_least(10));
-    v("map_radius_m", self.map_radius_m, "m",
-      "half the edge of the box around the sensor outside of which cells are removed", above(0));
+    PlaneMapConfig::visit(self.map, v);
     v("max_passes", self.max_passes, "",
       "maximum number of passes over a scan with the kernel's final scale", at_least(1));
     v("first_kernel_scale_m", self.first_kernel_scale_m, "m",
@@ -59,11 +52,7 @@ struct Config {
     v("point_variance_m2", self.point_variance_m2, "m^2",
       "variance of a point's distance from its plane; that of the plane's points if it is larger",
       above(0));
-    v("min_inlier_share", self.min_inlier_share, "",
-      "a scan is not added to the map when the share of its points that lie on their planes is "
-      "smaller than this times the usual share; after fifteen such scans in a row the status is "
-      "diverged",
-      between(0, 1));
+    TrackingConfig::visit(self.tracking, v);
     v("acceleration_m_s2", self.acceleration_m_s2, "m/s^2",
       "standard deviation of the acceleration along each axis", above(0));
     v("acceleration_time_s", self.acceleration_time_s, "s",

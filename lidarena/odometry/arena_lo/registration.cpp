@@ -35,7 +35,7 @@ void add(const Eigen::Vector3f& point, const estimation::MotionEstimate& at, dou
   // A place that is uncertain by more than a cell has fine planes of elsewhere.
   const map::MapPlane* plane =
       map.plane_at(position.cast<float>(), at.state.pose.translation().cast<float>(),
-                   scale > config.map_cell_size_m);
+                   scale > config.map.cell_size_m);
   if (plane == nullptr) return;
   ++sum.near_planes;
   const Eigen::Vector3d normal = plane->normal.cast<double>();

@@ -4,13 +4,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "lidarena/odometry/tracking.hpp"
+
 namespace lidarena::odometry::ct_icp {
 
 namespace {
 
 constexpr int kRigidScans = 2;          // at the start, registered without motion within the scan
 constexpr int kInitialIterations = 15;  // at least, for the first initial_scans
-constexpr double kDegenerate = 0.01;    // minimum share of a direction; isotropic: 1/3
 
 }  // namespace
 

@@ -2,19 +2,16 @@
 #pragma once
 
 #include "lidarena/base/pose.hpp"
-#include "lidarena/odometry/kiss_icp/config.hpp"
+#include "lidarena/odometry/kiss_icp_steps.hpp"
 
 namespace lidarena::odometry::kiss_icp {
 
-/// Upper limit (m) on how far a prediction `error` (true pose relative to the predicted one) moves
-/// a point at `range` m: |t| + 2 range sin(angle / 2) (paper, eq. 5 and 6).
-double displacement(const Pose& error, double range);
-
 /// Sigma (m) of the errors of the constant-velocity prediction so far (paper, eq. 8): scale of the
-/// distance between a point and its counterpart before ICP.
+/// distance between a point and its counterpart before ICP. Within 5 minimum motions of the start,
+/// v0.2 counts no error and uses the initial sigma.
 class AdaptiveThreshold {
  public:
-  explicit AdaptiveThreshold(const Config& config);
+  explicit AdaptiveThreshold(const Config& config) : config_(config) {}
 
   double sigma() const;
   /// `prediction` and `estimate` of the same pose, map_from_lidar.
@@ -22,9 +19,9 @@ class AdaptiveThreshold {
 
  private:
   Config config_;
-  bool counting_;       ///< at the last pose
-  double count_;        ///< of errors
-  double squared_sum_;  ///< of errors, m^2
+  bool counting_ = false;     ///< at the last pose
+  double count_ = 0.0;        ///< of errors
+  double squared_sum_ = 0.0;  ///< of errors, m^2
 };
 
 }  // namespace lidarena::odometry::kiss_icp

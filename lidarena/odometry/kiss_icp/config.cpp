@@ -10,12 +10,6 @@ Config published(const LidarInfo&) {
   return config;
 }
 
-Config head(const LidarInfo&) {
-  Config config;
-  config.release = Release::kHead;
-  return config;
-}
-
 Config indoor(const LidarInfo&) {
   Config config;
   config.max_range_m = 50.0;

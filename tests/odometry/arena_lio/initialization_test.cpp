@@ -35,7 +35,7 @@ std::vector<ImuSample> standing(double accel_unit, double noise) {
 }
 
 TEST(ArenaLioStart, GravityAndBiasComeFromTheMeans) {
-  const Start start = start_from(standing(1.0, 1e-3), Pose::Identity()).value();
+  const Initialization start = start_from(standing(1.0, 1e-3), Pose::Identity()).value();
   EXPECT_TRUE(start.still);
   EXPECT_EQ(start.accel_scale, 1.0);
   const Eigen::Vector3d down = so3::exp({0.1, -0.2, 0.0}).transpose() * Eigen::Vector3d(0, 0, -1);
@@ -45,7 +45,7 @@ TEST(ArenaLioStart, GravityAndBiasComeFromTheMeans) {
 }
 
 TEST(ArenaLioStart, AccelerationsInGAreRecognized) {
-  const Start start = start_from(standing(1.0 / 9.80665, 1e-3), Pose::Identity()).value();
+  const Initialization start = start_from(standing(1.0 / 9.80665, 1e-3), Pose::Identity()).value();
   EXPECT_DOUBLE_EQ(start.accel_scale, 9.80665);
   EXPECT_TRUE(start.still);
 }
@@ -72,7 +72,7 @@ TEST(ArenaLioStart, AnAccelerometersBiasIsNotTakenForMotion) {
 }
 
 TEST(ArenaLioStart, ShakingIsNotStanding) {
-  const Start start = start_from(standing(1.0, 0.1), Pose::Identity()).value();
+  const Initialization start = start_from(standing(1.0, 0.1), Pose::Identity()).value();
   EXPECT_FALSE(start.still);
   EXPECT_EQ(start.estimate.state.nav.bias.gyro, Eigen::Vector3d::Zero().eval());
   EXPECT_GT(start.estimate.covariance(estimation::InertialState::kVelocity,

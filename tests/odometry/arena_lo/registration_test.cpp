@@ -18,7 +18,7 @@ const Parallel& single_thread() {
 
 /// Three walls and a floor about the origin, seen from there.
 map::LocalPlanes arena_lo_corner_map() {
-  map::LocalPlanes map({.cell_size = Config{}.map_cell_size_m});
+  map::LocalPlanes map(Config{}.map.options());
   std::vector<Eigen::Vector3f> points;
   for (int i = -60; i < 60; ++i) {
     for (int k = -60; k < 60; ++k) {

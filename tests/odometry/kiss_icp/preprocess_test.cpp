@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/odometry/kiss_icp/preprocess.hpp"
+#include "lidarena/odometry/kiss_icp_steps.hpp"
 
 #include <gtest/gtest.h>
 #include <tsl/robin_map.h>
@@ -17,7 +17,9 @@ namespace {
 using se3::Vector6;
 using Cell = std::array<int, 3>;
 
-constexpr std::array kBothReleases{Release::kV0_2, Release::kHead};
+/// As the published programs do.
+constexpr CellOrder kV02{map::VoxelRounding::kTruncate, 19349663U};
+constexpr CellOrder kHead{map::VoxelRounding::kFloor, 19349669U};
 
 Scan scan_of(std::initializer_list<std::int32_t> times_ns) {
   Scan scan;
@@ -51,13 +53,12 @@ TEST(Preprocess, TheRangeGateIsOpenAtBothEndsAndRefusesWhatIsNotFinite) {
   EXPECT_EQ(kept, (Points{{1.01F, 0, 0}, {0, 9.99F, 0}}));
 }
 
-TEST(Preprocess, APoseBelongsToTheMiddleOfTheScanInV02AndToTheLastPointInHead) {
-  Scan scan = scan_of({600, 300, 0});  // not in order of time
-  EXPECT_EQ(pose_instant(Release::kHead, estimation::times_of(scan, Time{5})), Time{1600});
-  EXPECT_EQ(pose_instant(Release::kV0_2, estimation::times_of(scan, Time{5})), Time{1300});
-  scan.points.clear();
-  EXPECT_EQ(pose_instant(Release::kHead, estimation::times_of(scan, Time{500})), Time{1500});
-  EXPECT_EQ(pose_instant(Release::kV0_2, estimation::times_of(scan, Time{500})), Time{1250});
+TEST(Preprocess, DisplacementIsHowFarAPointAtTheRangeMoves) {
+  // for a rotation about z, all points of the circle of 50 m in the x-y plane move farthest
+  const Pose turned = pose_of(0, 0, 0, 0, 0, 0.3);
+  const Eigen::Vector3d point(30.0, 40.0, 0.0);
+  EXPECT_NEAR(displacement(turned, 50.0), (turned * point - point).norm(), 1e-12);
+  EXPECT_NEAR(displacement(pose_of(3, 0, 4, 0, 0, 0), 50.0), 5.0, 1e-12);
 }
 
 TEST(Preprocess, ThePreviousMotionFillsTheScanHoweverLongTheScanIs) {
@@ -71,7 +72,7 @@ TEST(Preprocess, ThePreviousMotionFillsTheScanHoweverLongTheScanIs) {
 }
 
 /// Reference: the hash table of the published program, with room for two points per slot.
-Points in_table_order(const Points& points, double size, Release release) {
+Points in_table_order(const Points& points, double size, const CellOrder& order) {
   struct Hash {
     std::uint32_t y_factor = 0;
     std::size_t operator()(const Cell& cell) const {
@@ -80,12 +81,12 @@ Points in_table_order(const Points& points, double size, Release release) {
              static_cast<std::uint32_t>(cell[2]) * 83492791U;
     }
   };
-  const bool truncate = release == Release::kV0_2;
+  const bool truncate = order.rounding == map::VoxelRounding::kTruncate;
   const auto index = [&](float coordinate) {
     return static_cast<int>(truncate ? std::trunc(coordinate / size)
                                      : std::floor(coordinate / size));
   };
-  tsl::robin_map<Cell, Eigen::Vector3f, Hash> table(0, Hash{truncate ? 19349663U : 19349669U});
+  tsl::robin_map<Cell, Eigen::Vector3f, Hash> table(0, Hash{order.hash_factor_y});
   table.reserve(points.size());
   for (const Eigen::Vector3f& p : points)
     table.insert({Cell{index(p.x()), index(p.y()), index(p.z())}, p});
@@ -95,14 +96,14 @@ Points in_table_order(const Points& points, double size, Release release) {
 }
 
 TEST(Preprocess, ThinnedPointsAreThoseOfTheProgramsTableInItsOrder) {
-  for (const Release release : kBothReleases) {
+  for (const CellOrder& order : {kV02, kHead}) {
     for (const std::size_t count : {4096U, 5000U}) {  // a power of two has the smallest table
       // 0.5 m is a power of two, so float and double agree on the edges of all cells
       const Points points = random_points(count, 3.0);
-      EXPECT_EQ(thin(points, 0.5, release), in_table_order(points, 0.5, release));
+      EXPECT_EQ(thin(points, 0.5, order), in_table_order(points, 0.5, order));
     }
   }
-  EXPECT_TRUE(thin({}, 0.5, Release::kHead).empty());
+  EXPECT_TRUE(thin({}, 0.5, kHead).empty());
 }
 
 TEST(Preprocess, ThinnedPointsThatWantOneSlotAreMovedOnAsInTheProgramsTable) {
@@ -112,9 +113,9 @@ TEST(Preprocess, ThinnedPointsThatWantOneSlotAreMovedOnAsInTheProgramsTable) {
   for (int i = 0; i < 32; ++i)
     points.emplace_back(64.0F * static_cast<float>(i / 2) + (i % 2 == 0 ? 0.5F : 11.5F), 0.5F,
                         0.5F);
-  for (const Release release : kBothReleases) {
-    const Points thinned = thin(points, 1.0, release);
-    EXPECT_EQ(thinned, in_table_order(points, 1.0, release));
+  for (const CellOrder& order : {kV02, kHead}) {
+    const Points thinned = thin(points, 1.0, order);
+    EXPECT_EQ(thinned, in_table_order(points, 1.0, order));
     ASSERT_EQ(thinned.size(), 32U);
     EXPECT_EQ(std::fmod(thinned.front().x(), 64.0F), 11.5F);
   }

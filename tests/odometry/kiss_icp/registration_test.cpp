@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/odometry/kiss_icp/registration.hpp"
+#include "lidarena/odometry/kiss_icp_steps.hpp"
 
 #include <gtest/gtest.h>
 
@@ -43,9 +43,8 @@ map::VoxelHashMap map_of(std::span<const Eigen::Vector3f> points) {
 Registration register_to(const map::VoxelHashMap& map, const Points& points, const Pose& guess,
                          double convergence) {
   Config config;
-  config.release = Release::kHead;
   config.convergence = convergence;
-  return register_points(points, map, guess, icp_limits(0.5, config), Parallel(1));
+  return register_points(points, map, guess, icp_limits(0.5, 0.5, config), Parallel(1));
 }
 
 TEST(Registration, JacobianOfTheResidualIsItsNumericDerivative) {
@@ -123,17 +122,14 @@ TEST(Registration, IterationsEndAtTheirMaximum) {
   config.max_iterations = 3;
   config.convergence = 0.0;
   const auto found =
-      register_points(points, map_of(points), shift, icp_limits(0.5, config), Parallel(1));
+      register_points(points, map_of(points), shift, icp_limits(0.5, 0.5, config), Parallel(1));
   EXPECT_EQ(found.iterations, 3);
 }
 
-TEST(Registration, TheKernelIsThreeTimesNarrowerInV02) {
-  const Config v0_2;
-  Config head;
-  head.release = Release::kHead;
-  EXPECT_EQ(icp_limits(0.3, v0_2).max_distance_m, icp_limits(0.3, head).max_distance_m);
-  EXPECT_EQ(icp_limits(0.3, head).kernel_scale, 0.3);
-  EXPECT_NEAR(icp_limits(0.3, v0_2).kernel_scale, 0.1, 1e-15);
+TEST(Registration, TheSearchRadiusIsThreeSigma) {
+  const IcpLimits limits = icp_limits(0.3, 0.1, Config{});
+  EXPECT_NEAR(limits.max_distance_m, 0.9, 1e-15);
+  EXPECT_EQ(limits.kernel_scale, 0.1);
   EXPECT_EQ(kernel_weight(0.0, 0.1), 1.0);
   EXPECT_NEAR(kernel_weight(0.1, 0.1), 0.25, 1e-15) << "at a residual of the root of 0.1 m";
 }

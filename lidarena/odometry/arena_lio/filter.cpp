@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: BSD-3-Clause
+#include "lidarena/odometry/arena_lio/filter.hpp"
+
+#include <utility>
+
+#include "lidarena/base/so3.hpp"
+
+namespace lidarena::odometry::arena_lio {
+namespace {
+
+using State = estimation::InertialState;
+
+constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
+constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
+constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
+
+/// The rotation over the intervals, from the rotation `map_from_begin` to that of `state`.
+ScanTurn turn_over(const std::vector<estimation::ImuInterval>& intervals,
+                   const Eigen::Matrix3d& map_from_begin, const State& state,
+                   const ScanTurn& before) {
+  ScanTurn turn;
+  turn.turned = so3::log(map_from_begin.transpose() * state.rotation());
+  const Eigen::Vector3d mean_rate =
+      state.rotation() * turn.turned / to_seconds(intervals.back().end - intervals.front().begin);
+  turn.rate_change =
+      state.rotation().transpose() * (mean_rate - before.mean_rate.value_or(mean_rate));
+  turn.mean_rate = mean_rate;
+  return turn;
+}
+
+}  // namespace
+
+Filter initial_filter(const Initialization& found, const Eigen::Matrix3d& map_from_start) {
+  Filter filter;
+  filter.estimate = found.estimate;
+  filter.accel_scale = found.accel_scale;
+  State& state = filter.estimate.state;
+  state.rotation() = map_from_start * state.rotation();
+  state.gravity = map_from_start * state.gravity;
+  filter.first_pose = state.world_from_imu();
+  return filter;
+}
+
+Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& intervals,
+                 const estimation::ImuNoise& noise) {
+  State& state = filter.estimate.state;
+  State::Matrix& covariance = filter.estimate.covariance;
+  const Eigen::Matrix3d map_from_begin = state.rotation();
+  filter.track.clear();
+  for (const estimation::ImuInterval& interval : intervals) {
+    constexpr auto kIntegration = estimation::Integration::kSecondOrder;
+    const double dt = interval.seconds();
+    const estimation::ImuBias bias = state.nav.bias;
+    const Eigen::Vector3d rate = filter.gyro.calibrated(interval.gyro - bias.gyro);
+    const Eigen::Vector3d gyro = rate + bias.gyro;
+    const Eigen::Matrix3d rotation = estimation::rotation_in_step(state, gyro, dt, kIntegration);
+    Eigen::Vector3d force = filter.accel_scale * interval.accel - bias.accel;
+    if (interval.gap) force = -rotation.transpose() * state.gravity;  // constant velocity
+    filter.track.push_back({interval.begin, state.world_from_imu(), state.nav.velocity,
+                            rotation * force + state.gravity, rate});
+    const bool unreliable = interval.gap || interval.saturated;
+    const State::Matrix f =
+        estimation::propagate(state, gyro, force + bias.accel, dt, kIntegration);
+    covariance = f * covariance * f.transpose() +
+                 estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise, dt);
+  }
+  state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
+  state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
+  if (!intervals.empty()) filter.turn = turn_over(intervals, map_from_begin, state, filter.turn);
+  return filter;
+}
+
+Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& intervals) {
+  filter.track = track_before(intervals, filter.estimate.state, filter.accel_scale);
+  return filter;
+}
+
+Filter corrected(Filter filter, const estimation::StateEstimate& estimate, Time end) {
+  filter.estimate = estimate;
+  filter.track =
+      estimation::bent_track(std::move(filter.track), end, estimate.state.world_from_imu());
+  return filter;
+}
+
+Filter held_at_rest(Filter filter, const estimation::StateEstimate& estimate,
+                    const std::vector<ImuSample>& samples) {
+  const bool still = filter.still.observe(estimation::statistics(samples), filter.estimate.state,
+                                          estimate.state.position(), filter.accel_scale);
+  filter.estimate = estimate;
+  filter.has_moved = filter.has_moved || !still;
+  if (still) filter.estimate = estimation::zero_velocity_update(filter.estimate, kStillSpeedSigma);
+  if (!filter.has_moved) {
+    filter.estimate = estimation::pose_update(filter.estimate, filter.first_pose,
+                                              kStillTranslationSigma, kStillRotationSigma);
+  }
+  return filter;
+}
+
+estimation::GyroCalibration calibrated(const Filter& filter, const State& predicted) {
+  estimation::GyroCalibration gyro = filter.gyro;
+  gyro.observe(filter.turn.turned, filter.turn.rate_change,
+               so3::log(predicted.rotation().transpose() * filter.estimate.state.rotation()));
+  return gyro;
+}
+
+std::vector<Eigen::Vector3f> deskewed(const Scan& usable, const Filter& filter,
+                                      const Parallel& parallel) {
+  const State& state = filter.estimate.state;
+  return estimation::deskew(usable, filter.track, state.imu_from_lidar, state.world_from_imu(),
+                            parallel);
+}
+
+}  // namespace lidarena::odometry::arena_lio
