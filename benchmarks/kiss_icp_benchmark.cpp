@@ -64,6 +64,8 @@ Scan scan_at(int index, std::size_t count) {
   return scan;
 }
 
+constexpr CellOrder kCells{map::VoxelRounding::kTruncate, 19349663U};  // of v0.2
+
 /// Inputs of the steps: a map of 20 scans, and the next scan in each stage of processing.
 struct Stage {
   static constexpr int kScans = 20;
@@ -93,15 +95,13 @@ struct Stage {
   }
   map::VoxelHashMap empty_map() const {
     return map::VoxelHashMap(
-        {config.voxel_size(), config.max_points_per_voxel,
-         point_spacing(config.release, config.voxel_size(), config.max_points_per_voxel),
-         cell_rounding(config.release)});
+        {config.voxel_size(), config.max_points_per_voxel, 0.0, kCells.rounding});
   }
   Points thin_for_map(const Points& all) const {
-    return thin(all, kMapThinning * config.voxel_size(), config.release);
+    return thin(all, kMapThinning * config.voxel_size(), kCells);
   }
   Points thin_for_registration(const Points& all) const {
-    return thin(all, kKeypointThinning * config.voxel_size(), config.release);
+    return thin(all, kKeypointThinning * config.voxel_size(), kCells);
   }
 };
 
@@ -138,8 +138,8 @@ void thin_twice(benchmark::State& state) {
 void register_keypoints(benchmark::State& state) {
   const Stage& s = stage(state.range(0));
   for (auto _ : state) {
-    const auto found =
-        register_points(s.keypoints, s.map, s.guess, icp_limits(0.2, s.config), s.parallel);
+    const auto found = register_points(s.keypoints, s.map, s.guess,
+                                       icp_limits(0.2, 0.2 / 3.0, s.config), s.parallel);
     state.counters["iterations"] = found.iterations;
     state.counters["keypoints"] = static_cast<double>(s.keypoints.size());
   }
