@@ -11,6 +11,7 @@
 #include "apps/lidarena/verbs.hpp"
 #include "apps/lidarena/yaml_info.hpp"
 #include "lidarena/dataset/json_file.hpp"
+#include "lidarena/dataset/packets/packet_capture.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
 #include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/dataset/whole_part.hpp"
@@ -124,7 +125,8 @@ Json file_info(const fs::path& file, const stages::ConfigFolder& configs, const 
   if (ending == ".yaml" || ending == ".yml") return yaml_info(file, configs, o.world, log);
   if (ending == ".ply") return ply_info(file, log);
   if (worlds.contains(ending)) return world_info(file, o.world, log);
-  if (dataset::is_recording(file) || ending == ".pcap") return dataset_info(file, o.read, log);
+  if (dataset::is_recording(file) || dataset::is_packet_capture(file))
+    return dataset_info(file, o.read, log);
   if (ending == ".pcd") return cloud_info(file);
   throw InputError(
       file.string(), "is of no kind that info describes",

@@ -228,7 +228,7 @@ Dataset open_dataset(const fs::path& path, const ReadOptions& options) {
     }
     return open_sweep_folder(path, options);
   }
-  if (path.extension() == ".pcap") return open_packet_capture(path, options);
+  if (is_packet_capture(path)) return open_packet_capture(path, options);
   return is_recording(path) ? open_recording_files(path, options)
                             : open_sweep_files({path}, options);
 }

@@ -196,6 +196,10 @@ Dataset open_ouster(const fs::path& file, const fs::path& metadata, const Traffi
 
 }  // namespace
 
+bool is_packet_capture(const fs::path& file) {
+  return file.extension() == ".pcap" || file.extension() == ".pcapng";
+}
+
 Dataset open_packet_capture(const fs::path& file, const ReadOptions& options) {
   const Traffic traffic(file);
   if (const auto metadata = find_metadata(file))

@@ -7,7 +7,10 @@
 
 namespace lidarena::dataset {
 
-/// Opens a capture of packets (.pcap) of an Ouster, whose metadata lie beside it as JSON (the file
+/// Whether a file is a capture of packets by its name: .pcap or .pcapng.
+bool is_packet_capture(const std::filesystem::path& file);
+
+/// Opens a capture of packets of an Ouster, whose metadata lie beside it as JSON (the file
 /// whose name is a beginning of the capture's, else the only one), or of a Velodyne. An Ouster's
 /// body frame is its sensor frame, which the metadata relate to LiDAR and IMU. Throws InputError
 /// when the metadata are missing or the packets are of none of these.

@@ -3,10 +3,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/firing_order.hpp"
@@ -18,30 +20,74 @@ namespace {
 
 constexpr std::size_t kBlocks = 12;
 constexpr std::size_t kBlockBytes = 100;
-constexpr std::size_t kLasers = 16;
+constexpr std::size_t kShots = 32;            // of a block
 constexpr std::uint16_t kBlockFlag = 0xEEFF;  // bytes FF EE
-constexpr double kFiring_us = 55.296;         // of all 16 lasers
-constexpr double kLaser_us = 2.304;           // from one to the next
-constexpr double kRangeUnit_m = 0.002;
 constexpr std::uint8_t kDualReturn = 0x39;
 constexpr int kTurn = 36000;  // hundredths of a degree
 constexpr std::int64_t kHour_us = 3'600'000'000;
 
-enum Model : std::uint8_t { kVlp16 = 0x22, kPuckHiRes = 0x24 };
+enum ModelId : std::uint8_t { kHdl32e = 0x21, kVlp16 = 0x22, kPuckHiRes = 0x24, kVlp32c = 0x28 };
 
-/// Elevation of a laser, in the order of firing: from below and from the middle in turn.
-double elevation_deg(std::uint8_t model, std::size_t laser) {
-  const int step = static_cast<int>(laser % 2 == 0 ? laser / 2 : 8 + laser / 2);  // from below
-  return model == kPuckHiRes ? -10.0 + 4.0 / 3.0 * step : -15.0 + 2.0 * step;
+/// How a model fires. Blocks have one or two cycles.
+struct Model {
+  ModelId id;
+  std::size_t lasers;
+  std::size_t at_once;  ///< lasers that fire together
+  double cycle_us;      ///< of all lasers
+  double next_us;       ///< until the next lasers fire
+  double range_unit_m;
+};
+constexpr std::array kModels{
+    Model{kHdl32e, 32, 1, 46.08, 1.152, 0.002}, Model{kVlp16, 16, 1, 55.296, 2.304, 0.002},
+    Model{kPuckHiRes, 16, 1, 55.296, 2.304, 0.002}, Model{kVlp32c, 32, 2, 55.296, 2.304, 0.004}};
+
+const Model* model_of(Bytes packet) {
+  const auto* found = std::ranges::find(kModels, at<std::uint8_t>(packet, 1205), &Model::id);
+  return found == kModels.end() ? nullptr : found;
 }
 
-/// Height of a laser above the optical center; -15 degrees: 11.2 mm, 15 degrees: -11.2 mm.
-double height_m(std::uint8_t model, std::size_t laser) {
+/// Elevation and azimuth offset (clockwise) of the VLP-32C's lasers in the order of firing,
+/// degrees.
+constexpr std::array<std::pair<double, double>, 32> kLasersOfVlp32c{
+    {{-25.0, 1.4},  {-1.0, -4.2},   {-1.667, 1.4}, {-15.639, -1.4}, {-11.31, 1.4}, {0.0, -1.4},
+     {-0.667, 4.2}, {-8.843, -1.4}, {-7.254, 1.4}, {0.333, -4.2},   {-0.333, 1.4}, {-6.148, -1.4},
+     {-5.333, 4.2}, {1.333, -1.4},  {0.667, 4.2},  {-4.0, -1.4},    {-4.667, 1.4}, {1.667, -4.2},
+     {1.0, 1.4},    {-3.667, -4.2}, {-3.333, 4.2}, {3.333, -1.4},   {2.333, 1.4},  {-2.667, -1.4},
+     {-3.0, 1.4},   {7.0, -1.4},    {4.667, 1.4},  {-2.333, -4.2},  {-2.0, 4.2},   {15.0, -1.4},
+     {10.333, 1.4}, {-1.333, -1.4}}};
+
+/// Number of a laser, counted from below. The others fire from below and from the middle in turn.
+std::size_t ring_of(const Model& model, std::size_t laser) {
+  if (model.id != kVlp32c) return laser % 2 == 0 ? laser / 2 : (model.lasers + laser) / 2;
+  return static_cast<std::size_t>(std::ranges::count_if(kLasersOfVlp32c, [&](const auto& other) {
+    return other.first < kLasersOfVlp32c[laser].first;
+  }));
+}
+
+double elevation_deg(const Model& model, std::size_t laser) {
+  const auto ring = static_cast<double>(ring_of(model, laser));
+  switch (model.id) {
+    case kHdl32e:
+      return (-92.0 + 4.0 * ring) / 3.0;
+    case kPuckHiRes:
+      return -10.0 + 4.0 / 3.0 * ring;
+    case kVlp32c:
+      return kLasersOfVlp32c[laser].first;
+    case kVlp16:
+      break;
+  }
+  return -15.0 + 2.0 * ring;
+}
+
+/// Height of a laser above the optical center; of the VLP-16 11.2 mm at -15 degrees, -11.2 mm
+/// at 15.
+double height_m(const Model& model, std::size_t laser) {
+  if (model.lasers != 16) return 0.0;
   constexpr std::array kVlp{11.2, 9.7, 8.1, 6.6, 5.1, 3.7, 2.2, 0.7};
   constexpr std::array kHiRes{7.4, 6.5, 5.4, 4.4, 3.4, 2.5, 1.5, 0.5};
-  const std::size_t step = laser % 2 == 0 ? laser / 2 : 8 + laser / 2;
-  const auto& heights = model == kPuckHiRes ? kHiRes : kVlp;
-  return 1e-3 * (step < 8 ? heights[step] : -heights[15 - step]);
+  const std::size_t ring = ring_of(model, laser);
+  const auto& heights = model.id == kPuckHiRes ? kHiRes : kVlp;
+  return 1e-3 * (ring < 8 ? heights[ring] : -heights[15 - ring]);
 }
 
 int azimuth_of(Bytes packet, std::size_t block) {
@@ -61,42 +107,45 @@ double turn_per_block(Bytes packet) {
 }  // namespace
 
 void VelodyneScans::add_block(Bytes packet, std::size_t block, Time packet_time) {
-  const auto model = at<std::uint8_t>(packet, 1205);
+  const Model& model = *model_of(packet);
   const std::size_t begin = block * kBlockBytes;
   const bool dual = is_dual(packet);
   const bool is_second = dual && block % 2 == 1;
-  const double first_us = 2.0 * kFiring_us * static_cast<double>(dual ? block / 2 : block);
-  const double per_us = turn_per_block(packet) / (2.0 * kFiring_us);
-  for (std::size_t shot = 0; shot < 2 * kLasers; ++shot) {
+  const double block_us = model.cycle_us * static_cast<double>(kShots / model.lasers);
+  const double first_us = block_us * static_cast<double>(dual ? block / 2 : block);
+  const double per_us = turn_per_block(packet) / block_us;
+  for (std::size_t shot = 0; shot < kShots; ++shot) {
     const std::size_t value = begin + 4 + 3 * shot;
     const auto range = at<std::uint16_t>(packet, value);
     if (range == 0) continue;
     // the block before has the other return of the same shot
     if (is_second && at<std::uint16_t>(packet, value - kBlockBytes) == range) continue;
-    const std::size_t laser = shot % kLasers;
-    const double us =
-        kFiring_us * static_cast<double>(shot / kLasers) + kLaser_us * static_cast<double>(laser);
+    const std::size_t laser = shot % model.lasers;
+    const double us = model.cycle_us * static_cast<double>(shot / model.lasers) +
+                      model.next_us * static_cast<double>(laser / model.at_once);
+    const double offset = model.id == kVlp32c ? 100.0 * kLasersOfVlp32c[laser].second : 0.0;
     const double azimuth =
-        (azimuth_of(packet, block) + per_us * us) * std::numbers::pi / (kTurn / 2.0);
+        (azimuth_of(packet, block) + per_us * us + offset) * std::numbers::pi / (kTurn / 2.0);
     const double elevation = elevation_deg(model, laser) * std::numbers::pi / 180.0;
-    const double flat = kRangeUnit_m * range * std::cos(elevation);
-    const Eigen::Vector3d position(
-        flat * std::cos(azimuth), -flat * std::sin(azimuth),
-        kRangeUnit_m * range * std::sin(elevation) + height_m(model, laser));
-    const auto ring = static_cast<std::uint16_t>(laser % 2 == 0 ? laser / 2 : 8 + laser / 2);
+    const double distance = model.range_unit_m * range;
+    const double flat = distance * std::cos(elevation);
+    const Eigen::Vector3d position(flat * std::cos(azimuth), -flat * std::sin(azimuth),
+                                   distance * std::sin(elevation) + height_m(model, laser));
     const auto reflectivity = static_cast<float>(at<std::uint8_t>(packet, value + 2));
     shots_.push_back({packet_time + Time{std::llround(1e3 * (first_us + us))},
-                      {position.cast<float>(), reflectivity, 0, ring,
+                      {position.cast<float>(), reflectivity, 0,
+                       static_cast<std::uint16_t>(ring_of(model, laser)),
                        static_cast<std::uint8_t>(is_second ? 1 : 0)}});
   }
 }
 
 std::optional<Scan> VelodyneScans::push(Time received, Bytes packet, bool whole) {
-  const auto model = at<std::uint8_t>(packet, 1205);
-  if (model != kVlp16 && model != kPuckHiRes) {
-    throw InputError(place_, fmt::format("its packets are of the Velodyne model 0x{:02x}", model),
-                     "read are those of the VLP-16 (0x22) and the Puck Hi-Res (0x24); record the "
-                     "PointCloud2 of the driver");
+  if (model_of(packet) == nullptr) {
+    throw InputError(place_,
+                     fmt::format("its packets are of the Velodyne model 0x{:02x}",
+                                 at<std::uint8_t>(packet, 1205)),
+                     "read are those of the HDL-32E (0x21), the VLP-16 (0x22), the Puck Hi-Res "
+                     "(0x24) and the VLP-32C (0x28); record the PointCloud2 of the driver");
   }
   const Time since_hour = std::chrono::microseconds(at<std::uint32_t>(packet, 1200));
   if (!hour_) hour_ = received - since_hour;

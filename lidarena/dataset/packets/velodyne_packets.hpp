@@ -16,7 +16,8 @@ namespace lidarena::dataset {
 inline constexpr std::size_t kVelodynePacket = 1206;
 
 /// Decodes data packets of Velodyne's VLP-16 and Puck Hi-Res ("VLP-16 User Manual", 63-9243 rev. E,
-/// chapters 6 and 9): x forward (azimuth 0), y left, z up. In a packet with two returns per shot,
+/// chapters 6 and 9), VLP-32C ("VLP-32C User Manual", 63-9325) and HDL-32E ("HDL-32E User Manual",
+/// 63-9113): x forward (azimuth 0), y left, z up. In a packet with two returns per shot,
 /// the second (the last return) is echo 1 where it differs from the strongest. Intensity is the
 /// calibrated reflectivity.
 class VelodyneScans {

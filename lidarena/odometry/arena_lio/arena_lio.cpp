@@ -81,24 +81,34 @@ ScanResult ArenaLio::track(const Scan& scan) {
                        {});
   }
   const Scan usable = usable_points(scan, config_.min_range_m);
+  const bool opens = starts || start_.opening;
   if (start_.opening) begin_again({usable, end, imu.intervals});
 
-  const Filter predicted = starts ? filter_ : predict(filter_, imu.intervals);
-  const Match found = match(usable, predicted, world_.map);
-  const ScanStatus status = judge(found);
-  filter_ = correct(predicted, found, imu, status == ScanStatus::kTracked, end);
+  if (!starts) filter_ = begun(std::move(filter_));
+  const int slices = opens ? 1 : slices_of(usable, imu, end);
+  const Registration found = registered(
+      sliced(usable, end, starts ? Intervals{} : imu.intervals, slices), std::move(filter_));
+  const ScanStatus status = judge(found.match);
+  filter_ = correct(found, imu, status == ScanStatus::kTracked);
+  const bool smooths = !opens && status != ScanStatus::kDiverged;
+  filter_ = smooths ? smoothed(std::move(filter_)) : bent(std::move(filter_), end);
+  std::vector<StampedPose> revised = smooths ? revise(filter_) : std::vector<StampedPose>{};
+  last_ = {scan.stamp, end, filter_.track};
   const std::vector<Eigen::Vector3f> points = deskewed(usable, filter_, parallel_);
   if (!tracking_.contradicts()) world_ = grown(std::move(world_), filter_, points);
 
   const Pose map_from_lidar = filter_.estimate.state.world_from_lidar();
   registered_scan_ = transformed(world_.world_from_map * map_from_lidar, points);
-  return finish_scan(scan.stamp, end, status, imu, points.size(),
-                     {{"keypoints", found.keypoints},
-                      {"matches", found.agreement.on_planes},
-                      {"near_planes", found.agreement.near_planes},
-                      {"iterations", found.update.evaluations},
-                      {"map_points", world_.map.fine().size()},
-                      {"standing", filter_.still.scans() > 0}});
+  ScanResult result = finish_scan(scan.stamp, end, status, imu, points.size(),
+                                  {{"keypoints", found.match.keypoints},
+                                   {"matches", found.match.agreement.on_planes},
+                                   {"near_planes", found.match.agreement.near_planes},
+                                   {"iterations", found.match.update.evaluations},
+                                   {"slices", found.turns.size()},
+                                   {"map_points", world_.map.fine().size()},
+                                   {"standing", filter_.still.scans() > 0}});
+  result.revised = std::move(revised);
+  return result;
 }
 
 Time ArenaLio::scan_end(const Scan& scan) {
@@ -178,6 +188,31 @@ ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
   return {update, residuals.agreement(update.estimate.state), reduced.size()};
 }
 
+int ArenaLio::slices_of(const Scan& usable, const ScanImu& imu, Time end) const {
+  if (!usable.timed || end <= usable.stamp || world_.map.empty()) return 1;
+  const double density = measured_noise_.at_least(noise_).accel_density;
+  return slices_needed(imu.intervals, density, config_.max_slice_error_m);
+}
+
+ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Filter filter) const {
+  Registration all;
+  for (const Slice& slice : slices) {
+    all.predicted = predict(std::move(filter), slice.intervals);
+    Match found = match(slice.points, all.predicted, world_.map);
+    const State& before = all.predicted.estimate.state;
+    all.turns.push_back({all.predicted.turn, so3::log(before.rotation().transpose() *
+                                                      found.update.estimate.state.rotation())});
+    filter = all.predicted;
+    filter.estimate = found.update.estimate;
+    found.update.points += all.match.update.points;
+    found.update.evaluations += all.match.update.evaluations;
+    found.agreement += all.match.agreement;
+    found.keypoints += all.match.keypoints;
+    all.match = std::move(found);
+  }
+  return all;
+}
+
 ScanStatus ArenaLio::judge(const Match& found) {
   const Agreement& agreement = found.agreement;
   if (!estimation::is_plausible(found.update.estimate.state)) {
@@ -190,20 +225,35 @@ ScanStatus ArenaLio::judge(const Match& found) {
   if (agreement.near_planes == 0) return ScanStatus::kTooFewPoints;
   // The block of the position is the weighted sum of n n^T over all normals n.
   const ScanStatus status =
-      tracking_.judge(agreement.share, found.update.points.hessian.topLeftCorner<3, 3>());
+      tracking_.judge(agreement.share(), found.update.points.hessian.topLeftCorner<3, 3>());
   const bool opens = start_.opening && status == ScanStatus::kTracked;
   return opens ? ScanStatus::kInitializing : status;
 }
 
-Filter ArenaLio::correct(const Filter& predicted, const Match& found, const ScanImu& imu,
-                         bool tracked, Time end) const {
-  Filter filter = held_at_rest(predicted, found.update.estimate, imu.samples);
+Filter ArenaLio::correct(Registration found, const ScanImu& imu, bool tracked) const {
+  Filter filter =
+      held_at_rest(std::move(found.predicted), found.match.update.estimate, imu.samples);
   const bool reliable = imu.longest_gap_s == 0.0 && imu.saturated == 0;
   const bool still = filter.still.scans() > 0;
-  if (config_.calibrate_gyro && tracked && reliable && !still)
-    filter.gyro = calibrated(filter, predicted.estimate.state);
-  const estimation::StateEstimate estimate = filter.estimate;
-  return corrected(std::move(filter), estimate, end);
+  if (!config_.calibrate_gyro || !tracked || !reliable || still) return filter;
+  for (const auto& [turn, missed] : found.turns)
+    filter.gyro.observe(turn.turned, turn.rate_change, missed);
+  return filter;
+}
+
+std::vector<StampedPose> ArenaLio::revise(const Filter& filter) {
+  if (filter.track.empty() || last_.track.empty()) return {};
+  if (poses_.empty() || poses_.back().stamp != last_.end) return {};
+  const Pose& map_from_imu = filter.track.front().world_from_imu;
+  const Pose imu_from_body = filter.estimate.state.imu_from_lidar * lidar_from_body_;
+  poses_.back().world_from_body = world_.world_from_map * map_from_imu * imu_from_body;
+  const estimation::ImuTrack track =
+      estimation::bent_track(std::move(last_.track), last_.end, map_from_imu);
+  std::vector<StampedPose> revised =
+      estimation::motion_along(track, last_.begin, last_.end, last_.end,
+                               world_.world_from_map * map_from_imu, imu_from_body);
+  if (revised.empty()) revised.push_back(poses_.back());
+  return revised;
 }
 
 ArenaLio::World ArenaLio::with_points(World world, const Filter& filter,
@@ -231,9 +281,9 @@ ArenaLio::Replay ArenaLio::replay(const Opening& opening, Filter filter, World w
     if (is_first) {
       again.filter = tracked_back(std::move(again.filter), scan.intervals);
     } else {
-      const Filter predicted = predict(std::move(again.filter), scan.intervals);
-      const Match found = match(scan.usable, predicted, again.world.map);
-      again.filter = corrected(predicted, found.update.estimate, scan.end);
+      Filter predicted = predict(begun(std::move(again.filter)), scan.intervals);
+      predicted.estimate = match(scan.usable, predicted, again.world.map).update.estimate;
+      again.filter = bent(std::move(predicted), scan.end);
     }
     again.world = with_points(std::move(again.world), again.filter,
                               deskewed(scan.usable, again.filter, parallel_));
@@ -250,7 +300,7 @@ estimation::StateEstimate ArenaLio::reopened(const Opening& opening, const Openi
     since_first.insert(since_first.end(), intervals.begin(), intervals.end());
   }
   since_first.insert(since_first.end(), latest.intervals.begin(), latest.intervals.end());
-  const Filter predicted = predict(before.filter, latest.intervals);
+  const Filter predicted = predict(begun(before.filter), latest.intervals);
   const State last = match(latest.usable, predicted, before.world.map).update.estimate.state;
   estimation::StateEstimate first = opening.estimate;
   first.state = carried_back(last, since_first, first.state, predicted.accel_scale);

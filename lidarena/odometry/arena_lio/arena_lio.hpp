@@ -12,15 +12,17 @@
 #include "lidarena/odometry/arena_lio/config.hpp"
 #include "lidarena/odometry/arena_lio/filter.hpp"
 #include "lidarena/odometry/arena_lio/plane_residuals.hpp"
+#include "lidarena/odometry/arena_lio/slices.hpp"
 #include "lidarena/odometry/odometry.hpp"
 #include "lidarena/odometry/tracking.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
 /// Tightly coupled LiDAR-inertial odometry: FAST-LIO2's iterated Kalman filter against a map of
-/// planes, with a robust kernel, a calibration of the gyro while it flies, scans that are de-skewed
-/// by the estimate before they enter the map, and tests for standstill, saturation and lost
-/// tracking. See README.md in this folder.
+/// planes, with a robust kernel, a calibration of the gyro while it flies, scans that are
+/// registered in slices where the IMU is noisy and de-skewed by the smoothed motion before they
+/// enter the map, and tests for standstill, saturation and lost tracking. See README.md in this
+/// folder.
 class ArenaLio : public Odometry {
  public:
   ArenaLio(const Config& config, const LidarInfo& lidar, const ImuInfo& imu, Parallel parallel);
@@ -44,6 +46,7 @@ class ArenaLio : public Odometry {
 
  private:
   using State = estimation::InertialState;
+  using Intervals = std::vector<estimation::ImuInterval>;
 
   /// The IMU's data since the end of the last scan.
   struct ScanImu {
@@ -77,11 +80,27 @@ class ArenaLio : public Odometry {
     map::LocalPlanes map;
   };
 
-  /// How a scan fits the map.
+  /// How points fit the map.
   struct Match {
     estimation::IteratedUpdate update;
     Agreement agreement;
     std::size_t keypoints = 0;
+  };
+  /// How a slice turned by the gyro, and what its update has added to that (rotation vector, rad).
+  struct CorrectedTurn {
+    ScanTurn turn;
+    Eigen::Vector3d missed;
+  };
+  /// A scan's slices, registered one after the other.
+  struct Registration {
+    Filter predicted;  ///< before the update by the last slice
+    Match match;       ///< the last update, and the sums over all slices
+    std::vector<CorrectedTurn> turns;
+  };
+  /// A scan that the next one revises.
+  struct LastScan {
+    Time begin{0}, end{0};
+    estimation::ImuTrack track;
   };
   /// Filter and world after scans that were registered again, and the body's poses.
   struct Replay {
@@ -107,11 +126,15 @@ class ArenaLio : public Odometry {
   Filter predict(Filter filter, const std::vector<estimation::ImuInterval>& intervals) const;
   /// The iterated update of the filter's prediction with averages of the scan's points.
   Match match(const Scan& usable, const Filter& predicted, const map::LocalPlanes& map) const;
+  /// How many slices of the scan the noise of the IMU asks for.
+  int slices_of(const Scan& usable, const ScanImu& imu, Time end) const;
+  Registration registered(const std::vector<Slice>& slices, Filter filter) const;
   ScanStatus judge(const Match& found);
   /// The filter after the scan: with the update, with what a standstill tells, and, of a scan that
   /// is `tracked`, with a new calibration of the gyro.
-  Filter correct(const Filter& predicted, const Match& found, const ScanImu& imu, bool tracked,
-                 Time end) const;
+  Filter correct(Registration found, const ScanImu& imu, bool tracked) const;
+  /// The poses of the last scan, given what the filter has registered since; revises it.
+  std::vector<StampedPose> revise(const Filter& filter);
   /// The world with the points (m, LiDAR's frame at the filter's estimate).
   static World with_points(World world, const Filter& filter,
                            const std::vector<Eigen::Vector3f>& points);
@@ -146,6 +169,7 @@ class ArenaLio : public Odometry {
   Filter filter_;
   World world_;
   Tracking tracking_;
+  LastScan last_;
 
   std::vector<StampedPose> poses_;  ///< of the body, in the world
   std::vector<Eigen::Vector3f> registered_scan_;

@@ -24,6 +24,7 @@ struct Config {
   double gyro_noise_factor = 10.0;
   double accel_noise_factor = 3.0;
   double max_imu_gap_s = 0.05;
+  double max_slice_error_m = 1e-4;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -56,6 +57,10 @@ struct Config {
       "factor on the data sheet's densities of the accelerometer", above(0));
     v("max_imu_gap_s", self.max_imu_gap_s, "s",
       "over a longer gap between IMU samples the motion is coasted, with large noise", above(0));
+    v("max_slice_error_m", self.max_slice_error_m, "m",
+      "a scan is registered in slices within which the accelerometer's noise moves the position by "
+      "less than this, at most eight",
+      above(0));
   }
 };
 

@@ -41,12 +41,17 @@ Filter initial_filter(const Initialization& found, const Eigen::Matrix3d& map_fr
   return filter;
 }
 
+Filter begun(Filter filter) {
+  filter.track.clear();
+  filter.steps.clear();
+  return filter;
+}
+
 Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& intervals,
                  const estimation::ImuNoise& noise) {
   State& state = filter.estimate.state;
   State::Matrix& covariance = filter.estimate.covariance;
   const Eigen::Matrix3d map_from_begin = state.rotation();
-  filter.track.clear();
   for (const estimation::ImuInterval& interval : intervals) {
     constexpr auto kIntegration = estimation::Integration::kSecondOrder;
     const double dt = interval.seconds();
@@ -59,10 +64,13 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
     filter.track.push_back({interval.begin, state.world_from_imu(), state.nav.velocity,
                             rotation * force + state.gravity, rate});
     const bool unreliable = interval.gap || interval.saturated;
-    const State::Matrix f =
+    estimation::FilterStep step{filter.estimate, {}};
+    const State::Matrix& f = step.transition =
         estimation::propagate(state, gyro, force + bias.accel, dt, kIntegration);
     covariance = f * covariance * f.transpose() +
                  estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise, dt);
+    step.predicted = filter.estimate;
+    filter.steps.push_back(std::move(step));
   }
   state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
@@ -75,10 +83,18 @@ Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& i
   return filter;
 }
 
-Filter corrected(Filter filter, const estimation::StateEstimate& estimate, Time end) {
-  filter.estimate = estimate;
+Filter bent(Filter filter, Time end) {
   filter.track =
-      estimation::bent_track(std::move(filter.track), end, estimate.state.world_from_imu());
+      estimation::bent_track(std::move(filter.track), end, filter.estimate.state.world_from_imu());
+  return filter;
+}
+
+Filter smoothed(Filter filter) {
+  const std::vector<State> states = estimation::smoothed(filter.steps, filter.estimate.state);
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    filter.track[i].world_from_imu = states[i].world_from_imu();
+    filter.track[i].velocity = states[i].nav.velocity;
+  }
   return filter;
 }
 
@@ -94,13 +110,6 @@ Filter held_at_rest(Filter filter, const estimation::StateEstimate& estimate,
                                               kStillTranslationSigma, kStillRotationSigma);
   }
   return filter;
-}
-
-estimation::GyroCalibration calibrated(const Filter& filter, const State& predicted) {
-  estimation::GyroCalibration gyro = filter.gyro;
-  gyro.observe(filter.turn.turned, filter.turn.rate_change,
-               so3::log(predicted.rotation().transpose() * filter.estimate.state.rotation()));
-  return gyro;
 }
 
 std::vector<Eigen::Vector3f> deskewed(const Scan& usable, const Filter& filter,

@@ -107,9 +107,7 @@ Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
     if (is_near && std::abs(distance(*planes_[i], in_map_[i])) < config_.kernel_scale_m)
       ++agreement.on_planes;
   }
-  const std::size_t whole = knew_the_place_ ? agreement.near_planes : agreement.points;
-  if (whole > 0)
-    agreement.share = static_cast<double>(agreement.on_planes) / static_cast<double>(whole);
+  agreement.expected = knew_the_place_ ? agreement.near_planes : agreement.points;
   return agreement;
 }
 

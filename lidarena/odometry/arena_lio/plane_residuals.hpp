@@ -17,10 +17,21 @@ struct Agreement {
   std::size_t points = 0;
   std::size_t near_planes = 0;  ///< points in a cell with a plane
   std::size_t on_planes = 0;    ///< of these, points on the plane, within the kernel's scale
-  /// Of the points near planes, the share that lies on them; of all points if the prior's position
-  /// was less certain than the kernel's scale: then points in unknown cells speak against the
-  /// estimate.
-  double share = 0.0;
+  /// Of these or of all points, which should lie on planes: of all if the prior's position was less
+  /// certain than the kernel's scale; then points in unknown cells speak against the estimate.
+  std::size_t expected = 0;
+
+  /// Share of the expected points that lie on planes.
+  double share() const {
+    return expected == 0 ? 0.0 : static_cast<double>(on_planes) / static_cast<double>(expected);
+  }
+  Agreement& operator+=(const Agreement& other) {
+    points += other.points;
+    near_planes += other.near_planes;
+    on_planes += other.on_planes;
+    expected += other.expected;
+    return *this;
+  }
 };
 
 /// Residuals of a scan's points (m, LiDAR frame at the scan's end) from the planes of the cells

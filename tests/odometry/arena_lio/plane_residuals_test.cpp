@@ -100,13 +100,13 @@ TEST(ArenaLioPlanes, TheAgreementCountsThePointsOnTheirPlanes) {
   const auto here = residuals.agreement({});
   EXPECT_EQ(here.near_planes, 2U);
   EXPECT_EQ(here.on_planes, 2U);
-  EXPECT_EQ(here.share, 1.0) << "of those near planes";
+  EXPECT_EQ(here.share(), 1.0) << "of those near planes";
   PlaneResiduals uncertain(points, map, 1.0, true, config, parallel);
-  EXPECT_NEAR(uncertain.agreement({}).share, 2.0 / 3.0, 1e-12) << "of all";
+  EXPECT_NEAR(uncertain.agreement({}).share(), 2.0 / 3.0, 1e-12) << "of all";
   estimation::InertialState moved;
   moved.position().z() = 0.045;
   EXPECT_EQ(residuals.agreement(moved).on_planes, 1U) << "one is now 5.5 cm above";
-  EXPECT_EQ(PlaneResiduals({}, map, 0.0, true, config, parallel).agreement({}).share, 0.0);
+  EXPECT_EQ(PlaneResiduals({}, map, 0.0, true, config, parallel).agreement({}).share(), 0.0);
 }
 
 TEST(ArenaLioPlanes, AWallHasTwoSides) {

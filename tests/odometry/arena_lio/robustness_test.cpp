@@ -71,6 +71,34 @@ TEST(ArenaLioRobustness, FiveSecondsInDustAreSurvived) {
   EXPECT_EQ(outcome.count(ScanStatus::kDiverged), 0U);
 }
 
+TEST(ArenaLioRobustness, ANoisyAccelerometerIsBorneBySlicesOfAScan) {
+  const Recording recording{.motion = lively, .seconds = 6.0, .repeating = false};
+  std::vector<Event> events = synthetic::record(recording);
+  SequentialRandom random(2, 1);
+  for (Event& event : events) {
+    auto* sample = std::get_if<ImuSample>(&event.data);
+    if (sample == nullptr) continue;
+    for (double& axis : sample->accel) axis += 2.0 * random.normal();  // m/s^2
+  }
+  const auto error = [&](double max_slice_error_m) {
+    const Rig rig = synthetic::rig_of(recording);
+    Config config = settings_for(rig.lidars.front());
+    config.max_slice_error_m = max_slice_error_m;
+    ArenaLio odometry(config, rig.lidars.front(), rig.imus.front(), Parallel(1));
+    synthetic::play(events, odometry);
+    double sum = 0.0;
+    const Trajectory trajectory = odometry.trajectory();
+    for (const StampedPose& pose : trajectory.poses()) {
+      const Pose truth = recording.motion(to_seconds(pose.stamp - recording.epoch));
+      sum += (pose.world_from_body.translation() - truth.translation()).squaredNorm();
+    }
+    return std::sqrt(sum / static_cast<double>(trajectory.size()));
+  };
+  const double in_slices = error(Config{}.max_slice_error_m);
+  RecordProperty("in_slices_mm", std::to_string(1e3 * in_slices));
+  EXPECT_LT(in_slices, 0.5 * error(1.0)) << "against one update a scan";
+}
+
 /// 3 m wide and 2.4 m high, along x; only at its ends are there pillars. The range ends at 10 m.
 double corridor(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double) {
   double range = cast(Box{{-100.0, -1.5, -1.2}, {200.0, 1.5, 1.2}}, origin, direction);
