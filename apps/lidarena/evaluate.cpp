@@ -310,10 +310,10 @@ void add_evaluate(CLI::App& app, Common& common, int& exit_code) {
   auto o = std::make_shared<EvaluateOptions>();
   verb->add_option("runs", o->runs, "RUN folders; metrics.json is written into each");
   verb->add_option("--score", o->score,
-                   "What of a RUN is scored: trajectory, map; default: both. A map takes most of "
-                   "the time")
+                   "What of a RUN is scored: trajectory, map, vertices (the distance to the mesh's "
+                   "vertices, too); default: trajectory,map. A map takes most of the time")
       ->delimiter(',')
-      ->check(CLI::IsMember({"trajectory", "map"}));
+      ->check(CLI::IsMember({"trajectory", "map", "vertices"}));
   verb->add_option("--trajectory", o->trajectories,
                    "Estimate: TUM, KITTI or EuRoC csv, .mcap or .bag; several may be given");
   verb->add_option("--truth", o->truth,

@@ -160,23 +160,23 @@ void score_until_end(const dataset::RunFiles& run, const Trajectory& truth,
 /// Scores of both maps, as far as the run has them.
 results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World& world, const Parallel& parallel,
-                                 const Observe& observe, ScoredPoints* scored) {
+                                 const MapScoring& scoring) {
   results::MapsOfRun maps;
   std::optional<SeenSurface> seen;
-  if (observe) {
-    if (std::optional<RayTruth> rays = observe()) {
+  if (scoring.observe) {
+    if (std::optional<RayTruth> rays = scoring.observe()) {
       maps.interpolation_floor = interpolation_floor(rays->interpolated, world, parallel);
       seen = make_seen_surface(*std::move(rays), world, parallel);
     }
   }
-  const MapReference reference(world, std::move(seen));
+  const MapReference reference(world, std::move(seen), scoring.vertices);
   if (!run.map.points.empty()) {
     maps.own = evaluate_map(run.map.points, run.trajectory, truth, reference, parallel);
   }
   if (!run.reprojected.points.empty()) {
     maps.reprojected =
         evaluate_map(run.reprojected.points, run.trajectory, truth, reference, parallel,
-                     reference.seen ? &reference.seen->identified : nullptr, scored);
+                     reference.seen ? &reference.seen->identified : nullptr, scoring.scored);
   }
   return maps;
 }
@@ -228,7 +228,7 @@ results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
 
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const Observe& observe, ScoredPoints* scored) {
+                                 const MapScoring& maps) {
   const Status status = status_of(run, truth);
   results::RunMetrics metrics;
   metrics.status = status.name;
@@ -249,7 +249,7 @@ results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory&
   }
   for (const std::string& warning : metrics.warnings) log.warn(warning);
   score_trajectories(run, truth, metrics);
-  if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, observe, scored);
+  if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, maps);
   return metrics;
 }
 

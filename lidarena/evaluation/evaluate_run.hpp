@@ -18,16 +18,23 @@ namespace lidarena::evaluation {
 /// Determines the ground truth of the flight's rays; empty when it is not available.
 using Observe = std::function<std::optional<RayTruth>()>;
 
+/// How maps are scored.
+struct MapScoring {
+  /// Called once. Without it, or if it returns nothing, completeness, signed distance and identity
+  /// error are empty.
+  Observe observe = {};
+  ScoredPoints* scored = nullptr;  ///< if given, gets the distances of the re-projected map
+  bool vertices = false;           ///< whether the distance to the mesh's vertices is computed
+};
+
 /// All metrics of one run: association first, then trajectory errors of the live and the final
 /// trajectory, then map errors of both maps (empty without a mesh or a map). `world` may be null.
 /// Of a run that ended itself (its manifest says "status": "diverged") the trajectories until then
 /// are scored, no maps; one whose poses diverge (see divergence_of()) has a status and a reason,
-/// and no errors. `observe`, if given, is called once when maps are scored; without it, or if it
-/// returns nothing, completeness, signed distance and identity error are empty. `scored`, if given,
-/// gets the distances of the re-projected map.
+/// and no errors.
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const Observe& observe = {}, ScoredPoints* scored = nullptr);
+                                 const MapScoring& maps = {});
 
 /// Scores one trajectory: association, RPE for each piece length, ATE in each gauge, errors over
 /// time.

@@ -88,10 +88,14 @@ void store(const Write& write, LogSink& log) {
   }
 }
 
+bool has(const ScoreParts& parts, ScorePart part) {
+  return std::ranges::find(parts, part) != parts.end();
+}
+
 }  // namespace
 
 bool scores_maps(const ScoreParts& parts) {
-  return parts.empty() || std::ranges::find(parts, ScorePart::kMap) != parts.end();
+  return parts.empty() || has(parts, ScorePart::kMap) || has(parts, ScorePart::kVertices);
 }
 
 results::RunMetrics score_run(const fs::path& folder, const ScoreParts& parts,
@@ -123,8 +127,9 @@ results::RunMetrics score_run(const fs::path& folder, const ScoreParts& parts,
     }
   };
   evaluation::ScoredPoints scored;
-  results::RunMetrics metrics =
-      evaluation::evaluate_run(run, *truth, world.get(), parallel, log, observe, &scored);
+  results::RunMetrics metrics = evaluation::evaluate_run(
+      run, *truth, world.get(), parallel, log,
+      {.observe = observe, .scored = &scored, .vertices = has(parts, ScorePart::kVertices)});
   if (given != nullptr) metrics.frames = {given->poses.body, given->lever};
   const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
   if (world && mesh_from_map && !run.reprojected.points.empty()) {

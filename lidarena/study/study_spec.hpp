@@ -118,7 +118,9 @@ struct StudySpec {
     v("expect", self.expect, "", "what the figures should show");
     v("limits", self.limits, "", "limits of one run");
     v("keep_maps", self.keep_maps, "", "off: delete a run's maps after scoring; metrics stay");
-    v("score", self.score, "", "trajectory, map; none = both. A map takes most of the time");
+    v("score", self.score, "",
+      "trajectory, map, vertices (the distance to the mesh's vertices, too); none = trajectory and "
+      "map. A map takes most of the time");
   }
 };
 

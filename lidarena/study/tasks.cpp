@@ -12,6 +12,14 @@
 namespace lidarena::study {
 namespace {
 
+/// As `evaluate --score` takes them; empty for those of a study that names none.
+std::string score_parts_text(const stages::ScoreParts& parts) {
+  std::string text;
+  for (const stages::ScorePart part : parts)
+    text += (text.empty() ? "" : ",") + value_to_json(part).get<std::string>();
+  return text;
+}
+
 namespace fs = std::filesystem;
 
 constexpr const char* kRequest = "request.json";
@@ -187,13 +195,13 @@ Task Tasks::run(const PlanUnit& unit, std::size_t index) const {
   task.weight = plan_.seconds[index];
   task.steps.push_back(run_step(unit, cell, task.folder));
   Json score_key = code_.of("scorer");
-  const bool scores_maps = stages::scores_maps(plan_.spec.score);
-  if (!scores_maps) score_key["parts"] = "trajectory";
+  const std::string parts = score_parts_text(plan_.spec.score);
+  if (!parts.empty()) score_key["parts"] = parts;
   task.steps.push_back(
       {"score", score_key, task.folder / "metrics.json",
-       [folder = task.folder.string(), scores_maps, recording = recording_of(plan_.spec, cell)] {
+       [folder = task.folder.string(), parts, recording = recording_of(plan_.spec, cell)] {
          std::vector<std::string> call{"evaluate", folder};
-         if (!scores_maps) call.insert(call.end(), {"--score", "trajectory"});
+         if (!parts.empty()) call.insert(call.end(), {"--score", parts});
          if (recording != nullptr)
            std::ranges::move(truth_arguments_of(*recording), std::back_inserter(call));
          return call;

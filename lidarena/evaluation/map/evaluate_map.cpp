@@ -108,7 +108,7 @@ results::MapInGauge measure_in(const Alignment& gauge, const Subject& subject) {
   return measure(subject, score(subject, moved), moved);
 }
 
-/// As measure_in(), with the distance to vertices.
+/// As measure_in(), with the distance to vertices if the reference has them.
 results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject& subject,
                                           ScoredPoints* scored) {
   if (!gauge.determined()) return refused(gauge.refusal);
@@ -120,6 +120,7 @@ results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject&
   }
   results::MapInGauge measured =
       measure(subject, scores, moved, scored == nullptr ? nullptr : &scored->distances);
+  if (!subject.reference.subdivided) return measured;
   // The distance to vertices only serves comparison with those who measure it: a sample will do.
   const std::size_t stride = scores.size() / kMaxPointsOfOther + 1;
   MortonOrder order;
@@ -128,8 +129,8 @@ results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject&
     order.entries.push_back(subject.order.entries[k]);
     sample.push_back(scores[k]);
   }
-  measured.point_vertex =
-      subject.reference.subdivided.distance_of(subject.map, order, sample, moved, subject.parallel);
+  measured.point_vertex = subject.reference.subdivided->distance_of(subject.map, order, sample,
+                                                                    moved, subject.parallel);
   return measured;
 }
 
@@ -191,11 +192,9 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
       max_scored_points(map, se3.truth_from_estimate, reference.world, parallel);
   std::optional<PointGrid> grid;
   if (reference.seen) grid.emplace(completeness_grid(map, parallel));
-  const auto part_of_map = [&](std::size_t count) {
-    return Subject(map, count, reference, parallel, identified, grid ? &*grid : nullptr);
-  };
-  const Subject all = part_of_map(max_points);
-  const Subject some = part_of_map(std::min(max_points, kMaxPointsOfOther));
+  const Subject all(map, max_points, reference, parallel, identified, grid ? &*grid : nullptr);
+  const Subject some(map, std::min(max_points, kMaxPointsOfOther), reference, parallel, nullptr,
+                     nullptr);
   results::MapMetrics metrics;
   metrics.se3 = measure_with_vertices(se3, all, scored);
   metrics.first_pose = measure_in(first_pose, se3.determined() ? some : all);

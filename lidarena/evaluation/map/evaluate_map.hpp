@@ -37,11 +37,14 @@ SeenSurface make_seen_surface(RayTruth truth, const world::World& world, const P
 /// What the maps of a run are scored against; computed once for all of them.
 struct MapReference {
   const world::World& world;
-  SubdividedMesh subdivided;
-  std::optional<SeenSurface> seen;  ///< empty: signed distance and completeness are empty
+  std::optional<SubdividedMesh> subdivided;  ///< empty: the distance to vertices is empty
+  std::optional<SeenSurface> seen;           ///< empty: signed distance and completeness are empty
 
-  explicit MapReference(const world::World& mesh, std::optional<SeenSurface> surface = {})
-      : world(mesh), subdivided(mesh), seen(std::move(surface)) {}
+  explicit MapReference(const world::World& mesh, std::optional<SeenSurface> surface = {},
+                        bool vertices = false)
+      : world(mesh), seen(std::move(surface)) {
+    if (vertices) subdivided.emplace(mesh);
+  }
 };
 
 /// Distances to the mesh, of every `stride`-th point of a map.
@@ -55,10 +58,10 @@ struct ScoredPoints {
 /// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Maps of
 /// more than 2 million points (200,000 if more than 95 % of the points are beyond 20 cm) are evenly
 /// sampled to at most that number in the gauge whose figures tables show ("se3", else
-/// "first_pose"), to at most 250,000 in the others and for the distance to vertices; completeness
-/// uses all points. `identified`, if given, is the same map with its true hits, for the identity
-/// error. A gauge that is not determined has a reason. `scored`, if given, gets the distances in
-/// the gauge "se3".
+/// "first_pose"), to at most 250,000 in the others and for the distance to vertices. Completeness,
+/// which uses all points, signed distance and identity error are of that gauge alone. `identified`,
+/// if given, is the same map with its true hits, for the identity error. A gauge that is not
+/// determined has a reason. `scored`, if given, gets the distances in the gauge "se3".
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                                  const Trajectory& truth, const MapReference& reference,
                                  const Parallel& parallel,
