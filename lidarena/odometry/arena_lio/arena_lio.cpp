@@ -222,7 +222,7 @@ ScanStatus ArenaLio::judge(const Match& found) {
   if (agreement.points == 0) return ScanStatus::kTooFewPoints;
   if (world_.map.empty()) return ScanStatus::kInitializing;
   if (tracking_.is_lost()) return ScanStatus::kDiverged;  // permanently
-  if (agreement.near_planes == 0) return ScanStatus::kTooFewPoints;
+  if (agreement.near_planes == 0 && !tracking_.contradicts()) return ScanStatus::kTooFewPoints;
   // The block of the position is the weighted sum of n n^T over all normals n.
   const ScanStatus status =
       tracking_.judge(agreement.share(), found.update.points.hessian.topLeftCorner<3, 3>());

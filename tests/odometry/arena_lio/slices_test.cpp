@@ -39,8 +39,8 @@ TEST(Slices, ShareThePointsAndTheMotionByTime) {
   Time expected{0};
   std::size_t points = 0;
   for (std::size_t k = 0; k < 4; ++k) {
-    const Time begin = milliseconds(10) + milliseconds(90) * k / 4;
-    const Time end = milliseconds(10) + milliseconds(90) * (k + 1) / 4;
+    const Time begin = milliseconds(10) + Time(milliseconds(90)) * static_cast<int>(k) / 4;
+    const Time end = milliseconds(10) + Time(milliseconds(90)) * static_cast<int>(k + 1) / 4;
     for (const Point& point : slices[k].points.points) {
       EXPECT_GE(time_of(scan, point), begin);
       EXPECT_LT(time_of(scan, point), end);
