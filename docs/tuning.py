@@ -44,11 +44,13 @@ def flights_of(plan, stage):
 
 
 def read_runs(files):
-    """{setting: {(world, seed, sensor): run}}"""
+    """{setting: {(world, seed, sensor): run}}, without runs that a study has not flown yet."""
     found = {}
     for file in files:
         with open(file, newline="") as rows:
             for run in csv.DictReader(rows):
+                if run["status"] == "missing":
+                    continue
                 flight = run["world"], int(run["seed"]), run["sensor"]
                 if found.setdefault(run["algorithm"], {}).setdefault(flight, run) is not run:
                     raise PlanError(f"{file}: {run['algorithm']} has two rows of {flight}: "

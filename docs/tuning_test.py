@@ -93,6 +93,10 @@ class Tuning(unittest.TestCase):
         short = self.results("short.csv", rows_of(one, {"m-01": 1.0, "m-02": 1.0, "m-03": 1.0}))
         with self.assertRaisesRegex(tuning.PlanError, "n-01 lacks 2 of 2 flights"):
             tuning.study(PLAN, "two", [short])
+        unflown = self.results("unflown.csv", rows_of(one, {"m-01": 1.0, "m-02": 1.0, "m-03": 1.0}),
+                               rows_of(one, {"n-01": ""}, "", "missing"))
+        with self.assertRaisesRegex(tuning.PlanError, "n-01 lacks 2 of 2 flights"):
+            tuning.study(PLAN, "two", [unflown])
         with self.assertRaisesRegex(tuning.PlanError, "two rows"):
             tuning.study(PLAN, "two", [short, short])
 
