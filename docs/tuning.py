@@ -113,7 +113,7 @@ def study(plan, name, files):
 
 
 def setting_text(setting):
-    preset = setting["name"].partition(":")[2]
+    preset = setting["name"].partition(":")[2] or setting["name"]
     values = [f"{key}={json.dumps(value)}" for key, value in setting.get("set", {}).items()]
     return ", ".join([preset, f"parts {setting.get('parts', 1)}", *values])
 
