@@ -129,6 +129,8 @@ results::RpeByLength rpe_by_length(const Trajectory& estimate, const Trajectory&
     rpe.lengths[i] = metrics_of(relative_pose_error(estimate, truth, length, length), &floor);
   }
   rpe.at_poses_1m = metrics_of(at_poses);
+  if (const auto best = relative_pose_error_at_best_offset(estimate, truth))
+    rpe.at_best_offset_1m = metrics_of(*best);
   const RelativePoseError floor = relative_pose_error_over_time(perfect, truth);
   rpe.over_1s = metrics_of(relative_pose_error_over_time(estimate, truth), &floor);
   return rpe;

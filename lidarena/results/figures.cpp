@@ -140,6 +140,19 @@ constexpr auto kAtPoses = [](const RpeByLength& rpe) -> const RpeMetrics& {
 };
 constexpr auto kOverTime = [](const RpeByLength& rpe) -> const RpeMetrics& { return rpe.over_1s; };
 
+const RpeAtOffset* at_best_offset(const RunMetrics& m) {
+  const auto* rpe = m.final && m.final->rpe ? &*m.final->rpe : nullptr;
+  return rpe != nullptr && rpe->at_best_offset_1m ? &*rpe->at_best_offset_1m : nullptr;
+}
+Reading rpe_at_best_offset(const RunMetrics& m) {
+  const RpeAtOffset* best = at_best_offset(m);
+  return best == nullptr ? Reading{} : translation(best->rpe);
+}
+Reading best_offset(const RunMetrics& m) {
+  const RpeAtOffset* best = at_best_offset(m);
+  return best == nullptr ? Reading{} : of_rpe(best->rpe, best->late_s);
+}
+
 template <Trajectory trajectory, AteMetrics AteByGauge::*gauge, Reading (*read)(const AteMetrics&)>
 Reading ate(const RunMetrics& m) {
   return m.*trajectory && (m.*trajectory)->ate ? read((*(m.*trajectory)->ate).*gauge) : Reading{};
@@ -216,6 +229,10 @@ constexpr std::array kFigures{
     Figure{"rpe_1m_at_poses_rotation", "RPE deg/m", kDegreesPerRadian, "deg",
            "RPE per meter, pose to pose, rotation", kOfPath, rpe<kFinal, kAtPoses, rotation>,
            kMain},
+    Figure{"rpe_1m_at_best_offset", nullptr, 100, "cm", "RPE per meter, at the best time offset",
+           kOfPath, rpe_at_best_offset},
+    Figure{"rpe_best_offset", nullptr, 1e3, "ms", "best time offset, stamps late by", kOfPath,
+           best_offset},
     Figure{"rpe_1m_translation", nullptr, 100, "cm", "RPE per meter, ends interpolated", kOfPath,
            rpe<kFinal, kLength<0>, translation>},
     Figure{"rpe_1m_rotation", nullptr, kDegreesPerRadian, "deg",

@@ -89,12 +89,25 @@ struct RpeMetrics {
   }
 };
 
+/// Relative pose error at the constant time offset for which it is least.
+struct RpeAtOffset {
+  double late_s = 0.0;
+  RpeMetrics rpe;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("late_s", self.late_s, "s", "how much later the estimate's stamps are than the truth's");
+    v("rpe", self.rpe, "", "with the stamps corrected by it");
+  }
+};
+
 /// Lengths (m) of the pieces over which the RPE and KITTI's short rule are computed.
 inline constexpr std::array kRpeLengths_m{1.0, 2.0, 5.0, 10.0, 20.0, 50.0};
 
 struct RpeByLength {
   std::array<RpeMetrics, kRpeLengths_m.size()> lengths;  ///< of kRpeLengths_m
   RpeMetrics at_poses_1m, over_1s;
+  std::optional<RpeAtOffset> at_best_offset_1m;  ///< empty without pieces
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -105,6 +118,8 @@ struct RpeByLength {
     }
     v("1m_at_poses", self.at_poses_1m, "", "from pose to pose of the estimate");
     v("1s", self.over_1s, "", "pieces of one second");
+    v("1m_at_best_offset", self.at_best_offset_1m, "",
+      "1m_at_poses at the constant time offset for which it is least; a diagnostic");
   }
 };
 

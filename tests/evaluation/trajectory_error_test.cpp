@@ -357,5 +357,29 @@ TEST(AbsoluteTrajectoryError, OfARefusedAlignmentIsNoNumber) {
   EXPECT_TRUE(ate.poses.empty());
 }
 
+TEST(RpeAtBestOffset, OfAShiftedTrajectoryIsThatOfTheTrajectoryItself) {
+  const Trajectory truth = flights::sample(flights::tour, 5ms, 30s);
+  const Trajectory exact = flights::sample(flights::tour, 100ms, 30s);
+  for (const Time late : {Time(50ms), Time(-37ms), Time(0ms)}) {
+    const Trajectory estimate = flights::shifted(exact, late);
+    const auto best = relative_pose_error_at_best_offset(estimate, truth);
+    ASSERT_TRUE(best);
+    EXPECT_NEAR(best->late_s, to_seconds(late), 1e-4);
+    EXPECT_LT(best->rpe.translation_m.rmse, 1e-6);
+    EXPECT_GE(best->rpe.used, 10U);
+    const double as_stamped = relative_pose_error_at_poses(estimate, truth).translation_m.rmse;
+    EXPECT_EQ(as_stamped > 1e-3, late != Time(0));
+  }
+}
+
+TEST(RpeAtBestOffset, IsNotSearchedBeyondItsRange) {
+  const Trajectory truth = flights::sample(flights::tour, 5ms, 30s);
+  const Trajectory estimate = flights::shifted(flights::sample(flights::tour, 100ms, 30s), 150ms);
+  const auto best = relative_pose_error_at_best_offset(estimate, truth);
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(best->late_s, 0.1, 1e-9);
+  EXPECT_FALSE(relative_pose_error_at_best_offset(Trajectory(), truth));
+}
+
 }  // namespace
 }  // namespace lidarena::evaluation

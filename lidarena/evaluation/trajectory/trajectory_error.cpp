@@ -87,6 +87,13 @@ RelativePoseError score(const Trajectory& estimate, const Trajectory& truth,
   return rpe;
 }
 
+/// The poses with all stamps earlier by `late`.
+Trajectory earlier(const Trajectory& trajectory, Time late) {
+  std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
+  for (StampedPose& pose : poses) pose.stamp -= late;
+  return Trajectory(std::move(poses));
+}
+
 void require_positive(double value, const char* name) {
   if (!(value > 0.0) || !std::isfinite(value)) {
     throw InputError(name, "not a positive number", "give a value above zero");
@@ -128,6 +135,26 @@ RelativePoseError relative_pose_error_at_poses(const Trajectory& estimate, const
   rpe.step = segment_m;
   rpe.at_poses = true;
   return rpe;
+}
+
+std::optional<RpeAtBestOffset> relative_pose_error_at_best_offset(const Trajectory& estimate,
+                                                                  const Trajectory& truth,
+                                                                  double range_s) {
+  std::optional<RpeAtBestOffset> best;  // of a grid of 10 ms, then of finer ones around it
+  const std::size_t pieces = relative_pose_error_at_poses(estimate, truth).used;
+  for (const double step_s : {1e-2, 1e-3, 1e-4}) {
+    const double middle_s = best ? best->late_s : 0.0;
+    for (int k = -10; k <= 10; ++k) {
+      const double late_s = middle_s + k * step_s;
+      if (std::abs(late_s) > range_s + 1e-9) continue;
+      RelativePoseError rpe =
+          relative_pose_error_at_poses(earlier(estimate, from_seconds(late_s)), truth);
+      if (rpe.used == 0 || 2 * rpe.used < pieces) continue;
+      if (!best || rpe.translation_m.rmse < best->rpe.translation_m.rmse)
+        best = {late_s, range_s, std::move(rpe)};
+    }
+  }
+  return best;
 }
 
 RelativePoseError relative_pose_error_over_time(const Trajectory& estimate, const Trajectory& truth,

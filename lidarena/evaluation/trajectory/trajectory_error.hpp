@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <vector>
 
 #include "lidarena/base/trajectory.hpp"
@@ -48,6 +49,19 @@ RelativePoseError relative_pose_error(const Trajectory& estimate, const Trajecto
 /// piece whose ends fall on the same pose is dropped. For a perfect estimate only rounding remains.
 RelativePoseError relative_pose_error_at_poses(const Trajectory& estimate, const Trajectory& truth,
                                                double segment_m = 1.0);
+
+/// relative_pose_error_at_poses() at the constant time offset for which its translation is least.
+struct RpeAtBestOffset {
+  double late_s = 0.0;   ///< the estimate's stamps are this much later than the truth's
+  double range_s = 0.0;  ///< of the search, to both sides
+  RelativePoseError rpe;
+};
+
+/// The offset is searched within +-`range_s`, to 0.1 ms, for the least RMSE of the translation.
+/// Empty without pieces.
+std::optional<RpeAtBestOffset> relative_pose_error_at_best_offset(const Trajectory& estimate,
+                                                                  const Trajectory& truth,
+                                                                  double range_s = 0.1);
 
 /// Error per `segment_s` of time; also defined while the body hovers.
 RelativePoseError relative_pose_error_over_time(const Trajectory& estimate, const Trajectory& truth,

@@ -111,6 +111,14 @@ results::RpeMetrics metrics_of(const RelativePoseError& rpe, const RelativePoseE
   return metrics;
 }
 
+results::RpeAtOffset metrics_of(const RpeAtBestOffset& best) {
+  results::RpeAtOffset metrics{best.late_s, metrics_of(best.rpe)};
+  metrics.rpe.definition =
+      fmt::format("rpe_{0}m_at_best_offset[ref-arc,{0}m,disjoint,nearest-poses,gap1.5,within{1}ms]",
+                  best.rpe.segment_m, 1e3 * best.range_s);
+  return metrics;
+}
+
 results::AteMetrics metrics_of(const AbsoluteTrajectoryError& ate) {
   const Alignment& alignment = ate.alignment;
   results::AteMetrics metrics;

@@ -26,6 +26,7 @@ results::AssociationMetrics metrics_of(const Association& association,
 /// given and has pieces.
 results::RpeMetrics metrics_of(const RelativePoseError& rpe,
                                const RelativePoseError* of_perfect = nullptr);
+results::RpeAtOffset metrics_of(const RpeAtBestOffset& best);
 results::AteMetrics metrics_of(const AbsoluteTrajectoryError& ate);
 
 /// At most `limit` rows with times since `start`, each the largest error of several consecutive
