@@ -70,9 +70,9 @@ TEST_F(Cli, OutputsAreNamedAfterWhatIsInThem) {
     EXPECT_THAT(flown.err, HasSubstr(std::string("writes to ") + name));
     EXPECT_TRUE(fs::exists(path(name) + "/manifest.json"));
   }
-  for (const char* name :
-       {"room-round-livox_mid360-kiss_icp-head", "room-round-livox_mid360-kiss_icp-head-2"}) {
-    const Outcome ran = call("run kiss_icp room-round-livox_mid360/ --preset head");
+  for (const char* name : {"room-round-livox_mid360-kiss_icp-published",
+                           "room-round-livox_mid360-kiss_icp-published-2"}) {
+    const Outcome ran = call("run kiss_icp room-round-livox_mid360/ --preset published");
     ASSERT_EQ(ran.exit_code, 0) << ran.err;
     EXPECT_THAT(ran.out, HasSubstr(std::string("run: ") + name + "\n"));
     EXPECT_TRUE(fs::exists(path(name) + "/manifest.json"));
