@@ -6,7 +6,7 @@
 
 namespace lidarena::odometry {
 
-/// The map of planes of arena_lo and arena_lio. Its keys stand beside those of the method.
+/// The map of planes of arena_lo and arena_lio. Its keys are listed among those of the method.
 struct PlaneMapConfig {
   double cell_size_m = 0.3;
   int max_cell_points = 400;

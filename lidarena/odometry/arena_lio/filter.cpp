@@ -12,7 +12,7 @@ using State = estimation::InertialState;
 
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
-constexpr double kStillRotationSigma = 1e-5;     // rad, likewise
+constexpr double kStillRotationSigma = 1e-5;     // rad, of the held first pose
 
 /// The rotation over the intervals, from the rotation `map_from_begin` to that of `state`.
 ScanTurn turn_over(const std::vector<estimation::ImuInterval>& intervals,
