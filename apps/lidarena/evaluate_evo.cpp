@@ -102,8 +102,8 @@ Json evo_json(std::span<const StampedPose> truth, std::span<const StampedPose> e
   const evaluation::EvoOptions options = options_of(arguments);
   const evaluation::EvoResult result = evaluation::compat_evo(truth, estimate, options);
   const evaluation::EvoStatistics& s = result.statistics;
-  const evaluation::Similarity& gauge = result.reference_from_estimate;
-  const Pose pose = make_pose(gauge.rotation, gauge.translation);
+  const evaluation::Similarity& alignment = result.reference_from_estimate;
+  const Pose pose = make_pose(alignment.rotation, alignment.translation);
   return {{"compat", "evo"},
           {"options", options_json(arguments)},
           {"reference_poses", truth.size()},
@@ -111,7 +111,7 @@ Json evo_json(std::span<const StampedPose> truth, std::span<const StampedPose> e
           {"matched", result.matched},
           {"errors", result.errors.size()},
           {"reference_from_estimate_m_quaternion", value_to_json(pose)},
-          {"scale", gauge.scale},
+          {"scale", alignment.scale},
           {"unit", evaluation::unit_of(options.relation)},
           {"statistics",
            {{"rmse", s.rmse},

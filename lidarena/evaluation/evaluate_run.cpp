@@ -187,7 +187,7 @@ results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory&
 
 std::string divergence_of(const Trajectory& estimate, const Trajectory& truth) {
   const std::vector<PosePair> pairs = matched_poses(estimate, truth);
-  const Alignment alignment = align(pairs, Gauge::kFirstPose);
+  const Alignment alignment = align(pairs, AlignmentKind::kFirstPose);
   const double limit = 2.0 * truth.path_length() + 1.0;
   for (const PosePair& pair : pairs) {
     const Eigen::Vector3d p = alignment.truth_from_estimate * pair.estimate.translation();
@@ -213,11 +213,13 @@ results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
                  ok ? find_lever_arm(estimate, truth) : std::nullopt);
   if (!ok) return metrics;
   const RelativePoseError at_poses = relative_pose_error_at_poses(estimate, truth);
-  const auto ate = [&](Gauge gauge) { return absolute_trajectory_error(estimate, truth, gauge); };
-  const AbsoluteTrajectoryError first_pose = ate(Gauge::kFirstPose);
-  const AbsoluteTrajectoryError se3 = ate(Gauge::kSe3);
+  const auto ate = [&](AlignmentKind kind) {
+    return absolute_trajectory_error(estimate, truth, kind);
+  };
+  const AbsoluteTrajectoryError first_pose = ate(AlignmentKind::kFirstPose);
+  const AbsoluteTrajectoryError se3 = ate(AlignmentKind::kSe3);
   metrics.rpe = rpe_by_length(estimate, truth, at_poses);
-  metrics.ate = {metrics_of(first_pose), metrics_of(se3), metrics_of(ate(Gauge::kPosYaw))};
+  metrics.ate = {metrics_of(first_pose), metrics_of(se3), metrics_of(ate(AlignmentKind::kPosYaw))};
   metrics.kitti = kitti_error(estimate, truth);
   metrics.kitti_short = kitti_error(estimate, truth, kRpeLengths_m);
   metrics.hover_jitter = hover_jitter(matched_poses(estimate, truth), gap_limit_of(estimate));

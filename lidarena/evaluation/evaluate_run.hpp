@@ -36,8 +36,8 @@ results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory&
                                  const world::World* world, const Parallel& parallel, LogSink& log,
                                  const MapScoring& maps = {});
 
-/// Scores one trajectory: association, RPE for each piece length, ATE in each gauge, errors over
-/// time.
+/// Scores one trajectory: association, RPE for each piece length, ATE in each alignment, errors
+/// over time.
 results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
 
 /// Why the estimate must not be scored; empty when it may be. It has diverged when, aligned by its

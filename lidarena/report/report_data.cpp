@@ -105,7 +105,7 @@ std::vector<EventKind> event_kinds() {
 }
 
 std::optional<results::DistanceHistogram> histogram(const std::optional<results::MapMetrics>& map) {
-  const results::MapInGauge* scores = results::scores_of(map);
+  const results::MapScores* scores = results::scores_of(map);
   if (scores == nullptr) return std::nullopt;
   return scores->histogram;
 }

@@ -271,11 +271,11 @@ void add_run(Scene& scene, const fs::path& folder, const SceneOptions& options, 
   const dataset::RunManifest manifest = dataset::read_run_manifest(folder);
   const std::string label = run_label(folder, manifest);
   const auto truth = add_truth(scene, folder / manifest.dataset, options, log);
-  const auto gauge = fs::exists(folder / "metrics.json")
-                         ? results::truth_from_estimate(results::read_metrics(folder))
-                         : std::nullopt;
-  if (truth && !gauge) log.warn(label + ": not scored, so the map is not aligned with the mesh");
-  const Pose scene_from_map = gauge.value_or(Pose::Identity());
+  const auto scored = fs::exists(folder / "metrics.json")
+                          ? results::truth_from_estimate(results::read_metrics(folder))
+                          : std::nullopt;
+  if (truth && !scored) log.warn(label + ": not scored, so the map is not aligned with the mesh");
+  const Pose scene_from_map = scored.value_or(Pose::Identity());
 
   const Trajectory estimate =
       moved(dataset::read_tum(folder / "trajectory.tum", dataset::EmptyTrajectory::kAllowed),

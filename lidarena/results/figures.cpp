@@ -67,7 +67,7 @@ Reading translation(const KittiError& kitti) {
 }
 
 /// How many points were scored: "900 points", "900 of 1800 points" where they are a sample.
-std::string points_of(const MapInGauge& map) {
+std::string points_of(const MapScores& map) {
   return map.points < map.map_points ? fmt::format("{} of {} points", map.points, map.map_points)
                                      : count_of(map.points, "points");
 }
@@ -77,45 +77,43 @@ Reading of_map(std::optional<double> value, const std::string& definition, std::
                const std::optional<std::string>& refused = {}) {
   return {value, definition, refused.value_or(""), "", {}, {}, std::move(samples), false};
 }
-Reading of_points(const MapInGauge& map, std::optional<double> value) {
+Reading of_points(const MapScores& map, std::optional<double> value) {
   Reading reading = of_map(value, map.definition, points_of(map), map.refused);
   reading.used = map.points;
   reading.total = std::max(map.points, map.map_points);
   return reading;
 }
-Reading rmse(const MapInGauge& map) {
-  return of_points(map, known(map.distance_m, &Summary::rmse));
-}
-Reading rmse_inliers(const MapInGauge& map) { return of_points(map, map.rmse_inliers_m); }
-Reading outliers(const MapInGauge& map) {
+Reading rmse(const MapScores& map) { return of_points(map, known(map.distance_m, &Summary::rmse)); }
+Reading rmse_inliers(const MapScores& map) { return of_points(map, map.rmse_inliers_m); }
+Reading outliers(const MapScores& map) {
   Reading reading = of_points(map, map.outliers_percent);
   reading.is_share = true;
   return reading;
 }
-Reading of_completeness(const MapInGauge& map, double CompletenessRow::*share) {
+Reading of_completeness(const MapScores& map, double CompletenessRow::*share) {
   const CompletenessRow* row = map.completeness.within(kNear_m);
   return of_map(row == nullptr ? std::nullopt : std::optional(row->*share),
                 map.completeness.definition, count_of(map.completeness.samples, "samples"),
                 map.refused);
 }
-Reading completeness(const MapInGauge& map) {
+Reading completeness(const MapScores& map) {
   return of_completeness(map, &CompletenessRow::recall_percent);
 }
-Reading f_score(const MapInGauge& map) {
+Reading f_score(const MapScores& map) {
   return of_completeness(map, &CompletenessRow::f_score_percent);
 }
-Reading double_walls(const MapInGauge& map) {
+Reading double_walls(const MapScores& map) {
   const Ghosting& g = map.ghosting;
   return of_map(g.empty() ? std::nullopt : std::optional(g.double_percent), g.definition,
                 count_of(g.patches, "patches"), map.refused);
 }
-Reading identity(const MapInGauge& map) {
+Reading identity(const MapScores& map) {
   const IdentityError& e = map.identity;
   return of_map(known(e.distance_m, &Summary::rmse), e.definition,
                 count_of(e.distance_m.count, "points"), map.refused);
 }
 template <std::optional<double> VertexDistance::*value>
-Reading vertices(const MapInGauge& map) {
+Reading vertices(const MapScores& map) {
   const VertexDistance& d = map.point_vertex;
   Reading reading = of_map(d.*value, d.definition, count_of(d.points, "points"),
                            d.refused ? d.refused : map.refused);
@@ -153,26 +151,26 @@ Reading best_offset(const RunMetrics& m) {
   return best == nullptr ? Reading{} : of_rpe(best->rpe, best->late_s);
 }
 
-template <Trajectory trajectory, AteMetrics AteByGauge::*gauge, Reading (*read)(const AteMetrics&)>
+template <Trajectory trajectory, AteMetrics AteByAlignment::*by, Reading (*read)(const AteMetrics&)>
 Reading ate(const RunMetrics& m) {
-  return m.*trajectory && (m.*trajectory)->ate ? read((*(m.*trajectory)->ate).*gauge) : Reading{};
+  return m.*trajectory && (m.*trajectory)->ate ? read((*(m.*trajectory)->ate).*by) : Reading{};
 }
 template <std::optional<KittiError> TrajectoryMetrics::*kitti>
 Reading kitti_of(const RunMetrics& m) {
   return m.final && (*m.final).*kitti ? translation(*((*m.final).*kitti)) : Reading{};
 }
-template <Map map, Reading (*read)(const MapInGauge&)>
+template <Map map, Reading (*read)(const MapScores&)>
 Reading map_of(const RunMetrics& m) {
   if (!(m.maps.*map)) return {};
-  const MapInGauge& se3 = (m.maps.*map)->se3;
-  const MapInGauge* scores = scores_of(m.maps.*map);
+  const MapScores& se3 = (m.maps.*map)->se3;
+  const MapScores* scores = scores_of(m.maps.*map);
   Reading reading = read(scores == nullptr ? se3 : *scores);
   if (scores != nullptr && scores != &se3) {
     reading.warning = "aligned by the first pose: " + se3.refused.value_or("");
   }
   return reading;
 }
-template <Map map, Reading (*read)(const MapInGauge&)>
+template <Map map, Reading (*read)(const MapScores&)>
 Reading robust_map_of(const RunMetrics& m) {
   return m.maps.*map ? read((m.maps.*map)->robust) : Reading{};
 }
@@ -246,27 +244,27 @@ constexpr std::array kFigures{
            rpe<kFinal, kLength<3>, translation>},
     Figure{"rpe_50m_translation", nullptr, 100, "cm", "RPE per 50 m", kOfPath,
            rpe<kFinal, kLength<5>, translation>},
-    Figure{"ate_se3_translation", "ATE cm", 100, "cm", "ATE, SE(3) gauge", kOfPath,
-           ate<kFinal, &AteByGauge::se3, translation>, kMain},
-    Figure{"ate_se3_rotation", nullptr, kDegreesPerRadian, "deg", "ATE, SE(3) gauge, rotation",
-           kOfPath, ate<kFinal, &AteByGauge::se3, rotation>},
+    Figure{"ate_se3_translation", "ATE cm", 100, "cm", "ATE, SE(3) alignment", kOfPath,
+           ate<kFinal, &AteByAlignment::se3, translation>, kMain},
+    Figure{"ate_se3_rotation", nullptr, kDegreesPerRadian, "deg", "ATE, SE(3) alignment, rotation",
+           kOfPath, ate<kFinal, &AteByAlignment::se3, rotation>},
     Figure{"ate_posyaw_translation", nullptr, 100, "cm", "ATE, position and heading", kOfPath,
-           ate<kFinal, &AteByGauge::posyaw, translation>},
-    Figure{"ate_first_pose_translation", nullptr, 100, "cm", "ATE, first-pose gauge", kOfPath,
-           ate<kFinal, &AteByGauge::first_pose, translation>},
+           ate<kFinal, &AteByAlignment::posyaw, translation>},
+    Figure{"ate_first_pose_translation", nullptr, 100, "cm", "ATE, first-pose alignment", kOfPath,
+           ate<kFinal, &AteByAlignment::first_pose, translation>},
     Figure{"kitti_translation", nullptr, 1, "%", "KITTI, 100 to 800 m", kOfPath,
            kitti_of<&TrajectoryMetrics::kitti>},
     Figure{"kitti_short_translation", nullptr, 1, "%", "KITTI's rule, 1 to 50 m", kOfPath,
            kitti_of<&TrajectoryMetrics::kitti_short>},
     Figure{"live_rpe_1m_at_poses_translation", "live RPE cm/m", 100, "cm", "RPE per meter, live",
            kOfLive, rpe<kLive, kAtPoses, translation>, kMain},
-    Figure{"live_ate_se3_translation", nullptr, 100, "cm", "ATE, SE(3) gauge, live", kOfLive,
-           ate<kLive, &AteByGauge::se3, translation>},
+    Figure{"live_ate_se3_translation", nullptr, 100, "cm", "ATE, SE(3) alignment, live", kOfLive,
+           ate<kLive, &AteByAlignment::se3, translation>},
     Figure{"own_map_rmse", "own map cm", 100, "cm", "own map, RMSE", kOfMap, map_of<kOwn, rmse>,
            kMain},
     Figure{"own_map_outliers", nullptr, 1, "%", "own map, beyond 20 cm", kOfMap,
            map_of<kOwn, outliers>, kRuns},
-    Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust gauge", kOfMap,
+    Figure{"own_map_rmse_robust", nullptr, 100, "cm", "own map, RMSE, robust alignment", kOfMap,
            robust_map_of<kOwn, rmse>},
     Figure{"own_map_rmse_vertices", nullptr, 100, "cm", "own map, RMSE to vertices", kOfMap,
            map_of<kOwn, kToVertices>},
@@ -285,7 +283,7 @@ constexpr std::array kFigures{
     Figure{"reprojected_map_outliers", "outliers %", 1, "%", "reprojected map, beyond 20 cm",
            kOfMap, map_of<kReprojected, outliers>, kMain},
     Figure{"reprojected_map_rmse_robust", "robust cm", 100, "cm",
-           "reprojected map, RMSE, robust gauge", kOfMap, robust_map_of<kReprojected, rmse>,
+           "reprojected map, RMSE, robust alignment", kOfMap, robust_map_of<kReprojected, rmse>,
            kMapTable},
     Figure{"reprojected_map_rmse_vertices", "to vertices cm", 100, "cm",
            "reprojected map, RMSE to vertices", kOfMap, map_of<kReprojected, kToVertices>,

@@ -53,7 +53,7 @@ struct Figure {
 };
 
 // Those that tables and reports name; drift is the RPE per meter from pose to pose, maps are scored
-// in the gauge of scores_of().
+// in the alignment of scores_of().
 extern const Figure &kDrift, &kDriftRotation, &kAte, &kOwnMapRmse, &kOwnMapOutliers, &kMapRmse,
     &kMapOutliers, &kCpuP95, &kCpuLoad, &kOwnMemory, &kLiveDrift, &kOwnMapRmseToVertices,
     &kOwnMapBeyondVertices;

@@ -228,7 +228,7 @@ struct VertexDistance {
 /// How the map was fitted to the mesh.
 struct MeshFit {
   static constexpr int kStarts = 5;  ///< starting poses: the given one and four around it
-  std::string definition = "gauge_robust[trimmed-icp,point-plane,10cm-voxels]";
+  std::string definition = "alignment_robust[trimmed-icp,point-plane,10cm-voxels]";
   std::size_t points = 0;  ///< fitted points, at most one per 10 cm voxel of the map
   int iterations = 0;
   double inliers_percent = 0.0;  ///< of the fitted points, within 20 cm after alignment
@@ -292,8 +292,8 @@ struct MapError {
   }
 };
 
-/// Scores of a map in one gauge.
-struct MapInGauge : MapError {
+/// Scores of a map in one alignment.
+struct MapScores : MapError {
   std::optional<std::string> refused;
   std::optional<Pose> mesh_from_map;
   VoxelError per_voxel;
@@ -307,7 +307,7 @@ struct MapInGauge : MapError {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     MapError::visit(self, v);
-    v("refused", self.refused, "", "why the gauge is not determined");
+    v("refused", self.refused, "", "why the alignment is not determined");
     v("mesh_from_map_m_quaternion", self.mesh_from_map, "m", "x y z qx qy qz qw");
     v("per_voxel", self.per_voxel, "", "each occupied voxel counts once");
     v("ghosting", self.ghosting, "", "double walls");
@@ -315,12 +315,12 @@ struct MapInGauge : MapError {
     v("signed", self.signed_distance, "", "in front of and behind the surface");
     v("completeness", self.completeness, "", "of the surface that the flight's rays hit");
     v("point_vertex", self.point_vertex, "", "to the vertices of the subdivided mesh");
-    v("alignment", self.alignment, "", "the fit of the robust gauge");
+    v("alignment", self.alignment, "", "the fit of the robust alignment");
   }
 };
 
 struct MapMetrics {
-  MapInGauge first_pose, se3, robust;
+  MapScores first_pose, se3, robust;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {

@@ -39,12 +39,12 @@ std::string lever_text(const std::optional<LeverArmMetrics>& arm) {
                      list_text(arm->rotation_vector_rad, kDegreesPerRadian));
 }
 
-std::string gauge_text(const AteMetrics& se3) {
-  if (se3.refused) return fmt::format("  SE(3) gauge refused: {}\n", *se3.refused);
+std::string alignment_text(const AteMetrics& se3) {
+  if (se3.refused) return fmt::format("  SE(3) alignment refused: {}\n", *se3.refused);
   if (!se3.truth_from_estimate) return {};
   const Eigen::Vector3d t = se3.truth_from_estimate->translation();
   const Eigen::Quaterniond q(se3.truth_from_estimate->linear());
-  return fmt::format("  SE(3) gauge x y z qx qy qz qw:{}, scale hint {:.5f} (not applied)\n",
+  return fmt::format("  SE(3) alignment x y z qx qy qz qw:{}, scale hint {:.5f} (not applied)\n",
                      list_text(std::array{t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}),
                      se3.scale_hint.value_or(1.0));
 }
@@ -60,7 +60,7 @@ std::string diagnosis_text(const TrajectoryMetrics& trajectory) {
                                     1e3 * a.time_offset_sigma_s.value_or(0))
                       : "an amount that is not observable from this motion");
   text += "  estimate's frame in the truth's body: " + lever_text(a.lever_arm) + "\n";
-  return trajectory.ate ? text + gauge_text(trajectory.ate->se3) : text;
+  return trajectory.ate ? text + alignment_text(trajectory.ate->se3) : text;
 }
 
 const char* block_of(const Figure& figure) {

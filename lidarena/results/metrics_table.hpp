@@ -20,8 +20,8 @@ struct ScoredRun {
   bool is_cut = false;  ///< a recording of its poses was cut off or damaged
 };
 
-/// Diagnostics (association, offsets, gauge, warnings), then the figures, each with the coverage
-/// and number of samples that it is based on.
+/// Diagnostics (association, offsets, alignment, warnings), then the figures, each with the
+/// coverage and number of samples that it is based on.
 std::string metrics_text(const ScoredRun& run);
 
 /// Long format, one row per figure: run, algorithm, flight, seed, status, reason, coverage_percent,

@@ -50,14 +50,14 @@ RunMetrics read_metrics(const std::filesystem::path& folder) {
 
 std::optional<Pose> truth_from_estimate(const RunMetrics& metrics) {
   if (!metrics.final || !metrics.final->ate) return std::nullopt;
-  const AteByGauge& ate = *metrics.final->ate;
+  const AteByAlignment& ate = *metrics.final->ate;
   return ate.se3.truth_from_estimate ? ate.se3.truth_from_estimate
                                      : ate.first_pose.truth_from_estimate;
 }
 
-const MapInGauge* scores_of(const std::optional<MapMetrics>& map) {
+const MapScores* scores_of(const std::optional<MapMetrics>& map) {
   if (!map) return nullptr;
-  const MapInGauge& scores = map->se3.refused ? map->first_pose : map->se3;
+  const MapScores& scores = map->se3.refused ? map->first_pose : map->se3;
   return scores.refused || scores.points == 0 ? nullptr : &scores;
 }
 

@@ -120,8 +120,8 @@ RunMetrics read_metrics(const std::filesystem::path& folder);
 /// The alignment of the final trajectory with the truth that pictures use: SE(3) over all positions
 /// where that is determined, else the first pose. Empty if the run was not scored.
 std::optional<Pose> truth_from_estimate(const RunMetrics& metrics);
-/// The scores of a map in that gauge; null if it was not scored.
-const MapInGauge* scores_of(const std::optional<MapMetrics>& map);
+/// The scores of a map in that alignment; null if it was not scored.
+const MapScores* scores_of(const std::optional<MapMetrics>& map);
 
 /// A run that could not be scored.
 RunMetrics failed_metrics(const std::string& reason);

@@ -123,7 +123,7 @@ struct RpeByLength {
   }
 };
 
-/// Absolute trajectory error in one gauge.
+/// Absolute trajectory error in one alignment.
 struct AteMetrics {
   std::string definition;
   std::optional<std::string> refused;
@@ -136,7 +136,7 @@ struct AteMetrics {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("definition", self.definition, "", "id in docs/metrics.md");
-    v("refused", self.refused, "", "why the gauge is not determined");
+    v("refused", self.refused, "", "why the alignment is not determined");
     v("truth_from_estimate_m_quaternion", self.truth_from_estimate, "m", "x y z qx qy qz qw");
     v("scale_hint", self.scale_hint, "", "scale of a similarity fit; not applied");
     v("warning", self.warning, "", "");
@@ -145,7 +145,7 @@ struct AteMetrics {
   }
 };
 
-struct AteByGauge {
+struct AteByAlignment {
   AteMetrics first_pose, se3, posyaw;
 
   template <class Self, class V>
@@ -243,7 +243,7 @@ struct TrajectoryMetrics {
   std::string reason;
   AssociationMetrics association;
   std::optional<RpeByLength> rpe;
-  std::optional<AteByGauge> ate;
+  std::optional<AteByAlignment> ate;
   std::optional<KittiError> kitti, kitti_short;
   HoverJitter hover_jitter;
   std::optional<ErrorCurves> errors_over_time;

@@ -35,7 +35,7 @@ TEST(Umeyama, FindsARandomTransformToRounding) {
   for (int trial = 0; trial < 50; ++trial) {
     const Pose truth_from_estimate = flights::random_pose(random, 5.0);
     const Trajectory truth = moved(estimate, truth_from_estimate);
-    const Alignment found = align(estimate, truth, Gauge::kSe3);
+    const Alignment found = align(estimate, truth, AlignmentKind::kSe3);
     ASSERT_TRUE(found.determined());
     EXPECT_LT(difference(found.truth_from_estimate, truth_from_estimate), 1e-12);
     EXPECT_NEAR(found.scale_hint, 1.0, 1e-12);
@@ -67,7 +67,7 @@ TEST(Umeyama, AgreesWithEigenOnNoisyAndMirroredPositions) {
   }
 }
 
-TEST(FirstPoseGauge, LaysTheFirstCommonPosesOnEachOtherAndFitsNothing) {
+TEST(FirstPoseAlignment, LaysTheFirstCommonPosesOnEachOtherAndFitsNothing) {
   SequentialRandom random(3);
   const Pose truth_from_estimate = flights::random_pose(random, 5.0);
   const Trajectory truth = sample(tour, 10ms, 20s);
@@ -77,59 +77,60 @@ TEST(FirstPoseGauge, LaysTheFirstCommonPosesOnEachOtherAndFitsNothing) {
         const double drift = 0.1 * (to_seconds(pose.stamp) - 3.0);
         return truth_from_estimate.inverse() * level({drift, 0, 0}) * pose.world_from_body;
       });
-  const Alignment found = align(estimate, truth, Gauge::kFirstPose);
+  const Alignment found = align(estimate, truth, AlignmentKind::kFirstPose);
   EXPECT_LT(difference(found.truth_from_estimate, truth_from_estimate), 1e-12);
 }
 
-TEST(PosYawGauge, FindsHeadingAndPositionOfAnUprightEstimate) {
+TEST(PosYawAlignment, FindsHeadingAndPositionOfAnUprightEstimate) {
   const Pose truth_from_estimate = make_pose(so3::exp({0, 0, -2.5}), Vector3d(3, -2, 1));
   const Trajectory estimate = sample(tour, 100ms, 20s);
-  const Alignment found = align(estimate, moved(estimate, truth_from_estimate), Gauge::kPosYaw);
+  const Alignment found =
+      align(estimate, moved(estimate, truth_from_estimate), AlignmentKind::kPosYaw);
   EXPECT_LT(difference(found.truth_from_estimate, truth_from_estimate), 1e-12);
   EXPECT_TRUE(found.warning.empty());
 }
 
-TEST(PosYawGauge, WarnsWhenTheEstimateLeans) {
+TEST(PosYawAlignment, WarnsWhenTheEstimateLeans) {
   const Pose leaning = make_pose(so3::exp({0.2, 0, 0}), Vector3d::Zero());
   const Trajectory estimate = sample(tour, 100ms, 20s);
-  const Alignment found = align(estimate, moved(estimate, leaning), Gauge::kPosYaw);
+  const Alignment found = align(estimate, moved(estimate, leaning), AlignmentKind::kPosYaw);
   EXPECT_TRUE(found.determined());
   EXPECT_THAT(found.warning, HasSubstr("tilted by 11.5 deg"));  // 0.2 rad
   EXPECT_NEAR(found.tilt_rad, 0.2, 1e-12);
 }
 
-TEST(Se3Gauge, RefusesALineBecauseTheRollAboutItIsArbitrary) {
+TEST(Se3Alignment, RefusesALineBecauseTheRollAboutItIsArbitrary) {
   const auto line = sample([](double t) { return level({t, 2.0 * t, 0.5 * t}); }, 100ms, 10s);
-  const Alignment found = align(line, line, Gauge::kSe3);
+  const Alignment found = align(line, line, AlignmentKind::kSe3);
   EXPECT_THAT(found.refusal, HasSubstr("line"));
-  EXPECT_TRUE(align(line, line, Gauge::kFirstPose).determined());
-  EXPECT_TRUE(align(line, line, Gauge::kPosYaw).determined());
+  EXPECT_TRUE(align(line, line, AlignmentKind::kFirstPose).determined());
+  EXPECT_TRUE(align(line, line, AlignmentKind::kPosYaw).determined());
 }
 
-TEST(Se3Gauge, RefusesANearLineButTakesAFlatFlight) {
+TEST(Se3Alignment, RefusesANearLineButTakesAFlatFlight) {
   const auto near_line = sample(
       [](double t) {
         return level({t, 1e-3 * std::sin(t), 1e-3 * std::cos(t)});
       },
       100ms, 10s);
-  EXPECT_FALSE(align(near_line, near_line, Gauge::kSe3).determined());
+  EXPECT_FALSE(align(near_line, near_line, AlignmentKind::kSe3).determined());
   const auto flat = sample([](double t) { return level({t, std::sin(t), 1.5}); }, 100ms, 10s);
-  const Alignment found = align(flat, flat, Gauge::kSe3);
+  const Alignment found = align(flat, flat, AlignmentKind::kSe3);
   ASSERT_TRUE(found.determined()) << found.refusal;
   EXPECT_LT(difference(found.truth_from_estimate, Pose::Identity()), 1e-12);
 }
 
 TEST(Alignment, HoverFewPosesAndNoOverlapAreRefusedInWords) {
   const auto hover = sample([](double) { return level({1, 2, 3}); }, 100ms, 10s);
-  EXPECT_THAT(align(hover, hover, Gauge::kSe3).refusal, HasSubstr("spread"));
-  EXPECT_THAT(align(hover, hover, Gauge::kPosYaw).refusal, HasSubstr("spread"));
-  EXPECT_TRUE(align(hover, hover, Gauge::kFirstPose).determined());
+  EXPECT_THAT(align(hover, hover, AlignmentKind::kSe3).refusal, HasSubstr("spread"));
+  EXPECT_THAT(align(hover, hover, AlignmentKind::kPosYaw).refusal, HasSubstr("spread"));
+  EXPECT_TRUE(align(hover, hover, AlignmentKind::kFirstPose).determined());
   const auto two = sample(tour, 100ms, 100ms);
-  EXPECT_THAT(align(two, two, Gauge::kSe3).refusal, HasSubstr("only 2 common poses"));
-  EXPECT_THAT(align(two, flights::shifted(two, 5s), Gauge::kFirstPose).refusal,
+  EXPECT_THAT(align(two, two, AlignmentKind::kSe3).refusal, HasSubstr("only 2 common poses"));
+  EXPECT_THAT(align(two, flights::shifted(two, 5s), AlignmentKind::kFirstPose).refusal,
               HasSubstr("no estimate lies inside"));
   const auto climb = sample([](double t) { return level({0, 0, t}); }, 100ms, 10s);
-  EXPECT_THAT(align(climb, climb, Gauge::kPosYaw).refusal, HasSubstr("heading"));
+  EXPECT_THAT(align(climb, climb, AlignmentKind::kPosYaw).refusal, HasSubstr("heading"));
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ TEST(Completeness, FollowsTheLimits) {
   }
 }
 
-TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheGauge) {
+TEST(Completeness, OfAMapInItsOwnFrameGoesThroughTheAlignment) {
   const world::World world(meshes::plane(10.0));
   Truths truths = hits_on_floor(2.0);
   const SurfaceSamples samples =

@@ -72,13 +72,13 @@ struct Room {
   }
 };
 
-TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
+TEST(EvaluateMap, HasAllMeasuresInThreeAlignments) {
   const Room room;
   const Json m =
       to_json(evaluate_map(room.map(0.03), room.truth, room.truth, room.seen, kTwoThreads));
-  for (const char* gauge : {"first_pose", "se3", "robust"}) {
-    const Json& g = m[gauge];
-    EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << gauge;
+  for (const char* alignment : {"first_pose", "se3", "robust"}) {
+    const Json& g = m[alignment];
+    EXPECT_NEAR(g["distance"]["rmse_m"], 0.03, 1e-3) << alignment;
     EXPECT_NEAR(g["per_voxel"]["distance"]["rmse_m"], 0.03, 1e-3);
     EXPECT_EQ(g["cdf_percent"].size(), 20U);
     EXPECT_LT(g["cdf_percent"][1], 5.0);
@@ -95,7 +95,7 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
   EXPECT_GT(rows[1]["recall_percent"], 99.5);
   EXPECT_GT(rows[1]["f_score_percent"], 99.5);
   for (const char* other : {"first_pose", "robust"})
-    EXPECT_TRUE(m[other]["completeness"].is_null()) << other << ": of the shown gauge alone";
+    EXPECT_TRUE(m[other]["completeness"].is_null()) << other << ": of the shown alignment alone";
   // rectangular lattices with diagonals between 4.93 and 5 cm add diagonal^2 / 12 to the mean
   // square
   const Json& vertices = m["se3"]["point_vertex"];
@@ -110,7 +110,7 @@ TEST(EvaluateMap, HasAllMeasuresInThreeGauges) {
   EXPECT_EQ(m["robust"]["alignment"]["starts_agreeing"], 5);
 }
 
-TEST(EvaluateMap, TheRobustGaugeTakesTheRigidPartOfTheErrorAway) {
+TEST(EvaluateMap, TheRobustAlignmentTakesTheRigidPartOfTheErrorAway) {
   const Room room;
   // the trajectory is correct, the map is 20 cm and 1 degree off
   const Pose offset = make_pose(so3::exp({0, 0, 0.0175}), Vector3d(0.15, -0.1, 0.08));

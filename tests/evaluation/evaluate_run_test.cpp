@@ -57,7 +57,7 @@ class EvaluateRun : public ::testing::Test {
   Trajectory truth_ = sample(tour, 5ms, 30s);
 };
 
-TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
+TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryAlignment) {
   const Json m = evaluate();
   EXPECT_EQ(m["schema"], "lidarena.metrics");
   EXPECT_EQ(m["schema_version"], results::kMetricsSchemaVersion);
@@ -71,12 +71,12 @@ TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryGauge) {
   const Json& rpe = m["final"]["rpe"]["1m"];
   EXPECT_NEAR(rpe["floor"]["translation_rmse_m"], rpe["translation"]["rmse_m"], 1e-12);
   EXPECT_NEAR(rpe["floor"]["rotation_rmse_rad"], rpe["rotation"]["rmse_rad"], 1e-12);
-  for (const char* gauge : {"first_pose", "se3"}) {
-    EXPECT_LT(m["final"]["ate"][gauge]["translation"]["rmse_m"], 1e-9);
+  for (const char* alignment : {"first_pose", "se3"}) {
+    EXPECT_LT(m["final"]["ate"][alignment]["translation"]["rmse_m"], 1e-9);
     for (const char* map : {"own", "reprojected"}) {
-      EXPECT_LT(m["maps"][map][gauge]["distance"]["rmse_m"], 1e-5);
-      EXPECT_EQ(m["maps"][map][gauge]["points"], 5000);
-      EXPECT_EQ(m["maps"][map][gauge]["histogram"]["counts"][0], 5000);
+      EXPECT_LT(m["maps"][map][alignment]["distance"]["rmse_m"], 1e-5);
+      EXPECT_EQ(m["maps"][map][alignment]["points"], 5000);
+      EXPECT_EQ(m["maps"][map][alignment]["histogram"]["counts"][0], 5000);
     }
   }
 }

@@ -69,8 +69,8 @@ constexpr double kSame = 1e-7;
 TEST_F(EvoFigures, RotationErrorAfterSe3AlignmentAndFromTheOriginIsTheSame) {
   const Trajectory truth = trajectory("uav_ref.tum");
   const Trajectory estimate = uav_estimate_on_reference_stamps();
-  const auto se3 = absolute_trajectory_error(estimate, truth, Gauge::kSe3);
-  const auto origin = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  const auto se3 = absolute_trajectory_error(estimate, truth, AlignmentKind::kSe3);
+  const auto origin = absolute_trajectory_error(estimate, truth, AlignmentKind::kFirstPose);
   EXPECT_EQ(se3.translation_m.count, 299U);
   EXPECT_NEAR(se3.rotation_rad.rmse,
               rmse("evo_ape tum uav_ref.tum uav_est.tum -r angle_rad -a --t_max_diff 0.02"), kSame);
@@ -97,25 +97,26 @@ TEST_F(EvoFigures, ASimilarityFitLeavesTheSameTranslationError) {
 TEST_F(EvoFigures, AStraightLineIsRefusedByBothAndUnalignedTheSame) {
   const Trajectory truth = trajectory("line_ref.tum");
   const Trajectory estimate = trajectory("line_est.tum");
-  EXPECT_FALSE(align(estimate, truth, Gauge::kSe3).determined());
-  EXPECT_FALSE(align(trajectory("quarter_est.tum"), trajectory("quarter_ref.tum"), Gauge::kSe3)
-                   .determined());
-  // first poses are equal, so the first-pose gauge changes nothing
-  const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  EXPECT_FALSE(align(estimate, truth, AlignmentKind::kSe3).determined());
+  EXPECT_FALSE(
+      align(trajectory("quarter_est.tum"), trajectory("quarter_ref.tum"), AlignmentKind::kSe3)
+          .determined());
+  // first poses are equal, so the first-pose alignment changes nothing
+  const auto ate = absolute_trajectory_error(estimate, truth, AlignmentKind::kFirstPose);
   EXPECT_NEAR(ate.translation_m.rmse, rmse("evo_ape tum line_ref.tum line_est.tum -r trans_part"),
               kSame);
 }
 
 TEST_F(EvoFigures, OnFlightsThatTakeNoAlignmentTranslationAndRotationAreTheSame) {
-  const auto quarter = absolute_trajectory_error(trajectory("quarter_est.tum"),
-                                                 trajectory("quarter_ref.tum"), Gauge::kFirstPose);
+  const auto quarter = absolute_trajectory_error(
+      trajectory("quarter_est.tum"), trajectory("quarter_ref.tum"), AlignmentKind::kFirstPose);
   EXPECT_NEAR(quarter.translation_m.rmse,
               rmse("evo_ape tum quarter_ref.tum quarter_est.tum -r trans_part"), kSame);
   EXPECT_NEAR(quarter.rotation_rad.rmse,
               rmse("evo_ape tum quarter_ref.tum quarter_est.tum -r angle_rad --align_origin"),
               kSame);
   const auto flip = absolute_trajectory_error(trajectory("flip_est.tum"),
-                                              trajectory("flip_ref.tum"), Gauge::kSe3);
+                                              trajectory("flip_ref.tum"), AlignmentKind::kSe3);
   EXPECT_NEAR(flip.rotation_rad.rmse, rmse("evo_ape tum flip_ref.tum flip_est.tum -r angle_rad -a"),
               kSame);
   EXPECT_LT(flip.translation_m.max, 1e-12);
@@ -172,7 +173,7 @@ TEST(TumFreiburg1, AlignedErrorIsThePublishedOne) {
   std::ifstream truth_file(test_data("tum_rgbd/freiburg1_xyz-groundtruth.txt"));
   std::ifstream estimate_file(test_data("tum_rgbd/freiburg1_xyz-rgbdslam.txt"));
   const auto ate = absolute_trajectory_error(tum_text::parse(estimate_file),
-                                             tum_text::parse(truth_file), Gauge::kSe3);
+                                             tum_text::parse(truth_file), AlignmentKind::kSe3);
   EXPECT_NEAR(ate.translation_m.rmse, 0.01347, 5e-5);
   RecordProperty("ate_rmse_m", std::to_string(ate.translation_m.rmse));
 }
@@ -218,7 +219,7 @@ TEST(TumFreiburg1, AKeyframeTrajectorySaysHowLittleItCovers) {
       dataset::read_trajectory(test_data("tum_rgbd/freiburg1_xyz-ORB_kf_mono.txt"));
   EXPECT_LT(associate(keyframes, truth).coverage, 0.1);
   // the camera's z axis points forward: a heading-only fit causes a warning
-  EXPECT_NE(align(keyframes, truth, Gauge::kPosYaw).warning, "");
+  EXPECT_NE(align(keyframes, truth, AlignmentKind::kPosYaw).warning, "");
 }
 
 TEST_F(RealTrajectories, ClocksOfDifferentEpochsAreNamed) {

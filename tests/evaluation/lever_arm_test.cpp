@@ -39,10 +39,11 @@ TEST(MovedToBody, UndoesTheArmExactly) {
   const Trajectory body = moved_to_body(sensor, kArm);
   EXPECT_GT(relative_pose_error(sensor, truth).translation_m.rmse, 0.1);
   EXPECT_LT(relative_pose_error(body, truth).translation_m.max, 1e-9);
-  EXPECT_LT(absolute_trajectory_error(body, truth, Gauge::kSe3).translation_m.max, 1e-9);
-  EXPECT_LT(absolute_trajectory_error(body, truth, Gauge::kFirstPose).rotation_rad.max, 1e-9);
+  EXPECT_LT(absolute_trajectory_error(body, truth, AlignmentKind::kSe3).translation_m.max, 1e-9);
+  EXPECT_LT(absolute_trajectory_error(body, truth, AlignmentKind::kFirstPose).rotation_rad.max,
+            1e-9);
   // no alignment corrects it
-  EXPECT_GT(absolute_trajectory_error(sensor, truth, Gauge::kSe3).translation_m.rmse, 0.1);
+  EXPECT_GT(absolute_trajectory_error(sensor, truth, AlignmentKind::kSe3).translation_m.rmse, 0.1);
 }
 
 TEST(LeverArm, OfAPerfectEstimateIsFoundToRounding) {

@@ -85,7 +85,7 @@ TEST(MapError, PointsTwentyFiveCentimetersOffAreAllOutliers) {
             0U);
 }
 
-TEST(MapError, AMapInAnotherFrameIsBroughtBackByItsGauge) {
+TEST(MapError, AMapInAnotherFrameIsBroughtBackByItsAlignment) {
   SequentialRandom random(22);
   const world::World world(meshes::box(Vector3d(3, 4, 2)));
   const Pose mesh_from_map = flights::random_pose(random, 3.0);

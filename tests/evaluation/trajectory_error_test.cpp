@@ -266,9 +266,9 @@ TEST(AbsoluteTrajectoryError, DoesNotDependOnTheEstimatesWorldFrame) {
   const Pose elsewhere = flights::random_pose(random, 9);
   const Trajectory moved =
       mapped(estimate, [&](const StampedPose& pose) { return elsewhere * pose.world_from_body; });
-  for (const Gauge gauge : {Gauge::kFirstPose, Gauge::kSe3}) {
-    const AbsoluteTrajectoryError a = absolute_trajectory_error(estimate, truth, gauge);
-    const AbsoluteTrajectoryError b = absolute_trajectory_error(moved, truth, gauge);
+  for (const AlignmentKind kind : {AlignmentKind::kFirstPose, AlignmentKind::kSe3}) {
+    const AbsoluteTrajectoryError a = absolute_trajectory_error(estimate, truth, kind);
+    const AbsoluteTrajectoryError b = absolute_trajectory_error(moved, truth, kind);
     EXPECT_NEAR(a.translation_m.rmse, b.translation_m.rmse, 1e-12);
     EXPECT_NEAR(a.rotation_rad.rmse, b.rotation_rad.rmse, 1e-12);
     EXPECT_GT(a.translation_m.rmse, 0.01);
@@ -276,11 +276,11 @@ TEST(AbsoluteTrajectoryError, DoesNotDependOnTheEstimatesWorldFrame) {
 }
 
 TEST(AbsoluteTrajectoryError, LateStampsOfASteadyFlightAreSpeedTimesDelay) {
-  // 2 s of hover define the gauge, then 3 m/s along x; the estimate is 40 ms late.
+  // 2 s of hover define the alignment, then 3 m/s along x; the estimate is 40 ms late.
   const auto start = [](double t) { return level({std::max(0.0, 3.0 * (t - 2.0)), 0, 0}); };
   const Trajectory truth = sample(start, 10ms, 12s);
   const Trajectory late = flights::shifted(truth, 40ms);
-  const auto ate = absolute_trajectory_error(late, truth, Gauge::kFirstPose);
+  const auto ate = absolute_trajectory_error(late, truth, AlignmentKind::kFirstPose);
   EXPECT_NEAR(ate.translation_m.max, 3.0 * 0.04, kRounding);
   EXPECT_NEAR(ate.translation_m.median, 3.0 * 0.04, kRounding);
   EXPECT_LT(ate.poses.front().translation_m, kRounding);
@@ -292,7 +292,7 @@ TEST(AbsoluteTrajectoryError, ARotationErrorFoldsBackBeyondHalfATurn) {
     const Pose turn = make_pose(so3::exp({0, 0, 0.1 * to_seconds(pose.stamp)}), Vector3d::Zero());
     return pose.world_from_body * turn;
   });
-  const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  const auto ate = absolute_trajectory_error(estimate, truth, AlignmentKind::kFirstPose);
   for (std::size_t i = 0; i < ate.poses.size(); ++i) {
     const double turned = 0.1 * to_seconds(ate.poses[i].stamp);
     EXPECT_NEAR(ate.poses[i].rotation_rad, std::min(turned, 2.0 * pi - turned), 1e-9);
@@ -313,8 +313,9 @@ TEST(RelativePoseError, OfATurnInPlaceIsSeenByTheSecondAlone) {
   EXPECT_NEAR(rpe.rotation_rad.rmse, 0.02, kRounding);
   EXPECT_NEAR(rpe.rotation_rad.max, 0.02, kRounding);
   EXPECT_LT(rpe.translation_m.max, kRounding);
-  EXPECT_FALSE(absolute_trajectory_error(estimate, truth, Gauge::kSe3).alignment.determined());
-  const auto ate = absolute_trajectory_error(estimate, truth, Gauge::kFirstPose);
+  EXPECT_FALSE(
+      absolute_trajectory_error(estimate, truth, AlignmentKind::kSe3).alignment.determined());
+  const auto ate = absolute_trajectory_error(estimate, truth, AlignmentKind::kFirstPose);
   EXPECT_NEAR(ate.rotation_rad.max, 0.4, kRounding);
   EXPECT_LT(ate.translation_m.max, kRounding);
 }
@@ -351,7 +352,7 @@ TEST(RelativePoseError, ADriftThatGrowsWithTheSquareOfTimeGrowsAlongTheLadder) {
 
 TEST(AbsoluteTrajectoryError, OfARefusedAlignmentIsNoNumber) {
   const Trajectory flight = sample(line, 100ms, 10s);
-  const auto ate = absolute_trajectory_error(flight, flight, Gauge::kSe3);
+  const auto ate = absolute_trajectory_error(flight, flight, AlignmentKind::kSe3);
   EXPECT_FALSE(ate.alignment.determined());
   EXPECT_EQ(ate.translation_m.count, 0U);
   EXPECT_TRUE(ate.poses.empty());

@@ -17,7 +17,7 @@ using ::testing::HasSubstr;
 results::RunRecord tried(const std::string& sensor, const std::string& algorithm,
                          double map_rmse_cm, double cpu_percent, std::uint64_t seed = 1) {
   results::RunRecord r = results::made_up::run_of("mine", sensor, algorithm, 1.0, 0.0, seed);
-  results::MapInGauge& map = r.metrics->maps.reprojected.emplace().se3;
+  results::MapScores& map = r.metrics->maps.reprojected.emplace().se3;
   map.points = 100;
   map.distance_m = results::made_up::rmse_of(0.01 * map_rmse_cm);
   map.outliers_percent = 0.5;

@@ -22,7 +22,7 @@ inline Summary rmse_of(double rmse) {
 inline RunMetrics metrics_of(double rpe_cm, double outliers_percent) {
   RunMetrics metrics;
   metrics.final.emplace().rpe.emplace().at_poses_1m.translation = rmse_of(0.01 * rpe_cm);
-  MapInGauge& map = metrics.maps.own.emplace().se3;
+  MapScores& map = metrics.maps.own.emplace().se3;
   map.points = 100;
   map.distance_m = rmse_of(0.02 * rpe_cm);
   map.rmse_inliers_m = 0.01 * rpe_cm;

@@ -58,8 +58,8 @@ ScoredRun diverged(const std::string& name, const std::string& algorithm,
   return run;
 }
 
-MapInGauge map_of(double rmse_m) {
-  MapInGauge map;
+MapScores map_of(double rmse_m) {
+  MapScores map;
   map.definition = "map_error";
   map.points = 900;
   map.distance_m = rmse_of(rmse_m, 900);
@@ -94,7 +94,7 @@ TEST(MetricsText, GivesTheDiagnosisBeforeAnyNumberAndCoverageBesideEveryError) {
   EXPECT_THAT(text, HasSubstr("warning: the estimate covers 87 % of the flight"));
   EXPECT_THAT(text, HasSubstr("290 of 300 poses matched, coverage 87.1 %, overlap 26.00 s"));
   EXPECT_THAT(text, HasSubstr("at 0.25 -0.1 ? m, rotated by 0 0 5.73 deg"));
-  EXPECT_THAT(text, HasSubstr("SE(3) gauge refused: the flight is a line"));
+  EXPECT_THAT(text, HasSubstr("SE(3) alignment refused: the flight is a line"));
   EXPECT_THAT(text, HasSubstr("refused: the common path is 45 m"));
   EXPECT_LT(text.find("coverage"), text.find("RPE per meter"));
   for (const std::string& line : lines_of(text)) {
@@ -140,7 +140,7 @@ TEST(MetricsText, HasTheMapsMeasuresInABlockOfTheirOwn) {
   const auto lines = lines_of(text.substr(map + 1, resources - map));
   ASSERT_EQ(lines.size(), 7U) << text;
   EXPECT_THAT(lines[1], AllOf(HasSubstr("RMSE "), HasSubstr("3.000 cm"), HasSubstr("900 points")));
-  EXPECT_THAT(lines[2], AllOf(HasSubstr("robust gauge"), HasSubstr("2.000 cm")));
+  EXPECT_THAT(lines[2], AllOf(HasSubstr("robust alignment"), HasSubstr("2.000 cm")));
   EXPECT_THAT(lines[3], AllOf(HasSubstr("to vertices"), HasSubstr("refused: too many vertices")));
   EXPECT_THAT(lines[4], AllOf(HasSubstr("completeness at 5 cm"), HasSubstr("87.500 %"),
                               HasSubstr("coverage 87 %, 5000 samples")));
@@ -297,7 +297,7 @@ TEST(Statistics, AreByAlgorithmWithEveryFailureNamedAndPairedWhereThereAreTwo) {
             "flight0 1: the flight is a line");
 }
 
-TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeGaugeWasRefused) {
+TEST(Statistics, OfWhatIsBetterWhenLargeCountFailuresBelowAndSayWhyTheWholeAlignmentWasRefused) {
   std::vector<ScoredRun> runs;
   for (const double percent : {70.0, 80.0, 90.0}) {
     const std::string flight = "flight" + std::to_string(runs.size());

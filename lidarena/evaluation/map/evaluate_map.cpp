@@ -11,7 +11,7 @@
 #include "lidarena/base/so3.hpp"
 #include "lidarena/evaluation/map/ghosting.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
-#include "lidarena/evaluation/map/mesh_gauge.hpp"
+#include "lidarena/evaluation/map/mesh_alignment.hpp"
 #include "lidarena/evaluation/map/signed_distance.hpp"
 #include "lidarena/evaluation/map/voxel_error.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
@@ -20,8 +20,8 @@
 namespace lidarena::evaluation {
 namespace {
 
-constexpr std::size_t kMaxPoints = 2'000'000;       // of a map, scored in the gauge of its figures
-constexpr std::size_t kMaxPointsOfOther = 250'000;  // in the other gauges
+constexpr std::size_t kMaxPoints = 2'000'000;       // in the alignment that tables show
+constexpr std::size_t kMaxPointsOfOther = 250'000;  // in the other alignments
 
 std::size_t stride_of(std::size_t points, std::size_t max_points) {
   return std::max<std::size_t>(1, (points + max_points - 1) / max_points);
@@ -49,7 +49,7 @@ std::size_t max_scored_points(std::span<const Eigen::Vector3f> map, const Pose& 
   return preview.outliers_percent > kFailed_percent ? kMaxPointsOfFailed : kMaxPoints;
 }
 
-/// The points of a map that are scored, and what is computed once from them for several gauges.
+/// The points of a map that are scored, and what is computed once from them for several alignments.
 struct Subject {
   std::vector<Eigen::Vector3f> map;  ///< the points that are scored
   std::size_t map_points;            ///< of the whole map
@@ -77,9 +77,9 @@ std::vector<PointScore> score(const Subject& subject, const Pose& mesh_from_map)
 }
 
 /// `scores`: those of the map moved by `mesh_from_map`.
-results::MapInGauge measure(const Subject& subject, std::span<const PointScore> scores,
-                            const Pose& mesh_from_map, std::vector<float>* distances = nullptr) {
-  results::MapInGauge measured;
+results::MapScores measure(const Subject& subject, std::span<const PointScore> scores,
+                           const Pose& mesh_from_map, std::vector<float>* distances = nullptr) {
+  results::MapScores measured;
   static_cast<MapError&>(measured) =
       map_error(subject.order, scores, subject.map.size(), distances);
   measured.map_points = subject.map_points;
@@ -96,29 +96,29 @@ results::MapInGauge measure(const Subject& subject, std::span<const PointScore> 
   return measured;
 }
 
-results::MapInGauge refused(const std::string& reason) {
-  results::MapInGauge map;
+results::MapScores refused(const std::string& reason) {
+  results::MapScores map;
   map.refused = reason;
   return map;
 }
 
-results::MapInGauge measure_in(const Alignment& gauge, const Subject& subject) {
-  if (!gauge.determined()) return refused(gauge.refusal);
-  const Pose& moved = gauge.truth_from_estimate;
+results::MapScores measure_in(const Alignment& alignment, const Subject& subject) {
+  if (!alignment.determined()) return refused(alignment.refusal);
+  const Pose& moved = alignment.truth_from_estimate;
   return measure(subject, score(subject, moved), moved);
 }
 
 /// As measure_in(), with the distance to vertices if the reference has them.
-results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject& subject,
-                                          ScoredPoints* scored) {
-  if (!gauge.determined()) return refused(gauge.refusal);
-  const Pose& moved = gauge.truth_from_estimate;
+results::MapScores measure_with_vertices(const Alignment& alignment, const Subject& subject,
+                                         ScoredPoints* scored) {
+  if (!alignment.determined()) return refused(alignment.refusal);
+  const Pose& moved = alignment.truth_from_estimate;
   const std::vector<PointScore> scores = score(subject, moved);
   if (scored != nullptr) {
     scored->mesh_from_map = moved;
     scored->stride = stride_of(subject.map_points, std::max<std::size_t>(1, subject.map.size()));
   }
-  results::MapInGauge measured =
+  results::MapScores measured =
       measure(subject, scores, moved, scored == nullptr ? nullptr : &scored->distances);
   if (!subject.reference.subdivided) return measured;
   // The distance to vertices only serves comparison with those who measure it: a sample will do.
@@ -135,15 +135,15 @@ results::MapInGauge measure_with_vertices(const Alignment& gauge, const Subject&
 }
 
 /// Aligns all of the map's scored points, and scores `subject`. The transform from the first-pose
-/// gauge to this one is the rigid part of the drift.
-results::MapInGauge measure_robust(const Subject& all, const Subject& subject, const Pose& start,
-                                   const Pose& first_pose) {
+/// alignment to this one is the rigid part of the drift.
+results::MapScores measure_robust(const Subject& all, const Subject& subject, const Pose& start,
+                                  const Pose& first_pose) {
   const MeshAlignment alignment =
       align_to_mesh(all.map, start, subject.reference.world, subject.parallel);
   const Pose& moved = alignment.mesh_from_map;
-  results::MapInGauge measured = alignment.determined()
-                                     ? measure(subject, score(subject, moved), moved)
-                                     : refused(alignment.refusal);
+  results::MapScores measured = alignment.determined()
+                                    ? measure(subject, score(subject, moved), moved)
+                                    : refused(alignment.refusal);
   measured.alignment = alignment.fit;
   const Pose drift = moved * first_pose.inverse();
   measured.alignment->turned_from_first_pose_rad = so3::angle(drift.linear());
@@ -186,8 +186,8 @@ results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Tra
                                  const Trajectory& truth, const MapReference& reference,
                                  const Parallel& parallel, const IdentifiedMap* identified,
                                  ScoredPoints* scored) {
-  const Alignment se3 = align(estimate, truth, Gauge::kSe3);
-  const Alignment first_pose = align(estimate, truth, Gauge::kFirstPose);
+  const Alignment se3 = align(estimate, truth, AlignmentKind::kSe3);
+  const Alignment first_pose = align(estimate, truth, AlignmentKind::kFirstPose);
   const std::size_t max_points =
       max_scored_points(map, se3.truth_from_estimate, reference.world, parallel);
   std::optional<PointGrid> grid;

@@ -54,14 +54,15 @@ struct ScoredPoints {
   std::vector<float> distances;  ///< m, NaN of points that are not finite
 };
 
-/// Scores one map (in the estimate's world frame) against the mesh in each gauge: "first_pose",
+/// Scores one map (in the estimate's world frame) against the mesh in each alignment: "first_pose",
 /// "se3", and "robust", which starts from "se3" (from "first_pose" where "se3" is refused). Maps of
 /// more than 2 million points (200,000 if more than 95 % of the points are beyond 20 cm) are evenly
-/// sampled to at most that number in the gauge whose figures tables show ("se3", else
+/// sampled to at most that number in the alignment whose figures tables show ("se3", else
 /// "first_pose"), to at most 250,000 in the others and for the distance to vertices. Completeness,
-/// which uses all points, signed distance and identity error are of that gauge alone. `identified`,
-/// if given, is the same map with its true hits, for the identity error. A gauge that is not
-/// determined has a reason. `scored`, if given, gets the distances in the gauge "se3".
+/// which uses all points, signed distance and identity error are of that alignment alone.
+/// `identified`, if given, is the same map with its true hits, for the identity error. An alignment
+/// that is not determined has a reason. `scored`, if given, gets the distances in the alignment
+/// "se3".
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,
                                  const Trajectory& truth, const MapReference& reference,
                                  const Parallel& parallel,

@@ -11,7 +11,7 @@ namespace lidarena::evaluation {
 
 using results::VoxelError;
 
-/// The grid is aligned with the map frame, so the voxels are the same in every gauge.
+/// The grid is aligned with the map frame, so the voxels are the same in every alignment.
 VoxelError voxel_error(const MortonOrder& order, std::span<const PointScore> scores);
 
 }  // namespace lidarena::evaluation

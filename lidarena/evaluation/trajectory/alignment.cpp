@@ -59,22 +59,22 @@ Pose fit_position_and_yaw(const Moments& m) {
 
 /// Why the fit is not determined; empty when it is.
 std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
-                       const Eigen::Vector3d& singular_values, Gauge gauge) {
+                       const Eigen::Vector3d& singular_values, AlignmentKind kind) {
   if (pairs.empty()) return "no estimate lies inside the truth's time span";
-  if (gauge == Gauge::kFirstPose) return {};
+  if (kind == AlignmentKind::kFirstPose) return {};
   if (pairs.size() < 3) return fmt::format("only {} common poses, 3 are needed", pairs.size());
   const double length = std::sqrt(singular_values[0]);
   if (length < kMinSpread_m) {
     return fmt::format("the positions spread only {:.2g} m: rotation undetermined", length);
   }
   const double width = std::sqrt(singular_values[1]);
-  if (gauge == Gauge::kSe3 && width < kMinWidthOfLength * length) {
+  if (kind == AlignmentKind::kSe3 && width < kMinWidthOfLength * length) {
     return fmt::format("the flight is a line ({:.2g} m wide, {:.2g} m long): roll undetermined",
                        width, length);
   }
   const Eigen::Matrix2d horizontal = m.cross.topLeftCorner<2, 2>();
   const double turned = std::hypot(horizontal(1, 0) - horizontal(0, 1), horizontal.trace());
-  if (gauge == Gauge::kPosYaw && std::sqrt(turned) < kMinSpread_m) {
+  if (kind == AlignmentKind::kPosYaw && std::sqrt(turned) < kMinSpread_m) {
     return "the positions do not spread horizontally: heading undetermined";
   }
   return {};
@@ -82,13 +82,13 @@ std::string refusal_of(std::span<const PosePair> pairs, const Moments& m,
 
 }  // namespace
 
-const char* to_string(Gauge gauge) {
-  switch (gauge) {
-    case Gauge::kFirstPose:
+const char* to_string(AlignmentKind kind) {
+  switch (kind) {
+    case AlignmentKind::kFirstPose:
       return "first_pose";
-    case Gauge::kSe3:
+    case AlignmentKind::kSe3:
       return "se3";
-    case Gauge::kPosYaw:
+    case AlignmentKind::kPosYaw:
       return "posyaw";
   }
   return "unknown";
@@ -110,21 +110,22 @@ Similarity umeyama(std::span<const PosePair> pairs, bool with_scale) {
   return fit;
 }
 
-Alignment align(std::span<const PosePair> pairs, Gauge gauge) {
+Alignment align(std::span<const PosePair> pairs, AlignmentKind kind) {
   Alignment alignment;
-  alignment.gauge = gauge;
+  alignment.kind = kind;
   const Moments m = moments_of(pairs);
   const Similarity fit = umeyama(pairs, true);
-  alignment.refusal = refusal_of(pairs, m, fit.singular_values, gauge);
+  alignment.refusal = refusal_of(pairs, m, fit.singular_values, kind);
   if (!alignment.determined()) return alignment;
-  const bool se3_determined = refusal_of(pairs, m, fit.singular_values, Gauge::kSe3).empty();
+  const bool se3_determined =
+      refusal_of(pairs, m, fit.singular_values, AlignmentKind::kSe3).empty();
   if (se3_determined) {
     alignment.scale_hint = fit.scale;
     alignment.tilt_rad = tilt_of(fit.rotation);
   }
-  if (gauge == Gauge::kFirstPose) {
+  if (kind == AlignmentKind::kFirstPose) {
     alignment.truth_from_estimate = pairs[0].truth * pairs[0].estimate.inverse();
-  } else if (gauge == Gauge::kSe3) {
+  } else if (kind == AlignmentKind::kSe3) {
     alignment.truth_from_estimate =
         make_pose(fit.rotation, m.truth_mean - fit.rotation * m.estimate_mean);
   } else {
@@ -138,8 +139,8 @@ Alignment align(std::span<const PosePair> pairs, Gauge gauge) {
   return alignment;
 }
 
-Alignment align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge) {
-  return align(matched_poses(estimate, truth), gauge);
+Alignment align(const Trajectory& estimate, const Trajectory& truth, AlignmentKind kind) {
+  return align(matched_poses(estimate, truth), kind);
 }
 
 }  // namespace lidarena::evaluation

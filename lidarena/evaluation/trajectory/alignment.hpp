@@ -11,13 +11,13 @@
 namespace lidarena::evaluation {
 
 /// How the estimate's world frame is aligned with the truth's.
-enum class Gauge {
+enum class AlignmentKind {
   kFirstPose,  ///< the first common pose; nothing is fitted
   kSe3,        ///< least squares over all positions, 6 unknowns (Umeyama, no scale)
   kPosYaw,     ///< position and heading only, 4 unknowns; needs an estimate with z straight up
 };
 /// "first_pose", "se3", "posyaw".
-const char* to_string(Gauge gauge);
+const char* to_string(AlignmentKind kind);
 
 /// Least-squares similarity q ~ scale * rotation * p + translation from estimate p to truth q.
 struct Similarity {
@@ -34,7 +34,7 @@ Similarity umeyama(std::span<const PosePair> pairs, bool with_scale);
 
 /// The transform truth_from_estimate, or the reason why it is not determined.
 struct Alignment {
-  Gauge gauge = Gauge::kSe3;
+  AlignmentKind kind = AlignmentKind::kSe3;
   Pose truth_from_estimate = Pose::Identity();
   std::string refusal;      ///< empty when the transform is determined
   std::string warning;      ///< e.g. heading-only fit of an estimate whose z axis is tilted
@@ -46,7 +46,7 @@ struct Alignment {
 /// Refuses a fit with fewer than 3 poses, with positions that spread less than 1 cm (kPosYaw:
 /// horizontally), and (kSe3) with positions on a line, because the roll about that line is
 /// arbitrary. kFirstPose is refused only without a common pose.
-Alignment align(std::span<const PosePair> pairs, Gauge gauge);
-Alignment align(const Trajectory& estimate, const Trajectory& truth, Gauge gauge);
+Alignment align(std::span<const PosePair> pairs, AlignmentKind kind);
+Alignment align(const Trajectory& estimate, const Trajectory& truth, AlignmentKind kind);
 
 }  // namespace lidarena::evaluation

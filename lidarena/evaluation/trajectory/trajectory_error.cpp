@@ -169,10 +169,10 @@ RelativePoseError relative_pose_error_over_time(const Trajectory& estimate, cons
 }
 
 AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
-                                                  const Trajectory& truth, Gauge gauge) {
+                                                  const Trajectory& truth, AlignmentKind kind) {
   const std::vector<PosePair> pairs = matched_poses(estimate, truth);
   AbsoluteTrajectoryError ate;
-  ate.alignment = align(pairs, gauge);
+  ate.alignment = align(pairs, kind);
   if (!ate.alignment.determined()) return ate;
   std::vector<double> translations;
   std::vector<double> rotations;

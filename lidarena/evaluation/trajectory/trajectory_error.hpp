@@ -83,6 +83,6 @@ struct AbsoluteTrajectoryError {
 
 /// Absolute error at each estimate's instant, truth interpolated there (definition `ate`).
 AbsoluteTrajectoryError absolute_trajectory_error(const Trajectory& estimate,
-                                                  const Trajectory& truth, Gauge gauge);
+                                                  const Trajectory& truth, AlignmentKind kind);
 
 }  // namespace lidarena::evaluation

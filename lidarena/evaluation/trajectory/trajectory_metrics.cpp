@@ -74,7 +74,7 @@ std::string definition_id(const RelativePoseError& rpe) {
 }
 
 std::string definition_id(const AbsoluteTrajectoryError& ate) {
-  return fmt::format("ate_{}[est-stamps,ref-interp,gap1.5]", to_string(ate.alignment.gauge));
+  return fmt::format("ate_{}[est-stamps,ref-interp,gap1.5]", to_string(ate.alignment.kind));
 }
 
 results::AssociationMetrics metrics_of(const Association& association,

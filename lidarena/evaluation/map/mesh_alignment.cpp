@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/map/mesh_gauge.hpp"
+#include "lidarena/evaluation/map/mesh_alignment.hpp"
 
 #include <fmt/format.h>
 

@@ -13,7 +13,7 @@
 
 namespace lidarena::evaluation {
 
-/// The gauge "robust": alignment of the map with the mesh itself, and how well it is determined.
+/// The alignment "robust": the map is fitted to the mesh itself; and how well that is determined.
 struct MeshAlignment {
   static constexpr int kStarts = results::MeshFit::kStarts;
   static constexpr double kAgree_m = 0.02;    ///< results agree below this RMS motion of the map

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-#include "lidarena/evaluation/map/mesh_gauge.hpp"
+#include "lidarena/evaluation/map/mesh_alignment.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ double rmse(const std::vector<Vector3f>& map, const Pose& mesh_from_map,
   return map_error(map, mesh_from_map, world, kTwoThreads).distance_m.rmse;
 }
 
-TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
+TEST(MeshAlignment, AMapMovedByAKnownTransformIsBroughtBack) {
   const world::World world(room());
   const double sigma = 0.02;
   const std::vector<Vector3d> points = points_on(world.mesh(), 20000, sigma);
@@ -90,7 +90,7 @@ TEST(MeshGauge, AMapMovedByAKnownTransformIsBroughtBack) {
   }
 }
 
-TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
+TEST(MeshAlignment, AMapBentByTwentyCentimetersKeepsItsError) {
   // A hall of 40 m whose map is bent by 20 cm to either side: no rigid motion can undo that.
   const world::World world(meshes::box(Vector3d(20, 2, 1.5)));
   std::vector<Vector3d> points = points_on(world.mesh(), 30000, 0.01);
@@ -107,7 +107,7 @@ TEST(MeshGauge, AMapBentByTwentyCentimetersKeepsItsError) {
   std::cout << "bent map: RMSE " << 100 * before << " cm before, " << 100 * after << " cm after\n";
 }
 
-TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
+TEST(MeshAlignment, AnEndlessCorridorLeavesItsDirectionAsItWas) {
   const world::World world(meshes::box(Vector3d(50, 1.2, 1.4)));
   std::vector<Vector3d> points;
   for (const Vector3d& p : points_on(world.mesh(), 30000, 0.01)) {
@@ -126,7 +126,7 @@ TEST(MeshGauge, AnEndlessCorridorLeavesItsDirectionAsItWas) {
   EXPECT_LT(so3::angle(left.linear()), 0.001);
 }
 
-TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
+TEST(MeshAlignment, OneFloorHoldsHeightRollAndPitchAlone) {
   const world::World world(meshes::plane(40.0));
   std::vector<Vector3d> points;
   for (const Vector3d& p : points_on(world.mesh(), 20000, 0.01)) {
@@ -145,7 +145,7 @@ TEST(MeshGauge, OneFloorHoldsHeightRollAndPitchAlone) {
   EXPECT_LT(std::abs((left * Vector3d::Zero()).z()), 0.001);
 }
 
-TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
+TEST(MeshAlignment, AMapOfAnotherPlaceIsRefused) {
   const world::World world(meshes::box(Vector3d(4, 3, 1.5)));
   const std::vector<Vector3d> elsewhere = points_on(meshes::box(Vector3d(15, 11, 6)), 20000, 0.01);
   const MeshAlignment a =
@@ -154,7 +154,7 @@ TEST(MeshGauge, AMapOfAnotherPlaceIsRefused) {
   EXPECT_THAT(a.refusal, HasSubstr("% of the map's points lie within 20 cm"));
 }
 
-TEST(MeshGauge, AHandfulOfPointsAndAnEmptyMapAreRefused) {
+TEST(MeshAlignment, AHandfulOfPointsAndAnEmptyMapAreRefused) {
   const world::World world(room());
   EXPECT_THAT(align_to_mesh({}, Pose::Identity(), world, kTwoThreads).refusal,
               HasSubstr("only 0 voxels"));
@@ -162,7 +162,7 @@ TEST(MeshGauge, AHandfulOfPointsAndAnEmptyMapAreRefused) {
   EXPECT_FALSE(align_to_mesh(few, Pose::Identity(), world, kTwoThreads).determined());
 }
 
-TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
+TEST(MeshAlignment, AFifthOfGhostsDoesNotPullTheMap) {
   const world::World world(room());
   std::vector<Vector3d> points = points_on(world.mesh(), 20000, 0.01);
   for (std::size_t i = 0; i < points.size(); i += 5) points[i] += Vector3d(0.3, 0.3, 0.2);
@@ -173,7 +173,7 @@ TEST(MeshGauge, AFifthOfGhostsDoesNotPullTheMap) {
   EXPECT_LT(left.norm(), 0.005);
 }
 
-TEST(MeshGauge, IsTheSameBitsOnAnyNumberOfThreads) {
+TEST(MeshAlignment, IsTheSameBitsOnAnyNumberOfThreads) {
   const world::World world(room());
   const std::vector<Vector3f> map =
       as_map(points_on(world.mesh(), 10000, 0.02), flights::level({0.1, 0.05, -0.1}));
