@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The TypeScript types of the data of the report's page, from its JSON schema: `lidarena schema report |
-// node page_types.mjs` prints src/report/page.d.ts; with --check it exits 1 if that file differs.
+// The TypeScript types of the data of a page, from its JSON schema: `lidarena schema report | node page_types.mjs report`
+// prints src/report/page.d.ts, `check` in place of `report` prints src/report/check_data.d.ts; with --check it exits 1 if that
+// file differs.
 import { readFileSync } from "node:fs";
 import { format, resolveConfig } from "prettier";
 
-const FILE = new URL("src/report/page.d.ts", import.meta.url).pathname;
+const PAGES = {
+  report: { root: "ReportData", file: "page.d.ts", from: "lidarena/report/page_data.hpp" },
+  check: { root: "CheckPage", file: "check_data.d.ts", from: "lidarena/stages/check_recording.hpp" },
+};
+const kind = process.argv[2];
+if (!PAGES[kind]) throw new Error(`usage: page_types.mjs ${Object.keys(PAGES).join("|")} [--check]`);
+const PAGE = PAGES[kind];
+const FILE = new URL(`src/report/${PAGE.file}`, import.meta.url).pathname;
 
 const interfaces = new Map();
 
@@ -40,15 +48,15 @@ function typeOf(schema) {
 
 let input = "";
 for await (const part of process.stdin) input += part;
-interfaceOf(JSON.parse(input), "ReportData");
+interfaceOf(JSON.parse(input), PAGE.root);
 const text = await format(
   `// SPDX-License-Identifier: BSD-3-Clause
-// Made by viewer/page_types.mjs from the field lists of lidarena/report/page_data.hpp.\n\n${[...interfaces.values()].join("\n")}`,
+// Made by viewer/page_types.mjs from the field lists of ${PAGE.from}.\n\n${[...interfaces.values()].join("\n")}`,
   { ...(await resolveConfig(FILE)), filepath: FILE },
 );
-if (process.argv[2] !== "--check") {
+if (process.argv[3] !== "--check") {
   process.stdout.write(text);
 } else if (text !== readFileSync(FILE, "utf8")) {
-  console.error(`${FILE} differs: lidarena schema report | node viewer/page_types.mjs > viewer/src/report/page.d.ts`);
+  console.error(`${FILE} differs: lidarena schema ${kind} | node viewer/page_types.mjs ${kind} > viewer/src/report/${PAGE.file}`);
   process.exit(1);
 }

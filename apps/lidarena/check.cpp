@@ -5,6 +5,7 @@
 
 #include "apps/lidarena/console.hpp"
 #include "apps/lidarena/verbs.hpp"
+#include "lidarena/base/config_json.hpp"
 #include "lidarena/report/web_page.hpp"
 #include "lidarena/stages/check_recording.hpp"
 
@@ -22,7 +23,7 @@ struct CheckOptions {
 
 void print_findings(const std::vector<Finding>& found) {
   for (const Finding& finding : found) {
-    fmt::print("{}: {}\n", evaluation::to_string(finding.severity), finding.text);
+    fmt::print("{}: {}\n", value_to_json(finding.severity).get<std::string>(), finding.text);
     if (finding.to_s > 0.0)
       fmt::print("    when: {:.2f} to {:.2f} s\n", finding.from_s, finding.to_s);
     if (!finding.remedy.empty()) fmt::print("    remedy: {}\n", finding.remedy);
@@ -34,19 +35,19 @@ int check_verb(const Common& common, const CheckOptions& o) {
   stages::CheckRequest request = o.request;
   request.recording = o.recording;
   Console console(common.quiet);
-  const stages::CheckReport report =
+  const stages::CheckPage report =
       stages::check_recording(request, Parallel(common.threads), console);
   const std::vector<Finding>& found = report.findings;
   const auto faults = std::ranges::count(found, Severity::kFault, &Finding::severity);
   const auto warnings = std::ranges::count(found, Severity::kWarning, &Finding::severity);
   if (common.json) {
-    print_json(to_json(report, false));
+    print_json(to_json(static_cast<const stages::CheckReport&>(report)));
   } else {
     print_findings(found);
     fmt::print("{} faults, {} warnings\n", faults, warnings);
   }
   if (!o.out.empty()) {
-    report::write_page(o.out, {"Check of " + report.recording, "check", to_json(report, true), {}});
+    report::write_page(o.out, {"Check of " + report.recording, "check", to_json(report), {}});
     console.info("page: " + o.out);
   }
   return faults > 0 ? kWorkFailed : kDone;

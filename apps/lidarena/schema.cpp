@@ -14,6 +14,7 @@
 #include "lidarena/results/run_metrics.hpp"
 #include "lidarena/scenes/world_config.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/stages/check_recording.hpp"
 #include "lidarena/study/study_spec.hpp"
 
 namespace lidarena {
@@ -36,7 +37,9 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"metrics",
        [] { return schema_document<results::RunMetrics>("metrics.json of a run of Lidarena"); }},
       {"report",
-       [] { return schema_document<report::ReportData>("report.json of a report of Lidarena"); }}};
+       [] { return schema_document<report::ReportData>("report.json of a report of Lidarena"); }},
+      {"check",
+       [] { return schema_document<stages::CheckPage>("The data of a page of lidarena check"); }}};
   for (const odometry::AlgorithmInfo& info : odometry::list_algorithms()) {
     all[info.name] = [name = info.name] { return odometry::algorithm_schema(name); };
   }
@@ -70,7 +73,7 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
   auto out = std::make_shared<std::string>();
   verb->add_option("kind", *kind,
                    "world, flight, sensor, beams, study, external, recording, run, dataset, "
-                   "metrics, report, or an algorithm");
+                   "metrics, report, check, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(
       *verb, common,

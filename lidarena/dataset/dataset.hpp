@@ -29,12 +29,22 @@ struct ReadOptions {
 
 /// A topic of a recording, for the user.
 struct TopicSummary {
-  std::string topic;
-  std::string type;
-  std::string frame_id;  ///< of scans and IMU samples in recordings of others, else empty
+  static constexpr const char* kTitle = "TopicSummary";
+  std::string topic, type, frame_id;
   std::uint64_t messages = 0;
-  double rate_hz = 0.0;  ///< 0: unknown
-  bool is_read = false;  ///< its messages become events
+  double rate_hz = 0.0;
+  bool is_read = false;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("topic", self.topic, "", "");
+    v("type", self.type, "", "");
+    v("frame_id", self.frame_id, "",
+      "of scans and IMU samples in recordings of others, else empty");
+    v("messages", self.messages, "", "");
+    v("rate_hz", self.rate_hz, "Hz", "0: unknown");
+    v("is_read", self.is_read, "", "whether its messages become events");
+  }
 };
 
 /// An opened dataset: all that an estimator may use. Ground truth is separate, see load_truth().

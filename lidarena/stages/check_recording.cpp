@@ -152,21 +152,9 @@ void fill_curves(const evaluation::RecordingCheck& check, const Trajectory& traj
   }
 }
 
-Json finding_json(const Finding& finding) {
-  return {{"severity", evaluation::to_string(finding.severity)},
-          {"key", finding.key},
-          {"text", finding.text},
-          {"value", finding.value},
-          {"unit", finding.unit},
-          {"from_s", finding.from_s},
-          {"to_s", finding.to_s},
-          {"remedy", finding.remedy},
-          {"settings", finding.settings}};
-}
-
 }  // namespace
 
-CheckReport check_recording(const CheckRequest& request, const Parallel& parallel, LogSink& log) {
+CheckPage check_recording(const CheckRequest& request, const Parallel& parallel, LogSink& log) {
   dataset::Dataset dataset = open_any_dataset(request.recording, request.read, parallel);
   dataset::read_whole_part(dataset);
   const LidarInfo* lidar = dataset.rig.find_lidar("");
@@ -174,17 +162,13 @@ CheckReport check_recording(const CheckRequest& request, const Parallel& paralle
     throw InputError(request.recording.string(), "has several LiDARs, or none",
                      "choose one with --sensor");
   const ImuInfo* imu = dataset.rig.imu_beside(*lidar);
+  CheckPage report;
+  report.recording = request.recording.string();
+  report.lidar = lidar->id;
+  if (imu != nullptr) report.imu = imu->id;
+  report.topics = dataset.topics;
   evaluation::RecordingCheck check;
-  Watched events(*dataset.events, lidar->id, imu == nullptr ? "" : imu->id, check);
-  CheckReport report{request.recording.string(),
-                     lidar->id,
-                     imu == nullptr ? "" : imu->id,
-                     0.0,
-                     {},
-                     {},
-                     {},
-                     {},
-                     dataset.topics};
+  Watched events(*dataset.events, report.lidar, report.imu, check);
   std::vector<Finding>& found = report.findings;
   Trajectory trajectory;
   if (request.motion) {
@@ -201,26 +185,6 @@ CheckReport check_recording(const CheckRequest& request, const Parallel& paralle
   report.accel_spectrum = evaluation::spectrum_of(check.samples(), &ImuSample::accel);
   report.gyro_spectrum = evaluation::spectrum_of(check.samples(), &ImuSample::gyro);
   return report;
-}
-
-Json to_json(const CheckReport& report, bool with_curves) {
-  Json list = Json::array(), topics = Json::array();
-  for (const Finding& finding : report.findings) list.push_back(finding_json(finding));
-  for (const dataset::TopicSummary& topic : report.topics) {
-    topics.push_back({{"topic", topic.topic},
-                      {"type", topic.type},
-                      {"frame_id", topic.frame_id},
-                      {"messages", topic.messages},
-                      {"rate_hz", topic.rate_hz},
-                      {"is_read", topic.is_read}});
-  }
-  Json json{{"recording", report.recording}, {"lidar", report.lidar}, {"imu", report.imu},
-            {"seconds", report.seconds},     {"findings", list},      {"topics", topics}};
-  if (!with_curves) return json;
-  json["curves"] = lidarena::to_json(report.curves);
-  json["accel_spectrum"] = value_to_json(report.accel_spectrum);
-  json["gyro_spectrum"] = value_to_json(report.gyro_spectrum);
-  return json;
 }
 
 }  // namespace lidarena::stages

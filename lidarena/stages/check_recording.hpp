@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "lidarena/base/config_json.hpp"
 #include "lidarena/base/log.hpp"
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/dataset.hpp"
@@ -23,6 +22,7 @@ struct CheckRequest {
 
 /// Columns of equal length; of each short stretch of time the sample of largest size.
 struct CheckCurves {
+  static constexpr const char* kTitle = "CheckCurves";
   std::vector<double> imu_t_s, gyro_rad_s, accel_m_s2;
   std::vector<double> sweep_t_s, sweep_points, sweep_gap_s;
   std::vector<double> pose_t_s, lidar_rate_rad_s;
@@ -44,17 +44,36 @@ struct CheckCurves {
 struct CheckReport {
   std::string recording, lidar, imu;
   double seconds = 0.0;
-  std::vector<evaluation::Finding> findings;  ///< the most severe first
+  std::vector<evaluation::Finding> findings;
+  std::vector<dataset::TopicSummary> topics;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("recording", self.recording, "", "");
+    v("lidar", self.lidar, "", "");
+    v("imu", self.imu, "", "empty: none");
+    v("seconds", self.seconds, "s", "from the first measurement to the last");
+    v("findings", self.findings, "", "the most severe first");
+    v("topics", self.topics, "", "of the recording");
+  }
+};
+
+/// The data of the page: findings, and the measurements behind them.
+struct CheckPage : CheckReport {
   CheckCurves curves;
   evaluation::Spectrum accel_spectrum, gyro_spectrum;
-  std::vector<dataset::TopicSummary> topics;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    CheckReport::visit(self, v);
+    v("curves", self.curves, "", "");
+    v("accel_spectrum", self.accel_spectrum, "", "of the specific force");
+    v("gyro_spectrum", self.gyro_spectrum, "", "of the angular rate");
+  }
 };
 
 /// Reads the recording once, with an odometry that needs no IMU, and lists what would spoil a SLAM.
 /// Throws InputError if it cannot be read, or has several LiDARs and none is chosen.
-CheckReport check_recording(const CheckRequest& request, const Parallel& parallel, LogSink& log);
-
-/// The report as one JSON document, with or without what only the page draws.
-Json to_json(const CheckReport& report, bool with_curves);
+CheckPage check_recording(const CheckRequest& request, const Parallel& parallel, LogSink& log);
 
 }  // namespace lidarena::stages

@@ -43,18 +43,6 @@ Spread spread_of(std::span<const ImuSample> samples, Member member) {
 
 }  // namespace
 
-const char* to_string(Severity severity) {
-  switch (severity) {
-    case Severity::kNote:
-      return "note";
-    case Severity::kWarning:
-      return "warning";
-    case Severity::kFault:
-      return "fault";
-  }
-  return "";
-}
-
 void RecordingCheck::add(const Scan& scan) {
   scans_.push_back(scan.stamp);
   points_.push_back(scan.points.size());

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "lidarena/base/imu_sample.hpp"
@@ -19,18 +22,33 @@ enum class Severity {
   kWarning,  ///< costs accuracy
   kFault,    ///< spoils a run
 };
-const char* to_string(Severity severity);
+constexpr auto enum_names(Severity) {
+  return std::to_array<std::pair<std::string_view, Severity>>(
+      {{"note", Severity::kNote}, {"warning", Severity::kWarning}, {"fault", Severity::kFault}});
+}
 
 struct Finding {
+  static constexpr const char* kTitle = "Finding";
   Severity severity = Severity::kNote;
-  std::string key;   ///< kind of the finding, e.g. "imu_saturated"
-  std::string text;  ///< what was found, with its figures
+  std::string key, text;
   double value = 0.0;
   std::string unit;
-  double from_s = 0.0;  ///< stretch of time, since the first measurement; both 0: all of it
-  double to_s = 0.0;
+  double from_s = 0.0, to_s = 0.0;
   std::string remedy;
-  std::map<std::string, std::string> settings{};  ///< the remedy as keys of programs
+  std::map<std::string, std::string> settings{};
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("severity", self.severity, "", "");
+    v("key", self.key, "", "kind of the finding, such as imu_saturated");
+    v("text", self.text, "", "what was found, with its figures");
+    v("value", self.value, "", "the figure");
+    v("unit", self.unit, "", "of the figure");
+    v("from_s", self.from_s, "s", "since the first measurement");
+    v("to_s", self.to_s, "s", "0, as from_s: all of the recording");
+    v("remedy", self.remedy, "", "");
+    v("settings", self.settings, "", "the remedy as keys of programs");
+  }
 };
 
 /// Looks at the measurements one by one and keeps what the findings need.

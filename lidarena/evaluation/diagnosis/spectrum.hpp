@@ -11,6 +11,7 @@ namespace lidarena::evaluation {
 /// Power spectral density of a vector quantity, the sum over its axes, one-sided: its integral over
 /// frequency is the variance.
 struct Spectrum {
+  static constexpr const char* kTitle = "Spectrum";
   std::vector<double> frequency_hz;  ///< ascending, without 0
   std::vector<double> density;       ///< in the square of the quantity's unit per Hz
   bool empty() const { return frequency_hz.empty(); }

@@ -1,41 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// The page of `lidarena check`: findings, and what they rest on. Its data: lidarena/stages/check_recording.cpp.
+// The page of `lidarena check`: findings, and the measurements behind them.
 import { element, jsonOf } from "../view/elements";
 import { ChartBox } from "./chart_box";
+import type { CheckPage, Finding, Spectrum } from "./check_data";
 import { count as counted, shown } from "./data";
 import { base, legendOf, line, timeAxis, valueAxis, type Figure } from "./figure_parts";
 import "../view/view.css";
 import "./report.css";
-
-interface Finding {
-  severity: "note" | "warning" | "fault";
-  key: string;
-  text: string;
-  from_s: number;
-  to_s: number;
-  remedy: string;
-  settings: Record<string, string>;
-}
-
-interface Spectrum {
-  frequency_hz: number[];
-  density: number[];
-}
-
-interface CheckData {
-  recording: string;
-  lidar: string;
-  imu: string;
-  seconds: number;
-  findings: Finding[];
-  topics: { topic: string; type: string; frame_id: string; messages: number; rate_hz: number; is_read: boolean }[];
-  curves: Record<
-    "imu_t_s" | "gyro_rad_s" | "accel_m_s2" | "sweep_t_s" | "sweep_points" | "sweep_gap_s" | "pose_t_s" | "lidar_rate_rad_s",
-    number[]
-  >;
-  accel_spectrum: Spectrum | null;
-  gyro_spectrum: Spectrum | null;
-}
 
 const COLORS = { note: "#64748b", warning: "#b7791f", fault: "#c53030" };
 const [BLUE, RED, GREEN] = ["#2b6cb0", "#d1453b", "#2f855a"];
@@ -92,7 +63,7 @@ function spectrum(id: string, title: string, unit: string, of: Spectrum | null):
   };
 }
 
-function figuresOf({ curves: c, findings, accel_spectrum, gyro_spectrum }: CheckData): Figure[] {
+function figuresOf({ curves: c, findings, accel_spectrum, gyro_spectrum }: CheckPage): Figure[] {
   const shadedNote = "Shaded: the stretches of the findings.";
   return [
     overTime("rates", "Angular rate", "rad/s", `Size, as the gyroscope and as the registered sweeps show it. ${shadedNote}`, findings, [
@@ -132,7 +103,7 @@ function table(head: string[], rows: HTMLElement[]): HTMLElement {
 }
 
 function draw() {
-  const data = jsonOf<CheckData>("data");
+  const data = jsonOf<CheckPage>("data");
   const count = (of: Finding["severity"]) => data.findings.filter(({ severity }) => severity === of).length;
   const topics = data.topics.map((t) =>
     element(
