@@ -251,7 +251,8 @@ std::vector<Table> figure_tables(const StudyResults& results, const std::string&
     for (const std::string& world : cells.worlds()) {
       Table table = accuracy_table(results, cells, world, kind, claims);
       table.id = fmt::format("{}-{}-{}", kind.id, world, variant);
-      table.title = fmt::format("{}: {}, {}", kind.title, world, variant);
+      table.title =
+          fmt::format("{}: {}", kind.title, variant.empty() ? world : world + ", " + variant);
       table.note = note_of(results, world, kind, claims);
       tables.push_back(std::move(table));
     }

@@ -146,9 +146,9 @@ void fill_curves(const evaluation::RecordingCheck& check, const Trajectory& traj
   for (std::size_t i = 1; i < poses.size(); ++i) {
     const Eigen::Matrix3d turned =
         poses[i - 1].world_from_body.linear().transpose() * poses[i].world_from_body.linear();
-    curves.pose_t_s.push_back(check.since_start(poses[i].stamp));
-    curves.lidar_rate_rad_s.push_back(so3::angle(turned) /
-                                      to_seconds(poses[i].stamp - poses[i - 1].stamp));
+    const Time between = poses[i].stamp - poses[i - 1].stamp;
+    curves.pose_t_s.push_back(check.since_start(poses[i - 1].stamp + between / 2));
+    curves.lidar_rate_rad_s.push_back(so3::angle(turned) / to_seconds(between));
   }
 }
 

@@ -35,7 +35,7 @@ struct CheckCurves {
     v("sweep_t_s", self.sweep_t_s, "s", "stamps of the sweeps");
     v("sweep_points", self.sweep_points, "", "points of each sweep");
     v("sweep_gap_s", self.sweep_gap_s, "s", "time since the sweep before");
-    v("pose_t_s", self.pose_t_s, "s", "");
+    v("pose_t_s", self.pose_t_s, "s", "midway between two poses");
     v("lidar_rate_rad_s", self.lidar_rate_rad_s, "rad/s", "angular rate as the sweeps show it");
   }
 };

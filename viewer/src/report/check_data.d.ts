@@ -63,7 +63,7 @@ export interface CheckCurves {
   sweep_points: number[];
   /** time since the sweep before [s] */
   sweep_gap_s: number[];
-  /** [s] */
+  /** midway between two poses [s] */
   pose_t_s: number[];
   /** angular rate as the sweeps show it [rad/s] */
   lidar_rate_rad_s: number[];

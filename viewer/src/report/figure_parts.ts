@@ -56,7 +56,7 @@ export const valueAxis = (gridIndex: number, name: string, more: Options = {}) =
 });
 
 export const timeAxis = (gridIndex: number, more: Options = {}) => {
-  const axisLabel = { ...small(), formatter: (v: number) => v.toFixed(0), showMaxLabel: true, hideOverlap: true };
+  const axisLabel = { ...small(), formatter: (v: number) => String(Math.round(10 * v) / 10), showMaxLabel: true, hideOverlap: true };
   return valueAxis(gridIndex, "s", { nameGap: 18, min: "dataMin", max: "dataMax", splitLine: { show: false }, axisLabel, ...more });
 };
 
