@@ -8,6 +8,7 @@
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/base/pose.hpp"
+#include "lidarena/flight/imu_spline_fit.hpp"
 #include "lidarena/flight/quadrotor_config.hpp"
 
 namespace lidarena::flight {
@@ -18,6 +19,13 @@ constexpr auto enum_names(FlightKind) {
   return std::array{std::pair{"waypoints", FlightKind::kWaypoints},
                     std::pair{"route", FlightKind::kRoute},
                     std::pair{"replay", FlightKind::kReplay}, std::pair{"auto", FlightKind::kAuto}};
+}
+
+/// The IMU's samples on a replay.
+enum class ImuSource { kSimulated, kRecorded };
+constexpr auto enum_names(ImuSource) {
+  return std::array{std::pair{"simulated", ImuSource::kSimulated},
+                    std::pair{"recorded", ImuSource::kRecorded}};
 }
 
 /// Preset of the flight's limits.
@@ -124,7 +132,11 @@ struct FlightConfig {
   int route = 0;
   std::string replay;
   double replay_step_s = 0.0;
+  std::string replay_imu;
+  ImuFitConfig imu_fit;
+  ImuSource imu = ImuSource::kSimulated;
   Pose world_from_recording = Pose::Identity();
+  bool find_place = false;
   Pose recorded_from_body = Pose::Identity();
   TourConfig tour;
   FlightStyle style = FlightStyle::kBrisk;
@@ -148,8 +160,18 @@ struct FlightConfig {
       "minimum time between the poses used; a larger value reduces the effect of a recording's "
       "noise on the rates",
       at_least(0));
+    v("replay_imu", self.replay_imu, "",
+      "samples of the IMU whose poses replay has, relative to this file: t gyro x y z accel x y z "
+      "(s or ns, rad/s, m/s^2); the motion is a spline fitted to both");
+    v("imu_fit", self.imu_fit, "", "settings of that fit");
+    v("imu", self.imu, "",
+      "recorded: methods get the samples of replay_imu as they are; simulated: those of the "
+      "sensor's IMU on the same motion");
     v("world_from_recording", self.world_from_recording, "",
       "pose of the recording's frame in the world");
+    v("find_place", self.find_place, "",
+      "true: the recording is moved, and turned about z, to where it has most room along the "
+      "world's routes, in place of world_from_recording");
     v("recorded_from_body", self.recorded_from_body, "",
       "pose of the body (x forward, z up) in the frame whose poses were recorded");
     v("tour", self.tour, "", "settings of the tour planner (kind auto)");

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <memory>
-#include <utility>
+#include <optional>
 
 #include "lidarena/flight/flight.hpp"
 
@@ -14,15 +14,17 @@ namespace lidarena::flight {
 class LateStart final : public Flight {
  public:
   /// `begin` must lie within the flight, before its end.
-  LateStart(std::unique_ptr<Flight> whole, Time begin) : whole_(std::move(whole)), begin_(begin) {}
+  LateStart(std::unique_ptr<Flight> whole, Time begin);
 
   Motion at(Time t) const override;
   Pose pose_at(Time t) const override { return whole_->pose_at(std::max(t, Time{0}) + begin_); }
   Time duration() const override { return whole_->duration() - begin_; }
+  const RecordedImu* recorded_imu() const override { return imu_ ? &*imu_ : nullptr; }
 
  private:
   std::unique_ptr<Flight> whole_;
   Time begin_;
+  std::optional<RecordedImu> imu_;
 };
 
 }  // namespace lidarena::flight

@@ -6,8 +6,10 @@
 #include "lidarena/base/config.hpp"
 #include "lidarena/flight/clearance.hpp"
 #include "lidarena/flight/figures.hpp"
+#include "lidarena/flight/find_place.hpp"
 #include "lidarena/flight/fly_quadrotor.hpp"
 #include "lidarena/flight/late_start.hpp"
+#include "lidarena/flight/recorded_imu_flight.hpp"
 #include "lidarena/flight/recording.hpp"
 #include "lidarena/flight/replay_flight.hpp"
 #include "lidarena/flight/spline_flight.hpp"
@@ -31,20 +33,49 @@ const std::vector<Eigen::Vector3d>& route_of(const world::WorldModel& model, int
                                         : "choose a lower number");
 }
 
+std::unique_ptr<Flight> replayed(const std::filesystem::path& file, const FlightConfig& config,
+                                 const world::WorldModel& model, const world::World& world,
+                                 LogSink& log) {
+  const std::string place = file.string();
+  if (config.replay.empty())
+    throw InputError(place, "the key 'replay' is missing", "set replay to a TUM file");
+  const bool is_recorded = config.imu == ImuSource::kRecorded;
+  if (is_recorded && config.replay_imu.empty())
+    throw InputError(place, "imu: recorded needs the samples of an IMU",
+                     "set replay_imu to their file");
+  if (is_recorded && config.dynamics)
+    throw InputError(place, "a simulated quadrotor does not fly as the recorded IMU did",
+                     "remove dynamics, or set imu: simulated");
+  const auto recording = file.parent_path() / config.replay;
+  const Trajectory poses = thinned(read_recording(recording), config.replay_step_s);
+  std::optional<ImuSplineFit> fit;
+  std::vector<ImuSample> samples;
+  if (!config.replay_imu.empty()) {
+    samples = read_imu_recording(file.parent_path() / config.replay_imu);
+    fit = fit_imu_spline(poses, samples, config.imu_fit, recording.string());
+    log.info(fmt::format("flight {}: {}", place, describe(*fit)));
+    if (!is_recorded) samples.clear();
+  }
+  const auto placed_at = [&](const Pose& world_from_recording) -> std::unique_ptr<Flight> {
+    if (fit)
+      return std::make_unique<RecordedImuFlight>(*fit, samples, poses.begin_time(),
+                                                 world_from_recording, config.recorded_from_body,
+                                                 place);
+    return std::make_unique<ReplayFlight>(
+        placed(poses, world_from_recording, config.recorded_from_body), recording.string());
+  };
+  if (!config.find_place) return placed_at(config.world_from_recording);
+  return placed_at(
+      find_place(*placed_at(Pose::Identity()), model, world, config.clearance_m, place));
+}
+
 std::unique_ptr<Flight> build(const std::filesystem::path& file, const FlightConfig& config,
                               const world::WorldModel& model, const world::World& world,
                               LogSink& log) {
   const std::string place = file.string();
   switch (config.kind) {
-    case FlightKind::kReplay: {
-      if (config.replay.empty())
-        throw InputError(place, "the key 'replay' is missing", "set replay to a TUM file");
-      const auto recording = file.parent_path() / config.replay;
-      const Trajectory poses = thinned(read_recording(recording), config.replay_step_s);
-      return std::make_unique<ReplayFlight>(
-          placed(poses, config.world_from_recording, config.recorded_from_body),
-          recording.string());
-    }
+    case FlightKind::kReplay:
+      return replayed(file, config, model, world, log);
     case FlightKind::kRoute:
       return std::make_unique<SplineFlight>(route_of(model, config.route, place), config, place);
     case FlightKind::kAuto: {

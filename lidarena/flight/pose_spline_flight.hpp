@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "lidarena/flight/flight.hpp"
 #include "lidarena/flight/uniform_spline.hpp"
@@ -22,6 +23,9 @@ class PoseSplineFlight final : public Flight {
   /// `pose_at(t)`, t in s, is called once per knot in order of time, from -lead_s() on, at most
   /// until lead_s() plus one knot after `duration`.
   PoseSplineFlight(const std::function<Pose(double)>& pose_at, double knot_s, Time duration);
+  /// The spline of these control points (x y z of the position in m, x y z w of the quaternion).
+  PoseSplineFlight(const std::vector<Spline::Value>& controls, double knot_s, Time duration)
+      : spline_(controls, knot_s), duration_(duration) {}
 
   Motion at(Time t) const override;
   Pose pose_at(Time t) const override;

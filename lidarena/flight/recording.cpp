@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -32,6 +33,45 @@ std::optional<Time> exact_seconds(const std::string& text) {
   return std::chrono::seconds(seconds) + Time{text.front() == '-' ? -fraction : fraction};
 }
 
+/// Calls `row(line, place)` for each line of the file that is not empty and no comment.
+template <class Row>
+void for_rows(const std::filesystem::path& file, Row&& row) {
+  std::ifstream in(file);
+  if (!in)
+    throw InputError(file.string(), "cannot be opened", "check the path and the permissions");
+  std::string line;
+  for (int number = 1; std::getline(in, line); ++number) {
+    const std::size_t first = line.find_first_not_of(" \t\r");
+    if (first == std::string::npos || line[first] == '#') continue;
+    row(line, fmt::format("{}:{}", file.string(), number));
+  }
+}
+
+/// Seconds with a decimal point, or integer nanoseconds.
+std::optional<Time> stamp_of(const std::string& text) {
+  std::int64_t whole = 0;
+  const auto read = std::from_chars(text.data(), text.data() + text.size(), whole);
+  constexpr std::int64_t kLeastNanoseconds = 10'000'000'000;  // as seconds: after the year 2286
+  if (read.ec == std::errc{} && read.ptr == text.data() + text.size() && whole > kLeastNanoseconds)
+    return Time{whole};
+  return exact_seconds(text);
+}
+
+ImuSample imu_row(std::string line, const std::string& place) {
+  std::ranges::replace(line, ',', ' ');
+  std::istringstream in(line);
+  std::string stamp, rest;
+  ImuSample sample;
+  in >> stamp >> sample.gyro.x() >> sample.gyro.y() >> sample.gyro.z() >> sample.accel.x() >>
+      sample.accel.y() >> sample.accel.z();
+  const std::optional<Time> time = stamp_of(stamp);
+  if (!in || in >> rest || !time || !sample.gyro.allFinite() || !sample.accel.allFinite())
+    throw InputError(place, "is not a row 't gyro x y z accel x y z'",
+                     "t in s or ns, rad/s, m/s^2");
+  sample.stamp = *time;
+  return sample;
+}
+
 StampedPose tum_row(const std::string& line, const std::string& place) {
   std::istringstream in(line);
   std::string stamp;
@@ -57,17 +97,22 @@ StampedPose tum_row(const std::string& line, const std::string& place) {
 }  // namespace
 
 Trajectory read_recording(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in)
-    throw InputError(file.string(), "cannot be opened", "check the path and the permissions");
   std::vector<StampedPose> poses;
-  std::string line;
-  for (int number = 1; std::getline(in, line); ++number) {
-    const std::size_t first = line.find_first_not_of(" \t\r");
-    if (first == std::string::npos || line[first] == '#') continue;
-    poses.push_back(tum_row(line, fmt::format("{}:{}", file.string(), number)));
-  }
+  for_rows(file, [&](const std::string& line, const std::string& place) {
+    poses.push_back(tum_row(line, place));
+  });
   return Trajectory(std::move(poses), file.string());
+}
+
+std::vector<ImuSample> read_imu_recording(const std::filesystem::path& file) {
+  std::vector<ImuSample> samples;
+  for_rows(file, [&](const std::string& line, const std::string& place) {
+    const ImuSample sample = imu_row(line, place);
+    if (!samples.empty() && sample.stamp <= samples.back().stamp)
+      throw InputError(place, "the stamp is not after the one before it", "sort the rows by time");
+    samples.push_back(sample);
+  });
+  return samples;
 }
 
 Trajectory thinned(const Trajectory& recording, double step_s) {

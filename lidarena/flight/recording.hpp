@@ -2,7 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <vector>
 
+#include "lidarena/base/imu_sample.hpp"
 #include "lidarena/base/trajectory.hpp"
 
 namespace lidarena::flight {
@@ -11,6 +13,11 @@ namespace lidarena::flight {
 /// nanosecond. Throws InputError with file and line. (lidarena/dataset also reads these files, but
 /// this module may not depend on it.)
 Trajectory read_recording(const std::filesystem::path& file);
+
+/// The samples of an IMU: rows "t gyro_x gyro_y gyro_z accel_x accel_y accel_z" with commas or
+/// spaces between (rad/s, m/s^2; '#' comments); t in s, or in integer nanoseconds. Stamps strictly
+/// increase. Throws InputError with file and line.
+std::vector<ImuSample> read_imu_recording(const std::filesystem::path& file);
 
 /// Drops poses less than `step_s` (s) after the previous kept pose.
 Trajectory thinned(const Trajectory& recording, double step_s);

@@ -174,12 +174,12 @@ std::vector<Vector3d> path_through(const world::World& world, const FreeSpace& s
 
 /// A corner of the tour. If `reach` (m) is finite, extra waypoints at that distance before and
 /// after the corner limit its arc to half of that distance.
-struct Corner {
+struct TourCorner {
   Vector3d point;
   double reach = std::numeric_limits<double>::infinity();
 };
 
-std::vector<Vector3d> waypoints_of(const std::vector<Corner>& corners) {
+std::vector<Vector3d> waypoints_of(const std::vector<TourCorner>& corners) {
   std::vector<Vector3d> waypoints{corners.front().point};
   for (std::size_t i = 1; i < corners.size(); ++i) {
     const Vector3d& from = corners[i - 1].point;
@@ -196,7 +196,7 @@ std::vector<Vector3d> waypoints_of(const std::vector<Corner>& corners) {
   return waypoints;
 }
 
-std::size_t nearest_corner(const std::vector<Corner>& corners, const Vector3d& point) {
+std::size_t nearest_corner(const std::vector<TourCorner>& corners, const Vector3d& point) {
   std::size_t best = 0;
   for (std::size_t i = 1; i < corners.size(); ++i) {
     if ((corners[i].point - point).norm() < (corners[best].point - point).norm()) best = i;
@@ -210,7 +210,7 @@ double share_of(const Seen& seen) {
 
 /// Corners near which the flight comes closer to a surface than `clearance`.
 std::vector<std::size_t> tight_corners(const Flight& flight, const world::World& world,
-                                       double clearance, const std::vector<Corner>& corners) {
+                                       double clearance, const std::vector<TourCorner>& corners) {
   constexpr Time kStep = std::chrono::milliseconds(5);
   std::vector<std::size_t> tight;
   double margin = 0.0;  // path length within which no new query is needed
@@ -235,7 +235,7 @@ std::vector<Vector3d> tightened(const std::vector<Vector3d>& path, const world::
                                 const FlightConfig& config, const std::string& place) {
   constexpr int kRounds = 8;
   constexpr double kFirstReach = 0.8;  // m; halved in each further round
-  std::vector<Corner> corners;
+  std::vector<TourCorner> corners;
   corners.reserve(path.size());
   for (const Vector3d& point : path) corners.push_back({point});
   for (int round = 0; round < kRounds; ++round) {

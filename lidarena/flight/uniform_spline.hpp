@@ -4,6 +4,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <vector>
 
 namespace lidarena::flight {
@@ -40,6 +41,22 @@ class UniformSpline {
 
   static double center(std::size_t control, double knot) {
     return (static_cast<double>(control) - (D - 1) / 2.0) * knot;
+  }
+
+  using Weights = Eigen::Matrix<double, D + 1, 1>;
+  /// Weights of the control points of an interval in the derivative of order `Order`, per
+  /// second^Order, at `u` in [0, 1] within it.
+  template <int Order>
+  static Weights weights(double u, double knot) {
+    static constexpr auto kWeights = basis();
+    Weights value = Weights::Zero();
+    for (int j = 0; j <= D; ++j) {
+      for (int power = D; power >= Order; --power)
+        value[j] = value[j] * u +
+                   falling(power, Order) *
+                       kWeights[static_cast<std::size_t>(j)][static_cast<std::size_t>(power)];
+    }
+    return value / std::pow(knot, Order);
   }
 
   std::size_t intervals() const { return pieces_.size(); }

@@ -2,16 +2,31 @@
 #include "lidarena/sensor/simulate.hpp"
 
 #include <algorithm>
+#include <variant>
 
 #include "lidarena/sensor/imu.hpp"
 #include "lidarena/sensor/lidar.hpp"
+#include "lidarena/sensor/recorded_imu_reader.hpp"
 
 namespace lidarena::sensor {
 namespace {
 
 struct ImuStream {
   std::string id;
-  Imu imu;
+  std::variant<Imu, RecordedImuReader> imu;
+
+  Time next_stamp() const {
+    return std::visit([](const auto& of) { return of.next_stamp(); }, imu);
+  }
+  Time next_true_time() const {
+    return std::visit([](const auto& of) { return of.next_true_time(); }, imu);
+  }
+  Time first_stamp_from(Time t) const {
+    return std::visit([t](const auto& of) { return of.first_stamp_from(t); }, imu);
+  }
+  ImuSample measure(const flight::Flight& flight) {
+    return std::visit([&flight](auto& of) { return of.measure(flight); }, imu);
+  }
 };
 
 struct LidarStream {
@@ -42,18 +57,22 @@ class Simulation final : public EventSource {
         stream.scans = static_cast<std::uint64_t>(end_ / stream.lidar.pattern().period());
       lidars_.push_back(std::move(stream));
       if (!sensor.imu) continue;
-      const ImuInfo& info = rig.imus[imu++];
-      imus_.push_back({info.id,
-                       {*sensor.imu, sensor.body_from_lidar * sensor.imu->lidar_from_imu, info.id,
-                        options.seed, options.noise, sensor.noise.clock}});
+      const std::string& imu_id = rig.imus[imu++].id;
+      const Pose body_from_imu = sensor.body_from_lidar * sensor.imu->lidar_from_imu;
+      const flight::RecordedImu* recorded = flight.recorded_imu();
+      if (recorded != nullptr && options.noise)
+        imus_.push_back({imu_id, RecordedImuReader(*recorded, body_from_imu, imu_id)});
+      else
+        imus_.push_back({imu_id, Imu(*sensor.imu, body_from_imu, imu_id, options.seed,
+                                     options.noise, sensor.noise.clock)});
     }
   }
 
   std::optional<Event> next() override {
     ImuStream* imu = next_imu();
     LidarStream* lidar = next_lidar();
-    if (imu != nullptr && (lidar == nullptr || imu->imu.next_stamp() <= due(*lidar))) {
-      return Event{imu->id, imu->imu.measure(flight_)};
+    if (imu != nullptr && (lidar == nullptr || imu->next_stamp() <= due(*lidar))) {
+      return Event{imu->id, imu->measure(flight_)};
     }
     if (lidar == nullptr) return std::nullopt;
     return Event{lidar->id, measure(*lidar)};
@@ -73,8 +92,8 @@ class Simulation final : public EventSource {
   ImuStream* next_imu() {
     ImuStream* first = nullptr;
     for (ImuStream& stream : imus_) {
-      if (stream.imu.next_true_time() > end_) continue;
-      if (first == nullptr || stream.imu.next_stamp() < first->imu.next_stamp()) first = &stream;
+      if (stream.next_true_time() > end_) continue;
+      if (first == nullptr || stream.next_stamp() < first->next_stamp()) first = &stream;
     }
     return first;
   }
@@ -95,7 +114,7 @@ class Simulation final : public EventSource {
     const Time last = stream.lidar.last_firing(stream.next);
     Time covered = last;
     for (const ImuStream& stream_of_imu : imus_) {
-      covered = std::max(covered, stream_of_imu.imu.first_stamp_from(last));
+      covered = std::max(covered, stream_of_imu.first_stamp_from(last));
     }
     return covered;
   }

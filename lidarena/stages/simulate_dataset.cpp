@@ -251,23 +251,25 @@ void copy_over(const fs::path& from, const fs::path& to) {
   fs::copy_file(from, to, fs::copy_options::overwrite_existing);
 }
 
-/// Copies the flight's file (with `set` over it, all its keys) into the dataset, and the recording
-/// that it replays to the same relative path, so that the dataset can be simulated again after it
-/// was moved.
+/// Copies a recording that a flight names into the dataset, where it gets the name `stem`.
+void copy_recording(const fs::path& flight, std::string& recording, const char* stem,
+                    const fs::path& out) {
+  if (recording.empty()) return;
+  const std::string name = stem + fs::path(recording).extension().string();
+  copy_over(flight.parent_path() / recording, out / name);
+  recording = name;
+}
+
+/// Copies the flight's file (with `set` over it, all its keys) into the dataset, and the recordings
+/// that it replays, so that the dataset can be simulated again after it was moved.
 void copy_flight(const fs::path& flight, const std::vector<std::string>& set, const fs::path& out) {
-  if (flight.extension() == ".yaml") {
-    const fs::path replay = flight::load_flight(flight, set).replay;
-    if (replay.is_relative() && !replay.empty()) {
-      if (*replay.lexically_normal().begin() == "..") {
-        throw InputError(flight.string(), "replays a file above its own folder",
-                         "put the recording beside the flight's file, or give its full path");
-      }
-      copy_over(flight.parent_path() / replay, out / replay);
-    }
-  }
   const fs::path copy = out / ("flight" + flight.extension().string());
-  if (set.empty()) return copy_over(flight, copy);
-  dataset::write_json(copy, to_json(flight::load_flight(flight, set)));  // JSON is YAML
+  if (flight.extension() != ".yaml") return copy_over(flight, copy);
+  flight::FlightConfig config = flight::load_flight(flight, set);
+  if (set.empty() && config.replay.empty()) return copy_over(flight, copy);
+  copy_recording(flight, config.replay, "replay", out);
+  copy_recording(flight, config.replay_imu, "replay_imu", out);
+  dataset::write_json(copy, to_json(config));  // JSON is YAML
 }
 
 /// Copies the sensors' ray tables into the dataset, for the same reason.
