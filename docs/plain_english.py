@@ -24,14 +24,15 @@ EXPRESSIONS = {
     r"(is|are|was|were|be|been|it|them|as) told": "reported, printed, given",
     r"tells?": "reports, prints, shows",
     r"told": "reported, given",
-    r"stands?": "is, are",
+    r"stands?(?! still)": "is, are",
     r"stood": "was, were",
     r"lies beside|lie beside": "is in the same folder",
     r"beside": "next to, compared with, in addition to",
     r"besides": "also",
     r"is there|are there(?! any)": "arrives, exists",
-    r"what is (there|said|told)": "name the thing",
-    r"of (its|their|your|our|my) own": "its own, separate, custom",
+    r"what is (there|said)": "name the thing",
+    r"of (its|their|your|our|my) own(?= (and|or|with|in|around|that|which|by|to|is|are)|[^ \w]|$)":
+        "its own, your own, separate",
     r"goes on|go on": "continues",
     r"is said|are said": "is reported",
     r"by hand(?!held)": "manually",
@@ -42,7 +43,7 @@ EXPRESSIONS = {
     r"without such": "otherwise",
     r"thereby|therein|thereof|whereby|wherein|hereby": "by this, in it",
     r"as good as|as well as": "and, almost",
-    r"say": "for example",
+    r"says so|say at|say for|say about": "prints it, for example",
 }
 
 BLOCKS = re.compile(r"```.*?```|^<!-- table .*?<!-- end -->", re.DOTALL | re.MULTILINE)
