@@ -95,8 +95,8 @@ def sentences(text):
     found = []
     for paragraph in paragraphs(text):
         whole = ABBREVIATIONS.sub(r"\1", plain(paragraph))
-        found += [sentence.replace("`", "").strip() for sentence in SENTENCE_END.split(whole)]
-    return [sentence for sentence in found if sentence]
+        found += [sentence.strip() for sentence in SENTENCE_END.split(whole) if sentence.strip()]
+    return found
 
 
 def words(sentence):
@@ -109,8 +109,9 @@ def faults(text):
         count = len(words(sentence))
         if count > MAX_WORDS:
             yield sentence, f"{count} words"
+        prose = re.sub(r"`[^`]*`", "``", sentence)
         for expression, better in EXPRESSIONS.items():
-            if found := re.search(rf"\b(?:{expression})\b", sentence, re.IGNORECASE):
+            if found := re.search(rf"\b(?:{expression})\b", prose, re.IGNORECASE):
                 yield sentence, f"\"{found[0]}\": write {better}"
 
 

@@ -29,7 +29,7 @@ LONG = " ".join(["word"] * 26) + "."
 class PlainEnglish(unittest.TestCase):
     def test_sentences_are_those_of_paragraphs_and_items(self):
         self.assertEqual(plain_english.sentences(PAGE), [
-            "Two short sentences.", "The second has lidarena_run_x and a link.",
+            "Two short sentences.", "The second has `lidarena_run_x` and a link.",
             "W Xu et al wrote it, e.g in 2022", "an item of two lines"])
 
     def test_code_of_an_item_s_second_paragraph_and_generated_tables_are_no_sentences(self):
@@ -38,7 +38,7 @@ class PlainEnglish(unittest.TestCase):
 
     def test_a_number_with_a_decimal_point_ends_no_sentence(self):
         self.assertEqual(plain_english.sentences("It is 3.5 m long. `x` is 2."),
-                         ["It is 3.5 m long.", "x is 2."])
+                         ["It is 3.5 m long.", "`x` is 2."])
 
     def test_25_words_are_allowed_and_26_are_a_fault(self):
         self.assertEqual(list(plain_english.faults(LONG[5:])), [])
@@ -47,7 +47,7 @@ class PlainEnglish(unittest.TestCase):
     def test_a_stilted_word_is_a_fault_with_what_to_write(self):
         (_, fault), = plain_english.faults("The map stands in a file.")
         self.assertEqual(fault, '"stands": write is, are')
-        self.assertEqual(list(plain_english.faults("Understand the standard.")), [])
+        self.assertEqual(list(plain_english.faults("Understand the standard, and `stands`.")), [])
 
     def test_an_exception_covers_its_sentence_alone_and_must_be_needed(self):
         allowed = plain_english.exceptions("# comment\na.md | word word | quoted from a paper\n")
