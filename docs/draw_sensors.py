@@ -19,11 +19,11 @@ import lidarena
 STEP = 0.5  # deg per pixel
 HEAD = """# Pictures of the sensors
 
-Directions of each sensor's shots in its own frame: azimuth from 180 deg (left) to -180 deg (right), elevation from 90 deg (top)
-to -90 deg, half a degree per pixel; the darker a pixel, the more shots. The upper picture shows the first 0.1 s, the lower one
-the first 1 s; if they differ, the pattern does not repeat with every scan. The tables give the share of the field of view's solid
-angle that the shots have covered, in cells of 0.5 deg (0.25 deg where the field of view is narrower than 180 deg). Written by
-`docs/draw_sensors.py`; `lidarena info SENSOR --pattern --out FILE.svg` draws your own sensors and computes the same shares.
+Directions of each sensor's shots in its own frame: azimuth from 180 deg (left) to -180 deg (right), elevation from 90 deg to -90 deg. A
+pixel is half a degree; the darker it is, the more shots. The upper picture shows the first 0.1 s, the lower one the first 1 s. If they
+differ, the pattern does not repeat with every scan. The tables give the share of the field of view's solid angle that the shots have
+covered. Its cells are 0.5 deg, or 0.25 deg where the field of view is narrower than 180 deg. `docs/draw_sensors.py` writes this page.
+`lidarena info SENSOR --pattern --out FILE.svg` draws your own sensors and computes the same shares.
 """
 
 

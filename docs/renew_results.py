@@ -16,7 +16,8 @@ usage: renew_results.py STUDY --as NAME   takes over the figures of the report i
 
 docs/results/data/NAME.csv has all runs of a study, NAME.json the tables of its report that pages
 use. Between a line `<!-- table NAME KIND VARIANT -->` and `<!-- end -->` a page has such a table
-(KIND: drift, map, ...; `KIND,KIND` for two in one; VARIANT: a preset, or `none`), between
+(KIND: drift, map, ...; `KIND,KIND` for two in one; VARIANT: a preset, or `none`; names of methods may
+follow, for a table of these alone, without ranges), between
 `<!-- runs NAME -->` and `<!-- end -->` the number of runs, and in a line
 `<!-- = NAME KIND VARIANT WORLD SENSOR METHOD -->1.2<!-- end -->` one figure (KIND `live`: the live drift
 beside the final one).
@@ -41,7 +42,7 @@ import ratios
 
 DOCS = pathlib.Path(__file__).resolve().parent
 DATA = DOCS / "results" / "data"
-PAGES = [DOCS.parent / "README.md", DOCS / "performance.md",
+PAGES = [DOCS.parent / "README.md", DOCS / "features.md", DOCS / "performance.md",
          *sorted((DOCS / "results").glob("*.md"))]
 NAMES = {"test_house": "House", "test_cave": "Cave", "house": "House", "cave": "Cave",
          "livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128",
@@ -96,8 +97,9 @@ def shown(cell, short=False):
     return f"{text} ({spread})" + (f" [{cell['reference']}]" if cell.get("reference") else "")
 
 
-def table(study, kinds, variant):
-    """Markdown with a row for each method and a column for each world and sensor."""
+def table(study, kinds, variant, *only):
+    """Markdown with a row for each method and a column for each world and sensor; with names of
+    methods in `only`, a row for each of these, in their order."""
     all_tables = tables_of(study)
     columns, methods, texts = [], [], {}
     for name in all_tables:
@@ -112,11 +114,12 @@ def table(study, kinds, variant):
                     columns.append((world, sensor))
                 if method not in methods:
                     methods.append(method)
-                texts.setdefault((world, sensor, method), []).append(shown(cell, len(kinds) > 1))
+                short = len(kinds) > 1 or bool(only)
+                texts.setdefault((world, sensor, method), []).append(shown(cell, short))
     head = [f"{NAMES[world]}, {NAMES[sensor]}" for world, sensor in columns]
     what = "; ".join(KINDS.get(kind, "") for kind in kinds)
     lines = [f"| {what} | " + " | ".join(head) + " |", "|---|" + "---:|" * len(head)]
-    for method in methods:
+    for method in only or methods:
         row = ["; ".join(texts.get((*column, method), ["-"])) for column in columns]
         lines.append(f"| {NAMES.get(method, '`' + method + '`')} | " + " | ".join(row) + " |")
     return "\n".join(lines)
@@ -242,7 +245,7 @@ def renewed(page):
     def content(found):
         what, words = found[2], words_of(found)
         if what == "table":
-            return f"{found[1]}\n\n{table(words[0], words[1].split(','), words[2])}\n\n{found[5]}"
+            return f"{found[1]}\n\n{table(words[0], words[1].split(','), *words[2:])}\n\n{found[5]}"
         if what == "speed":
             return found[1] + speed(words) + found[5]
         if what == "costs":
