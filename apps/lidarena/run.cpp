@@ -45,6 +45,10 @@ void check_options(const RunOptions& o) {
   if (o.external.empty()) odometry::check_algorithm(o.request.odometry);
   if (o.request.parts > 1 && (o.live.asked || !o.external.empty()))
     throw InputError("--parts", "is for Lidarena's own methods on a dataset", "leave it out");
+  if (o.live.asked && odometry::parts_of(o.request.odometry) > 1)
+    throw InputError("--preset " + o.request.odometry.preset,
+                     "takes each sweep in parts, which --live cannot give",
+                     "run it on a recording, or choose another preset");
   if (o.dataset.empty() && !o.live.asked) {
     throw InputError("run " + algorithm, "needs a dataset",
                      "give a dataset folder, .mcap, .bag or folder of sweeps");
@@ -141,9 +145,9 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
   verb->add_option("--parts", r.parts,
-                   "Hand each sweep over as N scans by the times of its points, as for 20 Hz")
-      ->check(CLI::Range(1, 100))
-      ->capture_default_str();
+                   "Hand each sweep over as N scans by the times of its points, as for 20 Hz; "
+                   "default: as the preset has it, 1 unless it is tuned")
+      ->check(CLI::Range(1, 100));
   verb->add_flag("--paced", r.paced, "Drop scans when the algorithm is late, as on a live robot");
   verb->add_option("--layout", r.read.layout, "Fields of a point in raw binary sweeps")
       ->check(CLI::IsMember({"xyz", "xyzi", "xyzt", "xyztr"}));

@@ -46,14 +46,22 @@ const ImuInfo& imu_for(const std::string& algorithm, const Rig& rig, const Lidar
 }
 
 template <class Config>
-using PresetTable = std::vector<std::pair<std::string, Config (*)(const LidarInfo&)>>;
+struct Preset {
+  std::string name;
+  Config (*make)(const LidarInfo&);
+  int parts = 1;  ///< scans in which each sweep is handed over
+};
+template <class Config>
+using PresetTable = std::vector<Preset<Config>>;
 
 /// One struct for each algorithm: its configuration, its presets (the default first; one without a
 /// name if there is no choice) and how to build it.
 struct Kiss {
   using Config = kiss_icp::Config;
   static PresetTable<Config> presets() {
-    return {{"indoor", kiss_icp::indoor}, {"published", kiss_icp::published}};
+    return {{"indoor", kiss_icp::indoor},
+            {"published", kiss_icp::published},
+            {"tuned", kiss_icp::tuned, 2}};
   }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
@@ -73,7 +81,7 @@ struct KissHead {
 struct Ct {
   using Config = ct_icp::Config;
   static PresetTable<Config> presets() {
-    return {{"indoor", ct_icp::indoor}, {"published", ct_icp::published}};
+    return {{"indoor", ct_icp::indoor}, {"published", ct_icp::published}, {"tuned", ct_icp::tuned}};
   }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig&, const LidarInfo& lidar,
                                          const Parallel& parallel) {
@@ -84,7 +92,9 @@ struct Ct {
 struct FastLio {
   using Config = fast_lio2::Config;
   static PresetTable<Config> presets() {
-    return {{"indoor", fast_lio2::indoor}, {"published", fast_lio2::published}};
+    return {{"indoor", fast_lio2::indoor},
+            {"published", fast_lio2::published},
+            {"tuned", fast_lio2::tuned}};
   }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
@@ -96,7 +106,9 @@ struct FastLio {
 struct LioSam {
   using Config = lio_sam::Config;
   static PresetTable<Config> presets() {
-    return {{"indoor", lio_sam::indoor}, {"published", lio_sam::published}};
+    return {{"indoor", lio_sam::indoor},
+            {"published", lio_sam::published},
+            {"tuned", lio_sam::tuned, 2}};
   }
   static std::unique_ptr<Odometry> build(const Config& config, const Rig& rig,
                                          const LidarInfo& lidar, const Parallel& parallel) {
@@ -113,7 +125,9 @@ struct LioSamLc : LioSam {
     return config;
   }
   static PresetTable<Config> presets() {
-    return {{"indoor", with_loops<lio_sam::indoor>}, {"published", with_loops<lio_sam::published>}};
+    return {{"indoor", with_loops<lio_sam::indoor>},
+            {"published", with_loops<lio_sam::published>},
+            {"tuned", with_loops<lio_sam::tuned>, 2}};
   }
 };
 
@@ -156,8 +170,8 @@ std::string listed(const std::vector<std::string>& words) {
 template <class Maker>
 std::vector<std::string> preset_names() {
   std::vector<std::string> names;
-  for (const auto& [name, make_config] : Maker::presets()) {
-    if (!name.empty()) names.push_back(name);
+  for (const auto& preset : Maker::presets()) {
+    if (!preset.name.empty()) names.push_back(preset.name);
   }
   return names;
 }
@@ -172,11 +186,16 @@ std::string successor_of(const std::string& algorithm, const std::string& preset
 }
 
 template <class Maker>
-typename Maker::Config preset_config(const OdometryRequest& request, const LidarInfo& lidar) {
-  for (const auto& [name, make_config] : Maker::presets()) {
-    if (name == request.preset || request.preset.empty()) return make_config(lidar);
+Preset<typename Maker::Config> preset_of(const OdometryRequest& request) {
+  for (const auto& preset : Maker::presets()) {
+    if (preset.name == request.preset || request.preset.empty()) return preset;
   }
   throw InputError("preset", request.algorithm + " has no preset '" + request.preset + "'");
+}
+
+template <class Maker>
+typename Maker::Config preset_config(const OdometryRequest& request, const LidarInfo& lidar) {
+  return preset_of<Maker>(request).make(lidar);
 }
 
 template <class Maker>
@@ -217,7 +236,7 @@ MadeOdometry make_with_loop(const OdometryRequest& request, const Rig& rig, cons
 /// follow the LiDAR's.)
 template <class Maker>
 typename Maker::Config default_config() {
-  return Maker::presets().front().second(LidarInfo{});
+  return Maker::presets().front().make(LidarInfo{});
 }
 
 template <class Maker>
@@ -236,7 +255,13 @@ struct Algorithm {
   MadeOdometry (*make)(const OdometryRequest&, const Rig&, const LidarInfo&, const Parallel&);
   Json (*schema)(const AlgorithmInfo&);
   Json (*config)(const OdometryRequest&, const LidarInfo&);
+  int (*parts)(const OdometryRequest&);
 };
+
+template <class Maker>
+int parts_of_preset(const OdometryRequest& request) {
+  return preset_of<Maker>(request).parts;
+}
 
 template <class Maker>
 Algorithm plain(std::string name, std::string summary, bool needs_imu) {
@@ -245,7 +270,8 @@ Algorithm plain(std::string name, std::string summary, bool needs_imu) {
           schema<Maker>,
           [](const OdometryRequest& request, const LidarInfo& lidar) {
             return to_json(config_of<Maker>(request, lidar));
-          }};
+          },
+          parts_of_preset<Maker>};
 }
 
 template <class Maker>
@@ -255,7 +281,8 @@ Algorithm looped(std::string name, std::string summary, bool needs_imu) {
           schema_with_loop<Maker>,
           [](const OdometryRequest& request, const LidarInfo& lidar) {
             return to_json(config_with_loop<Maker>(request, lidar));
-          }};
+          },
+          parts_of_preset<Maker>};
 }
 
 std::vector<Algorithm> algorithms() {
@@ -342,6 +369,8 @@ OdometryRequest with_default_preset(OdometryRequest request) {
 }
 
 void check_algorithm(const OdometryRequest& request) { chosen_algorithm(request); }
+
+int parts_of(const OdometryRequest& request) { return chosen_algorithm(request).parts(request); }
 
 Json configuration_of(const OdometryRequest& request, const LidarInfo& lidar) {
   return chosen_algorithm(request).config(request, lidar);

@@ -46,6 +46,10 @@ void check_algorithm(const OdometryRequest& request);
 /// nothing is known. Throws InputError as check_algorithm(), and for a bad configuration.
 Json configuration_of(const OdometryRequest& request, const LidarInfo& lidar = {});
 
+/// Scans in which each sweep is handed over to the method, by the request's preset; 1 without one.
+/// Throws InputError as check_algorithm().
+int parts_of(const OdometryRequest& request);
+
 struct MadeOdometry {
   std::unique_ptr<Odometry> odometry;
   Json config;  ///< the complete configuration, for the manifest

@@ -116,13 +116,14 @@ dataset::RunManifest manifest_of(const odometry::OdometryRequest& request, const
 odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& out,
                                    const Parallel& parallel, LogSink& log) {
   const odometry::OdometryRequest chosen = odometry::with_default_preset(request.odometry);
+  const int parts = request.parts > 0 ? request.parts : odometry::parts_of(chosen);
   dataset::Dataset dataset = open_any_dataset(request.dataset, request.read, parallel);
   dataset::tell_opening(dataset, log);
   refuse_faulty_imu(dataset, chosen);
   dataset::read_whole_part(dataset);
   const std::string lidar_id = chosen_lidar(dataset, dataset::id_of_topic(request.read.sensor));
-  odometry::MadeOdometry made = odometry::make_odometry(
-      chosen, with_parts(dataset.rig, lidar_id, request.parts), lidar_id, parallel);
+  odometry::MadeOdometry made =
+      odometry::make_odometry(chosen, with_parts(dataset.rig, lidar_id, parts), lidar_id, parallel);
   const LidarInfo lidar = *dataset.rig.find_lidar(lidar_id);
   odometry::RunOptions options;
   options.lidar_id = lidar_id;
@@ -130,7 +131,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
     options.imu_id = imu->id;
   }
   options.scan_count = dataset.scan_count;
-  if (options.scan_count) *options.scan_count *= static_cast<std::size_t>(request.parts);
+  if (options.scan_count) *options.scan_count *= static_cast<std::size_t>(parts);
   options.paced = request.paced;
   dataset::begin_run(out);
   MapRecord map;
@@ -140,9 +141,8 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   evaluation::ReturnStore returns(out, lidar_id,
                                   evaluation::scored_returns(dataset.scan_count.value_or(0)));
   if (request.maps) dataset.events = returns.keep_from(std::move(dataset.events));
-  if (request.parts > 1)
-    dataset.events =
-        std::make_unique<SplitSweeps>(std::move(dataset.events), lidar_id, request.parts);
+  if (parts > 1)
+    dataset.events = std::make_unique<SplitSweeps>(std::move(dataset.events), lidar_id, parts);
   odometry::RunSummary summary =
       odometry::run(*made.odometry, *dataset.events, options, recorder, log);
   dataset::tell_reading(dataset, log);
@@ -158,7 +158,7 @@ odometry::RunSummary run_algorithm(const RunRequest& request, const fs::path& ou
   files.manifest = manifest_of(chosen, made.config, traits,
                                manifest_of(summary, lidar, request.dataset, out, parallel));
   files.manifest.paced = request.paced;
-  files.manifest.parts = request.parts;
+  files.manifest.parts = parts;
   if (!request.maps) files.manifest.own_map = dataset::OwnMap::kNone;
   dataset::write_run(out, files);
   return summary;

@@ -19,7 +19,7 @@ struct RunRequest {
   std::filesystem::path dataset;
   dataset::ReadOptions read;  ///< `read.sensor` names the LiDAR if the dataset has several
   bool paced = false;         ///< drop scans when the algorithm is late, as on a live robot
-  int parts = 1;              ///< scans in which each sweep is handed over, see SplitSweeps
+  int parts = 0;              ///< of each sweep, see SplitSweeps; 0: as the preset has it
   bool maps = true;           ///< write map.ply and reprojected.ply
 };
 

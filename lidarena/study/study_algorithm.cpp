@@ -85,7 +85,7 @@ std::vector<StudyAlgorithm> with_single_values(const std::vector<StudyAlgorithm>
   std::vector<StudyAlgorithm> methods;
   for (const StudyAlgorithm& algorithm : algorithms) {
     if (std::ranges::find(outside, algorithm.name) != outside.end()) {
-      if (!algorithm.set.empty() || algorithm.parts != 1)
+      if (!algorithm.set.empty() || algorithm.parts > 1)
         throw InputError("study", "gives settings to the external program " + algorithm.name,
                          "write them into its command line");
       methods.push_back(algorithm);

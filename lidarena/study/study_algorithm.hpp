@@ -13,14 +13,14 @@ struct StudyAlgorithm {
   std::string name;
   std::string as;
   Json set = Json::object();
-  int parts = 1;
+  int parts = 0;
 
   StudyAlgorithm() = default;
   StudyAlgorithm(std::string text) : name(std::move(text)) {}
   StudyAlgorithm(const char* text) : name(text) {}
 
   /// Whether it is a name alone.
-  bool is_plain() const { return as.empty() && set.empty() && parts == 1; }
+  bool is_plain() const { return as.empty() && set.empty() && parts == 0; }
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -29,8 +29,9 @@ struct StudyAlgorithm {
     v("set", self.set, "",
       "KEY: VALUE of its settings; a list where one value is expected makes a method of each "
       "value");
-    v("parts", self.parts, "", "scans in which each sweep is handed over, as run --parts",
-      between(1, 100));
+    v("parts", self.parts, "",
+      "scans in which each sweep is handed over, as run --parts; 0: as the preset has it",
+      between(0, 100));
   }
 
   static StudyAlgorithm from(const ConfigNode& node);

@@ -48,6 +48,7 @@ PlannedRun with_method(const StudySpec& spec, PlannedRun cell, const StudyAlgori
   cell.as = method.as;
   cell.settings = method.set;
   cell.parts = method.parts;
+  if (cell.parts == 0) cell.parts = external ? 1 : odometry::parts_of(request);
   return cell;
 }
 

@@ -179,7 +179,8 @@ Step Tasks::run_step(const PlanUnit& unit, const PlannedRun& cell, const fs::pat
     }
     for (const std::string& set : assignments_of(cell.settings))
       call.insert(call.end(), {"--set", set});
-    if (cell.parts > 1) call.insert(call.end(), {"--parts", std::to_string(cell.parts)});
+    if (external == nullptr && cell.parts != odometry::parts_of({cell.algorithm, cell.preset}))
+      call.insert(call.end(), {"--parts", std::to_string(cell.parts)});
     if (!stages::scores_maps(plan_.spec.score)) call.insert(call.end(), {"--maps", "off"});
     return call;
   };

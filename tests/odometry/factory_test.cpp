@@ -4,7 +4,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <map>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
@@ -136,6 +139,35 @@ TEST(OdometryFactory, EveryConfigurationFileOfTheRepositoryFitsTheAlgorithmItIsN
     ASSERT_FALSE(algorithm.empty()) << stem;
     EXPECT_NO_THROW(make({algorithm, "", entry.path().string(), {}})) << stem;
   }
+}
+
+/// The presets `tuned` are the winners of the search that docs/results/tuning tells.
+TEST(Factory, TunedPresetsAreTheSettingsThatWonTheSearch) {
+  std::ifstream file(std::string(LIDARENA_SOURCE_DIR) + "/docs/results/tuning/plan.json");
+  const Json plan = Json::parse(file);
+  const std::map<std::string, std::string> winners{{"ct_icp", "ct_icp-16"},
+                                                   {"kiss_icp", "kiss_icp-27"},
+                                                   {"lio_sam", "lio_sam-08"},
+                                                   {"fast_lio2", "fast_lio2-19"}};
+  for (const auto& [name, winner] : winners) {
+    const auto found = std::ranges::find_if(
+        plan.at("settings"), [&](const Json& setting) { return setting.at("as") == winner; });
+    ASSERT_NE(found, plan.at("settings").end());
+    const std::string method = found->at("name");
+    OdometryRequest request{name, method.substr(method.find(':') + 1)};
+    const Json set = found->value("set", Json::object());
+    for (const auto& [key, value] : set.items())
+      request.overrides.push_back(key + "=" +
+                                  (value.is_string() ? value.get<std::string>() : value.dump()));
+    for (const char* kind : {"rosette", "spinning"}) {
+      LidarInfo lidar;
+      lidar.kind = kind;
+      EXPECT_EQ(configuration_of({name, "tuned"}, lidar), configuration_of(request, lidar)) << name;
+    }
+    EXPECT_EQ(parts_of({name, "tuned"}), found->value("parts", 1)) << name;
+  }
+  EXPECT_EQ(parts_of({"lio_sam_lc", "tuned"}), 2);
+  EXPECT_EQ(parts_of({"kiss_icp", ""}), 1);
 }
 
 }  // namespace

@@ -19,4 +19,15 @@ Config published(const LidarInfo&) {
 
 Config indoor(const LidarInfo&) { return {}; }
 
+Config tuned(const LidarInfo&) {
+  Config config;
+  config.registration.max_rotation_deg = 120.0;
+  config.registration.initial_motion = InitialMotion::kConstantMotion;
+  config.sampling.scan_voxel_size_m = 0.1;
+  config.sampling.max_keypoints = 1500;
+  config.map.voxel_size_m = 0.4;
+  config.map.always_insert = true;
+  return config;
+}
+
 }  // namespace lidarena::odometry::ct_icp

@@ -193,6 +193,8 @@ struct Config {
 Config published(const LidarInfo& lidar);
 /// The program's profile for a handheld sensor.
 Config indoor(const LidarInfo& lidar);
+/// The best of 32 settings of the program on flights of the development set (docs/results/tuning).
+Config tuned(const LidarInfo& lidar);
 
 constexpr auto enum_names(KeypointSampling) {
   return std::array{std::pair{"all", KeypointSampling::kAll},

@@ -19,4 +19,14 @@ Config indoor(const LidarInfo& lidar) {
   return config;
 }
 
+Config tuned(const LidarInfo& lidar) {
+  Config config = published(lidar);
+  config.point_stride = 2;
+  config.scan_voxel_size_m = 0.1;
+  config.map_voxel_size_m = 0.1;
+  config.gyro_variance = 0.01;
+  config.accel_variance = 0.01;
+  return config;
+}
+
 }  // namespace lidarena::odometry::fast_lio2

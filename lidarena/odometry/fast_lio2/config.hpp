@@ -57,5 +57,7 @@ struct Config {
 Config published(const LidarInfo& lidar);
 /// What its authors advise indoors: `published` with voxels of 0.2 m.
 Config indoor(const LidarInfo& lidar);
+/// The best of 32 settings of the program on flights of the development set (docs/results/tuning).
+Config tuned(const LidarInfo& lidar);
 
 }  // namespace lidarena::odometry::fast_lio2

@@ -16,4 +16,12 @@ Config indoor(const LidarInfo&) {
   return config;
 }
 
+Config tuned(const LidarInfo&) {
+  Config config;
+  config.max_range_m = 20.0;
+  config.voxel_size_m = 0.15;
+  config.max_iterations = 100;
+  return config;
+}
+
 }  // namespace lidarena::odometry::kiss_icp

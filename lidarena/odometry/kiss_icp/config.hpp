@@ -10,5 +10,8 @@ namespace lidarena::odometry::kiss_icp {
 Config published(const LidarInfo& lidar);
 /// v0.2 as a user would set it for a small sensor in rooms and tunnels.
 Config indoor(const LidarInfo& lidar);
+/// v0.2 with the best of 32 settings on flights of the development set (docs/results/tuning), for
+/// half sweeps.
+Config tuned(const LidarInfo& lidar);
 
 }  // namespace lidarena::odometry::kiss_icp

@@ -44,4 +44,10 @@ Config indoor(const LidarInfo& lidar) {
   return config;
 }
 
+Config tuned(const LidarInfo& lidar) {
+  Config config = indoor(lidar);
+  config.process_interval_s = 0.07;
+  return config;
+}
+
 }  // namespace lidarena::odometry::lio_sam

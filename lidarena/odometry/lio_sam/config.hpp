@@ -119,6 +119,9 @@ struct Config {
 Config published(const LidarInfo& lidar);
 /// The program's own advice for rooms: smaller voxels, and points from 0.5 m on.
 Config indoor(const LidarInfo& lidar);
+/// The best of 32 settings of the program on flights of the development set (docs/results/tuning),
+/// for half sweeps.
+Config tuned(const LidarInfo& lidar);
 
 constexpr auto enum_names(Sensor) {
   return std::array{std::pair{"spinning", Sensor::kSpinning}, std::pair{"livox", Sensor::kLivox}};
