@@ -385,7 +385,8 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   copy_patterns(scene->sensors, out);
   const bool with_data = request.data && !request.live;
   std::optional<dataset::HitsWriter> writer;
-  if (request.hits.value_or(with_data)) writer.emplace(out, sensor::make_rig(scene->sensors));
+  if (request.hits.value_or(with_data))
+    writer.emplace(out, sensor::make_rig(scene->sensors), summary.triangles);
   dataset::HitsWriter* const hits = writer ? &*writer : nullptr;
   if (with_data) {
     write_events(request, *scene, hits, out, parallel, log, summary);
