@@ -141,7 +141,17 @@ Json convert_dataset(const ConvertOptions& o, const Parallel& parallel, LogSink&
   dataset::tell_opening(in, log);
   tell_left_out(in, log);
   dataset::read_whole_part(in);
-  const dataset::CopySummary copied = dataset::copy_dataset(in, o.out, write_options(o));
+  dataset::WriteOptions write = write_options(o);
+  dataset::OpenTruth open_truth;
+  if (write.format == dataset::DatasetFormat::kKitti) {
+    write.labels = stages::labels_of_dataset(o.in);
+    open_truth = [&](const std::string& lidar) {
+      return stages::open_simulated_truth(o.in, lidar, parallel);
+    };
+  }
+  const dataset::CopySummary copied = dataset::copy_dataset(in, o.out, write, open_truth);
+  if (!write.labels.empty() && copied.truth_scans == 0)
+    log.info("no labels are written: the dataset has no truth of its points (simulate --truth)");
   Json done{{"kind", "dataset"},           {"scans", copied.scans},
             {"points", copied.points},     {"imu_samples", copied.imu_samples},
             {"truth_poses", copied.poses}, {"truth_scans", copied.truth_scans}};

@@ -79,6 +79,9 @@ void print_summary(const Common& common, const odometry::RunSummary& s, bool pac
         fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, odometry::to_string(status));
   fmt::print("{} scans ({}): the method took {:.1f} s, {:.1f} times real time\n", s.scans, counts,
              s.compute_seconds, s.compute_seconds > 0 ? s.sensor_seconds / s.compute_seconds : 0.0);
+  if (s.refused > 0) {
+    fmt::print("{} scans were refused: they are not later than the scan before\n", s.refused);
+  }
   if (paced) {
     fmt::print("paced: {} scans dropped, the longest delay of an estimate was {:.3f} s\n",
                s.dropped, s.longest_delay_s);

@@ -24,6 +24,16 @@ constexpr bool is_of_world(std::uint32_t triangle, std::size_t triangles) {
   return triangle < triangles;
 }
 
+/// What a return is of.
+enum class PointClass : std::uint8_t { kUnknown, kWorld, kMover, kAir, kGhost };
+
+/// The class of a return with this PointTruth::triangle, in a world of so many triangles.
+constexpr PointClass class_of(std::uint32_t triangle, std::size_t triangles) {
+  if (is_of_world(triangle, triangles)) return PointClass::kWorld;
+  if (triangle == kAir) return PointClass::kAir;
+  return triangle == kGhost ? PointClass::kGhost : PointClass::kMover;
+}
+
 /// Ground truth of one simulated return: the surface point that was hit; 32 bytes. For evaluation
 /// only: stored apart from the measurements (topic /truth/SENSOR/hits), never passed to an
 /// estimator.

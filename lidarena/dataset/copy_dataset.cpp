@@ -15,10 +15,12 @@ namespace fs = std::filesystem;
 /// The ground truth of a dataset, copied in time order together with its events.
 class TruthCopier {
  public:
-  explicit TruthCopier(const Dataset& in) : trajectory_(load_truth(in.path)) {
+  TruthCopier(const Dataset& in, const OpenTruth& open_truth) : trajectory_(load_truth(in.path)) {
     for (const LidarInfo& lidar : in.rig.lidars) {
       if (!may_have_point_truth(in)) break;
-      if (auto hits = open_scan_truth(in.path, lidar.id)) hits_[lidar.id] = std::move(hits);
+      auto hits = open_scan_truth(in.path, lidar.id);
+      if (!hits && open_truth) hits = open_truth(lidar.id);
+      if (hits) hits_[lidar.id] = std::move(hits);
     }
   }
 
@@ -80,9 +82,10 @@ void check_not_same_dataset(const fs::path& in, const fs::path& out) {
 
 }  // namespace
 
-CopySummary copy_dataset(Dataset& in, const fs::path& out, const WriteOptions& options) {
+CopySummary copy_dataset(Dataset& in, const fs::path& out, const WriteOptions& options,
+                         const OpenTruth& open_truth) {
   check_not_same_dataset(in.path, out);
-  TruthCopier truth(in);
+  TruthCopier truth(in, open_truth);
   DatasetWriter writer(out, in.rig, options);
   CopySummary summary;
   while (const auto event = in.events->next()) {

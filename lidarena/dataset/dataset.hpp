@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -91,8 +93,8 @@ inline constexpr const char* kTruthHeader =
     "time[s] x y z[m] qx qy qz qw";
 
 /// How measurements are stored: in one recording (MCAP, bag), or in a folder ID for each sensor
-/// with one file per sweep (000000.pcd, .ply, or velodyne/000000.bin with only x y z intensity),
-/// times.txt and imu.txt.
+/// with one file per sweep (000000.pcd, .ply, or velodyne/000000.bin with only x y z intensity, and
+/// labels/000000.label), times.txt and imu.txt.
 enum class DatasetFormat { kMcap, kBag, kPcd, kPly, kKitti };
 constexpr auto enum_names(DatasetFormat) {
   return std::array{std::pair{"mcap", DatasetFormat::kMcap}, std::pair{"bag", DatasetFormat::kBag},
@@ -112,7 +114,12 @@ struct WriteOptions {
   DatasetFormat format = DatasetFormat::kMcap;
   Dialect dialect = Dialect::kSi;  ///< of recordings; sweeps are always in SI
   bool compress = false;  ///< MCAP chunks, by zstd; bag chunks are always compressed, by LZ4
+  /// Of KITTI sweeps: labels by PointTruth::triangle, see write_labels(). Empty: none are written.
+  std::vector<std::uint32_t> labels{};
 };
+
+/// Opens the ground truth of the points of a LiDAR.
+using OpenTruth = std::function<std::unique_ptr<ScanTruthSource>(const std::string& lidar)>;
 
 /// Whether a dataset folder holds measurements; without them it holds only a manifest, from which
 /// they are simulated.
@@ -170,7 +177,8 @@ struct CopySummary {
 /// ground truth of trajectory and points if `in.path` has them and, from folder to folder, the
 /// world mesh and the other keys of the manifest. Throws InputError when the input is damaged (the
 /// copy then stays unfinished) or `out` is the input itself; Error when the disk is full.
+/// `open_truth`, if given, opens the truth of points of datasets that do not store it.
 CopySummary copy_dataset(Dataset& in, const std::filesystem::path& out,
-                         const WriteOptions& options = {});
+                         const WriteOptions& options = {}, const OpenTruth& open_truth = {});
 
 }  // namespace lidarena::dataset

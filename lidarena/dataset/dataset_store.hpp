@@ -39,6 +39,6 @@ std::unique_ptr<DatasetStore> make_message_store(std::shared_ptr<RecordingWriter
 
 /// Stores sweeps, times and IMU rows, one subfolder per sensor. `folder` must exist.
 std::unique_ptr<DatasetStore> make_sweep_store(const std::filesystem::path& folder, const Rig& rig,
-                                               DatasetFormat format);
+                                               const WriteOptions& options);
 
 }  // namespace lidarena::dataset

@@ -62,7 +62,7 @@ struct DatasetWriter::Impl {
     prepare(path);
     if (options.format != DatasetFormat::kMcap && options.format != DatasetFormat::kBag) {
       options.dialect = Dialect::kSi;
-      store = make_sweep_store(path, rig, options.format);
+      store = make_sweep_store(path, rig, options);
       return;
     }
     const bool is_bag = options.format == DatasetFormat::kBag;

@@ -36,9 +36,9 @@ Row row_of(const PointTruth& hit) {
           hit.normal.x(),   hit.normal.y(),   hit.normal.z()};
 }
 
-bool has_classes(const ScanTruth& truth) {
-  return std::ranges::any_of(truth.points, [](const PointTruth& hit) {
-    return hit.triangle == kAir || hit.triangle == kGhost;
+bool has_classes(const ScanTruth& truth, std::size_t triangles) {
+  return !std::ranges::all_of(truth.points, [triangles](const PointTruth& hit) {
+    return is_of_world(hit.triangle, triangles);
   });
 }
 
@@ -107,7 +107,8 @@ class HitsReader final : public ScanTruthSource {
 
 }  // namespace
 
-HitsWriter::HitsWriter(const fs::path& folder, const Rig& rig) {
+HitsWriter::HitsWriter(const fs::path& folder, const Rig& rig, std::size_t triangles)
+    : triangles_(triangles) {
   for (const LidarInfo& lidar : rig.lidars) {
     auto file = std::make_unique<PartFile>(hits_path(folder, lidar.id));
     file->write(kMagic);
@@ -122,7 +123,7 @@ void HitsWriter::write(const ScanTruth& truth) {
   std::vector<Row> rows;
   rows.reserve(truth.points.size());
   for (const PointTruth& hit : truth.points) rows.push_back(row_of(hit));
-  const bool classes = has_classes(truth);
+  const bool classes = has_classes(truth, triangles_);
   const ScanHeader header{truth.stamp.count(), rows.size() | (classes ? kHasClasses : 0)};
   file.write(std::as_bytes(std::span(&header, 1)));
   file.write(std::as_bytes(std::span(rows)));

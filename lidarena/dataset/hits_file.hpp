@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -18,11 +19,12 @@ inline constexpr const char* kHitsEnding = "_hits.bin";  ///< of the files' name
 /// Writes what the scored returns of each LiDAR hit, beside the measurements of a dataset:
 /// SENSOR_hits.bin. No recording that a method is given contains it; the scorer reads it. Per
 /// return 24 bytes: position and normal of the surface (PointTruth without range and triangle). A
-/// scan with returns of the air or ghosts has also 4 bytes per return: PointTruth::triangle.
+/// scan with returns of movers, the air or ghosts has also 4 bytes per return:
+/// PointTruth::triangle.
 class HitsWriter final : public ScanTruthSink {
  public:
-  /// Throws InputError when the folder is missing or read-only.
-  HitsWriter(const std::filesystem::path& folder, const Rig& rig);
+  /// `triangles`: number of the world's. Throws InputError when the folder is missing or read-only.
+  HitsWriter(const std::filesystem::path& folder, const Rig& rig, std::size_t triangles);
   ~HitsWriter() override;
 
   /// `truth` has the scored returns alone. Throws Error when the disk is full.
@@ -31,6 +33,7 @@ class HitsWriter final : public ScanTruthSink {
   void commit();
 
  private:
+  std::size_t triangles_;
   std::map<std::string, std::unique_ptr<PartFile>> files_;  ///< by LiDAR
 };
 

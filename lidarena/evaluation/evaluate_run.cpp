@@ -106,6 +106,15 @@ std::vector<std::string> warnings_of(const Trajectory& estimate, const Trajector
   return warnings;
 }
 
+/// Says that scans were refused; empty if none was.
+std::string warning_of_refused(const results::ScansOfRun& scans) {
+  if (scans.refused == 0) return {};
+  return fmt::format(
+      "{} of {} scans were refused, because they are not later than the scan before: check the "
+      "stamps of the recording",
+      scans.refused, scans.registered + scans.refused);
+}
+
 /// Warnings about the maps that the run has.
 std::vector<std::string> warnings_of_maps(const dataset::RunFiles& run, const world::World& world) {
   std::vector<std::string> warnings;
@@ -145,18 +154,27 @@ bool are_same(const Trajectory& a, const Trajectory& b) {
 
 /// The scores of both trajectories.
 void score_trajectories(const dataset::RunFiles& run, const Trajectory& truth,
-                        results::RunMetrics& metrics) {
-  metrics.final = evaluate_trajectory(run.trajectory, truth);
-  metrics.live =
-      are_same(run.live, run.trajectory) ? metrics.final : evaluate_trajectory(run.live, truth);
+                        const Trajectory* at_clock, results::RunMetrics& metrics) {
+  metrics.final = evaluate_trajectory(run.trajectory, truth, at_clock);
+  metrics.live = are_same(run.live, run.trajectory)
+                     ? metrics.final
+                     : evaluate_trajectory(run.live, truth, at_clock);
 }
 
 /// When a run ended itself, and its scores until then if it has poses that can be scored.
 void score_until_end(const dataset::RunFiles& run, const Trajectory& truth,
-                     results::RunMetrics& metrics) {
+                     const Trajectory* at_clock, results::RunMetrics& metrics) {
   if (run.trajectory.empty() || truth.empty()) return;
   metrics.ended_at_s = to_seconds(run.trajectory.end_time() - truth.begin_time());
-  if (status_of(run.trajectory, truth).name == "ok") score_trajectories(run, truth, metrics);
+  if (status_of(run.trajectory, truth).name == "ok")
+    score_trajectories(run, truth, at_clock, metrics);
+}
+
+/// Why the points of the map that the run publishes have no classes.
+std::string no_classes_of(dataset::OwnMap map) {
+  return map == dataset::OwnMap::kMeans
+             ? "the points are means of returns, which may be of several classes"
+             : "the map does not say of which returns its points are";
 }
 
 /// Scores of both maps, as far as the run has them.
@@ -174,6 +192,8 @@ results::MapsOfRun evaluate_maps(const dataset::RunFiles& run, const Trajectory&
   const MapReference reference(world, std::move(seen), scoring.vertices);
   if (!run.map.points.empty()) {
     maps.own = evaluate_map(run.map.points, run.trajectory, truth, reference, parallel);
+    results::MapScores& shown = maps.own->se3.refused ? maps.own->first_pose : maps.own->se3;
+    if (!shown.refused) shown.classes.refused = no_classes_of(run.manifest.own_map);
   }
   if (!run.reprojected.points.empty()) {
     maps.reprojected =
@@ -199,10 +219,10 @@ std::string divergence_of(const Trajectory& estimate, const Trajectory& truth) {
   return {};
 }
 
-results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
-                                               const Trajectory& truth) {
+results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth,
+                                               const Trajectory* at_clock) {
   if (is_coarser(truth, estimate))
-    return evaluate_trajectory(at_truth_stamps(estimate, truth), truth);
+    return evaluate_trajectory(at_truth_stamps(estimate, truth), truth, at_clock);
   const Status status = status_of(estimate, truth);
   const bool ok = status.name == "ok";
   results::TrajectoryMetrics metrics;
@@ -219,6 +239,9 @@ results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
   const AbsoluteTrajectoryError first_pose = ate(AlignmentKind::kFirstPose);
   const AbsoluteTrajectoryError se3 = ate(AlignmentKind::kSe3);
   metrics.rpe = rpe_by_length(estimate, truth, at_poses);
+  if (at_clock != nullptr)
+    metrics.rpe->at_lidar_clock_1m =
+        metrics_at_clock(relative_pose_error_at_poses(estimate, *at_clock));
   metrics.ate = {metrics_of(first_pose), metrics_of(se3), metrics_of(ate(AlignmentKind::kPosYaw))};
   metrics.kitti = kitti_error(estimate, truth);
   metrics.kitti_short = kitti_error(estimate, truth, kRpeLengths_m);
@@ -232,27 +255,32 @@ results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate,
 
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const MapScoring& maps) {
+                                 const MapScoring& maps, const Trajectory* at_clock) {
   const Status status = status_of(run, truth);
   results::RunMetrics metrics;
   metrics.status = status.name;
   metrics.reason = status.reason;
   metrics.truth = facts_of(truth);
+  const dataset::RunCounts& counts = run.manifest.summary;
+  metrics.scans = {counts.scans, counts.refused, counts.dropped};
   metrics.resources = resource_metrics(run.resources);
   if (!metrics.is_ok()) {
-    if (run.manifest.status == dataset::RunStatus::kDiverged) score_until_end(run, truth, metrics);
+    if (run.manifest.status == dataset::RunStatus::kDiverged)
+      score_until_end(run, truth, at_clock, metrics);
     log.warn(fmt::format("not scored{}: {} ({})", metrics.final ? " as a whole" : "", status.name,
                          status.reason));
     return metrics;
   }
   metrics.warnings = warnings_of(run.trajectory, truth);
+  if (std::string refused = warning_of_refused(metrics.scans); !refused.empty())
+    metrics.warnings.push_back(std::move(refused));
   if (world != nullptr) {
     for (std::string& warning : warnings_of_maps(run, *world)) {
       metrics.warnings.push_back(std::move(warning));
     }
   }
   for (const std::string& warning : metrics.warnings) log.warn(warning);
-  score_trajectories(run, truth, metrics);
+  score_trajectories(run, truth, at_clock, metrics);
   if (world != nullptr) metrics.maps = evaluate_maps(run, truth, *world, parallel, maps);
   return metrics;
 }

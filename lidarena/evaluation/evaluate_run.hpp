@@ -31,14 +31,15 @@ struct MapScoring {
 /// trajectory, then map errors of both maps (empty without a mesh or a map). `world` may be null.
 /// Of a run that ended itself (its manifest says "status": "diverged") the trajectories until then
 /// are scored, no maps; one whose poses diverge (see divergence_of()) has a status and a reason,
-/// and no errors.
+/// and no errors. `at_clock`: see evaluate_trajectory().
 results::RunMetrics evaluate_run(const dataset::RunFiles& run, const Trajectory& truth,
                                  const world::World* world, const Parallel& parallel, LogSink& log,
-                                 const MapScoring& maps = {});
+                                 const MapScoring& maps = {}, const Trajectory* at_clock = nullptr);
 
 /// Scores one trajectory: association, RPE for each piece length, ATE in each alignment, errors
-/// over time.
-results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth);
+/// over time. `at_clock`, if given, is the truth with the times that the LiDAR's clock showed.
+results::TrajectoryMetrics evaluate_trajectory(const Trajectory& estimate, const Trajectory& truth,
+                                               const Trajectory* at_clock = nullptr);
 
 /// Why the estimate must not be scored; empty when it may be. It has diverged when, aligned by its
 /// first pose, some position is farther from the truth than twice the path length plus 1 m. That is

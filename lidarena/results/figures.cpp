@@ -112,6 +112,14 @@ Reading identity(const MapScores& map) {
   return of_map(known(e.distance_m, &Summary::rmse), e.definition,
                 count_of(e.distance_m.count, "points"), map.refused);
 }
+/// Share of a class; none where all points are of the mesh or nothing is known of them.
+template <ClassOfPoints PointClasses::*kind>
+Reading share(const MapScores& map) {
+  const PointClasses& classes = map.classes;
+  const bool any = classes.mover.points + classes.air.points + classes.ghost.points > 0;
+  return of_map(any ? std::optional((classes.*kind).share_percent) : std::nullopt,
+                classes.definition, count_of(classes.points, "points"), map.refused);
+}
 template <std::optional<double> VertexDistance::*value>
 Reading vertices(const MapScores& map) {
   const VertexDistance& d = map.point_vertex;
@@ -151,6 +159,12 @@ Reading best_offset(const RunMetrics& m) {
   return best == nullptr ? Reading{} : of_rpe(best->rpe, best->late_s);
 }
 
+Reading rpe_at_lidar_clock(const RunMetrics& m) {
+  const auto* rpe = m.final && m.final->rpe ? &*m.final->rpe : nullptr;
+  return rpe == nullptr || !rpe->at_lidar_clock_1m ? Reading{}
+                                                   : translation(*rpe->at_lidar_clock_1m);
+}
+
 template <Trajectory trajectory, AteMetrics AteByAlignment::*by, Reading (*read)(const AteMetrics&)>
 Reading ate(const RunMetrics& m) {
   return m.*trajectory && (m.*trajectory)->ate ? read((*(m.*trajectory)->ate).*by) : Reading{};
@@ -182,6 +196,11 @@ Reading floor_of_map(const RunMetrics& m) {
 template <SummaryInSeconds ResourceMetrics::*time, double Summary::*statistic>
 Reading time_of_scan(const RunMetrics& m) {
   return {known(m.resources.*time, statistic), "", "", "", {}, {}, ""};
+}
+template <std::size_t ScansOfRun::*count>
+Reading scans(const RunMetrics& m) {
+  if (m.scans.empty()) return {};
+  return {static_cast<double>(m.scans.*count), "", "", "", {}, {}, ""};
 }
 Reading cpu_load(const RunMetrics& m) {
   return {m.resources.cpu_load_percent, "", "", "", {}, {}, ""};
@@ -231,6 +250,8 @@ constexpr std::array kFigures{
            kOfPath, rpe_at_best_offset},
     Figure{"rpe_best_offset", nullptr, 1e3, "ms", "best time offset, stamps late by", kOfPath,
            best_offset},
+    Figure{"rpe_1m_at_lidar_clock", nullptr, 100, "cm", "RPE per meter, at the LiDAR's clock",
+           kOfPath, rpe_at_lidar_clock},
     Figure{"rpe_1m_translation", nullptr, 100, "cm", "RPE per meter, ends interpolated", kOfPath,
            rpe<kFinal, kLength<0>, translation>},
     Figure{"rpe_1m_rotation", nullptr, kDegreesPerRadian, "deg",
@@ -297,6 +318,12 @@ constexpr std::array kFigures{
            "reprojected map, double walls", kOfMap, map_of<kReprojected, double_walls>, kMapTable},
     Figure{"reprojected_map_identity", "identity cm", 100, "cm", "reprojected map, identity error",
            kOfMap, map_of<kReprojected, identity>, kMapTable},
+    Figure{"reprojected_map_movers", nullptr, 1, "%", "reprojected map, points of movers", kOfMap,
+           map_of<kReprojected, share<&PointClasses::mover>>},
+    Figure{"reprojected_map_air", nullptr, 1, "%", "reprojected map, points of the air", kOfMap,
+           map_of<kReprojected, share<&PointClasses::air>>},
+    Figure{"reprojected_map_ghosts", nullptr, 1, "%", "reprojected map, ghosts", kOfMap,
+           map_of<kReprojected, share<&PointClasses::ghost>>},
     Figure{"interpolation_floor_rmse", "floor cm", 100, "cm",
            "reprojected map, interpolation (floor)", kOfMap,
            floor_of_map<&InterpolationFloor::rmse_m>, kMapTable},
@@ -311,6 +338,10 @@ constexpr std::array kFigures{
            time_of_scan<&ResourceMetrics::latency, &Summary::p99>},
     Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun,
            time_of_scan<&ResourceMetrics::latency, &Summary::max>},
+    Figure{"refused_scans", nullptr, 1, "", "scans refused, not later than the one before", kOfRun,
+           scans<&ScansOfRun::refused>},
+    Figure{"dropped_scans", nullptr, 1, "", "scans dropped, the method was late", kOfRun,
+           scans<&ScansOfRun::dropped>},
     Figure{"late_scans", nullptr, 100, "%", "scans not done when the next one came", kOfRun,
            late_scans, kRuns},
     Figure{"cpu_p95", "CPU P95 ms", 1e3, "ms", "CPU time of a scan, P95", kOfRun,

@@ -156,6 +156,41 @@ struct IdentityError {
   }
 };
 
+/// The scored points of a map whose returns are of one class.
+struct ClassOfPoints {
+  std::size_t points = 0;
+  double share_percent = 0.0;                      ///< of the points whose class is known
+  std::optional<double> rmse_m, outliers_percent;  ///< empty without points
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("points", self.points, "", "");
+    v("share_percent", self.share_percent, "%", "of the points whose class is known");
+    v("rmse_m", self.rmse_m, "m", "root mean square of the distances to the mesh");
+    v("outliers_percent", self.outliers_percent, "%", "of the class, beyond 20 cm");
+  }
+};
+
+/// What the returns behind the scored points are of.
+struct PointClasses {
+  std::string definition = "point_classes[by-true-hit,20cm]";
+  std::optional<std::string> refused;
+  std::size_t points = 0;  ///< scored ones whose class is known
+  ClassOfPoints world, mover, air, ghost;
+  bool empty() const { return points == 0 && !refused; }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("definition", self.definition, "", "id in docs/metrics.md");
+    v("refused", self.refused, "", "why there is no figure");
+    v("points", self.points, "", "scored ones whose class is known");
+    v("world", self.world, "", "of the mesh that the map is scored against");
+    v("mover", self.mover, "", "of bodies that move, which the mesh does not have");
+    v("air", self.air, "", "of fog, dust or rain");
+    v("ghost", self.ghost, "", "mirror images, and halos of retroreflectors");
+  }
+};
+
 /// Precision, recall and F-score within one distance.
 struct CompletenessRow {
   double within_m = 0.0;
@@ -299,6 +334,7 @@ struct MapScores : MapError {
   VoxelError per_voxel;
   Ghosting ghosting;
   IdentityError identity;
+  PointClasses classes;
   SignedDistance signed_distance;
   Completeness completeness;
   VertexDistance point_vertex;
@@ -312,6 +348,7 @@ struct MapScores : MapError {
     v("per_voxel", self.per_voxel, "", "each occupied voxel counts once");
     v("ghosting", self.ghosting, "", "double walls");
     v("identity", self.identity, "", "to the true hit of each point's own ray");
+    v("classes", self.classes, "", "what the points' returns are of");
     v("signed", self.signed_distance, "", "in front of and behind the surface");
     v("completeness", self.completeness, "", "of the surface that the flight's rays hit");
     v("point_vertex", self.point_vertex, "", "to the vertices of the subdivided mesh");

@@ -49,6 +49,21 @@ struct InterpolationFloor {
   }
 };
 
+/// What became of the scans of a run.
+struct ScansOfRun {
+  std::size_t registered = 0;
+  std::size_t refused = 0;  ///< their times are not later than those of the scan before
+  std::size_t dropped = 0;  ///< the method was late; paced and live runs only
+  bool empty() const { return registered + refused + dropped == 0; }
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("registered", self.registered, "", "");
+    v("refused", self.refused, "", "not later than the scan before");
+    v("dropped", self.dropped, "", "the method was late; paced and live runs only");
+  }
+};
+
 struct MapsOfRun {
   std::optional<MapMetrics> own, reprojected;
   InterpolationFloor interpolation_floor;  ///< empty if the run tells the motion within its scans
@@ -83,6 +98,7 @@ struct RunMetrics {
   std::optional<double> ended_at_s;
   std::vector<std::string> warnings;
   TruthFacts truth;
+  ScansOfRun scans;
   std::optional<TrajectoryMetrics> live, final;
   MapsOfRun maps;
   std::optional<FramesOfFiles> frames;
@@ -103,6 +119,7 @@ struct RunMetrics {
       "until then; null otherwise");
     v("warnings", self.warnings, "", "");
     v("truth", self.truth, "", "");
+    v("scans", self.scans, "", "what became of them; null without a manifest that counts them");
     v("live", self.live, "", "poses as known at each scan");
     v("final", self.final, "", "poses at the end of the run");
     v("maps", self.maps, "", "");

@@ -108,6 +108,8 @@ struct RpeByLength {
   std::array<RpeMetrics, kRpeLengths_m.size()> lengths;  ///< of kRpeLengths_m
   RpeMetrics at_poses_1m, over_1s;
   std::optional<RpeAtOffset> at_best_offset_1m;  ///< empty without pieces
+  /// Empty where the LiDAR's clock has no offset and no drift, or is not known.
+  std::optional<RpeMetrics> at_lidar_clock_1m;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -120,6 +122,8 @@ struct RpeByLength {
     v("1s", self.over_1s, "", "pieces of one second");
     v("1m_at_best_offset", self.at_best_offset_1m, "",
       "1m_at_poses at the constant time offset for which it is least; a diagnostic");
+    v("1m_at_lidar_clock", self.at_lidar_clock_1m, "",
+      "1m_at_poses with the truth's times as the LiDAR's clock shows them");
   }
 };
 

@@ -16,7 +16,7 @@ world::WorldModel make_cave(const CaveConfig& config, std::uint64_t seed) {
   make_well_composed(samples);
   world::WorldModel model{"cave", surface_net(samples), {cave_route(graph)}};
   project_onto_surface(model.mesh, std::cref(rock), config.voxel_size_m);
-  model.mesh.paint(world::materials::kRock);
+  model.mesh.paint(world::materials::kRock.of("rock"));
   return model;
 }
 

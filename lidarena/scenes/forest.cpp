@@ -152,13 +152,13 @@ world::WorldModel make_forest(const ForestConfig& config, std::uint64_t seed) {
                     return ground.at(config.size_m * Vector2d(u - 0.5, v - 0.5));
                   }),
       {route_above(loop, ground)}};
-  model.mesh.paint(kSoil);
+  model.mesh.paint(kSoil.of("terrain"));
   Plants plants;
   add_trees(config, ground, loop, random, plants);
   world::TriangleMesh stones = add_undergrowth(config, ground, loop, random, plants);
-  stones.paint(world::materials::kRock);
-  plants.wood.paint(kBark);
-  plants.leaves.paint(world::materials::kLeaf);
+  stones.paint(world::materials::kRock.of("boulder"));
+  plants.wood.paint(kBark.of("trunk"));
+  plants.leaves.paint(world::materials::kLeaf.of("leaves"));
   for (const world::TriangleMesh* part : {&stones, &plants.wood, &plants.leaves})
     if (!part->triangles.empty()) model.mesh.append(*part);
   return model;

@@ -42,7 +42,8 @@ world::TriangleMesh shell(const HallConfig& config, const HallSize& size) {
     for (const bool upper : {false, true}) {
       Vector3d from = low, to = high;
       (upper ? from : to)[axis] = upper ? high[axis] - kPlate : low[axis] + kPlate;
-      mesh.append(shape::box(from, to));
+      const char* const object = axis != 2 ? "wall" : upper ? "roof" : "floor";
+      mesh.append(shape::painted(shape::box(from, to), world::materials::kPlaster.of(object)));
     }
   }
   return mesh;
@@ -168,17 +169,17 @@ world::WorldModel make_hall(const HallConfig& config, std::uint64_t seed) {
   SequentialRandom random(seed, stream_of("hall"));
   const HallSize size(config);
   world::WorldModel model{"hall", shell(config, size), {route_through(config, size, random)}};
-  model.mesh.paint(world::materials::kPlaster);
   Fittings fittings;
   for (int row = 0; row < config.rows; ++row) {
     const double y = size.aisle(config, row) + 0.5 * size.pitch;
     add_rack(config, config.length_m, y, random, fittings);
   }
+  fittings.steel.paint(world::materials::kMetal.of("rack"));
   for (double x = 0.5 * kTruss; x < size.length; x += kTruss)
-    fittings.steel.append(truss(config, size, x));
-  fittings.steel.paint(world::materials::kMetal);
-  fittings.wood.paint(world::materials::kWood);
-  fittings.paper.paint(world::materials::kPaper);
+    fittings.steel.append(
+        shape::painted(truss(config, size, x), world::materials::kMetal.of("truss")));
+  fittings.wood.paint(world::materials::kWood.of("rack"));
+  fittings.paper.paint(world::materials::kPaper.of("goods"));
   for (const world::TriangleMesh* part : {&fittings.steel, &fittings.wood, &fittings.paper})
     if (!part->triangles.empty()) model.mesh.append(*part);
   return model;

@@ -57,7 +57,7 @@ world::WorldModel make_house(const HouseConfig& config, std::uint64_t seed) {
   world::WorldModel model{"house", build_shell(plan, config), {plan.route}};
   for (PlacedObject& object : furnish_house(plan, config, seed)) {
     if (!config.ceilings && object.kind == "pendant lamp") continue;
-    object.mesh.paint(material_of(object.kind));
+    object.mesh.paint(material_of(object.kind).of(object.kind));
     model.mesh.append(object.mesh);
   }
   return model;

@@ -127,11 +127,11 @@ world::TriangleMesh build_window(const Opening& window, const HouseConfig& confi
   const double x = window.center;
   mesh.append(shape::box({x - 0.5 * kFrame, -0.5 * kFrame, window.sill},
                          {x + 0.5 * kFrame, 0.5 * kFrame, window.head}));
-  mesh.paint(world::materials::kWood);
+  mesh.paint(world::materials::kWood.of("window"));
   if (config.panes) {
     world::TriangleMesh pane = shape::box({hole.min().x(), -0.5 * kPane, hole.min().y()},
                                           {hole.max().x(), 0.5 * kPane, hole.max().y()});
-    pane.paint(world::materials::kGlass);
+    pane.paint(world::materials::kGlass.of("window"));
     mesh.append(pane);
   }
   return mesh;
@@ -145,7 +145,7 @@ world::TriangleMesh build_trims(const Opening& door, const HouseConfig& config) 
     mesh.append(shape::translated(frame(hole_of(door), -kTrim, kThick, false),
                                   {0, side * (config.wall_thickness_m + kThick), 0}));
   }
-  mesh.paint(world::materials::kWood);
+  mesh.paint(world::materials::kWood.of("door frame"));
   return mesh;
 }
 
@@ -179,20 +179,24 @@ std::vector<Wall> plan_walls(const HousePlan& plan) {
 
 world::TriangleMesh build_shell(const HousePlan& plan, const HouseConfig& config) {
   const double half = 0.5 * config.wall_thickness_m;
-  world::TriangleMesh mesh =
-      shape::box({-half, -half, -kSlab}, {config.width_m + half, config.depth_m + half, 0});
+  const world::Material& plaster = world::materials::kPlaster;
+  world::TriangleMesh mesh = shape::painted(
+      shape::box({-half, -half, -kSlab}, {config.width_m + half, config.depth_m + half, 0}),
+      plaster.of("floor"));
   for (const Room& room : plan.rooms) {
     if (!config.ceilings) break;
-    mesh.append(shape::box({room.floor.min().x(), room.floor.min().y(), room.height},
-                           {room.floor.max().x(), room.floor.max().y(), room.height + kSlab}));
+    mesh.append(shape::painted(
+        shape::box({room.floor.min().x(), room.floor.min().y(), room.height},
+                   {room.floor.max().x(), room.floor.max().y(), room.height + kSlab}),
+        plaster.of("ceiling")));
   }
   for (Wall wall : plan_walls(plan)) {
     const double end = wall.axis == 0 ? config.width_m : config.depth_m;
     if (wall.axis == 0 && wall.from == 0) wall.from -= half;  // fills the corners of the house
     if (wall.axis == 0 && wall.to == end) wall.to += half;
-    mesh.append(build_wall(wall, plan, config), world_from_wall(wall.axis, wall.line));
+    mesh.append(shape::painted(build_wall(wall, plan, config), plaster.of("wall")),
+                world_from_wall(wall.axis, wall.line));
   }
-  mesh.paint(world::materials::kPlaster);
   for (const Opening& window : plan.windows) {
     mesh.append(build_window(window, config), world_from_wall(window.axis, window.line));
   }

@@ -162,6 +162,11 @@ world::TriangleMesh scaled(world::TriangleMesh mesh, const Eigen::Vector3d& scal
   return mesh;
 }
 
+world::TriangleMesh painted(world::TriangleMesh mesh, const world::Material& material) {
+  mesh.paint(material);
+  return mesh;
+}
+
 world::TriangleMesh rotated(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis) {
   const Eigen::Matrix3d rotation = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
   for (Eigen::Vector3d& v : mesh.vertices) v = rotation * v;

@@ -42,6 +42,7 @@ std::vector<Eigen::Vector2d> arc(const Eigen::Vector2d& center, double radius, d
 
 world::TriangleMesh translated(world::TriangleMesh mesh, const Eigen::Vector3d& offset);
 world::TriangleMesh scaled(world::TriangleMesh mesh, const Eigen::Vector3d& scale);
+world::TriangleMesh painted(world::TriangleMesh mesh, const world::Material& material);
 world::TriangleMesh rotated(world::TriangleMesh mesh, double angle, const Eigen::Vector3d& axis);
 
 }  // namespace lidarena::scenes::shape

@@ -59,7 +59,7 @@ void fit_gallery(const Drift& drift, SequentialRandom& random, world::TriangleMe
   if (end < begin) return;
   for (double x = begin + random.uniform(0.0, 2.0); x <= end; x += kBetween) {
     world::TriangleMesh wood = support(drift, frame, x);
-    wood.paint(world::materials::kWood);
+    wood.paint(world::materials::kWood.of("support"));
     mesh.append(wood);
   }
   const double side = random.uniform() < 0.5 ? -1.0 : 1.0;
@@ -67,7 +67,7 @@ void fit_gallery(const Drift& drift, SequentialRandom& random, world::TriangleMe
   world::TriangleMesh pipe = frame.placed(shape::bar(
       {{begin, y, frame.floor(begin) + kPipeHeight}, {end, y, frame.floor(end) + kPipeHeight}},
       kPipeRadius, 12));
-  pipe.paint(world::materials::kMetal);
+  pipe.paint(world::materials::kMetal.of("pipe"));
   mesh.append(pipe);
 }
 
@@ -83,7 +83,7 @@ void fill_chamber(const Drift& chamber, SequentialRandom& random, world::Triangl
                                   0.5 * size.cwiseProduct(Vector3d(1, 1, 2))),
                        random.uniform(0.0, std::numbers::pi), Vector3d::UnitZ());
     crate = frame.placed(shape::translated(crate, {x, y, 0.0}));
-    crate.paint(world::materials::kWood);
+    crate.paint(world::materials::kWood.of("crate"));
     mesh.append(crate);
   }
 }
@@ -97,7 +97,7 @@ world::WorldModel make_mine(const MineConfig& config, std::uint64_t seed) {
   make_well_composed(samples);
   world::WorldModel model{"mine", surface_net(samples), {mine_route(plan)}};
   project_onto_surface(model.mesh, std::cref(rock), config.voxel_size_m);
-  model.mesh.paint(world::materials::kRock);
+  model.mesh.paint(world::materials::kRock.of("rock"));
   SequentialRandom random(seed, stream_of("mine fittings"));
   for (const Gallery& gallery : plan.galleries) {
     const bool is_supported = random.uniform() < config.supports;

@@ -22,8 +22,21 @@ constexpr double kFlightHeight = 1.3;                  // m, of the route
 constexpr double kPointStep = 2.5;                     // m, between its points
 constexpr double kTread = 0.28, kRiser = 0.175;        // m, of the stairs
 
+/// What is made of one material.
+struct Part {
+  const world::Material& material;
+  world::TriangleMesh mesh;
+
+  void add(const char* object, const world::TriangleMesh& piece,
+           const Pose& placement = Pose::Identity()) {
+    mesh.append(shape::painted(piece, material.of(object)), placement);
+  }
+};
+
 struct Parts {
-  world::TriangleMesh plaster, glass, wood, screen, fabric;
+  Part plaster{world::materials::kPlaster, {}}, glass{world::materials::kGlass, {}},
+      wood{world::materials::kWood, {}}, screen{world::materials::kDarkScreen, {}},
+      fabric{world::materials::kFabric, {}};
 };
 
 /// Offices along one corridor, in a frame whose x is along the corridor and whose y points from the
@@ -44,26 +57,27 @@ class OfficeRow {
     }
     for (int i = 0; i <= config_.offices; ++i) {
       const double x = i * config_.office_width_m;
-      box(parts_.plaster, {x - 0.5 * kWall, 0, 0},
+      box(parts_.plaster, "wall", {x - 0.5 * kWall, 0, 0},
           {x + 0.5 * kWall, config_.office_depth_m, config_.height_m});
     }
   }
 
  private:
-  void box(world::TriangleMesh& part, const Vector3d& low, const Vector3d& high) {
-    part.append(shape::box(low, high), pose_);
+  void box(Part& part, const char* object, const Vector3d& low, const Vector3d& high) {
+    part.add(object, shape::box(low, high), pose_);
   }
   double door_begin(double x) const { return x + config_.office_width_m - 0.3 - kDoorWidth; }
 
   /// The wall to the corridor: a glass front from wall to door, the door's opening, a lintel.
   void front(double x) {
     const double end = x + config_.office_width_m, door = door_begin(x);
-    box(parts_.plaster, {door + kDoorWidth, -0.5 * kWall, 0}, {end, 0.5 * kWall, kHead});
-    box(parts_.plaster, {door - 0.1, -0.5 * kWall, 0}, {door, 0.5 * kWall, kHead});
-    box(parts_.plaster, {door, -0.5 * kWall, kDoorHeight}, {door + kDoorWidth, 0.5 * kWall, kHead});
-    box(parts_.plaster, {x, -0.5 * kWall, kHead}, {end, 0.5 * kWall, config_.height_m});
-    box(parts_.wood, {x, -0.5 * kWall, 0}, {door - 0.1, 0.5 * kWall, 0.1});
-    box(parts_.glass, {x, -0.5 * kGlassPane, 0.1}, {door - 0.1, 0.5 * kGlassPane, kHead});
+    box(parts_.plaster, "wall", {door + kDoorWidth, -0.5 * kWall, 0}, {end, 0.5 * kWall, kHead});
+    box(parts_.plaster, "wall", {door - 0.1, -0.5 * kWall, 0}, {door, 0.5 * kWall, kHead});
+    box(parts_.plaster, "wall", {door, -0.5 * kWall, kDoorHeight},
+        {door + kDoorWidth, 0.5 * kWall, kHead});
+    box(parts_.plaster, "wall", {x, -0.5 * kWall, kHead}, {end, 0.5 * kWall, config_.height_m});
+    box(parts_.wood, "baseboard", {x, -0.5 * kWall, 0}, {door - 0.1, 0.5 * kWall, 0.1});
+    box(parts_.glass, "window", {x, -0.5 * kGlassPane, 0.1}, {door - 0.1, 0.5 * kGlassPane, kHead});
   }
 
   /// A leaf that turns into the office about the side towards the wall.
@@ -72,43 +86,48 @@ class OfficeRow {
     const double angle = is_open ? random_.uniform(0.6, 1.5) : 0.0;
     const world::TriangleMesh leaf =
         shape::box({-kDoorWidth, -0.5 * kLeaf, 0.01}, {0, 0.5 * kLeaf, kDoorHeight});
-    parts_.wood.append(shape::translated(shape::rotated(leaf, -angle, Vector3d::UnitZ()),
-                                         {door_begin(x) + kDoorWidth, 0.0, 0.0}),
-                       pose_);
+    parts_.wood.add("door",
+                    shape::translated(shape::rotated(leaf, -angle, Vector3d::UnitZ()),
+                                      {door_begin(x) + kDoorWidth, 0.0, 0.0}),
+                    pose_);
   }
 
   void facade(double x) {
     const double end = x + config_.office_width_m, y = config_.office_depth_m;
-    box(parts_.plaster, {x, y, 0}, {end, y + 2.0 * kWall, kSill});
-    box(parts_.plaster, {x, y, kHead}, {end, y + 2.0 * kWall, config_.height_m});
-    box(parts_.glass, {x, y + kWall, kSill}, {end, y + kWall + kGlassPane, kHead});
+    box(parts_.plaster, "wall", {x, y, 0}, {end, y + 2.0 * kWall, kSill});
+    box(parts_.plaster, "wall", {x, y, kHead}, {end, y + 2.0 * kWall, config_.height_m});
+    box(parts_.glass, "window", {x, y + kWall, kSill}, {end, y + kWall + kGlassPane, kHead});
     for (const double post : {x + config_.office_width_m / 3.0, x + config_.office_width_m / 1.5})
-      box(parts_.wood, {post - 0.03, y + 0.05, kSill}, {post + 0.03, y + 0.15, kHead});
+      box(parts_.wood, "window", {post - 0.03, y + 0.05, kSill}, {post + 0.03, y + 0.15, kHead});
   }
 
   void furnish(double x) {
     const double off = random_.uniform(-0.1, 0.1), depth = config_.office_depth_m;
     const Vector3d desk(x + 0.5 + off, depth - 1.2, 0.0);
-    box(parts_.wood, desk + Vector3d(0, 0, 0.71), desk + Vector3d(1.6, 0.8, 0.74));
+    box(parts_.wood, "desk", desk + Vector3d(0, 0, 0.71), desk + Vector3d(1.6, 0.8, 0.74));
     for (const double leg_x : {0.05, 1.5}) {
       for (const double leg_y : {0.05, 0.7})
-        box(parts_.wood, desk + Vector3d(leg_x, leg_y, 0),
+        box(parts_.wood, "desk", desk + Vector3d(leg_x, leg_y, 0),
             desk + Vector3d(leg_x + 0.05, leg_y + 0.05, 0.71));
     }
-    box(parts_.screen, desk + Vector3d(0.5, 0.6, 0.85), desk + Vector3d(1.1, 0.63, 1.2));
-    box(parts_.screen, desk + Vector3d(0.77, 0.6, 0.74), desk + Vector3d(0.83, 0.64, 0.86));
+    box(parts_.screen, "screen", desk + Vector3d(0.5, 0.6, 0.85), desk + Vector3d(1.1, 0.63, 1.2));
+    box(parts_.screen, "screen", desk + Vector3d(0.77, 0.6, 0.74),
+        desk + Vector3d(0.83, 0.64, 0.86));
     const Vector3d seat = desk + Vector3d(0.8 + random_.uniform(-0.4, 0.4), -0.45, 0.45);
-    parts_.fabric.append(shape::translated(shape::rounded_box({0.5, 0.5, 0.08}, 0.03, 3), seat),
-                         pose_);
-    box(parts_.fabric, seat + Vector3d(-0.22, -0.25, 0.1), seat + Vector3d(0.22, -0.2, 0.6));
-    box(parts_.wood, seat + Vector3d(-0.03, -0.03, -0.45), seat + Vector3d(0.03, 0.03, 0.0));
+    parts_.fabric.add(
+        "chair", shape::translated(shape::rounded_box({0.5, 0.5, 0.08}, 0.03, 3), seat), pose_);
+    box(parts_.fabric, "chair", seat + Vector3d(-0.22, -0.25, 0.1),
+        seat + Vector3d(0.22, -0.2, 0.6));
+    box(parts_.wood, "chair", seat + Vector3d(-0.03, -0.03, -0.45),
+        seat + Vector3d(0.03, 0.03, 0.0));
     for (int shelf = 0; shelf < 5; ++shelf) {
       const double z = 0.1 + 0.42 * shelf;
       const double from = x + 0.5 * kWall, y = 0.7;
-      box(parts_.wood, {from, y, z}, {from + 0.35, y + 1.2, z + 0.02});
+      box(parts_.wood, "bookshelf", {from, y, z}, {from + 0.35, y + 1.2, z + 0.02});
       if (shelf < 4) {
         const double filled = random_.uniform(0.2, 1.15);
-        box(parts_.fabric, {from + 0.02, y + 0.03, z + 0.02}, {from + 0.26, y + filled, z + 0.32});
+        box(parts_.fabric, "books", {from + 0.02, y + 0.03, z + 0.02},
+            {from + 0.26, y + filled, z + 0.32});
       }
     }
   }
@@ -136,10 +155,11 @@ void build_frame(const Story& s, Parts& parts) {
   const double y0 = -s.corridor - s.depth - 2.0 * kWall,
                y1 = s.core + s.corridor + s.depth + 2.0 * kWall;
   const auto wall = [&](double ax, double ay, double bx, double by) {
-    parts.plaster.append(shape::box({ax, ay, 0}, {bx, by, s.height}));
+    parts.plaster.add("wall", shape::box({ax, ay, 0}, {bx, by, s.height}));
   };
-  parts.plaster.append(shape::box({x0 - kWall, y0, -0.2}, {x1 + kWall, y1, 0}));
-  parts.plaster.append(shape::box({x0 - kWall, y0, s.height}, {x1 + kWall, y1, s.height + 0.2}));
+  parts.plaster.add("floor", shape::box({x0 - kWall, y0, -0.2}, {x1 + kWall, y1, 0}));
+  parts.plaster.add("ceiling",
+                    shape::box({x0 - kWall, y0, s.height}, {x1 + kWall, y1, s.height + 0.2}));
   wall(x0 - kWall, y0, x0, y1);
   wall(x1, y0, x1 + kWall, y1);
   for (const double x : {x0, s.length}) {  // the four corner cells; that of the stairs is open
@@ -153,18 +173,18 @@ void build_frame(const Story& s, Parts& parts) {
 void build_core(const OfficeConfig& config, const Story& s, Parts& parts) {
   const double bay = config.office_width_m;
   for (const double y : {0.0, s.core - kWall}) {
-    parts.plaster.append(shape::box({0, y, kHead}, {s.length, y + kWall, s.height}));
-    parts.plaster.append(shape::box({0, y, 0}, {s.length, y + kWall, 0.4}));
+    parts.plaster.add("wall", shape::box({0, y, kHead}, {s.length, y + kWall, s.height}));
+    parts.plaster.add("wall", shape::box({0, y, 0}, {s.length, y + kWall, 0.4}));
     for (int i = 0; i <= config.offices; ++i) {
       const double x = std::min(i * bay, s.length - 0.3);
-      parts.plaster.append(shape::box({x, y, 0.4}, {x + 0.3, y + kWall, kHead}));
+      parts.plaster.add("wall", shape::box({x, y, 0.4}, {x + 0.3, y + kWall, kHead}));
     }
     const double middle = y + 0.5 * kWall;
-    parts.glass.append(shape::box({0, middle - 0.5 * kGlassPane, 0.4},
-                                  {s.length, middle + 0.5 * kGlassPane, kHead}));
+    parts.glass.add("window", shape::box({0, middle - 0.5 * kGlassPane, 0.4},
+                                         {s.length, middle + 0.5 * kGlassPane, kHead}));
   }
   for (const double x : {0.0, s.length - kWall})
-    parts.plaster.append(shape::box({x, 0, 0}, {x + kWall, s.core, s.height}));
+    parts.plaster.add("wall", shape::box({x, 0, 0}, {x + kWall, s.core, s.height}));
 }
 
 /// Steps that rise from the corridor at the corner of the story, up to the ceiling.
@@ -173,12 +193,13 @@ void build_stairs(const Story& s, Parts& parts) {
   for (int i = 0; begin - (i + 1) * kTread > -s.corridor - s.depth && (i + 1) * kRiser < s.height;
        ++i) {
     const double y = begin - i * kTread;
-    parts.wood.append(shape::box({-s.corridor, y - kTread, std::max(0.0, (i - 1) * kRiser)},
-                                 {-s.corridor + 1.2, y, (i + 1) * kRiser}));
+    parts.wood.add("stairs", shape::box({-s.corridor, y - kTread, std::max(0.0, (i - 1) * kRiser)},
+                                        {-s.corridor + 1.2, y, (i + 1) * kRiser}));
   }
   const double last = -s.corridor - s.depth + 0.3;
-  parts.wood.append(shape::bar(
-      {{-s.corridor + 1.2, begin, 0.9}, {-s.corridor + 1.2, last, s.height - 0.1}}, 0.025, 8));
+  parts.wood.add("stairs", shape::bar({{-s.corridor + 1.2, begin, 0.9},
+                                       {-s.corridor + 1.2, last, s.height - 0.1}},
+                                      0.025, 8));
 }
 
 std::vector<Vector3d> route_around(const Story& s) {
@@ -213,14 +234,9 @@ world::WorldModel make_office(const OfficeConfig& config, std::uint64_t seed) {
       make_pose(Eigen::Quaterniond(Eigen::AngleAxisd(std::numbers::pi, Vector3d::UnitZ())),
                 {story.length, -story.corridor, 0});
   for (const Pose& pose : {north, south}) OfficeRow(config, pose, random, parts).build();
-  parts.plaster.paint(world::materials::kPlaster);
-  parts.glass.paint(world::materials::kGlass);
-  parts.wood.paint(world::materials::kWood);
-  parts.screen.paint(world::materials::kDarkScreen);
-  parts.fabric.paint(world::materials::kFabric);
-  world::WorldModel model{"office", std::move(parts.plaster), {route_around(story)}};
-  for (const world::TriangleMesh* part : {&parts.glass, &parts.wood, &parts.screen, &parts.fabric})
-    model.mesh.append(*part);
+  world::WorldModel model{"office", std::move(parts.plaster.mesh), {route_around(story)}};
+  for (const Part* part : {&parts.glass, &parts.wood, &parts.screen, &parts.fabric})
+    model.mesh.append(part->mesh);
   return model;
 }
 

@@ -4,12 +4,15 @@
 #include <algorithm>
 
 #include "lidarena/dataset/dataset.hpp"
+#include "lidarena/dataset/dataset_manifest.hpp"
 #include "lidarena/dataset/hits_file.hpp"
 #include "lidarena/evaluation/diagnosis/lever_arm.hpp"
 #include "lidarena/evaluation/evaluate_run.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/observed_surface.hpp"
 #include "lidarena/map/point_map.hpp"
+#include "lidarena/sensor/sensor_clock.hpp"
+#include "lidarena/sensor/simulate.hpp"
 #include "lidarena/world/mesh_io.hpp"
 
 namespace lidarena::stages {
@@ -40,6 +43,27 @@ dataset::Cloud scored_cloud(const dataset::RunFiles& run, const Pose& mesh_from_
   return cloud;
 }
 
+/// The truth with the times that the clock of the simulated LiDAR `sensor` showed; empty if that
+/// clock had neither offset nor drift, or the dataset was recorded.
+std::optional<Trajectory> truth_at_clock(const fs::path& dataset, const std::string& sensor,
+                                         const Trajectory& truth) {
+  const auto manifest = dataset::read_dataset_manifest(dataset);
+  if (!manifest || !manifest->simulation || !manifest->simulation->noise) return std::nullopt;
+  std::vector<sensor::SensorConfig> sensors;
+  read_value(ConfigNode::parse(Json(manifest->simulation->sensors).dump(),
+                               (dataset / "manifest.json").string()),
+             sensors, {});
+  const std::vector<LidarInfo> lidars = sensor::make_rig(sensors).lidars;
+  const auto found = std::ranges::find(lidars, sensor, &LidarInfo::id);
+  if (found == lidars.end()) return std::nullopt;
+  const sensor::ClockConfig& errors = sensors[found - lidars.begin()].noise.clock;
+  if (errors.offset_s == 0.0 && errors.drift == 0.0) return std::nullopt;
+  const sensor::SensorClock clock(errors.offset_s, errors.drift, 0.0, Time{0}, sensor, 0);
+  std::vector<StampedPose> poses(truth.poses().begin(), truth.poses().end());
+  for (StampedPose& pose : poses) pose.stamp = clock.reading(pose.stamp);
+  return Trajectory(std::move(poses), "truth by the LiDAR's clock");
+}
+
 /// The map of a perfect estimate that is known only at the instants of `estimate`.
 std::vector<Eigen::Vector3f> interpolated_map(std::span<const evaluation::TimedReturn> returns,
                                               const Pose& body_from_lidar,
@@ -64,7 +88,8 @@ evaluation::RayTruth ray_truth(const fs::path& dataset, const dataset::RunFiles&
   evaluation::RayTruth rays;
   if (hits) {
     rays.observed = evaluation::observe(*hits, world, parallel);
-    rays.identified = evaluation::identify(run.reprojected, *dataset::open_hits(dataset, sensor));
+    rays.identified = evaluation::identify(run.reprojected, *dataset::open_hits(dataset, sensor),
+                                           world.mesh().triangles.size());
   }
   if (hits && !run.motion.empty()) return rays;
   if (run.reprojected.origins.empty() || !run.manifest.body_from_lidar)
@@ -126,10 +151,13 @@ results::RunMetrics score_run(const fs::path& folder, const ScoreParts& parts,
       return std::nullopt;
     }
   };
+  std::optional<Trajectory> at_clock;
+  if (given == nullptr) at_clock = truth_at_clock(dataset, run.manifest.sensor, *truth);
   evaluation::ScoredPoints scored;
   results::RunMetrics metrics = evaluation::evaluate_run(
       run, *truth, world.get(), parallel, log,
-      {.observe = observe, .scored = &scored, .vertices = has(parts, ScorePart::kVertices)});
+      {.observe = observe, .scored = &scored, .vertices = has(parts, ScorePart::kVertices)},
+      at_clock ? &*at_clock : nullptr);
   if (given != nullptr) metrics.frames = {given->poses.body, given->lever};
   const std::optional<Pose> mesh_from_map = results::truth_from_estimate(metrics);
   if (world && mesh_from_map && !run.reprojected.points.empty()) {

@@ -20,6 +20,7 @@
 #include "lidarena/sensor/simulate.hpp"
 #include "lidarena/stages/read_ahead.hpp"
 #include "lidarena/stages/scene_settings.hpp"
+#include "lidarena/stages/semantic_labels.hpp"
 #include "lidarena/world/living_world.hpp"
 #include "lidarena/world/mesh_io.hpp"
 #include "lidarena/world/ply.hpp"
@@ -96,6 +97,33 @@ class SimulatedSource : public EventSource {
 
  private:
   std::unique_ptr<Scene> scene_;
+  std::unique_ptr<EventSource> events_;
+};
+
+/// The truth of the points of one LiDAR of a scene, which it owns.
+class SimulatedTruth : public ScanTruthSource {
+ public:
+  SimulatedTruth(std::unique_ptr<Scene> scene, const Parallel& parallel)
+      : scene_(std::move(scene)) {
+    scene_->options.truth = &latest_;
+    events_ = sensor::simulate(scene_->surfaces(), *scene_->flight, scene_->sensors,
+                               scene_->options, parallel);
+  }
+  std::optional<ScanTruth> next() override {
+    latest_.scan.reset();
+    while (!latest_.scan && events_->next()) {
+    }
+    return latest_.scan;
+  }
+
+ private:
+  struct Latest : ScanTruthSink {
+    void write(const ScanTruth& truth) override { scan = truth; }
+    std::optional<ScanTruth> scan;
+  };
+
+  std::unique_ptr<Scene> scene_;
+  Latest latest_;
   std::unique_ptr<EventSource> events_;
 };
 
@@ -195,7 +223,10 @@ std::unique_ptr<EventSource> simulated(const Scene& scene, TruthSinks* sinks,
 void write_events(const SimulateRequest& request, const Scene& scene, dataset::HitsWriter* hits,
                   const fs::path& out, const Parallel& parallel, LogSink& log,
                   SimulateSummary& summary) {
-  dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), request.write);
+  dataset::WriteOptions options = request.write;
+  if (options.format == dataset::DatasetFormat::kKitti && request.truth)
+    options.labels = semantic_labels(scene.world->mesh(), scene.model.movers);
+  dataset::DatasetWriter writer(out, sensor::make_rig(scene.sensors), options);
   TruthSinks sinks(scene, request.truth ? &writer : nullptr, hits);
   const bool any = request.truth || hits != nullptr;
   const auto events = simulated(scene, any ? &sinks : nullptr, parallel);
@@ -385,7 +416,8 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   copy_patterns(scene->sensors, out);
   const bool with_data = request.data && !request.live;
   std::optional<dataset::HitsWriter> writer;
-  if (request.hits.value_or(with_data)) writer.emplace(out, sensor::make_rig(scene->sensors));
+  if (request.hits.value_or(with_data))
+    writer.emplace(out, sensor::make_rig(scene->sensors), summary.triangles);
   dataset::HitsWriter* const hits = writer ? &*writer : nullptr;
   if (with_data) {
     write_events(request, *scene, hits, out, parallel, log, summary);
@@ -398,6 +430,28 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const fs::path&
   if (request.live) publish_events(request, *scene, hits, parallel, log, summary);
   if (hits != nullptr) hits->commit();
   return summary;
+}
+
+std::unique_ptr<ScanTruthSource> open_simulated_truth(const fs::path& dataset,
+                                                      const std::string& sensor,
+                                                      const Parallel& parallel) {
+  const auto manifest = manifest_to_simulate(dataset);
+  if (!manifest) return nullptr;
+  std::unique_ptr<Scene> scene = scene_of(dataset, *manifest->simulation);
+  scene->options.lidar = sensor;
+  return std::make_unique<SimulatedTruth>(std::move(scene), parallel);
+}
+
+std::vector<std::uint32_t> labels_of_dataset(const fs::path& dataset) {
+  const auto manifest =
+      fs::is_directory(dataset) ? dataset::read_dataset_manifest(dataset) : std::nullopt;
+  const auto mesh = manifest ? dataset::find_world_mesh(dataset) : std::nullopt;
+  if (!mesh || !manifest->simulation) return {};
+  std::vector<world::MoverConfig> movers;
+  read_value(ConfigNode::parse(Json(manifest->simulation->movers).dump(),
+                               (dataset / "manifest.json").string()),
+             movers, {});
+  return semantic_labels(world::load_mesh(*mesh), movers);
 }
 
 dataset::Dataset open_any_dataset(const fs::path& path, const dataset::ReadOptions& options,

@@ -68,4 +68,13 @@ SimulateSummary simulate_dataset(const SimulateRequest& request, const std::file
 dataset::Dataset open_any_dataset(const std::filesystem::path& path,
                                   const dataset::ReadOptions& options, const Parallel& parallel);
 
+/// The truth of the points of the LiDAR `sensor` of a dataset without measurements, simulated while
+/// it is read; null for any other dataset.
+std::unique_ptr<ScanTruthSource> open_simulated_truth(const std::filesystem::path& dataset,
+                                                      const std::string& sensor,
+                                                      const Parallel& parallel);
+
+/// See semantic_labels(); empty for a dataset that was not simulated, or whose mesh is not there.
+std::vector<std::uint32_t> labels_of_dataset(const std::filesystem::path& dataset);
+
 }  // namespace lidarena::stages

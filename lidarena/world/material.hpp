@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 namespace lidarena::world {
 
-/// Optical properties of a surface for a LiDAR's light (near infrared, about 905 nm).
+/// Optical properties of a surface for a LiDAR's light (near infrared, about 905 nm), and the kind
+/// of object that it belongs to.
 struct Material {
   std::string name = "diffuse";
   double reflectivity = 0.5;  ///< share of the light that is reflected, 0..1
@@ -17,7 +19,15 @@ struct Material {
   /// Light that a retroreflector returns to its source, relative to a white diffuse surface: pi
   /// times the coefficient R_A of retroreflection (cd/lx/m^2) of its data sheet; 0 for others.
   double retro = 0.0;
+  std::string object = {};  ///< e.g. "floor", see semantic_class(); empty: not known
   bool operator==(const Material&) const = default;
+
+  /// The same on another kind of object.
+  Material of(std::string kind) const {
+    Material material = *this;
+    material.object = std::move(kind);
+    return material;
+  }
 };
 
 /// Light returned towards its source, relative to a white diffuse surface at normal incidence. The

@@ -51,7 +51,22 @@ std::string comment_of(const Material& material) {
       fmt::format("comment material {} {} ", material.reflectivity, material.specular);
   if (material.transmission > 0.0) text += fmt::format("transmission={} ", material.transmission);
   if (material.retro > 0.0) text += fmt::format("retro={} ", material.retro);
-  return text + material.name + "\n";
+  text += material.name + "\n";
+  return material.object.empty() ? text : text + "comment object " + material.object + "\n";
+}
+
+/// The materials of a file that save_ply() wrote.
+std::vector<Material> palette_of(const PlyReader& reader) {
+  constexpr std::string_view kObject = "object ";
+  std::vector<Material> palette;
+  for (const std::string& comment : reader.comments()) {
+    if (const auto material = parse_material(comment)) {
+      palette.push_back(*material);
+    } else if (comment.starts_with(kObject) && !palette.empty()) {
+      palette.back().object = comment.substr(kObject.size());
+    }
+  }
+  return palette;
 }
 
 void read_vertices(const PlyElement& element, PlyReader& reader, TriangleMesh& mesh) {
@@ -134,9 +149,7 @@ TriangleMesh read_ply(const std::filesystem::path& file) {
   const std::string bytes = std::move(buffer).str();
   PlyReader reader(bytes, name);
   TriangleMesh mesh;
-  for (const std::string& comment : reader.comments()) {
-    if (const auto material = parse_material(comment)) mesh.palette.push_back(*material);
-  }
+  mesh.palette = palette_of(reader);
   if (mesh.palette.size() > 256) throw InputError(name, "has more than 256 materials");
   for (const PlyElement& element : reader.elements()) {
     if (element.name == "vertex" && !element.properties.empty()) {

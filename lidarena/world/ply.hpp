@@ -14,8 +14,8 @@ namespace lidarena::world {
 /// Throws InputError with the file and, in the header, the line when it is not a PLY file, is
 /// truncated, or has an invalid index. A file of points gives a mesh without triangles. Materials
 /// are read from files that save_ply() wrote: comments "material REFLECTIVITY SPECULAR NAME", or
-/// "material REFLECTIVITY SPECULAR transmission=T retro=R NAME", and the face property
-/// material_index.
+/// "material REFLECTIVITY SPECULAR transmission=T retro=R NAME", each with "object KIND" after it
+/// if it is of a named kind of object, and the face property material_index.
 TriangleMesh read_ply(const std::filesystem::path& file);
 
 /// Writes binary little-endian PLY with double coordinates, and materials if the mesh has them;

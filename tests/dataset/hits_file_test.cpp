@@ -23,6 +23,8 @@ ScanTruth truth_of(const std::string& sensor, int index, int returns) {
   return truth;
 }
 
+constexpr std::size_t kTriangles = 100;
+
 Rig two_lidars() {
   Rig rig;
   for (const char* id : {"front", "rear"}) rig.lidars.emplace_back().id = id;
@@ -30,7 +32,7 @@ Rig two_lidars() {
 }
 
 void write_hits(const std::filesystem::path& folder) {
-  HitsWriter writer(folder, two_lidars());
+  HitsWriter writer(folder, two_lidars(), kTriangles);
   for (int scan = 0; scan < 3; ++scan) writer.write(truth_of("front", scan, scan * 10));
   writer.write(truth_of("rear", 7, 1));
   writer.commit();
@@ -38,12 +40,14 @@ void write_hits(const std::filesystem::path& folder) {
 
 TEST(HitsFile, KeepsTheClassesOfAScanAndTakesFourBytesPerReturnForThemOnlyThere) {
   const TemporaryFolder folder, plain;
-  HitsWriter writer(folder.path(), two_lidars()), without(plain.path(), two_lidars());
+  HitsWriter writer(folder.path(), two_lidars(), kTriangles),
+      without(plain.path(), two_lidars(), kTriangles);
   for (int scan = 0; scan < 3; ++scan) {
     ScanTruth truth = truth_of("front", scan, 5);
     without.write(truth);
     if (scan == 1) truth.points[2].triangle = kAir;
     if (scan == 1) truth.points[4].triangle = kGhost;
+    if (scan == 2) truth.points[0].triangle = kTriangles + 3;  // a mover
     writer.write(truth);
   }
   writer.commit();
@@ -54,17 +58,18 @@ TEST(HitsFile, KeepsTheClassesOfAScanAndTakesFourBytesPerReturnForThemOnlyThere)
     ASSERT_TRUE(truth.has_value());
     ASSERT_EQ(truth->points.size(), 5U);
     for (std::size_t i = 0; i < 5; ++i) {
-      const bool of_world = is_of_world(truth->points[i].triangle, 100);
-      EXPECT_EQ(of_world, scan != 1 || (i != 2 && i != 4));
+      const bool of_world = is_of_world(truth->points[i].triangle, kTriangles);
+      EXPECT_EQ(of_world, scan == 1 ? i != 2 && i != 4 : scan == 0 || i != 0);
     }
     EXPECT_EQ(truth->points[2].triangle, scan == 1 ? kAir : 0U);
     EXPECT_EQ(truth->points[4].triangle, scan == 1 ? kGhost : 0U);
+    EXPECT_EQ(truth->points[0].triangle, scan == 2 ? kTriangles + 3 : 0U);
   }
   EXPECT_FALSE(read->next().has_value());
   const auto size = [](const TemporaryFolder& in) {
     return std::filesystem::file_size(in.path() / ("front" + std::string(kHitsEnding)));
   };
-  EXPECT_EQ(size(folder), size(plain) + 5 * 4);
+  EXPECT_EQ(size(folder), size(plain) + 2 * 5 * 4);
 }
 
 TEST(HitsFile, ReadsBackWhatWasWrittenForEachLidar) {
@@ -111,7 +116,7 @@ TEST(HitsFile, AnotherFileIsRefused) {
 
 TEST(HitsFile, WithoutCommitThereIsNone) {
   const TemporaryFolder folder;
-  { HitsWriter(folder.path(), two_lidars()).write(truth_of("front", 0, 5)); }
+  { HitsWriter(folder.path(), two_lidars(), kTriangles).write(truth_of("front", 0, 5)); }
   EXPECT_EQ(open_hits(folder.path(), "front"), nullptr);
 }
 

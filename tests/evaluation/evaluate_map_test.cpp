@@ -139,6 +139,57 @@ TEST(EvaluateMap, TellsTheDistancesThatItScored) {
   for (std::size_t i = 0; i < part.size(); ++i) EXPECT_EQ(scored.distances[i], direct[i]);
 }
 
+/// The class of the i-th point of a mixed map, and how far behind its wall it is, where the nearest
+/// point of the room is its foot on the wall.
+struct Kind {
+  std::uint32_t triangle;
+  double behind_m;
+};
+Kind kind_of(std::size_t i, const Room& room) {
+  const auto triangles = static_cast<std::uint32_t>(room.world.mesh().triangles.size());
+  const std::size_t k = i % 100;
+  if (k < 70) return {0, 0.03};
+  if (k < 90) return {triangles + 1, 0.5};
+  return k < 97 ? Kind{kAir, 0.1} : Kind{kGhost, 1.0};
+}
+
+TEST(EvaluateMap, ScoresAllPointsAndTheShareOfEachClassBeside) {
+  const Room room;
+  dataset::Cloud map;
+  Truths truths;
+  truths.scans = {room.hits};
+  for (std::size_t i = 0; i < room.hits.points.size(); ++i) {
+    PointTruth& hit = truths.scans[0].points[i];
+    const Kind kind = kind_of(i, room);
+    hit.triangle = kind.triangle;
+    map.points.push_back(hit.position - static_cast<float>(kind.behind_m) * hit.normal);
+    map.origins.push_back({0, static_cast<std::uint32_t>(i), 0.0});
+  }
+  for (std::size_t i = 0; i < 600; ++i) {  // of a scan whose truth is missing
+    map.points.push_back(map.points[100 * i]);
+    map.origins.push_back({1, static_cast<std::uint32_t>(i), 0.0});
+  }
+  const IdentifiedMap identified = identify(map, truths, room.world.mesh().triangles.size());
+  const results::MapMetrics metrics =
+      evaluate_map(map.points, room.truth, room.truth, room.seen, kTwoThreads, &identified);
+  const results::PointClasses& classes = metrics.se3.classes;
+  EXPECT_EQ(metrics.se3.points, 60600U);
+  EXPECT_EQ(classes.points, 60000U);
+  const auto expect = [](const results::ClassOfPoints& of, double percent, double off_m) {
+    EXPECT_DOUBLE_EQ(of.share_percent, percent);
+    EXPECT_NEAR(*of.rmse_m, off_m, 1e-6);
+    EXPECT_EQ(*of.outliers_percent, off_m > 0.2 ? 100.0 : 0.0);
+  };
+  expect(classes.world, 70.0, 0.03);
+  expect(classes.mover, 20.0, 0.5);
+  expect(classes.air, 7.0, 0.1);
+  expect(classes.ghost, 3.0, 1.0);
+  // the points without a class are of the world
+  const double squares = 42600 * 0.0009 + 12000 * 0.25 + 4200 * 0.01 + 1800 * 1.0;
+  EXPECT_NEAR(metrics.se3.distance_m.rmse, std::sqrt(squares / 60600), 1e-6);
+  EXPECT_TRUE(to_json(metrics.first_pose)["classes"].is_null()) << "of the shown alignment alone";
+}
+
 TEST(EvaluateMap, NaNAndEmptyMapsGiveReasonsNotNumbers) {
   const Room room;
   const float nan = std::numeric_limits<float>::quiet_NaN();

@@ -57,6 +57,50 @@ class EvaluateRun : public ::testing::Test {
   Trajectory truth_ = sample(tour, 5ms, 30s);
 };
 
+TEST_F(EvaluateRun, APerfectRunWithAWrongClockIsPerfectAtThatClock) {
+  const auto clock = [](Time t) { return 20ms + t + Time{t.count() / 1000}; };  // 1 ms per second
+  const auto stamped = [&](const Trajectory& trajectory) {
+    std::vector<StampedPose> poses(trajectory.poses().begin(), trajectory.poses().end());
+    for (StampedPose& pose : poses) pose.stamp = clock(pose.stamp);
+    return Trajectory(std::move(poses));
+  };
+  const Json right = evaluate()["final"]["rpe"];
+  EXPECT_TRUE(right["1m_at_lidar_clock"].is_null());
+  EXPECT_LT(right["1m_at_poses"]["translation"]["rmse_m"], 1e-9);
+  run_.trajectory = stamped(run_.trajectory);
+  const Trajectory at_clock = stamped(truth_);
+  const Json wrong = to_json(evaluate_run(run_, truth_, &world_, Parallel(1), log_, {}, &at_clock));
+  const Json& rpe = wrong["final"]["rpe"];
+  EXPECT_GT(rpe["1m_at_poses"]["translation"]["rmse_m"], 1e-3);
+  EXPECT_LT(rpe["1m_at_lidar_clock"]["translation"]["rmse_m"], 1e-9);
+  EXPECT_EQ(rpe["1m_at_lidar_clock"]["used"], right["1m_at_poses"]["used"]);
+  EXPECT_LT(rpe["1m_at_lidar_clock"]["translation"]["rmse_m"],
+            rpe["1m_at_best_offset"]["rpe"]["translation"]["rmse_m"])
+      << "an offset alone does not take the drift away";
+}
+
+TEST_F(EvaluateRun, RefusedAndDroppedScansAreCountedAndSaid) {
+  EXPECT_TRUE(evaluate()["scans"].is_null()) << "the manifest counts none";
+  run_.manifest.summary.scans = 298;
+  EXPECT_THAT(evaluate()["warnings"], testing::Not(testing::Contains(HasSubstr("refused"))));
+  run_.manifest.summary.refused = 2;
+  run_.manifest.summary.dropped = 5;
+  const Json metrics = evaluate();
+  EXPECT_EQ(metrics["scans"], Json({{"registered", 298}, {"refused", 2}, {"dropped", 5}}));
+  EXPECT_THAT(metrics["warnings"], testing::Contains(HasSubstr("2 of 300 scans were refused")));
+}
+
+TEST_F(EvaluateRun, TheOwnMapHasNoClassesAndSaysWhy) {
+  run_.manifest.own_map = dataset::OwnMap::kMeans;
+  EXPECT_THAT(evaluate()["maps"]["own"]["se3"]["classes"]["refused"].get<std::string>(),
+              HasSubstr("means of returns"));
+  run_.manifest.own_map = dataset::OwnMap::kReturns;
+  const Json maps = evaluate()["maps"];
+  EXPECT_THAT(maps["own"]["se3"]["classes"]["refused"].get<std::string>(),
+              HasSubstr("does not say of which returns"));
+  EXPECT_TRUE(maps["reprojected"]["se3"]["classes"].is_null());
+}
+
 TEST_F(EvaluateRun, APerfectRunScoresNextToNothingInEveryAlignment) {
   const Json m = evaluate();
   EXPECT_EQ(m["schema"], "lidarena.metrics");

@@ -60,7 +60,7 @@ struct Wall {
   IdentifiedMap identified(const Trajectory& estimate) {
     const dataset::Cloud map = reprojected(events, "front", Pose::Identity(), estimate);
     EXPECT_EQ(map.origins.size(), map.points.size());
-    return identify(map, truth);
+    return identify(map, truth, world.mesh().triangles.size());
   }
 };
 

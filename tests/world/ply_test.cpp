@@ -56,12 +56,17 @@ TEST(Ply, MaterialsAreKept) {
   TriangleMesh pane = testing::box_mesh({4, 0, 0}, {5, 1, 1});
   pane.paint({"pane with a sign", 0.1, 0.9, 1.0 / 7.0, 812.5});
   boxes.append(pane);
+  TriangleMesh washer = testing::box_mesh({6, 0, 0}, {7, 1, 1});
+  washer.paint(materials::kMetal.of("washing machine"));
+  boxes.append(washer);
   save_ply(file, boxes);
   const TriangleMesh back = read_ply(file);
   EXPECT_EQ(back.triangles, boxes.triangles);
   EXPECT_EQ(back.palette, boxes.palette);
   EXPECT_EQ(back.material_ids, boxes.material_ids);
   EXPECT_EQ(back.material(12).name, "dark screen, 1/3");
+  EXPECT_EQ(back.material(24).object, "");
+  EXPECT_EQ(back.material(36).object, "washing machine");
 }
 
 TEST(Ply, AFaceOfAnUnknownMaterialIsRefusedAndForeignMaterialsAreSkipped) {

@@ -36,6 +36,10 @@ fs::path hits_path(const fs::path& folder, const std::string& lidar_id, std::siz
   return folder / lidar_id / kHits / fmt::format("{:06}.pcd", index);
 }
 
+fs::path labels_path(const fs::path& folder, const std::string& lidar_id, std::size_t index) {
+  return folder / lidar_id / kLabels / fmt::format("{:06}.label", index);
+}
+
 }  // namespace layout
 
 namespace {
@@ -192,6 +196,20 @@ constexpr std::array<const char*, 7> kHitFields{"x",        "y",        "z",    
                                                 "normal_x", "normal_y", "normal_z"};
 
 }  // namespace
+
+void write_labels(const fs::path& file, const std::vector<PointTruth>& points,
+                  const std::vector<std::uint32_t>& labels) {
+  std::string bytes;
+  bytes.reserve(4 * points.size());
+  for (const PointTruth& point : points) {
+    const bool is_stray = point.triangle == kAir || point.triangle == kGhost;
+    const std::uint32_t label = point.triangle < labels.size() ? labels[point.triangle]
+                                : is_stray                     ? kOutlier
+                                                               : kUnlabeled;
+    for (int shift = 0; shift < 32; shift += 8) bytes += static_cast<char>(label >> shift & 0xFFU);
+  }
+  write_text_file(file, bytes);
+}
 
 void write_hits(const fs::path& file, const std::vector<PointTruth>& points) {
   std::string text = fmt::format(

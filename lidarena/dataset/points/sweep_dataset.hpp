@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -18,6 +19,8 @@ inline constexpr const char* kTimes = "times.txt";
 inline constexpr const char* kImu = "imu.txt";
 inline constexpr const char* kHits = "hits";  ///< ground truth of points, a PCD per sweep
 
+inline constexpr const char* kLabels = "labels";  ///< a class for each point, a file per sweep
+
 /// FOLDER/ID/000012.pcd (or .ply), or for KITTI FOLDER/ID/velodyne/000012.bin.
 std::filesystem::path sweep_path(const std::filesystem::path& folder, const std::string& lidar_id,
                                  DatasetFormat format, std::size_t index);
@@ -25,7 +28,20 @@ std::filesystem::path sweep_path(const std::filesystem::path& folder, const std:
 std::filesystem::path hits_path(const std::filesystem::path& folder, const std::string& lidar_id,
                                 std::size_t index);
 
+/// FOLDER/ID/labels/000012.label, as in SemanticKITTI.
+std::filesystem::path labels_path(const std::filesystem::path& folder, const std::string& lidar_id,
+                                  std::size_t index);
+
 }  // namespace layout
+
+/// Labels of SemanticKITTI (Behley et al., ICCV 2019) that do not depend on the world.
+inline constexpr std::uint32_t kUnlabeled = 0, kOutlier = 1;
+
+/// Writes a label per point, uint32 little endian as SemanticKITTI has them: the class in the lower
+/// 16 bits, the instance in the upper. `labels` has them by PointTruth::triangle; the air and
+/// ghosts are kOutlier, what it does not have is kUnlabeled.
+void write_labels(const std::filesystem::path& file, const std::vector<PointTruth>& points,
+                  const std::vector<std::uint32_t>& labels);
 
 /// Ground truth of points as binary PCD: x y z range normal_x normal_y normal_z float32, triangle
 /// uint32.

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "lidarena/base/error.hpp"
 #include "lidarena/dataset/dataset_store.hpp"
@@ -36,12 +37,14 @@ void check_name(const std::string& id) {
 
 class SweepStore final : public DatasetStore {
  public:
-  SweepStore(const fs::path& folder, const Rig& rig, DatasetFormat format)
-      : folder_(folder), format_(format) {
+  SweepStore(const fs::path& folder, const Rig& rig, const WriteOptions& options)
+      : folder_(folder), format_(options.format), labels_(options.labels) {
     for (const LidarInfo& lidar : rig.lidars) check_name(lidar.id);
     for (const ImuInfo& imu : rig.imus) check_name(imu.id);
     for (const LidarInfo& lidar : rig.lidars) {
-      prepare(layout::sweep_path(folder, lidar.id, format, 0).parent_path());
+      prepare(layout::sweep_path(folder, lidar.id, format_, 0).parent_path());
+      const fs::path labels = layout::labels_path(folder, lidar.id, 0).parent_path();
+      if (fs::exists(labels)) prepare(labels);  // of an older dataset
       sweeps_[lidar.id].times = std::make_unique<PartFile>(folder / lidar.id / layout::kTimes);
     }
     for (const ImuInfo& imu : rig.imus) {
@@ -77,6 +80,11 @@ class SweepStore final : public DatasetStore {
     Sweeps& sweeps = sweeps_.at(truth.sensor_id);
     if (sweeps.hits == 0) {
       prepare(layout::hits_path(folder_, truth.sensor_id, 0).parent_path());
+    }
+    if (format_ == DatasetFormat::kKitti && !labels_.empty()) {
+      const fs::path file = layout::labels_path(folder_, truth.sensor_id, sweeps.hits);
+      if (sweeps.hits == 0) prepare(file.parent_path());
+      write_labels(file, truth.points, labels_);
     }
     write_hits(layout::hits_path(folder_, truth.sensor_id, sweeps.hits++), truth.points);
   }
@@ -119,6 +127,7 @@ class SweepStore final : public DatasetStore {
 
   fs::path folder_;
   DatasetFormat format_;
+  std::vector<std::uint32_t> labels_;
   std::map<std::string, Sweeps> sweeps_;
   std::map<std::string, ImuRows> imus_;
 };
@@ -126,8 +135,8 @@ class SweepStore final : public DatasetStore {
 }  // namespace
 
 std::unique_ptr<DatasetStore> make_sweep_store(const fs::path& folder, const Rig& rig,
-                                               DatasetFormat format) {
-  return std::make_unique<SweepStore>(folder, rig, format);
+                                               const WriteOptions& options) {
+  return std::make_unique<SweepStore>(folder, rig, options);
 }
 
 }  // namespace lidarena::dataset

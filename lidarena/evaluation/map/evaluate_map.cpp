@@ -12,6 +12,7 @@
 #include "lidarena/evaluation/map/ghosting.hpp"
 #include "lidarena/evaluation/map/map_error.hpp"
 #include "lidarena/evaluation/map/mesh_alignment.hpp"
+#include "lidarena/evaluation/map/point_classes.hpp"
 #include "lidarena/evaluation/map/signed_distance.hpp"
 #include "lidarena/evaluation/map/voxel_error.hpp"
 #include "lidarena/evaluation/trajectory/alignment.hpp"
@@ -27,13 +28,13 @@ std::size_t stride_of(std::size_t points, std::size_t max_points) {
   return std::max<std::size_t>(1, (points + max_points - 1) / max_points);
 }
 
-/// No more than `max_points` points of the map: every k-th point.
-std::vector<Eigen::Vector3f> sample_of(std::span<const Eigen::Vector3f> map,
-                                       std::size_t max_points) {
-  const std::size_t stride = stride_of(map.size(), max_points);
-  std::vector<Eigen::Vector3f> sample;
-  sample.reserve(map.size() / stride + 1);
-  for (std::size_t i = 0; i < map.size(); i += stride) sample.push_back(map[i]);
+/// No more than `max_count` of the values, one per point of a map: every k-th.
+template <class T>
+std::vector<T> sample_of(std::span<const T> all, std::size_t max_count) {
+  const std::size_t stride = stride_of(all.size(), max_count);
+  std::vector<T> sample;
+  sample.reserve(all.size() / stride + 1);
+  for (std::size_t i = 0; i < all.size(); i += stride) sample.push_back(all[i]);
   return sample;
 }
 
@@ -56,6 +57,7 @@ struct Subject {
   const MapReference& reference;
   const Parallel& parallel;
   const IdentifiedMap* identified;
+  std::vector<PointClass> classes;  ///< of the scored points; empty: not known
   MortonOrder order;
   const PointGrid* grid;  ///< of all points; null if completeness is not computed
 
@@ -67,6 +69,8 @@ struct Subject {
         reference(scored_against),
         parallel(workers),
         identified(with_hits),
+        classes(with_hits == nullptr ? std::vector<PointClass>{}
+                                     : sample_of(std::span(with_hits->classes), max_points)),
         order(morton_order(map, workers)),
         grid(of_all) {}
 };
@@ -88,6 +92,7 @@ results::MapScores measure(const Subject& subject, std::span<const PointScore> s
   measured.ghosting = ghosting(scores, subject.reference.world, subject.parallel);
   if (subject.identified != nullptr) {
     measured.identity = identity_error(*subject.identified, mesh_from_map);
+    measured.classes = point_classes(subject.classes, subject.order, scores);
   }
   if (subject.grid == nullptr) return measured;
   measured.signed_distance = signed_distance(scores, subject.reference.seen->observed.free_side);

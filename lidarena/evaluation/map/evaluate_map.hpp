@@ -59,8 +59,8 @@ struct ScoredPoints {
 /// more than 2 million points (200,000 if more than 95 % of the points are beyond 20 cm) are evenly
 /// sampled to at most that number in the alignment whose figures tables show ("se3", else
 /// "first_pose"), to at most 250,000 in the others and for the distance to vertices. Completeness,
-/// which uses all points, signed distance and identity error are of that alignment alone.
-/// `identified`, if given, is the same map with its true hits, for the identity error. An alignment
+/// which uses all points, signed distance, identity error and classes are of that alignment alone.
+/// `identified`, if given, is the same map with its true hits, for the last two. An alignment
 /// that is not determined has a reason. `scored`, if given, gets the distances in the alignment
 /// "se3".
 results::MapMetrics evaluate_map(std::span<const Eigen::Vector3f> map, const Trajectory& estimate,

@@ -9,17 +9,20 @@ namespace lidarena::evaluation {
 
 using Eigen::Vector3d;
 
-IdentifiedMap identify(const dataset::Cloud& map, ScanTruthSource& truth) {
+IdentifiedMap identify(const dataset::Cloud& map, ScanTruthSource& truth, std::size_t triangles) {
   const std::vector<dataset::ReturnOrigin>& origins = map.origins;
   IdentifiedMap identified;
+  identified.classes.resize(map.points.size(), PointClass::kUnknown);
   std::size_t next = 0;
   for (std::uint32_t scan = 0; next < origins.size(); ++scan) {
     const std::optional<ScanTruth> hits = truth.next();
     if (!hits) break;
     for (; next < origins.size() && origins[next].scan == scan; ++next) {
       if (origins[next].point >= hits->points.size()) continue;
+      const PointTruth& hit = hits->points[origins[next].point];
       identified.points.push_back(map.points[next]);
-      identified.hits.push_back(hits->points[origins[next].point]);
+      identified.hits.push_back(hit);
+      identified.classes[next] = class_of(hit.triangle, triangles);
     }
   }
   return identified;

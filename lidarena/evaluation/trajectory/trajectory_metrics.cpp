@@ -119,6 +119,13 @@ results::RpeAtOffset metrics_of(const RpeAtBestOffset& best) {
   return metrics;
 }
 
+results::RpeMetrics metrics_at_clock(const RelativePoseError& rpe) {
+  results::RpeMetrics metrics = metrics_of(rpe);
+  metrics.definition = fmt::format(
+      "rpe_{0}m_at_lidar_clock[ref-arc,{0}m,disjoint,nearest-poses,gap1.5]", rpe.segment_m);
+  return metrics;
+}
+
 results::AteMetrics metrics_of(const AbsoluteTrajectoryError& ate) {
   const Alignment& alignment = ate.alignment;
   results::AteMetrics metrics;

@@ -27,6 +27,8 @@ results::AssociationMetrics metrics_of(const Association& association,
 results::RpeMetrics metrics_of(const RelativePoseError& rpe,
                                const RelativePoseError* of_perfect = nullptr);
 results::RpeAtOffset metrics_of(const RpeAtBestOffset& best);
+/// With the definition of errors against the truth by the LiDAR's clock.
+results::RpeMetrics metrics_at_clock(const RelativePoseError& rpe);
 results::AteMetrics metrics_of(const AbsoluteTrajectoryError& ate);
 
 /// At most `limit` rows with times since `start`, each the largest error of several consecutive
