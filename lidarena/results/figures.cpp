@@ -113,12 +113,15 @@ Reading identity(const MapScores& map) {
                 count_of(e.distance_m.count, "points"), map.refused);
 }
 /// Share of a class; none where all points are of the mesh or nothing is known of them.
-template <ClassOfPoints PointClasses::*kind>
+template <std::optional<ClassOfPoints> PointClasses::*kind>
 Reading share(const MapScores& map) {
   const PointClasses& classes = map.classes;
-  const bool any = classes.mover.points + classes.air.points + classes.ghost.points > 0;
-  return of_map(any ? std::optional((classes.*kind).share_percent) : std::nullopt,
-                classes.definition, count_of(classes.points, "points"), map.refused);
+  bool any = false;
+  for (const auto& stray : {classes.mover, classes.air, classes.ghost})
+    any = any || (stray && stray->points > 0);
+  const std::optional<ClassOfPoints>& of = classes.*kind;
+  return of_map(any && of ? std::optional(of->share_percent) : std::nullopt, classes.definition,
+                count_of(classes.points, "points"), map.refused);
 }
 template <std::optional<double> VertexDistance::*value>
 Reading vertices(const MapScores& map) {
@@ -338,9 +341,9 @@ constexpr std::array kFigures{
            time_of_scan<&ResourceMetrics::latency, &Summary::p99>},
     Figure{"latency_max", nullptr, 1e3, "ms", "latency, maximum", kOfRun,
            time_of_scan<&ResourceMetrics::latency, &Summary::max>},
-    Figure{"refused_scans", nullptr, 1, "", "scans refused, not later than the one before", kOfRun,
+    Figure{"refused_scans", nullptr, 1, "", "scans refused (out of order)", kOfRun,
            scans<&ScansOfRun::refused>},
-    Figure{"dropped_scans", nullptr, 1, "", "scans dropped, the method was late", kOfRun,
+    Figure{"dropped_scans", nullptr, 1, "", "scans dropped (method late)", kOfRun,
            scans<&ScansOfRun::dropped>},
     Figure{"late_scans", nullptr, 100, "%", "scans not done when the next one came", kOfRun,
            late_scans, kRuns},

@@ -176,7 +176,7 @@ struct PointClasses {
   std::string definition = "point_classes[by-true-hit,20cm]";
   std::optional<std::string> refused;
   std::size_t points = 0;  ///< scored ones whose class is known
-  ClassOfPoints world, mover, air, ghost;
+  std::optional<ClassOfPoints> world, mover, air, ghost;
   bool empty() const { return points == 0 && !refused; }
 
   template <class Self, class V>

@@ -180,10 +180,10 @@ TEST(EvaluateMap, ScoresAllPointsAndTheShareOfEachClassBeside) {
     EXPECT_NEAR(*of.rmse_m, off_m, 1e-6);
     EXPECT_EQ(*of.outliers_percent, off_m > 0.2 ? 100.0 : 0.0);
   };
-  expect(classes.world, 70.0, 0.03);
-  expect(classes.mover, 20.0, 0.5);
-  expect(classes.air, 7.0, 0.1);
-  expect(classes.ghost, 3.0, 1.0);
+  expect(*classes.world, 70.0, 0.03);
+  expect(*classes.mover, 20.0, 0.5);
+  expect(*classes.air, 7.0, 0.1);
+  expect(*classes.ghost, 3.0, 1.0);
   // the points without a class are of the world
   const double squares = 42600 * 0.0009 + 12000 * 0.25 + 4200 * 0.01 + 1800 * 1.0;
   EXPECT_NEAR(metrics.se3.distance_m.rmse, std::sqrt(squares / 60600), 1e-6);

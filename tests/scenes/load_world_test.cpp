@@ -27,6 +27,25 @@ class LoadWorld : public ::testing::Test {
   LogSink log_;
 };
 
+TEST_F(LoadWorld, WorldsBySeedNameTheObjectOfEveryTriangle) {
+  for (const std::string kind : {"house", "cave", "mine", "forest", "hall", "office"}) {
+    const world::TriangleMesh mesh =
+        load_world(folder_.write(kind + ".yaml", "kind: " + kind + "\nseed: 3\n"), {}, log_).mesh;
+    ASSERT_EQ(mesh.material_ids.size(), mesh.triangles.size()) << kind;
+    for (const world::Material& material : mesh.palette) {
+      EXPECT_FALSE(material.object.empty()) << kind << ": " << material.name;
+    }
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+      const std::string& object = mesh.material(i).object;
+      for (const std::uint32_t corner : mesh.triangles[i]) {
+        const double z = mesh.vertices[corner].z();
+        ASSERT_TRUE(object != "floor" || z <= 0.0) << kind;
+        ASSERT_TRUE((object != "ceiling" && object != "roof") || z >= 2.0) << kind;
+      }
+    }
+  }
+}
+
 TEST_F(LoadWorld, TheEndingSaysWhatItIs) {
   const world::WorldModel model =
       load_world(folder_.write("room.obj", world::testing::box_obj()), {}, log_);

@@ -82,11 +82,12 @@ TEST_F(ScoreRun, AMapOfALivingWorldHasPointsOfMovers) {
   ASSERT_TRUE(metrics.maps.reprojected);
   const results::MapScores& map = metrics.maps.reprojected->se3;
   EXPECT_EQ(map.classes.points, map.points);
-  EXPECT_EQ(map.classes.points, map.classes.world.points + map.classes.mover.points);
-  EXPECT_GT(map.classes.mover.points, 100U);
-  EXPECT_GT(*map.classes.mover.rmse_m, 2.0 * *map.classes.world.rmse_m)
+  EXPECT_EQ(map.classes.points, map.classes.world->points + map.classes.mover->points);
+  EXPECT_GT(map.classes.mover->points, 100U);
+  EXPECT_GT(*map.classes.mover->rmse_m, 2.0 * *map.classes.world->rmse_m)
       << "the mesh does not have them";
   EXPECT_TRUE(metrics.maps.own->se3.classes.refused);
+  EXPECT_FALSE(metrics.maps.own->se3.classes.mover);
 }
 
 }  // namespace
