@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// Tests that every odometry of the factory must pass with each of its presets. Instantiated from
-// the factory's list, so a new algorithm is tested as soon as it is listed.
+// Tests that every odometry of the factory must pass with each of its presets but `tuned`.
+// Instantiated from the factory's list, so a new algorithm is tested as soon as it is listed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -31,7 +31,11 @@ void PrintTo(const Candidate& candidate, std::ostream* out) {
 std::vector<Candidate> candidates() {
   std::vector<Candidate> all;
   for (const AlgorithmInfo& info : list_algorithms()) {
-    for (const std::string& preset : info.presets) all.push_back({info.name, preset});
+    for (const std::string& preset : info.presets) {
+      // `tuned` has other values of keys that the presets before it set; with fine cells it takes
+      // minutes here.
+      if (preset != "tuned") all.push_back({info.name, preset});
+    }
     if (info.presets.empty()) all.push_back({info.name, ""});
   }
   return all;
