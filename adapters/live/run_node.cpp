@@ -167,8 +167,8 @@ odometry::RunSummary run_node(const stages::ExternalProgram& program,
   stages::ForeignRun run;
   run.name = program.name;
   run.pose_of = program.pose_of;
-  run.trajectory = fed.result.trajectory;
-  run.live = fed.result.live;
+  run.trajectory = stages::at_flight_times(program, fed.result.trajectory, recording.spans);
+  run.live = stages::at_flight_times(program, fed.result.live, recording.spans);
   run.map.points = fed.result.map;
   run.events = recording.events.events(recording.first_scan.value_or(Time{0}));
   run.summary.scans = recording.scans;

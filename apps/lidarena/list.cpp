@@ -7,6 +7,7 @@
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/stages/ready_program.hpp"
 
 namespace lidarena {
 namespace {
@@ -164,17 +165,40 @@ int list_configs(const Common& common, const std::string& kind) {
   return kDone;
 }
 
+/// Programs of others, whether they are installed, and how to install those that are not.
+int list_programs(const Common& common) {
+  const stages::ConfigFolder configs = common.config_folder();
+  Json list = Json::array();
+  for (const std::string& name : configs.names("programs")) {
+    const std::filesystem::path file = configs.resolve("programs", name);
+    const stages::ExternalProgram program = stages::load_program(file);
+    const std::string summary = first_comment(file);
+    const bool installed = stages::is_installed(program);
+    list.push_back({{"name", name},
+                    {"summary", summary},
+                    {"installed", installed},
+                    {"install", program.install}});
+    if (common.json) continue;
+    fmt::print("{:<18} {}\n{:<18} {}\n", name, summary, "",
+               installed ? "installed" : "not installed: " + program.install);
+  }
+  if (common.json) print_json(list);
+  return kDone;
+}
+
 }  // namespace
 
 void add_list(CLI::App& app, Common& common, int& exit_code) {
   auto* verb = app.add_subcommand(
-      "list", "List the available worlds, flights, sensors, algorithms, studies or recordings");
+      "list",
+      "List the available worlds, flights, sensors, algorithms, studies, recordings or programs");
   auto kind = std::make_shared<std::string>();
   auto filter = std::make_shared<SensorFilter>();
-  verb->add_option("kind", *kind, "worlds, flights, sensors, algorithms, studies or recordings")
+  verb->add_option("kind", *kind,
+                   "worlds, flights, sensors, algorithms, studies, recordings or programs")
       ->required()
-      ->check(
-          CLI::IsMember({"worlds", "flights", "sensors", "algorithms", "studies", "recordings"}));
+      ->check(CLI::IsMember(
+          {"worlds", "flights", "sensors", "algorithms", "studies", "recordings", "programs"}));
   const auto add_limit = [verb](const char* name, double& limit, const char* what) {
     return verb->add_option(name, limit, what)->check(CLI::PositiveNumber);
   };
@@ -192,6 +216,7 @@ void add_list(CLI::App& app, Common& common, int& exit_code) {
           throw InputError("list " + *kind, "has no limits to choose by",
                            "--fov-min and the like are for: lidarena list sensors");
         }
+        if (*kind == "programs") return list_programs(common);
         return *kind == "algorithms" ? list_algorithms_verb(common) : list_configs(common, *kind);
       },
       exit_code);

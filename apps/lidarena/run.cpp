@@ -8,6 +8,7 @@
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/odometry/factory.hpp"
+#include "lidarena/stages/ready_program.hpp"
 #include "lidarena/stages/run_algorithm.hpp"
 #include "lidarena/stages/run_external.hpp"
 
@@ -105,7 +106,8 @@ int run_verb(const Common& common, const RunOptions& o) {
     if (on_topics.asked)
       return live::run_live(on_topics, request, common.config_folder(), out, parallel, console);
     if (o.external.empty()) return stages::run_algorithm(request, out, parallel, console);
-    const auto program = load_config<stages::ExternalProgram>(o.external);
+    const auto program =
+        stages::load_program(common.config_folder().resolve("programs", o.external));
     if (program.node.is_used()) return live::run_node(program, request, out, parallel, console);
     return stages::run_external(program, request, out, parallel, console);
   };
@@ -142,8 +144,9 @@ void add_run(CLI::App& app, Common& common, int& exit_code) {
                    "key=value, overrides preset and --config; may be repeated")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-  verb->add_option("--external", o->external,
-                   "YAML file of an external program (name, command, ...) to run as ALGORITHM");
+  verb->add_option(
+      "--external", o->external,
+      "Program of others to run as ALGORITHM: a name (see: list programs) or a YAML file");
   verb->add_option("--maps", o->maps, "Write the maps, which take most of the space: on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();

@@ -17,6 +17,7 @@
 #include "lidarena/study/plan.hpp"
 #include "lidarena/study/program.hpp"
 #include "lidarena/study/slurm.hpp"
+#include "lidarena/study/study_programs.hpp"
 
 namespace lidarena {
 namespace {
@@ -26,6 +27,7 @@ struct StudyRequest {
   std::string world;
   std::vector<std::string> sensors;
   std::vector<std::string> algorithms{"all"};
+  std::vector<std::string> programs;
   bool tour = false;  ///< plan a tour of the world automatically
   double seconds = 0.0;
   bool allow_missing = false;
@@ -247,9 +249,9 @@ int study_verb(const Common& common, const StudyRequest& request) {
     return study_part(common, request,
                       study::work_on_study(request.out, configs, options, console));
   }
-  const auto spec = request.name.empty()
-                        ? spec_of_one_world(request, configs)
-                        : study::load_study(configs.resolve("studies", request.name));
+  auto spec = request.name.empty() ? spec_of_one_world(request, configs)
+                                   : study::load_study(configs.resolve("studies", request.name));
+  study::add_programs(spec, request.programs, configs);
   if (request.dry) {
     const auto code = study::ProgramCode::ask(study::find_program(options.program));
     print_plan(study::make_plan(spec, configs, code, options.shard.of), options.shard, configs,
@@ -377,6 +379,10 @@ void add_study(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option("--algorithms", request->algorithms, "With --world: algorithms A,B,... or all")
       ->delimiter(',')
       ->default_str("all");
+  verb->add_option("--programs", request->programs,
+                   "Also run programs of others A,B,... (see: list programs), or files of them; "
+                   "installed = all that are installed")
+      ->delimiter(',');
   verb->add_flag("--auto", request->tour, "With --world: plan a tour of the world automatically");
   verb->add_option("--seconds", request->seconds,
                    "With --world: length of the flight, s; 0 = the whole tour");

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/stages/foreign_program.hpp"
 
+#include <algorithm>
+
 #include "lidarena/base/shell_word.hpp"
+#include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/single_lidar.hpp"
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/evaluation/map/reproject.hpp"
@@ -12,14 +15,6 @@ namespace lidarena::stages {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string substitute(std::string command, const std::string& key, const std::string& value) {
-  for (std::size_t at = command.find(key); at != std::string::npos;
-       at = command.find(key, at + value.size())) {
-    command.replace(at, key.size(), value);
-  }
-  return command;
-}
 
 Pose sensor_from_body(PoseOf pose_of, const Rig& rig) {
   if (pose_of == PoseOf::kBody) return Pose::Identity();
@@ -37,7 +32,39 @@ Trajectory body_trajectory(const Trajectory& given, const Pose& sensor_from_body
   return Trajectory(std::move(poses));
 }
 
+/// The event, `by` later.
+Event shifted(Event event, Time by) {
+  std::visit([&](auto& data) { data.stamp += by; }, event.data);
+  return event;
+}
+
+constexpr const char* kRigFile = "rig.json";
+
 }  // namespace
+
+std::string substitute(std::string command, const std::string& key, const std::string& value) {
+  for (std::size_t at = command.find(key); at != std::string::npos;
+       at = command.find(key, at + value.size())) {
+    command.replace(at, key.size(), value);
+  }
+  return command;
+}
+
+Trajectory at_flight_times(const ExternalProgram& program, const Trajectory& poses,
+                           const std::vector<ScanSpan>& spans) {
+  constexpr Time kTolerance{1'000'000};  // programs write stamps with four decimals
+  std::vector<StampedPose> moved(poses.poses().begin(), poses.poses().end());
+  for (StampedPose& pose : moved) {
+    pose.stamp -= from_seconds(program.start_s);
+    if (program.pose_at == PoseAt::kStamp) continue;
+    const auto span =
+        std::ranges::lower_bound(spans, pose.stamp - kTolerance, {}, &ScanSpan::stamp);
+    if (span == spans.end() || span->stamp > pose.stamp + kTolerance) continue;
+    const Time length = span->end - span->stamp;
+    pose.stamp = span->stamp + (program.pose_at == PoseAt::kEnd ? length : length / 2);
+  }
+  return Trajectory(std::move(moved));
+}
 
 Rig rig_of_one(const Rig& rig, const std::string& id, const std::string& place) {
   const LidarInfo* lidar = rig.find_lidar(id);
@@ -65,23 +92,27 @@ ProgramInput record_for(const ExternalProgram& program, const RunRequest& reques
       evaluation::scored_returns(dataset.scan_count.value_or(0)));
   const auto events = recording.returns->keep_from(std::move(dataset.events));
   dataset::DatasetWriter writer(folder, recording.rig, {program.input, program.dialect});
+  const Time start = from_seconds(program.start_s);
   while (const auto event = events->next()) {
     if (const auto* scan = std::get_if<Scan>(&event->data)) {
       if (event->sensor_id != recording.rig.lidars[0].id) continue;
       ++recording.scans;
       if (!recording.first_scan) recording.first_scan = scan->stamp;
       recording.seconds = to_seconds(scan->stamp);
+      recording.spans.push_back({scan->stamp, end_of(*scan)});
     } else if (recording.rig.imus.empty() || event->sensor_id != recording.rig.imus[0].id) {
       continue;
     } else {
       recording.events.add(std::get<ImuSample>(event->data));
     }
-    writer.write(*event);
+    writer.write(shifted(*event, start));
   }
   writer.close();
   recording.path = folder;
   if (program.input == dataset::DatasetFormat::kMcap) recording.path = folder / "data.mcap";
   if (program.input == dataset::DatasetFormat::kBag) recording.path = folder / "data.bag";
+  recording.rig_file = folder / kRigFile;
+  dataset::write_json(recording.rig_file, to_json(recording.rig));
   return recording;
 }
 
@@ -90,6 +121,7 @@ std::string command_line(const ExternalProgram& program, const ProgramInput& rec
   std::string command = program.command;
   command = substitute(command, "{input}", shell_word(fs::absolute(recording.path).string()));
   command = substitute(command, "{output}", shell_word(fs::absolute(output).string()));
+  command = substitute(command, "{rig}", shell_word(fs::absolute(recording.rig_file).string()));
   command = substitute(command, "{sensor}", shell_word(recording.rig.lidars[0].id));
   return substitute(command, "{threads}", std::to_string(parallel.threads()));
 }

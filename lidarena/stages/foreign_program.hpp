@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lidarena/base/parallel.hpp"
 #include "lidarena/dataset/points/cloud.hpp"
@@ -29,23 +30,39 @@ inline constexpr const char* kProgramOutput = "output";
 /// InputError (place `place`) for a LiDAR that the rig lacks.
 Rig rig_of_one(const Rig& rig, const std::string& id, const std::string& place);
 
+/// First firing and last point of a scan.
+struct ScanSpan {
+  Time stamp, end;
+};
+
+/// Poses as the program wrote them, at the times of the flight: program.start_s is subtracted, and
+/// a stamp that is a scan's, within 1 ms, becomes the instant that program.pose_at names. `spans`
+/// are those of the scans, in the order of time.
+Trajectory at_flight_times(const ExternalProgram& program, const Trajectory& poses,
+                           const std::vector<ScanSpan>& spans);
+
 /// A recording of one LiDAR of a dataset and its IMU, without the truth.
 struct ProgramInput {
   Rig rig;
   std::size_t scans = 0;
   double seconds = 0.0;  ///< stamp of the last scan
   std::filesystem::path path;
-  EventRecord events;  ///< of the IMU
+  std::filesystem::path rig_file;  ///< JSON of `rig`
+  std::vector<ScanSpan> spans;     ///< at the times of the flight
+  EventRecord events;              ///< of the IMU
   std::optional<Time> first_scan;
   std::unique_ptr<evaluation::ReturnStore> returns;  ///< those that are scored
 };
+
+/// `command` with each `key` replaced by `value`.
+std::string substitute(std::string command, const std::string& key, const std::string& value);
 
 /// Records to `folder` what the program is given, in its format and dialect, and keeps the scored
 /// returns on the disk of `folder`.
 ProgramInput record_for(const ExternalProgram& program, const RunRequest& request,
                         const std::filesystem::path& folder, const Parallel& parallel);
 
-/// The program's command with {input}, {output}, {sensor} and {threads} replaced.
+/// The program's command with {input}, {output}, {sensor}, {threads} and {rig} replaced.
 std::string command_line(const ExternalProgram& program, const ProgramInput& recording,
                          const std::filesystem::path& output, const Parallel& parallel);
 

@@ -59,9 +59,9 @@ odometry::RunSummary run_external(const ExternalProgram& program, const RunReque
   ForeignRun run;
   run.name = program.name;
   run.pose_of = program.pose_of;
-  run.trajectory = dataset::read_trajectory(left);
+  run.trajectory = at_flight_times(program, dataset::read_trajectory(left), recording.spans);
   if (const fs::path motion = output / "motion.tum"; fs::exists(motion))
-    run.motion = dataset::read_trajectory(motion);
+    run.motion = at_flight_times(program, dataset::read_trajectory(motion), recording.spans);
   run.map = map_of(output);
   run.events = recording.events.events(recording.first_scan.value_or(Time{0}));
   run.summary.scans = recording.scans;

@@ -100,9 +100,9 @@ TEST(LockStep, ANodeThatDoesNotAppearIsNamed) {
 
 /// An external program: our own odometry, as a node.
 std::string node_yaml(const std::string& name, const std::string& command,
-                      const std::string& more = "") {
-  return "{name: " + name + ", command: '" + command +
-         "', pose_of: body, node: {odometry: /lidarena/odometry, points: /lidarena/points" + more +
+                      const std::string& more = "", const std::string& before = "") {
+  return "{name: " + name + ", command: '" + command + "', " + before +
+         "pose_of: body, node: {odometry: /lidarena/odometry, points: /lidarena/points" + more +
          "}}";
 }
 const std::string kOurNode =
@@ -115,7 +115,7 @@ TEST(LockStep, AStudyDrivesANodeAndScoresItLikeTheSameMethodOnTheFile) {
                            "title: A node\nscenes: [{world: house, flight: house, seconds: 3}]\n"
                            "sensors: [livox_mid360]\nalgorithms: [arena_lio, node, broken]\n"
                            "external:\n- " +
-                               node_yaml("node", kOurNode) + "\n- " +
+                               node_yaml("node", kOurNode, "", "start_s: 1000, ") + "\n- " +
                                node_yaml("broken", "echo no map; exit 3") + "\n");
   ASSERT_EQ(live.call("study " + study.string() + " --out " + live.path("out")), 0)
       << live.text("log.txt");

@@ -37,7 +37,7 @@ def kind_of(file):
     if folder == "odometry":
         return "ct_icp" if file.stem.startswith("ct_icp") else "kiss_icp"
     return {"worlds": "world", "flights": "flight", "sensors": "sensor", "studies": "study",
-            "beams": "beams", "recordings": "recording"}[folder]
+            "beams": "beams", "recordings": "recording", "programs": "external"}[folder]
 
 
 def check_rejected(kind, document, why):
