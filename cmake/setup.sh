@@ -32,6 +32,8 @@ if [ "${1:-run}" = test ]; then
   optional+=(chromium)
   # the other implementation of DDS, beside which live topics are tested; without it that is skipped
   optional+=(libfastrtps-dev)
+  # plots and notebooks of the Python module; without them their tests are reported as skipped
+  optional+=(python3-matplotlib python3-nbconvert python3-ipykernel)
   # ROS 1's own bag reader; without it the test that needs it is reported as skipped
   optional+=(python3-rosbag python3-roslz4 python3-sensor-msgs python3-nav-msgs python3-tf2-msgs)
 fi

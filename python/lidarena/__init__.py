@@ -16,6 +16,7 @@ a_from_b. Arrays are views, not copies, where the documentation says "a view"; t
 and keep their owner alive. Long calls release the GIL. Bad input raises InputError (a ValueError),
 which names place and remedy; messages go to logging.getLogger("lidarena").
 """
+import csv as _csv
 import os as _os
 import pathlib as _pathlib
 
@@ -89,3 +90,24 @@ def simulate_dataset(world, flight, sensors, out, **options):
         configs.resolve("worlds", str(world)), configs.resolve("flights", str(flight)),
         [configs.resolve("sensors", str(s)) for s in sensors], out, shipped_sensors=_sensors(),
         **options)
+
+
+def _value(text):
+    """A number, a text, or None for an empty one."""
+    try:
+        return float(text) if text else None
+    except ValueError:
+        return text
+
+
+def study_rows(folder):
+    """The runs of a study, a dict each: settings, status and figures, None where there is none.
+
+    The unit is the end of a figure's name. pandas.DataFrame(study_rows(folder)) is a table of them.
+    """
+    file = _pathlib.Path(folder) / "results.csv"
+    if not file.exists():
+        raise InputError(f"{file}: does not exist; give the folder of a study that has its report")
+    with open(file, newline="", encoding="utf-8") as lines:
+        return [{name: text if name in ("run", "key") else _value(text)
+                 for name, text in row.items()} for row in _csv.DictReader(lines)]
