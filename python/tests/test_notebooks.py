@@ -24,7 +24,7 @@ def test_each_notebook_is_tested():
 @pytest.mark.parametrize("name", EXPECTED)
 def test_a_notebook_runs(name, tmp_path):
     notebook = nbformat.read(NOTEBOOKS / f"{name}.ipynb", as_version=4)
-    run = preprocessors.ExecutePreprocessor(timeout=300, kernel_name="python3")
+    run = preprocessors.ExecutePreprocessor(timeout=600, kernel_name="python3")
     run.preprocess(notebook, {"metadata": {"path": str(tmp_path)}})
     outputs = [out for cell in notebook.cells if cell.cell_type == "code" for out in cell.outputs]
     pictures = [out for out in outputs if "image/png" in out.get("data", {})]
