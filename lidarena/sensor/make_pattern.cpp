@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <string>
 
 #include "lidarena/base/error.hpp"
@@ -28,7 +29,7 @@ void reject_foreign_keys(const SensorConfig& sensor, const std::string& place) {
   reject("row_rate_hz", sensor.row_rate_hz != 0.0, csv);
   reject("lines", sensor.lines != 1, csv);
   reject("beam_table", sensor.beam_table.has_value(), table);
-  reject("shape.shots_factor", sensor.shape.shots_factor != 1.0, !csv);
+  reject("shape.shots_per_second", sensor.shape.shots_per_second != 0.0, !csv);
 }
 
 /// How `shape` maps elevations. Throws InputError if it cannot.
@@ -56,14 +57,32 @@ ElevationMap elevation_map(const SensorConfig& sensor, const std::string& place)
   return map;
 }
 
-/// Columns in which a spinning head fires. Throws InputError if `shape` makes them no whole number.
-int fired_columns(const SensorConfig& sensor, const std::string& place) {
-  const double columns = sensor.columns * sensor.shape.shots_factor;
-  if (std::abs(columns - std::round(columns)) > 1e-9 * columns || (columns > 0 && columns < 0.5)) {
-    throw InputError(place, "shape.shots_factor would give " + std::to_string(columns) + " columns",
-                     "choose it so that columns times shape.shots_factor is a whole number");
+/// How many times as often as those of the product the lasers fire, which has `shots` per second.
+/// Throws InputError if a scan would not be made of whole columns, or groups, of `lasers` shots.
+double shots_factor(const SensorConfig& sensor, double shots, std::size_t lasers,
+                    const std::string& place) {
+  const double wanted = sensor.shape.shots_per_second;
+  if (wanted == 0.0 || !(shots > 0.0)) return 1.0;
+  const double step = sensor.rate_hz * static_cast<double>(lasers);
+  const double columns = wanted / step;
+  if (columns < 0.5 || std::abs(columns - std::round(columns)) > 1e-9 * columns) {
+    throw InputError(place,
+                     "shape.shots_per_second would give " + std::to_string(columns) +
+                         " firings of all lasers per scan",
+                     "use a multiple of " + std::to_string(std::llround(step)));
   }
-  return static_cast<int>(std::lround(std::min(columns, 1e9)));
+  return wanted / shots;
+}
+
+/// A spinning head of `lasers`: how many times as often it fires, and in how many columns.
+struct Firing {
+  double factor = 1.0;
+  int columns = 0;
+};
+Firing firing_of(const SensorConfig& sensor, std::size_t lasers, const std::string& place) {
+  const double shots = sensor.columns * sensor.rate_hz * static_cast<double>(lasers);
+  const double factor = shots_factor(sensor, shots, lasers, place);
+  return {factor, static_cast<int>(std::lround(factor * sensor.columns))};
 }
 
 /// The head whose lasers fire `factor` times as often.
@@ -74,15 +93,16 @@ SpinningHead faster(SpinningHead head, double factor) {
   return head;
 }
 
-/// The Livox whose lasers fire `factor` times as often. Throws InputError if its pattern would not
-/// repeat after a whole number of groups.
-LivoxModel faster(LivoxModel model, double factor, const std::string& place) {
+/// The Livox with as many shots as `shape` says. Throws InputError if it cannot have them.
+LivoxModel with_shots(LivoxModel model, const SensorConfig& sensor, const std::string& place) {
+  const double factor = shots_factor(sensor, model.row_rate_hz, model.emitters.size(), place);
   if (factor == 1.0) return model;
   const double groups = factor * static_cast<double>(model.repeat_groups);
-  if (std::abs(groups - std::round(groups)) > 1e-9 * groups || groups < 1.0) {
-    throw InputError(place, "shape.shots_factor has too many digits", "use 0.5, 2, or such");
+  if (std::abs(groups - std::round(groups)) > 1e-9 * groups) {
+    throw InputError(place, "the pattern would not repeat with this shape.shots_per_second",
+                     "use a rounder number");
   }
-  model.row_rate_hz *= factor;
+  model.row_rate_hz = sensor.shape.shots_per_second;
   model.shots_factor = factor;
   model.repeat_groups = static_cast<std::uint64_t>(std::llround(groups));
   return model;
@@ -104,8 +124,7 @@ std::unique_ptr<ScanPattern> make_csv_pattern(const SensorConfig& sensor,
 /// The pattern of the model, with as many shots as `shape` says.
 std::unique_ptr<ScanPattern> model_pattern(const SensorConfig& sensor, const std::string& place) {
   const auto livox = [&](const LivoxModel& model) {
-    return std::make_unique<LivoxPattern>(faster(model, sensor.shape.shots_factor, place),
-                                          sensor.rate_hz, place);
+    return std::make_unique<LivoxPattern>(with_shots(model, sensor, place), sensor.rate_hz, place);
   };
   switch (sensor.model) {
     case LidarModel::kLivoxMid360:
@@ -117,8 +136,9 @@ std::unique_ptr<ScanPattern> model_pattern(const SensorConfig& sensor, const std
     case LidarModel::kLivoxAvia:
       return livox(livox_avia());
     case LidarModel::kOusterOs0128:
-      return std::make_unique<OusterOs0Pattern>(sensor.columns, sensor.rate_hz, place,
-                                                fired_columns(sensor, place));
+      return std::make_unique<OusterOs0Pattern>(
+          sensor.columns, sensor.rate_hz, place,
+          firing_of(sensor, OusterOs0Pattern::kRows, place).columns);
     case LidarModel::kLivoxCsv:
       return make_csv_pattern(sensor, place);
     case LidarModel::kBeamTable:
@@ -126,9 +146,11 @@ std::unique_ptr<ScanPattern> model_pattern(const SensorConfig& sensor, const std
         throw InputError(place, "the beam table is missing",
                          "set pattern_file to a YAML file of beams");
       }
-      return std::make_unique<SpinningHeadPattern>(
-          faster(*sensor.beam_table, sensor.shape.shots_factor), fired_columns(sensor, place),
-          sensor.rate_hz, place);
+      {
+        const Firing firing = firing_of(sensor, sensor.beam_table->beams.size(), place);
+        return std::make_unique<SpinningHeadPattern>(faster(*sensor.beam_table, firing.factor),
+                                                     firing.columns, sensor.rate_hz, place);
+      }
   }
   throw InputError(place, "unknown model");
 }

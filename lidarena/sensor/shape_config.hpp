@@ -11,7 +11,7 @@ namespace lidarena::sensor {
 /// Changes one property of a scan pattern and leaves all others: to find out which one matters.
 /// Each is off by default.
 struct ShapeConfig {
-  double shots_factor = 1.0;
+  double shots_per_second = 0.0;
   double fov_height_deg = 0.0;
   double fov_shift_deg = 0.0;
   bool repetitive = false;
@@ -19,10 +19,11 @@ struct ShapeConfig {
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
-    v("shots_factor", self.shots_factor, "",
-      "the lasers fire this many times as often, while all that turns does so as before: the same "
-      "pattern with more or fewer shots",
-      Limits{0.0, 100.0, true});
+    v("shots_per_second", self.shots_per_second, "Hz",
+      "the lasers fire more or less often, while all that turns does so as before: the same "
+      "pattern "
+      "with more or fewer shots, 0 = as many as the product",
+      between(0, 1e8));
     v("fov_height_deg", self.fov_height_deg, "deg",
       "all shots in a field of view of this height: elevations are scaled about the middle of "
       "facts.fov, 0 = as they are",

@@ -61,11 +61,13 @@ constexpr auto enum_names(VaryAs) {
 
 /// How the named sets are combined.
 enum class SetsAs {
-  kEach,  ///< each set alone
-  kAll,   ///< all combinations of the sets
+  kEach,   ///< each set alone
+  kPairs,  ///< each set alone, and any two of them together
+  kAll,    ///< all combinations of the sets
 };
 constexpr auto enum_names(SetsAs) {
-  return std::array{std::pair{"each", SetsAs::kEach}, std::pair{"all", SetsAs::kAll}};
+  return std::array{std::pair{"each", SetsAs::kEach}, std::pair{"pairs", SetsAs::kPairs},
+                    std::pair{"all", SetsAs::kAll}};
 }
 
 /// Settings that are varied together.
@@ -123,7 +125,8 @@ struct StudySpec {
       "each: each value alone; grid: all combinations of the values; the base is always flown");
     v("sets", self.sets, "", "named sets of such settings, beside the base");
     v("sets_as", self.sets_as, "",
-      "each: each set alone; all: all combinations of the sets, for the contribution of each");
+      "each: each set alone; pairs: also any two together; all: all combinations of the sets, "
+      "for the contribution of each");
     v("modes", self.modes, "", "timing modes of the sensors; none = as in their files");
     v("external", self.external, "", "external SLAM programs, run by a command line");
     v("reference", self.reference, "", "CSV of published figures, beside the study's own");

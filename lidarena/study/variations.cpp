@@ -72,17 +72,27 @@ std::vector<Variation> grid_of(const Json& vary) {
   return grid;
 }
 
-/// All combinations of two and more of the sets, each set before those after it. Throws InputError
-/// if two sets set the same key, or there are too many.
-std::vector<Variation> combinations_of(const std::vector<Variation>& sets) {
+/// Whether a key is set twice.
+bool contradicts_itself(const Variation& variation) {
+  for (std::size_t i = 0; i < variation.settings.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (variation.settings[i].first == variation.settings[j].first) return true;
+  return false;
+}
+
+/// Combinations of two (and, if all are wanted, more) of the sets, each set before those after it;
+/// of two that set the same key there is no pair. Throws InputError if all are wanted and two set
+/// the same key, or there are too many.
+std::vector<Variation> combinations_of(const std::vector<Variation>& sets, SetsAs as) {
   constexpr std::size_t kMaxSets = 10;  // 1024 combinations
+  if (as == SetsAs::kEach) return {};
   if (sets.size() > kMaxSets)
-    throw InputError("study: sets_as", "all is for at most 10 sets", "leave some out");
+    throw InputError("study: sets_as", "is for at most 10 sets", "leave some out");
   for (std::size_t a = 0; a < sets.size(); ++a) {
     for (std::size_t b = a + 1; b < sets.size(); ++b) {
       for (const auto& [key, value] : sets[a].settings) {
         for (const auto& [other, other_value] : sets[b].settings) {
-          if (key == other)
+          if (key == other && as == SetsAs::kAll)
             throw InputError("study: sets: " + sets[b].name,
                              "sets " + key + ", as " + sets[a].name + " does",
                              "give each key to one set, so that sets can be combined");
@@ -100,7 +110,9 @@ std::vector<Variation> combinations_of(const std::vector<Variation>& sets) {
       together.settings.insert(together.settings.end(), sets[i].settings.begin(),
                                sets[i].settings.end());
     }
-    if (together.sets.size() > 1) combinations.push_back(std::move(together));
+    const bool is_wanted = as == SetsAs::kAll || together.sets.size() == 2;
+    if (together.sets.size() > 1 && is_wanted && !contradicts_itself(together))
+      combinations.push_back(std::move(together));
   }
   return combinations;
 }
@@ -134,8 +146,7 @@ std::vector<Variation> variations_of(const StudySpec& spec) {
     sets.push_back(std::move(variation));
   }
   all.insert(all.end(), sets.begin(), sets.end());
-  if (spec.sets_as == SetsAs::kAll)
-    std::ranges::move(combinations_of(sets), std::back_inserter(all));
+  std::ranges::move(combinations_of(sets, spec.sets_as), std::back_inserter(all));
   return all;
 }
 

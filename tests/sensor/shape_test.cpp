@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
@@ -50,9 +51,9 @@ std::string refusal_of(const std::string& sensor, const std::vector<std::string>
   return "";
 }
 
-TEST(ShotsFactor, FiresAMid360TwiceAsOftenOnTheSameCurve) {
+TEST(ShotsPerSecond, FiresAMid360TwiceAsOftenOnTheSameCurve) {
   const SensorConfig once = shipped_with("livox_mid360", {});
-  const SensorConfig twice = shipped_with("livox_mid360", {"shape.shots_factor=2"});
+  const SensorConfig twice = shipped_with("livox_mid360", {"shape.shots_per_second=400000"});
   EXPECT_EQ(make_pattern(twice)->period(), make_pattern(once)->period());
   EXPECT_EQ(make_pattern(twice)->repeats_after(), make_pattern(once)->repeats_after());
   for (const std::uint64_t scan : {0U, 7U, 119U, 121U}) {
@@ -75,11 +76,13 @@ TEST(ShotsFactor, FiresAMid360TwiceAsOftenOnTheSameCurve) {
   }
 }
 
-TEST(ShotsFactor, GivesASpinningHeadOtherColumnsAtTheSameElevations) {
-  for (const char* name : {"ouster_os0_128", "velodyne_vlp16", "hesai_xt32"}) {
+TEST(ShotsPerSecond, GivesASpinningHeadOtherColumnsAtTheSameElevations) {
+  const std::map<std::string, std::string> halves{
+      {"ouster_os0_128", "655360"}, {"velodyne_vlp16", "144640"}, {"hesai_xt32", "320000"}};
+  for (const auto& [name, shots] : halves) {
     SCOPED_TRACE(name);
     const SensorConfig whole = shipped_with(name, {});
-    const SensorConfig half = shipped_with(name, {"shape.shots_factor=0.5"});
+    const SensorConfig half = shipped_with(name, {"shape.shots_per_second=" + shots});
     const std::vector<Beam> all = scan_of(whole, 0), some = scan_of(half, 0);
     ASSERT_EQ(2 * some.size(), all.size());
     const std::size_t rows = some.size() / (all.size() / 2 / (all.size() / whole.columns));
@@ -222,11 +225,12 @@ TEST(ImuErrorFactor, MultipliesAllErrorsAndWhatTheRigStates) {
 
 TEST(Shape, SaysWhatAPatternCannotBe) {
   EXPECT_THAT(
-      refusal_of("ouster_os0_128", {"shape.shots_factor=0.3"}),
-      AllOf(HasSubstr("ouster_os0_128.yaml"), HasSubstr("307.2"), HasSubstr("whole number")));
-  EXPECT_THAT(refusal_of("livox_mid360", {"shape.shots_factor=0.33333"}),
-              HasSubstr("livox_mid360.yaml"));
-  EXPECT_THAT(refusal_of("livox_mid360", {"shape.shots_factor=0"}), HasSubstr("shots_factor"));
+      refusal_of("ouster_os0_128", {"shape.shots_per_second=393216"}),
+      AllOf(HasSubstr("ouster_os0_128.yaml"), HasSubstr("307.2"), HasSubstr("a multiple of 1280")));
+  EXPECT_THAT(refusal_of("livox_mid360", {"shape.shots_per_second=66666"}),
+              AllOf(HasSubstr("livox_mid360.yaml"), HasSubstr("a multiple of 40")));
+  EXPECT_THAT(refusal_of("livox_mid360", {"shape.shots_per_second=-1"}),
+              HasSubstr("shots_per_second"));
   EXPECT_THAT(refusal_of("livox_mid360", {"shape.fov_shift_deg=60"}),
               AllOf(HasSubstr("beyond 90 deg"), HasSubstr("fov_shift_deg")));
   EXPECT_THAT(refusal_of("livox_mid360", {"shape.fov_height_deg=200"}),

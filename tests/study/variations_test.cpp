@@ -126,6 +126,7 @@ TEST(Variations, AllCombinationsOfSetsNameTheSetsOfEach) {
   EXPECT_THAT(cells[7].set,
               ElementsAre("sensor.max_range_m=5", "imu.rate_hz=100", "sensor.range_noise_m=0.1"));
   EXPECT_EQ(planned_cells(spec_of(sets), configs()).size(), 4U);
+  EXPECT_EQ(planned_cells(spec_of(sets + "sets_as: pairs"), configs()).size(), 7U);
   EXPECT_THAT(error_of("sets: [{name: a, set: {imu.rate_hz: 100}}, {name: b, set: {imu.rate_hz: "
                        "50}}]\nsets_as: all"),
               AllOf(HasSubstr("study: sets: b"), HasSubstr("imu.rate_hz, as a does")));
