@@ -16,6 +16,7 @@
 #include "lidarena/dataset/run_manifest.hpp"
 #include "lidarena/dataset/whole_part.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/stages/pattern_file.hpp"
 #include "lidarena/stages/simulate_dataset.hpp"
 
 namespace lidarena {
@@ -27,6 +28,7 @@ struct InfoOptions {
   std::string thing;
   std::size_t rays = 0;
   bool pattern = false;
+  stages::PatternLength length{};
   std::string out;
   dataset::ReadOptions read{};
   scenes::WorldOptions world{};
@@ -178,6 +180,24 @@ void print_tree(const Json& json, int depth) {
   }
 }
 
+/// Draws the pattern, or writes it as a table, depending on the ending of --out.
+Json pattern_json(const sensor::SensorConfig& sensor, const InfoOptions& o) {
+  const bool has_length = o.length.scans > 0 || o.length.seconds > 0.0;
+  const bool is_table = !o.out.empty() && fs::path(o.out).extension() != ".svg";
+  if (has_length && !is_table)
+    throw InputError("--scans or --seconds", "is only for the table of a pattern",
+                     "add --pattern --out FILE.npy");
+  if (!is_table) return pattern_info(sensor, o.out);
+  const stages::PatternWritten written = stages::write_pattern(sensor, o.length, o.out);
+  return {{"kind", "pattern"},
+          {"sensor", sensor.name},
+          {"file", o.out},
+          {"format", written.format},
+          {"scans", written.scans},
+          {"shots", written.shots},
+          {"repeats_after_scans", written.repeats_after}};
+}
+
 int info_verb(const Common& common, const InfoOptions& o) {
   Console console(common.quiet);
   const stages::ConfigFolder configs = common.config_folder();
@@ -185,11 +205,13 @@ int info_verb(const Common& common, const InfoOptions& o) {
     print_rays(configs.load_sensor(o.thing), o.rays);
     return kDone;
   }
-  if (!o.out.empty() && !o.pattern) {
-    throw InputError("--out", "is only for the drawing of a scan pattern", "add --pattern");
+  const bool has_length = o.length.scans > 0 || o.length.seconds > 0.0;
+  if (!o.pattern && (!o.out.empty() || has_length)) {
+    throw InputError(has_length ? "--scans or --seconds" : "--out", "is only for a scan pattern",
+                     "add --pattern");
   }
   const Json json =
-      o.pattern ? pattern_info(configs.load_sensor(o.thing), o.out) : info_of(configs, o, console);
+      o.pattern ? pattern_json(configs.load_sensor(o.thing), o) : info_of(configs, o, console);
   if (common.json) {
     print_json(json);
   } else {
@@ -212,7 +234,13 @@ void add_info(CLI::App& app, Common& common, int& exit_code) {
                  "Share of a sensor's field of view that its shots cover in 0.1, 0.5, 1 and 4 s");
   verb->add_option("--sensor", o->read.sensor, "Id or topic of the only LiDAR to read");
   verb->add_option("--imu-topic", o->read.imu_topic, "Topic of the IMU to read");
-  verb->add_option("--out", o->out, "With --pattern: SVG file to write the drawing to");
+  verb->add_option("--out", o->out,
+                   "With --pattern: file to write: .svg (a drawing), or the shots as .npy, .csv, "
+                   ".mat3x4f (RobotecGPULidar), .usda or .json (Isaac Sim)");
+  verb->add_option("--scans", o->length.scans, "Scans of the pattern to write")
+      ->check(CLI::PositiveNumber);
+  verb->add_option("--seconds", o->length.seconds, "Seconds of the pattern to write")
+      ->check(CLI::PositiveNumber);
   add_allow_missing(*verb, o->world.allow_missing);
   set_verb(
       *verb, common, [&common, o] { return info_verb(common, *o); }, exit_code);

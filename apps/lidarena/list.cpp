@@ -80,9 +80,10 @@ Verdict judge(double figure, double low, double high) {
 /// A figure beyond its limit outweighs one that is unknown.
 Verdict judge(const SensorFilter& filter, const sensor::SensorConfig& sensor, double points) {
   const sensor::SensorFacts& facts = sensor.facts;
+  const auto fov = field_of_view(sensor);
   Verdict verdict = Verdict::kListed;
   for (const Verdict one :
-       {judge(facts.fov ? smaller_angle(*facts.fov) : 0.0, filter.fov_min, 0.0),
+       {judge(fov ? smaller_angle(*fov) : 0.0, filter.fov_min, 0.0),
         judge(points, filter.points_min, 0.0), judge(sensor.max_range_m, filter.range_min, 0.0),
         judge(facts.weight_kg, 0.0, filter.weight_max),
         judge(facts.power_max_w, 0.0, filter.power_max)}) {
@@ -92,19 +93,19 @@ Verdict judge(const SensorFilter& filter, const sensor::SensorConfig& sensor, do
   return verdict;
 }
 
-std::string fov_of(const sensor::SensorFacts& facts) {
-  if (!facts.fov) return "-";
-  const sensor::FieldOfView& fov = *facts.fov;
-  if (fov.half_angle_deg < 180.0) return fmt::format("circle {:g}", 2.0 * fov.half_angle_deg);
-  return fmt::format("{:g} x {:g}", fov.azimuth_max_deg - fov.azimuth_min_deg,
-                     fov.elevation_max_deg - fov.elevation_min_deg);
+std::string fov_of(const sensor::SensorConfig& sensor) {
+  const auto fov = field_of_view(sensor);
+  if (!fov) return "-";
+  if (fov->half_angle_deg < 180.0) return fmt::format("circle {:g}", 2.0 * fov->half_angle_deg);
+  return fmt::format("{:g} x {:g}", fov->azimuth_max_deg - fov->azimuth_min_deg,
+                     fov->elevation_max_deg - fov->elevation_min_deg);
 }
 
 constexpr const char* kSensorRow = "{:<26} {:>11} {:>9} {:>6} {:>8} {:>12}  {}\n";
 
 void print_sensor(const sensor::SensorConfig& sensor, double points) {
   const sensor::SensorFacts& facts = sensor.facts;
-  fmt::print(kSensorRow, sensor.name, fov_of(facts), fmt::format("{:.0f}", points),
+  fmt::print(kSensorRow, sensor.name, fov_of(sensor), fmt::format("{:.0f}", points),
              range_text(0.0, sensor.max_range_m, "m"),
              range_text(0.0, 1000.0 * facts.weight_kg, "g"),
              range_text(facts.power_min_w, facts.power_max_w, "W"),
@@ -134,7 +135,7 @@ int list_sensors(const Common& common, const SensorFilter& filter) {
       const Verdict verdict = judge(filter, sensor, points);
       if (verdict == Verdict::kUnknown) unknown.push_back(name);
       if (verdict != Verdict::kListed) continue;
-      json.update({{"fov_deg", fov_of(sensor.facts)},
+      json.update({{"fov_deg", fov_of(sensor)},
                    {"points_per_second", points},
                    {"max_range_m", sensor.max_range_m},
                    {"facts", to_json(sensor.facts)}});

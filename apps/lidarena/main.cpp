@@ -129,6 +129,7 @@ int parse_and_do(int argc, char** argv) {
   add_run(app, common, exit_code);
   add_evaluate(app, common, exit_code);
   add_study(app, common, exit_code);
+  add_improve(app, common, exit_code);
   add_status(app, common, exit_code);
   add_report(app, common, exit_code);
   add_convert(app, common, exit_code);

@@ -22,10 +22,9 @@ double cell_of(const sensor::FieldOfView& fov) {
   return fov.azimuth_max_deg - fov.azimuth_min_deg > 180.0 ? 0.5 : 0.25;
 }
 
-sensor::FieldOfView field_of_view(const sensor::SensorConfig& sensor,
-                                  const sensor::ScanPattern& pattern) {
-  return sensor.facts.fov ? *sensor.facts.fov
-                          : sensor::observed_field_of_view(pattern, from_seconds(1.0));
+sensor::FieldOfView fov_of(const sensor::SensorConfig& sensor, const sensor::ScanPattern& pattern) {
+  const auto stated = sensor::field_of_view(sensor);
+  return stated ? *stated : sensor::observed_field_of_view(pattern, from_seconds(1.0));
 }
 
 /// The drawn area: the bounding box of the field of view and ten cells around it.
@@ -80,7 +79,7 @@ void print_rays(const sensor::SensorConfig& sensor, std::size_t count) {
 
 Json pattern_info(const sensor::SensorConfig& sensor, const std::filesystem::path& svg) {
   const auto pattern = sensor::make_pattern(sensor);
-  const sensor::FieldOfView fov = field_of_view(sensor, *pattern);
+  const sensor::FieldOfView fov = fov_of(sensor, *pattern);
   const double cell_deg = cell_of(fov);
   const sensor::FieldOfView view = margin_around(fov, cell_deg);
   sensor::Coverage inside(fov, cell_deg);

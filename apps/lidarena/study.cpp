@@ -8,6 +8,7 @@
 #include <map>
 
 #include "apps/lidarena/console.hpp"
+#include "apps/lidarena/study_calls.hpp"
 #include "apps/lidarena/verbs.hpp"
 #include "lidarena/dataset/part_file.hpp"
 #include "lidarena/dataset/text_file.hpp"
@@ -20,6 +21,34 @@
 #include "lidarena/study/study_programs.hpp"
 
 namespace lidarena {
+namespace {
+
+/// The last signal that asks the study to end; handlers can only write to a global.
+std::atomic<int> stop_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
+
+/// SIGUSR1 asks the study to end soon; Ctrl-C and SIGTERM at once.
+study::Stop asked_to_stop() {
+  const int signal = stop_signal;
+  if (signal == 0) return study::Stop::kNo;
+  return signal == SIGUSR1 ? study::Stop::kSoon : study::Stop::kNow;
+}
+
+}  // namespace
+
+void listen_to_signals() {
+  for (const int signal : {SIGUSR1, SIGTERM, SIGINT})
+    std::signal(signal, [](int received) { stop_signal = received; });
+}
+
+study::StudyOptions local_study(const Common& common) {
+  study::StudyOptions options;
+  options.threads = common.threads;
+  options.program = "/proc/self/exe";
+  options.stop = asked_to_stop;
+  return options;
+}
+
 namespace {
 
 struct StudyRequest {
@@ -44,22 +73,6 @@ struct StudyRequest {
   bool print = false;
   study::SlurmOptions cluster;
 };
-
-/// The last signal that asks the study to end; handlers can only write to a global.
-std::atomic<int> stop_signal = 0;
-static_assert(std::atomic<int>::is_always_lock_free);
-
-/// SIGUSR1 asks the study to end soon; Ctrl-C and SIGTERM at once.
-study::Stop asked_to_stop() {
-  const int signal = stop_signal;
-  if (signal == 0) return study::Stop::kNo;
-  return signal == SIGUSR1 ? study::Stop::kSoon : study::Stop::kNow;
-}
-
-void listen_to_signals() {
-  for (const int signal : {SIGUSR1, SIGTERM, SIGINT})
-    std::signal(signal, [](int received) { stop_signal = received; });
-}
 
 /// A study of one world on an automatically planned tour; the algorithm "all" stands for every one.
 /// Sensors and algorithms are judged before anything is said to be missing.
@@ -141,16 +154,13 @@ Json shortfall_json(const report::ReportFiles& report) {
 }
 
 study::StudyOptions options_of(const Common& common, const StudyRequest& request) {
-  study::StudyOptions options;
-  options.threads = common.threads;
+  study::StudyOptions options = local_study(common);
   options.jobs = request.jobs;
   options.shard = study::parse_shard(request.shard);
-  options.program = "/proc/self/exe";
   options.scratch = request.scratch;
   if (request.scratch_gb)
     options.scratch_bytes = static_cast<std::uint64_t>(1e9 * *request.scratch_gb);
   options.known = request.known;
-  options.stop = asked_to_stop;
   options.grace_s = request.grace_s;
   options.waits_for_others = !request.worker;
   return options;

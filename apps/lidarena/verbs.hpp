@@ -39,6 +39,7 @@ std::string free_name(const std::string& wanted);
 
 void add_list(CLI::App& app, Common& common, int& exit_code);
 void add_check(CLI::App& app, Common& common, int& exit_code);
+void add_improve(CLI::App& app, Common& common, int& exit_code);
 void add_info(CLI::App& app, Common& common, int& exit_code);
 void add_simulate(CLI::App& app, Common& common, int& exit_code);
 void add_run(CLI::App& app, Common& common, int& exit_code);

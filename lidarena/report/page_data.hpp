@@ -204,6 +204,43 @@ struct CellClaims {
   }
 };
 
+/// What one change contributes to a figure, with the interval at 95 %.
+struct PageContribution {
+  static constexpr const char* kTitle = "Contribution";
+  std::string name;
+  double value = 0.0;
+  std::optional<double> low, high;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("name", self.name, "", "");
+    v("value", self.value, "", "in the unit of the figure");
+    v("low", self.low, "", "");
+    v("high", self.high, "", "");
+  }
+};
+
+/// What several changes contribute to a figure, see results/contributions.hpp.
+struct PageContributions {
+  static constexpr const char* kTitle = "Contributions";
+  std::string world, sensor, method, figure;
+  std::size_t flights = 0;
+  double base = 0.0, all = 0.0;
+  std::vector<PageContribution> parts;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("world", self.world, "", "");
+    v("sensor", self.sensor, "", "");
+    v("method", self.method, "", "with its preset");
+    v("figure", self.figure, "", "its key");
+    v("flights", self.flights, "", "");
+    v("base", self.base, "", "with nothing changed");
+    v("all", self.all, "", "with all changed");
+    v("parts", self.parts, "", "");
+  }
+};
+
 struct ReportData {
   std::string title, version;
   std::vector<std::string> made_on;
@@ -211,6 +248,7 @@ struct ReportData {
   std::vector<PageSensor> sensors;
   PageDecision decision;
   CellClaims claims;
+  std::vector<PageContributions> contributions;
   std::vector<results::ReferenceFigure> reference;
   std::vector<EventKind> event_kinds;
   std::vector<results::Table> tables;
@@ -225,6 +263,7 @@ struct ReportData {
     v("sensors", self.sensors, "", "");
     v("decision", self.decision, "", "");
     v("claims", self.claims, "", "");
+    v("contributions", self.contributions, "", "of a study with all combinations of changes");
     v("reference", self.reference, "", "published figures");
     v("event_kinds", self.event_kinds, "", "");
     v("tables", self.tables, "", "");

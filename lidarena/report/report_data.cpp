@@ -11,6 +11,7 @@
 #include <span>
 
 #include "lidarena/dataset/run_events.hpp"
+#include "lidarena/report/contribution_tables.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/run_command.hpp"
 #include "lidarena/report/summary_tables.hpp"
@@ -256,6 +257,31 @@ CellClaims claims_of(const results::StudyResults& results) {
   return claims;
 }
 
+std::vector<PageContributions> page_contributions(const results::StudyResults& results) {
+  std::vector<PageContributions> list;
+  for (const results::Contributions& c : shown_contributions(results)) {
+    if (!c.missing.empty()) continue;
+    PageContributions page{.world = c.world,
+                           .sensor = c.sensor,
+                           .method = c.method,
+                           .figure = c.figure->key,
+                           .flights = c.flights,
+                           .base = c.base,
+                           .all = c.all,
+                           .parts = {}};
+    for (const results::Contribution& part : c.parts) {
+      PageContribution shown{part.name, part.value, {}, {}};
+      if (part.value_95) {
+        shown.low = part.value_95->low;
+        shown.high = part.value_95->high;
+      }
+      page.parts.push_back(shown);
+    }
+    list.push_back(std::move(page));
+  }
+  return list;
+}
+
 /// The machines and versions of lidarena that the runs were made with.
 std::vector<std::string> made_on(const results::StudyResults& results) {
   std::set<std::string> machines;
@@ -279,6 +305,7 @@ ReportData report_data(const results::StudyResults& results,
                   .sensors = sensors_of(results),
                   .decision = decision_of(results),
                   .claims = claims_of(results),
+                  .contributions = page_contributions(results),
                   .reference = results.reference,
                   .event_kinds = event_kinds(),
                   .tables = tables,

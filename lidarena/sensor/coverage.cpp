@@ -30,6 +30,15 @@ Angles angles_of(const Eigen::Vector3f& direction) {
 
 }  // namespace
 
+bool contains(const FieldOfView& fov, const Eigen::Vector3f& direction) {
+  const Angles angles = angles_of(direction);
+  return angles.azimuth_deg >= fov.azimuth_min_deg - kNudgeDeg &&
+         angles.azimuth_deg <= fov.azimuth_max_deg + kNudgeDeg &&
+         angles.elevation_deg >= fov.elevation_min_deg - kNudgeDeg &&
+         angles.elevation_deg <= fov.elevation_max_deg + kNudgeDeg &&
+         static_cast<double>(direction.x()) >= std::cos(fov.half_angle_deg * kDegree) - 1e-7;
+}
+
 Coverage::Coverage(const FieldOfView& fov, double cell_deg)
     : fov_(fov),
       cell_deg_(cell_deg),

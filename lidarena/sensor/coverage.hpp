@@ -12,6 +12,9 @@
 
 namespace lidarena::sensor {
 
+/// Whether the direction is within the field of view, edges included.
+bool contains(const FieldOfView& fov, const Eigen::Vector3f& direction);
+
 /// Grid over a field of view that records which cells were hit by a ray. Cells are squares in
 /// azimuth and elevation, in rows from the minimum azimuth and elevation on; a cell belongs to the
 /// field of view if its center does.

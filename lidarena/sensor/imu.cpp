@@ -73,7 +73,7 @@ ImuSample perfect_imu(const flight::Motion& motion, const Pose& body_from_imu, d
 
 Imu::Imu(const ImuConfig& config, const Pose& body_from_imu, const std::string& id,
          std::uint64_t seed, bool noise, const ClockConfig& clock)
-    : config_(noise ? config : without_errors(config)),
+    : config_(noise ? with_error_factor(config) : without_errors(config)),
       body_from_imu_(body_from_imu),
       noise_(noise),
       random_(seed, stream_of((id + "/imu").c_str())),

@@ -224,7 +224,7 @@ Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, 
   std::vector<Beam> storage;
   const std::span<const Beam> shots = beams(index, storage);
   const bool rolling = config_.mode == ScanMode::kRolling;
-  const LidarMotion motion(flight, config_.body_from_lidar, begin(index), last_dt_ns_, rolling);
+  const LidarMotion motion(flight, mounted(config_), begin(index), last_dt_ns_, rolling);
   std::optional<LidarShake> shake;
   if (vibration_) {
     shake.emplace(*vibration_, flight, config_.imu->lidar_from_imu, begin(index),

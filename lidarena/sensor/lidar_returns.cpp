@@ -274,6 +274,7 @@ PointTruth Lidar::truth_of(std::size_t shot, const Echo& echo, const Block& bloc
 /// Makes points of the hits of the block.
 void Lidar::collect(const world::Surfaces& world, Block& block) const {
   for (std::size_t shot = 0; shot < block.shots.size(); ++shot) {
+    if (config_.shape.clip && !contains(*config_.shape.clip, block.shots[shot].direction)) continue;
     block.axis_to_origin = static_cast<double>(block.shots[shot].origin.norm());
     if (is_simple_) {
       const auto echo = receive_ray(world, shot, 0, block);

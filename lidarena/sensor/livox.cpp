@@ -30,7 +30,7 @@ double angle_of(const Rotor& rotor, double group) {
 Phases phases_of(const LivoxModel& model, std::uint64_t group) {
   Phases phases;
   for (std::size_t i = 0; i < model.rotors.size(); ++i) {
-    const double angle = angle_of(model.rotors[i], static_cast<double>(group));
+    const double angle = angle_of(model.rotors[i], static_cast<double>(group) / model.shots_factor);
     phases[i] = {std::cos(angle), std::sin(angle)};
   }
   return phases;

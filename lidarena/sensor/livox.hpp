@@ -30,6 +30,9 @@ struct LivoxModel {
   std::vector<Rotor> rotors;
   std::vector<Surface> surfaces;
   double glass_index;
+  /// Groups fired in the time of one group of the design: above 1, the lasers fire more often than
+  /// those of the product, while the rotors turn as fast.
+  double shots_factor = 1.0;
   std::uint64_t repeat_groups;  ///< number of groups after which all rotor angles repeat exactly
   Eigen::Matrix3d lidar_from_chain;  ///< optical axis of the chain is +z
 };

@@ -60,13 +60,13 @@ LidarInfo describe_lidar(const SensorConfig& sensor, const std::string& id) {
   info.rate_hz = sensor.rate_hz;
   info.min_range_m = sensor.min_range_m;
   info.max_range_m = sensor.max_range_m;
-  info.body_from_lidar = sensor.body_from_lidar;
+  info.body_from_lidar = mounted(sensor);
   return info;
 }
 
 /// The description of the IMU that methods get, see ToldConfig.
 ImuInfo describe_imu(const SensorConfig& sensor, const std::string& id) {
-  const ImuConfig& imu = *sensor.imu;
+  const ImuConfig imu = with_error_factor(*sensor.imu);
   const ToldConfig& told = sensor.told;
   ImuInfo info;
   info.id = id;
@@ -76,7 +76,7 @@ ImuInfo describe_imu(const SensorConfig& sensor, const std::string& id) {
   info.accel_noise_density = told.noise_factor * imu.accel_noise_density;
   info.gyro_bias_walk = told.bias_walk_factor * imu.gyro_bias_walk;
   info.accel_bias_walk = told.bias_walk_factor * imu.accel_bias_walk;
-  info.body_from_imu = sensor.body_from_lidar * told.lidar_from_imu.value_or(imu.lidar_from_imu);
+  info.body_from_imu = mounted(sensor) * told.lidar_from_imu.value_or(imu.lidar_from_imu);
   return info;
 }
 

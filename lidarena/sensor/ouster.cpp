@@ -47,13 +47,14 @@ OusterRow os0_128_row(int row) {
   return {std::asin(direction.z()), std::atan2(direction.y(), direction.x())};
 }
 
-OusterOs0Pattern::OusterOs0Pattern(int columns, double rate_hz, const std::string& name)
+OusterOs0Pattern::OusterOs0Pattern(int columns, double rate_hz, const std::string& name, int fired)
     : period_(from_seconds(1.0 / rate_hz)) {
   if (!is_mode(columns, rate_hz)) {
     throw InputError(name,
                      std::to_string(columns) + " columns at this rate_hz are not a mode of the OS0",
                      "use 512, 1024 or 2048 columns at 10 Hz, or 512 or 1024 at 20 Hz");
   }
+  if (fired > 0) columns = fired;
   beams_.reserve(static_cast<std::size_t>(columns * kRows));
   for (int column = 0; column < columns; ++column) {
     const double revolutions = static_cast<double>(column) / columns;

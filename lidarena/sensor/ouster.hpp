@@ -27,8 +27,9 @@ class OusterOs0Pattern : public ScanPattern {
   static constexpr double kBeamOriginRadius = 0.02767;  ///< m, units up to revision 6
 
   /// Modes: 512, 1024 or 2048 columns at 10 Hz; 512 or 1024 at 20 Hz. Throws InputError (place
-  /// `name`) for others.
-  OusterOs0Pattern(int columns, double rate_hz, const std::string& name);
+  /// `name`) for others. `fired`: columns in which it fires instead, which no product does; 0 = as
+  /// many.
+  OusterOs0Pattern(int columns, double rate_hz, const std::string& name, int fired = 0);
 
   Time period() const override { return period_; }
   std::size_t beams_per_scan() const override { return beams_.size(); }

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/sensor/sensor_config.hpp"
 
+#include <algorithm>
+#include <string>
+
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::sensor {
@@ -8,12 +12,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void check_fov(const std::optional<FieldOfView>& fov, const std::string& place) {
+void check_fov(const std::optional<FieldOfView>& fov, const std::string& key,
+               const std::string& place) {
   if (!fov) return;
   if (fov->azimuth_min_deg < fov->azimuth_max_deg &&
       fov->elevation_min_deg < fov->elevation_max_deg)
     return;
-  throw InputError(place, "facts.fov is empty", "keep each minimum below its maximum");
+  throw InputError(place, key + " is empty", "keep each minimum below its maximum");
 }
 
 void check_imu(const std::optional<ImuConfig>& imu, const std::string& place) {
@@ -87,6 +92,30 @@ fs::path base_file(const ConfigNode& base, const fs::path& file, const fs::path&
 
 }  // namespace
 
+ImuConfig with_error_factor(ImuConfig imu) {
+  for (double* error : {&imu.gyro_noise_density, &imu.accel_noise_density, &imu.gyro_bias_walk,
+                        &imu.accel_bias_walk, &imu.gyro_turn_on_bias, &imu.accel_turn_on_bias,
+                        &imu.gyro_scale_error, &imu.accel_scale_error, &imu.gyro_misalignment,
+                        &imu.accel_misalignment, &imu.gyro_g_sensitivity, &imu.gyro_nonlinearity,
+                        &imu.accel_nonlinearity})
+    *error *= imu.error_factor;
+  imu.error_factor = 1.0;
+  return imu;
+}
+
+Pose mounted(const SensorConfig& sensor) {
+  const MountConfig& mount = sensor.mount;
+  Pose pose = sensor.body_from_lidar;
+  if (mount.pitch_deg != 0.0 || mount.yaw_deg != 0.0) {
+    const Eigen::Quaterniond turn =
+        Eigen::AngleAxisd(kDegree * mount.yaw_deg, Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(kDegree * mount.pitch_deg, Eigen::Vector3d::UnitY());
+    pose.linear() = (turn * pose.linear()).eval();
+  }
+  pose.translation().z() += mount.up_m;
+  return pose;
+}
+
 SpinningHead load_spinning_head(const fs::path& file) {
   const ConfigNode node = ConfigNode::load(file);
   SpinningHead table;
@@ -127,7 +156,8 @@ SensorConfig load_sensor(const fs::path& file, const fs::path& shipped,
     throw InputError(file.string(), "min_range_m is not below max_range_m");
   }
   check_returns(sensor.noise, sensor.returns, file.string());
-  check_fov(sensor.facts.fov, file.string());
+  check_fov(sensor.facts.fov, "facts.fov", file.string());
+  check_fov(sensor.shape.clip, "shape.clip", file.string());
   check_imu(sensor.imu, file.string());
   make_pattern(sensor, file.string());  // throws if the model does not have this mode
   return sensor;

@@ -14,6 +14,7 @@
 #include "lidarena/sensor/field_of_view.hpp"
 #include "lidarena/sensor/return_config.hpp"
 #include "lidarena/sensor/scan_pattern.hpp"
+#include "lidarena/sensor/shape_config.hpp"
 #include "lidarena/sensor/spinning_head.hpp"
 
 namespace lidarena::sensor {
@@ -81,6 +82,7 @@ struct VibrationTone {
 struct ImuConfig {
   std::string model;
   double rate_hz = 200.0;
+  double error_factor = 1.0;
   double gyro_noise_density = 0.0;
   double accel_noise_density = 0.0;
   double gyro_bias_walk = 0.0;
@@ -112,6 +114,9 @@ struct ImuConfig {
   static void visit(Self& self, V&& v) {
     v("model", self.model, "", "part number");
     v("rate_hz", self.rate_hz, "Hz", "samples per second", above(0));
+    v("error_factor", self.error_factor, "",
+      "all noise, bias, scale, misalignment, g-sensitivity and non-linearity errors times this",
+      at_least(0));
     v("gyro_noise_density", self.gyro_noise_density, "rad/s/sqrt(Hz)", "white noise", at_least(0));
     v("accel_noise_density", self.accel_noise_density, "m/s^2/sqrt(Hz)", "white noise",
       at_least(0));
@@ -163,6 +168,9 @@ struct ImuConfig {
   }
 };
 
+/// The IMU whose errors are multiplied by its error_factor, which is then 1.
+ImuConfig with_error_factor(ImuConfig imu);
+
 /// Product data for comparing sensors; not used by the simulation.
 struct SensorFacts {
   std::string source;  ///< source of the figures in the file
@@ -195,6 +203,7 @@ struct SensorConfig {
   double row_rate_hz = 0.0;
   int lines = 1;
   std::optional<SpinningHead> beam_table;
+  ShapeConfig shape{};
   double rate_hz = 10.0;
   double min_range_m = 0.1;
   double max_range_m = 70.0;
@@ -203,6 +212,7 @@ struct SensorConfig {
   ReturnConfig returns;
   ScanMode mode = ScanMode::kRolling;
   Pose body_from_lidar = Pose::Identity();
+  MountConfig mount{};
   std::optional<ImuConfig> imu;
   ToldConfig told;
   SensorFacts facts;
@@ -219,6 +229,7 @@ struct SensorConfig {
     v("lines", self.lines, "", "number of laser lines that alternate in the rows of livox_csv",
       between(1, 65535));
     v("beam_table", self.beam_table, "", "the beam table itself, instead of pattern_file");
+    v("shape", self.shape, "", "changes of the scan pattern, to find out what matters");
     v("rate_hz", self.rate_hz, "Hz", "scans per second", at_least(0.5));  // dt_ns covers 2.1 s
     v("min_range_m", self.min_range_m, "m", "nearest range reported", at_least(0));
     v("max_range_m", self.max_range_m, "m", "farthest range reported", above(0));
@@ -228,12 +239,20 @@ struct SensorConfig {
     v("returns", self.returns, "",
       "which of a shot's echoes are reported, and the kind of intensity");
     v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
-    v("body_from_lidar", self.body_from_lidar, "m, quaternion", "x y z qx qy qz qw");
+    v("body_from_lidar", self.body_from_lidar, "m, quaternion",
+      "x y z qx qy qz qw; mount turns and moves it further");
+    v("mount", self.mount, "", "another mounting, in angles; the IMU inside moves along");
     v("imu", self.imu, "", "the IMU inside the LiDAR, if any");
     v("told", self.told, "", "what the rig tells the methods where it differs from what is so");
     v("facts", self.facts, "", "weight, power, price, source");
   }
 };
+
+/// The pose of the LiDAR in the body: body_from_lidar, turned and moved by `mount`.
+Pose mounted(const SensorConfig& sensor);
+
+/// The field of view of the data sheet as `shape` changes it; empty if the data sheet's is unknown.
+std::optional<FieldOfView> field_of_view(const SensorConfig& sensor);
 
 /// Reads an optional part over the one that is there, so that a file may state only what differs
 /// from its base (and `--set imu.rate_hz=100` changes that alone); null removes the part.

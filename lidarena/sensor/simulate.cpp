@@ -58,7 +58,7 @@ class Simulation final : public EventSource {
       lidars_.push_back(std::move(stream));
       if (!sensor.imu) continue;
       const std::string& imu_id = rig.imus[imu++].id;
-      const Pose body_from_imu = sensor.body_from_lidar * sensor.imu->lidar_from_imu;
+      const Pose body_from_imu = mounted(sensor) * sensor.imu->lidar_from_imu;
       const flight::RecordedImu* recorded = flight.recorded_imu();
       if (recorded != nullptr && options.noise)
         imus_.push_back({imu_id, RecordedImuReader(*recorded, body_from_imu, imu_id)});

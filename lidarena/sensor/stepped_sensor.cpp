@@ -37,7 +37,7 @@ void SteppedSensor::start_at(Time start) {
   scan_ = lidar_.empty_scan(index_);
   shots_ = lidar_.beams(index_, storage_);
   if (!config.imu) return;
-  imu_.emplace(*config.imu, config.body_from_lidar * config.imu->lidar_from_imu, id_, seed_, noise_,
+  imu_.emplace(*config.imu, mounted(config) * config.imu->lidar_from_imu, id_, seed_, noise_,
                config.noise.clock);
 }
 
@@ -56,8 +56,9 @@ void SteppedSensor::step(const world::Surfaces& world, const StampedPose& pose,
 
 void SteppedSensor::cast(const world::Surfaces& world, const StampedPose& pose) {
   const StampedPose& last = *(poses_.end() - 2);
+  const Pose body_from_lidar = mounted(lidar_.config());
   const PoseAt world_from_lidar = [&](std::int32_t dt_ns) -> Pose {
-    return between(last, pose, begin() + Time{dt_ns}) * lidar_.config().body_from_lidar;
+    return between(last, pose, begin() + Time{dt_ns}) * body_from_lidar;
   };
   const bool rolling = lidar_.config().mode == ScanMode::kRolling;
   while (begin() <= pose.stamp) {

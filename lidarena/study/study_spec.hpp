@@ -59,6 +59,17 @@ constexpr auto enum_names(VaryAs) {
   return std::array{std::pair{"each", VaryAs::kEach}, std::pair{"grid", VaryAs::kGrid}};
 }
 
+/// How the named sets are combined.
+enum class SetsAs {
+  kEach,   ///< each set alone
+  kPairs,  ///< each set alone, and any two of them together
+  kAll,    ///< all combinations of the sets
+};
+constexpr auto enum_names(SetsAs) {
+  return std::array{std::pair{"each", SetsAs::kEach}, std::pair{"pairs", SetsAs::kPairs},
+                    std::pair{"all", SetsAs::kAll}};
+}
+
 /// Settings that are varied together.
 struct VariedSet {
   std::string name;
@@ -84,6 +95,7 @@ struct StudySpec {
   Json vary = Json::object();  ///< KIND.key: list of values
   VaryAs vary_as = VaryAs::kEach;
   std::vector<VariedSet> sets;
+  SetsAs sets_as = SetsAs::kEach;
   std::vector<sensor::ScanMode> modes;  ///< of all sensors; empty = as in their files
   std::vector<stages::ExternalProgram> external;
   std::string reference;  ///< CSV of published figures, see load_reference(); may be empty
@@ -112,6 +124,9 @@ struct StudySpec {
     v("vary_as", self.vary_as, "",
       "each: each value alone; grid: all combinations of the values; the base is always flown");
     v("sets", self.sets, "", "named sets of such settings, beside the base");
+    v("sets_as", self.sets_as, "",
+      "each: each set alone; pairs: also any two together; all: all combinations of the sets, "
+      "for the contribution of each");
     v("modes", self.modes, "", "timing modes of the sensors; none = as in their files");
     v("external", self.external, "", "external SLAM programs, run by a command line");
     v("reference", self.reference, "", "CSV of published figures, beside the study's own");
@@ -135,7 +150,7 @@ struct PlannedRun {
   std::vector<std::string> set;    ///< "KIND.key=value" of the flight, over its files
   std::string variation;           ///< what differs from the base, in words; empty: nothing
   Json varied = Json::object();    ///< each key that the study varies, with its value here
-  /// Keys of `varied` whose value is not that of the base; of a named set, its name.
+  /// Keys of `varied` whose value is not that of the base; of named sets, their names.
   std::vector<std::string> differs;
   std::string method_part;  ///< of the name: settings of the method
   std::string recording;    ///< name of the recording; empty: the flight is simulated

@@ -72,6 +72,51 @@ std::vector<Variation> grid_of(const Json& vary) {
   return grid;
 }
 
+/// Whether a key is set twice.
+bool contradicts_itself(const Variation& variation) {
+  for (std::size_t i = 0; i < variation.settings.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (variation.settings[i].first == variation.settings[j].first) return true;
+  return false;
+}
+
+/// Combinations of two (and, if all are wanted, more) of the sets, each set before those after it;
+/// of two that set the same key there is no pair. Throws InputError if all are wanted and two set
+/// the same key, or there are too many.
+std::vector<Variation> combinations_of(const std::vector<Variation>& sets, SetsAs as) {
+  constexpr std::size_t kMaxSets = 10;  // 1024 combinations
+  if (as == SetsAs::kEach) return {};
+  if (sets.size() > kMaxSets)
+    throw InputError("study: sets_as", "is for at most 10 sets", "leave some out");
+  for (std::size_t a = 0; a < sets.size(); ++a) {
+    for (std::size_t b = a + 1; b < sets.size(); ++b) {
+      for (const auto& [key, value] : sets[a].settings) {
+        for (const auto& [other, other_value] : sets[b].settings) {
+          if (key == other && as == SetsAs::kAll)
+            throw InputError("study: sets: " + sets[b].name,
+                             "sets " + key + ", as " + sets[a].name + " does",
+                             "give each key to one set, so that sets can be combined");
+        }
+      }
+    }
+  }
+  std::vector<Variation> combinations;
+  for (std::size_t chosen = 1; chosen < std::size_t{1} << sets.size(); ++chosen) {
+    Variation together;
+    for (std::size_t i = 0; i < sets.size(); ++i) {
+      if ((chosen >> i & 1U) == 0) continue;
+      together.name += (together.name.empty() ? "" : " + ") + sets[i].name;
+      together.sets.push_back(sets[i].name);
+      together.settings.insert(together.settings.end(), sets[i].settings.begin(),
+                               sets[i].settings.end());
+    }
+    const bool is_wanted = as == SetsAs::kAll || together.sets.size() == 2;
+    if (together.sets.size() > 1 && is_wanted && !contradicts_itself(together))
+      combinations.push_back(std::move(together));
+  }
+  return combinations;
+}
+
 }  // namespace
 
 std::vector<Variation> variations_of(const StudySpec& spec) {
@@ -83,22 +128,25 @@ std::vector<Variation> variations_of(const StudySpec& spec) {
     std::ranges::move(grid_of(spec.vary), std::back_inserter(all));
   } else {
     for (const auto& [key, values] : spec.vary.items())
-      for (const Json& value : values_of(key, values)) all.push_back({"", {{key, value}}});
+      for (const Json& value : values_of(key, values)) all.push_back({"", {}, {{key, value}}});
   }
+  std::vector<Variation> sets;
   for (const VariedSet& set : spec.sets) {
     if (set.name.empty() || set.name.find('/') != std::string::npos)
       throw InputError("study: sets", "a set has the name '" + set.name + "'",
                        "give each a name without '/', since a folder is named after it");
-    if (std::ranges::find(all, set.name, &Variation::name) != all.end())
+    if (std::ranges::find(sets, set.name, &Variation::name) != sets.end())
       throw InputError("study: sets", "two sets have the name '" + set.name + "'",
                        "give each a name of its own, since tables tell them apart by it");
     if (!set.set.is_object())
       throw InputError("study: sets: " + set.name, "has no settings",
                        "write set: {sensor.range_noise_m: 0.01}");
-    Variation variation{set.name, {}};
+    Variation variation{set.name, {set.name}, {}};
     for (const auto& [key, value] : set.set.items()) variation.settings.emplace_back(key, value);
-    all.push_back(std::move(variation));
+    sets.push_back(std::move(variation));
   }
+  all.insert(all.end(), sets.begin(), sets.end());
+  std::ranges::move(combinations_of(sets, spec.sets_as), std::back_inserter(all));
   return all;
 }
 
@@ -223,7 +271,7 @@ PlannedRun CellSettings::varied(const PlannedRun& base, const Variation& variati
   }
   if (!cell.variation.empty() && !variation.name.empty()) {
     cell.variation = variation.name;
-    cell.differs = {variation.name};
+    cell.differs = variation.sets;
   }
   cell.dataset += name_part(variation.name, of_flight);
   cell.method_part = name_part(variation.name, of_method);

@@ -13,7 +13,8 @@ namespace lidarena::study {
 
 /// Settings that differ from the base together.
 struct Variation {
-  std::string name;                                    ///< of a named set; empty: its settings
+  std::string name;                                    ///< of named sets; empty: its settings
+  std::vector<std::string> sets;                       ///< the named sets that it combines
   std::vector<std::pair<std::string, Json>> settings;  ///< KIND.key and value
 };
 

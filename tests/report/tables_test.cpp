@@ -7,8 +7,10 @@
 #include <set>
 
 #include "lidarena/dataset/run_events.hpp"
+#include "lidarena/report/contribution_tables.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/figure_tables.hpp"
+#include "lidarena/report/improvement_table.hpp"
 #include "lidarena/report/report_data.hpp"
 #include "lidarena/report/run_command.hpp"
 #include "lidarena/report/simplified_mesh.hpp"
@@ -412,6 +414,88 @@ TEST(SimplifiedMesh, AFinePlaneBecomesCoarseAndStaysWhereItIs) {
   EXPECT_NEAR(coarse.area(), plane.area(), 0.15 * plane.area());
   for (const Eigen::Vector3d& v : coarse.vertices) EXPECT_DOUBLE_EQ(v.z(), 1.0);
   EXPECT_EQ(simplified(coarse, 3000).triangles, coarse.triangles);
+}
+
+TEST(ContributionTables, SayOfEachChangeWhatItsIntervalCarries) {
+  results::StudyResults results;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    for (const unsigned c : {0U, 1U, 2U, 3U}) {
+      const double noise = seed % 2 == 0 ? 0.4 : -0.4;  // of the second change alone
+      results.rows.push_back(row("house", "mid360", "arena_lio",
+                                 5.0 - 2.0 * (c & 1U) + ((c & 2U) != 0 ? noise : 0.0), 1.0, seed));
+      results::RunRecord& run = results.rows.back();
+      if ((c & 1U) != 0) run.differs.emplace_back("field");
+      if ((c & 2U) != 0) run.differs.emplace_back("IMU");
+      for (const std::string& name : run.differs)
+        run.variation += (run.variation.empty() ? "" : " + ") + name;
+    }
+  }
+  const auto tables = contribution_tables(shown_contributions(results));
+  ASSERT_FALSE(tables.empty());
+  const results::Table& drift = tables.front();
+  EXPECT_EQ(drift.id, "contributions-rpe_1m_at_poses_translation-house");
+  ASSERT_EQ(drift.rows.size(), 4U);
+  EXPECT_EQ(drift.rows[0][1].text, "5");
+  EXPECT_EQ(drift.rows[1][0].text, "field");
+  EXPECT_EQ(drift.rows[1][1].text, "-2");
+  EXPECT_TRUE(drift.rows[1][1].bold);
+  EXPECT_FALSE(drift.rows[2][1].bold);
+  EXPECT_EQ(drift.rows[3][1].text, "3");
+  EXPECT_THAT(drift.note, HasSubstr("8 flights; better with field; worse with none; open: IMU."));
+
+  const ReportData data = report_data(results, tables, ".");
+  ASSERT_FALSE(data.contributions.empty());
+  EXPECT_EQ(data.contributions.front().parts.front().name, "field");
+  EXPECT_NEAR(data.contributions.front().parts.front().value, -2.0, 1e-9);
+}
+
+TEST(ImprovementTable, SaysWhichStepsHelpAndWhichHelpOnlyTogether) {
+  results::StudyResults results;
+  const auto add = [&](const std::vector<std::string>& steps, std::uint64_t seed, double drift) {
+    results.rows.push_back(row("house", "mid360", "arena_lio", drift, 1.0, seed));
+    results::RunRecord& run = results.rows.back();
+    run.differs = steps;
+    for (const std::string& name : steps)
+      run.variation += (run.variation.empty() ? "" : " + ") + name;
+  };
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    const double base = 4.0 + 0.1 * static_cast<double>(seed);
+    const double noise = seed % 2 == 0 ? 0.05 : -0.05;
+    add({}, seed, base);
+    add({"cheap"}, seed, base + noise);
+    add({"IMU"}, seed, base - noise);
+    add({"field"}, seed, base - 1.0 + noise);
+    add({"worse"}, seed, base + 0.5);
+    add({"cheap", "IMU"}, seed, base - 0.7 + noise);
+  }
+  const Improvement made = improvement_of(
+      results, {{"cheap", "A"}, {"IMU", "B"}, {"field", "data sheet"}, {"worse", "D"}});
+  ASSERT_EQ(made.table.rows.size(), 6U);
+  EXPECT_EQ(made.table.rows[3][0].text, "field");
+  // The columns are live drift (not known here), drift, map, result, source.
+  EXPECT_NEAR(*made.table.rows[3][2].value, -1.0, 1e-9);
+  EXPECT_TRUE(made.table.rows[3][2].bold);
+  EXPECT_FALSE(made.table.rows[1][2].bold);
+  EXPECT_EQ(made.table.rows[3][5].text, "data sheet");
+  EXPECT_THAT(made.words,
+              ::testing::IsSupersetOf(
+                  {std::string("helps: field"), std::string("cheapest step that helps: field"),
+                   std::string("no gain seen: cheap, IMU"), std::string("harms some figure: worse"),
+                   std::string("helps only together: cheap + IMU")}));
+}
+
+TEST(ImprovementTable, ClaimsNothingFromTwoFlights) {
+  results::StudyResults results;
+  for (std::uint64_t seed = 1; seed <= 2; ++seed) {
+    results.rows.push_back(row("house", "mid360", "arena_lio", 4.0, 1.0, seed));
+    results.rows.push_back(row("house", "mid360", "arena_lio", 1.0, 1.0, seed));
+    results.rows.back().variation = "field";
+    results.rows.back().differs = {"field"};
+  }
+  const Improvement made = improvement_of(results, {{"field", "data sheet"}});
+  EXPECT_NEAR(*made.table.rows[1][2].value, -3.0, 1e-9);
+  EXPECT_EQ(made.table.rows[1][2].spread, "");
+  EXPECT_EQ(made.words.front(), "helps: none");
 }
 
 }  // namespace

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "lidarena/base/error.hpp"
+#include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/stages/scene_settings.hpp"
 #include "tests/study/configs.hpp"
 #include "tests/temporary_folder.hpp"
 
@@ -80,6 +82,26 @@ TEST(Plan, EveryStudyShippedCanBePlanned) {
     const auto spec = load_study(configs().resolve("studies", name));
     EXPECT_FALSE(planned_cells(spec, configs()).empty()) << name;
   }
+}
+
+TEST(Plan, TheMid360WithAllFiveChangesIsTheOs0) {
+  const std::vector<PlannedRun> cells =
+      planned_cells(load_study(configs().resolve("studies", "mid360_to_os0")), configs());
+  EXPECT_EQ(cells.size(), 32U * 2U * 8U * 2U);
+  const auto all =
+      std::ranges::find_if(cells, [](const PlannedRun& cell) { return cell.differs.size() == 5; });
+  ASSERT_NE(all, cells.end());
+  const auto file = [](const std::string& name) { return configs().resolve("sensors", name); };
+  const auto shipped = configs().root() / "sensors";
+  const auto set = stages::scene_settings(all->set, {file(all->sensor)}).sensors.front();
+  sensor::SensorConfig changed = sensor::load_sensor(file(all->sensor), shipped, set);
+  sensor::SensorConfig os0 = sensor::load_sensor(file("ouster_os0_128"), shipped);
+  EXPECT_EQ(sensor::make_pattern(changed)->beams_per_scan(), 1024U * 128U);
+  EXPECT_EQ(to_json(*changed.facts.fov), to_json(*os0.facts.fov));
+  changed.shape = os0.shape;
+  changed.facts = os0.facts;
+  changed.name = os0.name;
+  EXPECT_EQ(to_json(changed), to_json(os0));
 }
 
 TEST(Plan, TheTortureExperimentsCanBePlanned) {

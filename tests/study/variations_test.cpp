@@ -115,6 +115,23 @@ TEST(Variations, NamedSetsAreFlownBesideTheBase) {
   EXPECT_THAT(cells[1].set, ElementsAre("sensor.max_range_m=5", "imu.rate_hz=100"));
 }
 
+TEST(Variations, AllCombinationsOfSetsNameTheSetsOfEach) {
+  const std::string sets =
+      "sets: [{name: near, set: {sensor.max_range_m: 5}}, {name: slow, set: {imu.rate_hz: 100}}, "
+      "{name: loud, set: {sensor.range_noise_m: 0.1}}]\n";
+  const auto cells = planned_cells(spec_of(sets + "sets_as: all"), configs());
+  EXPECT_THAT(variations(cells), ElementsAre("", "near", "slow", "loud", "near + slow",
+                                             "near + loud", "slow + loud", "near + slow + loud"));
+  EXPECT_THAT(cells[5].differs, ElementsAre("near", "loud"));
+  EXPECT_THAT(cells[7].set,
+              ElementsAre("sensor.max_range_m=5", "imu.rate_hz=100", "sensor.range_noise_m=0.1"));
+  EXPECT_EQ(planned_cells(spec_of(sets), configs()).size(), 4U);
+  EXPECT_EQ(planned_cells(spec_of(sets + "sets_as: pairs"), configs()).size(), 7U);
+  EXPECT_THAT(error_of("sets: [{name: a, set: {imu.rate_hz: 100}}, {name: b, set: {imu.rate_hz: "
+                       "50}}]\nsets_as: all"),
+              AllOf(HasSubstr("study: sets: b"), HasSubstr("imu.rate_hz, as a does")));
+}
+
 TEST(Variations, SettingsOfASetAreCheckedTogether) {
   // The Mid-360 measures from 0.1 to 70 m: 80 m is valid only together with 100 m, 6 and 5 m only
   // apart.

@@ -189,6 +189,27 @@ TEST_F(Cli, TheFirstRaysOfASensorComeAsCsv) {
   EXPECT_EQ(std::count(rays.out.begin(), rays.out.end(), '\n'), 9);
 }
 
+TEST_F(Cli, NumPyReadsTheShotsOfAPattern) {
+  const std::string npy = path("p.npy");
+  const Outcome written = call("info --json livox_mid360 --pattern --seconds 0.2 --out " + npy);
+  ASSERT_EQ(written.exit_code, 0) << written.err;
+  EXPECT_EQ(nlohmann::json::parse(written.out).at("shots"), 40'000);
+  EXPECT_EQ(nlohmann::json::parse(written.out).at("repeats_after_scans"), 120);
+  EXPECT_THAT(refusal("info livox_mid360 --pattern --out " + path("p.mat")),
+              HasSubstr(".mat3x4f (RobotecGPULidar)"));
+  EXPECT_THAT(refusal("info livox_mid360 --pattern --seconds 1"), HasSubstr("--out FILE.npy"));
+  EXPECT_THAT(refusal("info livox_mid360 --seconds 1"), HasSubstr("add --pattern"));
+  if (std::system("/usr/bin/python3 -c 'import numpy' 2>/dev/null") != 0)
+    GTEST_SKIP() << "no NumPy";
+  const std::string check =
+      "import numpy as n; a = n.load(\"" + npy +
+      "\"); assert a.shape == (40000, 8) and a.dtype == n.float64;"
+      "assert abs(n.linalg.norm(a[:, 1:4], axis=1) - 1).max() < 1e-6;"
+      "assert n.allclose(n.diff(a[:, 0]), 5e-6, atol=1e-12);"
+      "assert abs(a[0, 1] + 0.0108079) < 1e-7 and set(a[:, 4]) == {0, 1, 2, 3}";
+  EXPECT_EQ(std::system(("/usr/bin/python3 -c '" + check + "'").c_str()), 0);
+}
+
 TEST_F(Cli, BadInputIsOneClearErrorWithExitCode2) {
   const std::string room = write("room.obj", room_obj());
   const std::string flight = write("flight.yaml", kRoomFlight);

@@ -164,6 +164,32 @@ TEST_F(Cli, ASweepOfThreeLinesIsFlownAndMistakesInItAreNamedBefore) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "noise/tables/sweep-cpu_load-house.csv"));
 }
 
+TEST_F(Cli, ImproveFliesEachStepThatIsBetterThanTheSensor) {
+  folder_.write("steps.yaml",
+                "steps:\n"
+                "  - {name: less noise, source: made up, set: {sensor.range_noise_m: 0.005}}\n"
+                "  - {name: more noise, source: made up, set: {sensor.range_noise_m: 0.05}}\n");
+  const std::string improve =
+      "improve livox_mid360 --world house --flight house --algorithm kiss_icp --seconds 1 --seeds "
+      "3 "
+      "--steps steps.yaml";
+  const Outcome dry = call(improve + " --dry");
+  EXPECT_THAT(dry.out, HasSubstr("6 runs, about")) << dry.err;
+  EXPECT_THAT(dry.err, HasSubstr("as good already: more noise"));
+  const Outcome flown = call(improve + " --out better");
+  EXPECT_EQ(flown.exit_code, 0) << flown.err;
+  EXPECT_THAT(flown.out,
+              AllOf(HasSubstr("less noise"), HasSubstr("made up"), HasSubstr("helps: ")));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "better/tables/improve.csv"));
+  EXPECT_THAT(refusal("improve livox_mid306 --world house --flight house --out x"),
+              HasSubstr("did you mean 'livox_mid360"));
+  EXPECT_THAT(refusal("improve livox_mid360 --world house --flight hous --out x"),
+              HasSubstr("did you mean 'house"));
+  EXPECT_THAT(refusal("improve livox_mid360 --world house --flight house"), HasSubstr("--out DIR"));
+  folder_.write("steps.yaml", "steps: [{name: magic, set: {sensor.range_noise_m: 0}}]\n");
+  EXPECT_THAT(refusal(improve + " --out x"), AllOf(HasSubstr("magic"), HasSubstr("no source")));
+}
+
 TEST_F(Cli, ARunInPartsOfItsSweepsAndScoredAgainstAGivenTruth) {
   ASSERT_EQ(call("simulate --world house --flight house --seconds 2 --sensor livox_mid360 --hits "
                  "off --out data")

@@ -21,6 +21,7 @@ import {
 import { base, binAxis, groups, legendOf, line, panels, sensorColor, timeAxis, valueAxis, type Figure } from "./figure_parts";
 import type { DistanceHistogram } from "./page";
 import { responsesOf } from "./responses";
+import { waterfallsOf } from "./waterfall";
 
 const THRESHOLD = "#e0a800";
 const SYMBOLS = ["circle", "rect", "triangle", "diamond", "pin"];
@@ -301,6 +302,7 @@ function outliers(data: ReportData, all: Run[], world: string): Figure | null {
 export function figuresOf(data: ReportData, all: Run[]): Figure[] {
   const runs = baseOf(all);
   const ofWorld = (world: string) => [
+    ...waterfallsOf(data, world),
     ...responsesOf(data, all, world),
     histograms(runs, world, "own_map"),
     histograms(runs, world, "all_returns"),

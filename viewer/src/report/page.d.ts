@@ -10,6 +10,8 @@ export interface ReportData {
   sensors: Sensor[];
   decision: Decision;
   claims: Claims;
+  /** of a study with all combinations of changes */
+  contributions: Contributions[];
   /** published figures */
   reference: ReferenceFigure[];
   event_kinds: EventKind[];
@@ -93,6 +95,29 @@ export interface Claims {
   better: Record<string, [number, number][]>;
   /** by figure: on how many pairs of runs that rests */
   words: Record<string, string>;
+}
+
+export interface Contributions {
+  world: string;
+  sensor: string;
+  /** with its preset */
+  method: string;
+  /** its key */
+  figure: string;
+  flights: number;
+  /** with nothing changed */
+  base: number;
+  /** with all changed */
+  all: number;
+  parts: Contribution[];
+}
+
+export interface Contribution {
+  name: string;
+  /** in the unit of the figure */
+  value: number;
+  low: number | null;
+  high: number | null;
 }
 
 export interface ReferenceFigure {
