@@ -11,7 +11,8 @@ usage: paper_protocol.py fit         the speed, from docs/results/data/paper/spe
 
 docs/results/data/paper/ has the results.csv of the studies: speeds.csv (paper_speeds), full.csv (paper_full), arms.csv
 (paper_arms) and ramp.csv (paper_ramp). The paper's figures are configs/studies/paper.csv. Figures are in cm and %.
-A run that did not end with status ok counts as infinite, in medians and ranks; all others count with their figure.
+A run that did not end with status ok, or lacks a figure, counts as infinite, in medians and ranks; all others count
+with their figure.
 """
 import argparse
 import csv
@@ -47,7 +48,7 @@ PERMUTATIONS = 10_000
 ARMS = {"kiss_fixed": ("kiss_icp", "KISS-ICP, cells of half a meter"),
         "kiss_from_5m": ("kiss_icp", "KISS-ICP, points from 5 m on"),
         "ct_icp_driving": ("ct_icp", "CT-ICP, profile for driving"),
-        "lio_sam_release": ("lio_sam", "LIO-SAM, the release instead of the port"),
+        "lio_sam_release": ("lio_sam", "LIO-SAM, rules for a spinning sensor instead of the port's"),
         "lio_sam_lc_release": ("lio_sam_lc", "the same, with loops"),
         "lio_sam_shipped": ("lio_sam", "LIO-SAM, files as shipped"),
         "lio_sam_lc_shipped": ("lio_sam_lc", "the same, with loops"),
@@ -76,10 +77,8 @@ def read_runs(name):
 
 
 def figure_of(run, column):
-    """Infinite for a run that ended itself, None where a run has no such figure."""
-    if run["status"] != "ok":
-        return math.inf
-    return float(run[column]) if run.get(column) else None
+    """Infinite for a run that ended itself or has no such figure."""
+    return float(run[column]) if run["status"] == "ok" and run.get(column) else math.inf
 
 
 def cell_of(run):
@@ -90,9 +89,7 @@ def values_of(runs, column):
     """{cell: the figures of its runs, by seed}."""
     values = {}
     for run in sorted(runs, key=lambda run: int(run["seed"])):
-        value = figure_of(run, column)
-        if value is not None:
-            values.setdefault(cell_of(run), []).append(value)
+        values.setdefault(cell_of(run), []).append(figure_of(run, column))
     return values
 
 
@@ -396,8 +393,8 @@ def judge(finding, figures):
 
 
 def figures_of(runs):
-    return {(column, cell_of(run)): value for run in runs for column in (DRIFT, OUTLIERS, RMSE, MEMORY)
-            if (value := figure_of(run, column)) is not None}
+    return {(column, cell_of(run)): figure_of(run, column)
+            for run in runs for column in (DRIFT, OUTLIERS, RMSE, MEMORY)}
 
 
 def judged_in(finding, runs, seeds, replaced=()):

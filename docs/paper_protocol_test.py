@@ -181,7 +181,7 @@ class Tables(unittest.TestCase):
         runs.append(run(cell, "", 104, status="diverged"))
         row = protocol.table_values(PAPER, runs, DRIFT)[1]
         self.assertEqual(row[1:], ["1.78", "2.5", "1 to 3", "3 of 4"])
-        runs += [run(cell, "", seed, status="failed") for seed in (105, 106, 107)]
+        runs += [run(cell, "", seed, status="failed") for seed in (105, 106)] + [run(cell, "", 107)]
         self.assertEqual(protocol.table_values(PAPER, runs, DRIFT)[1][2], "ended")
 
     def test_an_arm_replaces_its_cells_and_no_others(self):
