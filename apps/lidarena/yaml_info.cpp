@@ -22,8 +22,10 @@ bool has_place_for(const Json& schema, const ConfigNode& node, const std::string
   if (!properties.contains(key)) return false;
   const Json& field = properties.at(key);
   if (!field.contains("enum")) return true;
+  const auto value = node.find(key);
+  if (value->is_map() || value->is_list()) return false;
   const Json& values = field.at("enum");
-  return std::find(values.begin(), values.end(), node.find(key)->text()) != values.end();
+  return std::find(values.begin(), values.end(), value->text()) != values.end();
 }
 
 bool is_algorithm(const std::string& kind) {

@@ -17,6 +17,7 @@ constexpr double kRadius = 0.32;       // m, free space around a person's axis
 constexpr double kStep = 0.3;          // m, between the places that are checked on a way
 constexpr double kMaxFloorStep = 0.1;  // m, change of the floor's height from one to the next
 constexpr double kShortestWay = 1.0;   // m
+constexpr int kDirections = 8;         // drawn for the way of a person; the longest is taken
 constexpr int kTries = 300;            // per person
 
 /// The floor below `p`, if it is level enough to stand on and free up to a person's height.
@@ -52,7 +53,7 @@ std::optional<Vector3d> draw_place(const world::World& world, const std::vector<
   return floor && is_beside(flown, *floor) ? floor : std::nullopt;
 }
 
-/// The end of the way from `start` in a drawn direction, up to a drawn length.
+/// The end of the straight way from `start` in a drawn direction, up to a drawn length.
 Vector3d draw_end(const world::World& world, const std::vector<Vector3d>& flown,
                   const Vector3d& start, SequentialRandom& random) {
   const double angle = random.uniform(0.0, 2.0 * std::numbers::pi);
@@ -66,6 +67,17 @@ Vector3d draw_end(const world::World& world, const std::vector<Vector3d>& flown,
     end = *next;
   }
   return end;
+}
+
+/// The farthest of the ends of kDirections drawn ways.
+Vector3d draw_far_end(const world::World& world, const std::vector<Vector3d>& flown,
+                      const Vector3d& start, SequentialRandom& random) {
+  Vector3d farthest = start;
+  for (int i = 0; i < kDirections; ++i) {
+    const Vector3d end = draw_end(world, flown, start, random);
+    if ((end - start).norm() > (farthest - start).norm()) farthest = end;
+  }
+  return farthest;
 }
 
 std::vector<Vector3d> flown_places(const Flight& flight) {
@@ -85,7 +97,7 @@ std::vector<world::MoverConfig> draw_people(const world::World& world, const Fli
   for (int tries = 0; tries < kTries * count && static_cast<int>(people.size()) < count; ++tries) {
     const auto place = draw_place(world, flown, random);
     if (!place) continue;
-    const Vector3d end = draw_end(world, flown, *place, random);
+    const Vector3d end = draw_far_end(world, flown, *place, random);
     world::MoverConfig person;
     person.name = "person " + std::to_string(people.size() + 1);
     person.path = {*place};

@@ -48,7 +48,7 @@ TEST(People, WalkOnFreeFloorBesideTheFlight) {
       EXPECT_GE((place - Vector3d(along, 0, 0)).norm(), kPeopleClearance - 0.02);
     }
   }
-  EXPECT_GE(walking, 6U);
+  EXPECT_GE(walking, 11U);
 }
 
 TEST(People, AreThoseOfTheirSeed) {
