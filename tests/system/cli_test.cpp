@@ -354,7 +354,7 @@ TEST_F(Cli, PointsAtTheOriginForShotsWithoutAReturnAreStoredAndReadAgain) {
   const std::string flight = write("flight.yaml", kRoomFlight);
   const auto points = [&](const std::string& misses) {
     const Outcome made = call("simulate --seconds 1 --world " + room + " --flight " + flight +
-                              " --sensor livox_mid360 --set sensor.max_range_m=1.5" +
+                              " --sensor livox_mid360 --set sensor.max_range_m=4" +
                               " --set sensor.returns.misses=" + misses + " --out " + path(misses));
     EXPECT_EQ(made.exit_code, 0) << made.err;
     const Outcome info = call("info --json " + path(misses));
