@@ -140,7 +140,7 @@ void add_simulate(CLI::App& app, Common& common, int& exit_code) {
   verb->add_option(
       "--mode", o->mode,
       "rolling (every shot at its own time), or for comparison a fault of earlier simulators: "
-      "frozen, frozen_unstamped, official; default: as in the sensor's file");
+      "frozen, frozen_unstamped, frozen_ramp, official; default: as in the sensor's file");
   verb->add_option("--format", o->format,
                    "mcap or bag (one recording), pcd, ply or kitti (one file per sweep)")
       ->check(CLI::IsMember({"mcap", "bag", "pcd", "ply", "kitti"}))

@@ -18,11 +18,12 @@ FlightLimits limits_of(FlightStyle style) {
 FlightLimits limits_of(const FlightConfig& config) {
   const FlightLimits style = limits_of(config.style);
   const LimitsConfig& own = config.limits;
-  return {.max_speed = own.max_speed.value_or(style.max_speed),
-          .max_acceleration = own.max_acceleration.value_or(style.max_acceleration),
-          .max_jerk = own.max_jerk.value_or(style.max_jerk),
+  const double s = config.speed;
+  return {.max_speed = s * own.max_speed.value_or(style.max_speed),
+          .max_acceleration = s * s * own.max_acceleration.value_or(style.max_acceleration),
+          .max_jerk = s * s * s * own.max_jerk.value_or(style.max_jerk),
           .max_tilt = own.max_tilt.value_or(style.max_tilt),
-          .max_yaw_rate = own.max_yaw_rate.value_or(style.max_yaw_rate)};
+          .max_yaw_rate = s * own.max_yaw_rate.value_or(style.max_yaw_rate)};
 }
 
 }  // namespace lidarena::flight

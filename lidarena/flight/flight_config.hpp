@@ -141,6 +141,7 @@ struct FlightConfig {
   TourConfig tour;
   FlightStyle style = FlightStyle::kBrisk;
   LimitsConfig limits;
+  double speed = 1.0;
   HeadingConfig heading;
   double corner_m = 0.15;
   double clearance_m = 0.3;
@@ -177,6 +178,10 @@ struct FlightConfig {
     v("tour", self.tour, "", "settings of the tour planner (kind auto)");
     v("style", self.style, "", "gentle, brisk or aggressive: preset of the limits");
     v("limits", self.limits, "", "limits that override those of the style");
+    v("speed", self.speed, "",
+      "factor on the speed along the same path: speed and heading rate change by it, acceleration "
+      "by its square, jerk by its cube; max_tilt stays",
+      between(0.1, 10));
     v("heading", self.heading, "", "direction of the body's x axis");
     v("corner_m", self.corner_m, "m",
       "maximum distance between the path and the polyline; a smaller value gives slower corners",
@@ -200,7 +205,7 @@ struct FlightConfig {
   }
 };
 
-/// The limits of the style, overridden by those of the file.
+/// The limits of the style, overridden by those of the file, for its speed.
 FlightLimits limits_of(const FlightConfig& config);
 
 }  // namespace lidarena::flight

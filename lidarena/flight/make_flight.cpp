@@ -39,6 +39,8 @@ std::unique_ptr<Flight> replayed(const std::filesystem::path& file, const Flight
   const std::string place = file.string();
   if (config.replay.empty())
     throw InputError(place, "the key 'replay' is missing", "set replay to a TUM file");
+  if (config.speed != 1.0)
+    throw InputError(place, "a recorded flight has the speed of its recording", "remove speed");
   const bool is_recorded = config.imu == ImuSource::kRecorded;
   if (is_recorded && config.replay_imu.empty())
     throw InputError(place, "imu: recorded needs the samples of an IMU",

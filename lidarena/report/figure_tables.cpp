@@ -203,7 +203,8 @@ Table timing_table(const StudyResults& results, const std::vector<std::string>& 
       fmt::format("{}: {}, {}, by the simulator's timing", kind.title, world, preset),
       "rolling: every shot is cast from the pose at its own instant, as a real sensor does. "
       "frozen: all shots of a scan are cast from the pose at its stamp. frozen_unstamped: "
-      "the same, without time stamps per point. official: like frozen_unstamped, and every "
+      "the same, without time stamps per point. frozen_ramp: the same, with time stamps that "
+      "rise over a random length. official: like frozen_unstamped, and every "
       "range is too short by the sensor's minimum range, as in the manufacturer's "
       "simulation plugin.",
       {"sensor, algorithm"},

@@ -18,6 +18,7 @@ struct HouseConfig {
   double wall_thickness_m = 0.15;
   double door_width_m = 0.9;
   double door_height_m = 2.05;
+  double passage_width_m = 0;
   bool high_rooms = true;
   double furnishing = 1;
   bool panes = true;
@@ -38,6 +39,10 @@ struct HouseConfig {
     v("wall_thickness_m", self.wall_thickness_m, "m", "thickness of walls", between(0.1, 0.2));
     v("door_width_m", self.door_width_m, "m", "clear width of the doors", between(0.86, 0.9));
     v("door_height_m", self.door_height_m, "m", "clear height of the doors", between(2, 2.2));
+    v("passage_width_m", self.passage_width_m, "m",
+      "instead of doors, passages as high as the rooms less 0.3 m, up to this wide where the wall "
+      "is long enough, so that rooms see one another; 0 = doors",
+      between(0, 2.4));
     v("high_rooms", self.high_rooms, "",
       "living room, with a gallery, and hall are two stories high");
     v("furnishing", self.furnishing, "", "share of the furniture that is there", between(0, 1));

@@ -83,6 +83,22 @@ std::vector<Opening> make_doors(const HouseConfig& c, const InnerWalls& w,
           door(1, w.child_hall, w.y + at(0.60, 0.5) * north)};
 }
 
+/// Makes a door a passage, symmetric about its center, as wide as the wall between its two rooms
+/// allows.
+void widen(Opening& door, const std::vector<Room>& rooms, const HouseConfig& c) {
+  constexpr double kLeft = 0.3;  // m of wall beside and above a passage
+  double half = 0.5 * c.passage_width_m;
+  for (const Room& room : rooms) {
+    const double from = room.floor.min()[door.axis], to = room.floor.max()[door.axis];
+    const bool touches = room.floor.min()[1 - door.axis] == door.line ||
+                         room.floor.max()[1 - door.axis] == door.line;
+    if (touches && from < door.center && door.center < to)
+      half = std::min({half, door.center - from - kLeft, to - door.center - kLeft});
+  }
+  door.width = std::max(door.width, 2.0 * half);
+  door.head = c.story_height_m - kLeft;
+}
+
 std::vector<Opening> make_windows(const HouseConfig& c, const InnerWalls& w) {
   const double low = 0.9;                        // m, sill of ordinary windows
   const double head = 0.82 * c.story_height_m;   // m, upper edge of ordinary windows
@@ -198,6 +214,9 @@ HousePlan plan_house(const HouseConfig& config, std::uint64_t seed) {
   HousePlan plan;
   plan.rooms = make_rooms(config, walls);
   plan.doors = make_doors(config, walls, random);
+  for (Opening& door : plan.doors) {
+    if (config.passage_width_m > 0.0) widen(door, plan.rooms, config);
+  }
   plan.windows = make_windows(config, walls);
   plan.route = make_route(plan);
   return plan;

@@ -81,6 +81,7 @@ Lidar::Lidar(const SensorConfig& config, std::unique_ptr<ScanPattern> pattern,
       signal_(config.noise.signal),
       stray_random_(seed, stream_of((id + "/strays").c_str())),
       glare_random_(seed, stream_of((id + "/glare").c_str())),
+      ramp_random_(seed, stream_of((id + "/ramp").c_str())),
       sub_rays_(sub_ray_offsets(config_.noise.beam.sub_rays)),
       beam_sigma_(kDegree * kSigmaOfFwhm *
                   Vector2d(config_.noise.beam.width_deg, config_.noise.beam.height_deg)),
@@ -110,7 +111,22 @@ Time Lidar::begin(std::uint64_t index) const {
 }
 
 Time Lidar::last_firing(std::uint64_t index) const {
-  return stamp(index) + Time{clock_.elapsed(last_dt_ns_)};
+  const Time firing = stamp(index) + Time{clock_.elapsed(last_dt_ns_)};
+  if (config_.mode != ScanMode::kFrozenRamp) return firing;
+  return std::max(firing, stamp(index) + from_seconds(ramp(index)));
+}
+
+/// Length of the ramp of scan `index`, s.
+double Lidar::ramp(std::uint64_t index) const {
+  return config_.ramp_s * (0.5 + ramp_random_.uniform(index));
+}
+
+void Lidar::put_ramp(std::uint64_t index, Scan& scan) const {
+  if (config_.mode != ScanMode::kFrozenRamp) return;
+  scan.timed = true;
+  const double step_ns = 1e9 * ramp(index) / static_cast<double>(scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i)
+    scan.points[i].dt_ns = static_cast<std::int32_t>(step_ns * static_cast<double>(i));
 }
 
 /// Sub-rays of a shot have similar directions and are stored next to each other; beams of a single
@@ -236,13 +252,14 @@ Scan Lidar::measure(const world::Surfaces& world, const flight::Flight& flight, 
   Scan scan = empty_scan(index);
   shoot_all(world, world_from_lidar, begin(index), shots, index * shots.size(), parallel,
             scan.points, truth);
+  put_ramp(index, scan);
   return scan;
 }
 
 Scan Lidar::empty_scan(std::uint64_t index) const {
   Scan scan;
   scan.stamp = stamp(index);
-  scan.timed = has_times(config_.mode);
+  scan.timed = has_own_times(config_.mode);
   return scan;
 }
 

@@ -44,9 +44,9 @@ class Lidar {
   /// Scan `index`, which begins at index * period. The world is that of each shot's time, to 0.7 ms
   /// (1 mm of a person who walks). Each shot is cast from the pose at its own
   /// instant (see ScanMode), on which vibration acts if it moves the LiDAR; stamp and times are
-  /// those of the LiDAR's clock. Shots without a return are left out. Ranges are measured from the
-  /// sensor's axis (|beam origin| + distance along the beam); a return is kept if its true range is
-  /// within the limits.
+  /// those of the LiDAR's clock. Shots without a return are left out (or see MissedShots). Ranges
+  /// are measured from the sensor's axis (|beam origin| + distance along the beam); a return is
+  /// kept if its true range is within the limits.
   ///
   /// The sub-rays of a beam are merged into echoes (merge_echoes). Each echo is detected or missed,
   /// depending on its signal; the detected ones are selected and numbered according to
@@ -65,6 +65,13 @@ class Lidar {
                     std::span<const Beam> shots, std::uint64_t first_ray,
                     std::vector<Point>& points, std::vector<PointTruth>* truth = nullptr) const;
 
+  /// In mode frozen_ramp gives the points of scan `index`, of which there are N, the times
+  /// i / N * length in their order; nothing in all other modes. The length is drawn for each scan,
+  /// uniformly from 0.5 to 1.5 times `ramp_s`. Source: the Livox message of the plugin of Vultaggio
+  /// et al. (fratopa/Mid360_simulation_plugin, commit 2a22a60), in which the length is ten times
+  /// what a loop over the points took by the computer's clock, and so does not repeat.
+  void put_ramp(std::uint64_t index, Scan& scan) const;
+
   /// Scan `index` with its stamp by the LiDAR's clock, without points.
   Scan empty_scan(std::uint64_t index) const;
 
@@ -79,7 +86,7 @@ class Lidar {
   /// The same by the LiDAR's clock: the scan's stamp.
   Time stamp(std::uint64_t index) const { return clock_.stamp(index, begin(index)); }
   /// Instant, by the LiDAR's clock, of the last firing of scan `index`, whether or not its points
-  /// carry times.
+  /// carry times; or of its last point, if that has a later time.
   Time last_firing(std::uint64_t index) const;
 
  private:
@@ -99,6 +106,8 @@ class Lidar {
   void receive(const world::Surfaces& world, std::size_t shot, Block& block) const;
   void report(const world::Surfaces& world, std::size_t shot, const Echo& echo, std::size_t number,
               std::size_t draw, Block& block) const;
+  void report_miss(std::size_t shot, Block& block) const;
+  double ramp(std::uint64_t index) const;
   void shoot(const world::Surfaces& world, const PoseAt& world_from_lidar, Block& block) const;
   void shoot_all(const world::Surfaces& world, const PoseAt& world_from_lidar, Time begin,
                  std::span<const Beam> shots, std::uint64_t first_ray, const Parallel& parallel,
@@ -130,6 +139,7 @@ class Lidar {
   CounterRandom stray_random_;  ///< noise of the ranges of strays
   std::optional<Air> air_;      ///< if there is anything in it
   CounterRandom glare_random_;
+  CounterRandom ramp_random_;              ///< by scan
   std::vector<Eigen::Vector2d> sub_rays_;  ///< offsets in sigmas of the beam profile
   Eigen::Vector2d beam_sigma_;             ///< rad, horizontally and vertically
   double energy_of_ray_;                   ///< of a sub-ray, as share of the beam's energy

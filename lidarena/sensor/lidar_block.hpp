@@ -26,7 +26,8 @@ inline double start_offset(const SensorConfig& config) {
   return config.mode == ScanMode::kOfficial ? config.min_range_m : 0.0;
 }
 
-inline bool has_times(ScanMode mode) {
+/// Whether points have times, and those of their shots.
+inline bool has_own_times(ScanMode mode) {
   return mode == ScanMode::kRolling || mode == ScanMode::kFrozen;
 }
 

@@ -247,11 +247,28 @@ void Lidar::report(const world::Surfaces& world, std::size_t shot, const Echo& e
   Point point;
   point.position = beam.origin + static_cast<float>(distance) * reported_direction(shot, block);
   point.intensity = static_cast<float>(raw ? echo.signal : std::min(255.0, 255.0 * echo.energy));
-  point.dt_ns = has_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
+  point.dt_ns = has_own_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
   point.ring = beam.ring;
   point.echo = static_cast<std::uint8_t>(number);
   block.points[block.count++] = point;
   if (block.truth != nullptr) block.truth[block.count - 1] = truth_of(shot, echo, block);
+}
+
+/// Appends a point at the origin for a shot without a return. Its truth is that of a ghost.
+void Lidar::report_miss(std::size_t shot, Block& block) const {
+  constexpr float kNearly = 1e-6F;  // m; readers take zeros for no return
+  const Beam& beam = block.shots[shot];
+  Point point;
+  point.position = kNearly * beam.direction;
+  point.dt_ns = has_own_times(config_.mode) ? clock_.elapsed(beam.dt_ns) : 0;
+  point.ring = beam.ring;
+  block.points[block.count++] = point;
+  if (block.truth == nullptr) return;
+  const world::Ray& ray = block.rays[block.places[shot]];
+  block.truth[block.count - 1] = {.position = ray.origin.cast<float>(),
+                                  .range = 0.0F,
+                                  .normal = -ray.direction,
+                                  .triangle = kGhost};
 }
 
 /// What the strongest part of an echo is of.
@@ -280,9 +297,13 @@ void Lidar::collect(const world::Surfaces& world, Block& block) const {
       const auto echo = receive_ray(world, shot, 0, block);
       if (echo && is_detected(*echo, block.first_ray + shot, 0))
         report(world, shot, *echo, 0, 0, block);
+      else if (config_.returns.misses == MissedShots::kOrigin)
+        report_miss(shot, block);
       continue;
     }
     receive(world, shot, block);
+    if (block.echoes.empty() && config_.returns.misses == MissedShots::kOrigin)
+      report_miss(shot, block);
     std::size_t of_world = 0;
     for (std::size_t k = 0; k < block.echoes.size(); ++k) {
       const Echo& echo = block.echoes[k];

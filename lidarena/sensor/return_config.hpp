@@ -104,6 +104,13 @@ constexpr auto enum_names(EchoChoice) {
                     std::pair{"first", EchoChoice::kFirst}, std::pair{"last", EchoChoice::kLast}};
 }
 
+/// What becomes of a shot without a return.
+enum class MissedShots { kLeftOut, kOrigin };
+constexpr auto enum_names(MissedShots) {
+  return std::array{std::pair{"left_out", MissedShots::kLeftOut},
+                    std::pair{"origin", MissedShots::kOrigin}};
+}
+
 enum class IntensityKind { kReflectivity, kSignal };
 constexpr auto enum_names(IntensityKind) {
   return std::array{std::pair{"reflectivity", IntensityKind::kReflectivity},
@@ -115,6 +122,7 @@ struct ReturnConfig {
   EchoChoice choice = EchoChoice::kStrongest;
   int count = 1;
   IntensityKind intensity = IntensityKind::kReflectivity;
+  MissedShots misses = MissedShots::kLeftOut;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -123,6 +131,9 @@ struct ReturnConfig {
     v("intensity", self.intensity, "",
       "reflectivity: 255 for white, independent of range; signal: as received, 1 for a 10 % target "
       "at its rated range");
+    v("misses", self.misses, "",
+      "left_out, or origin: a shot without a return is a point at the sensor's origin, as in an "
+      "earlier simulator (to 1 um, since readers drop points of exactly zero)");
   }
 };
 

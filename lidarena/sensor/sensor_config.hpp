@@ -44,13 +44,15 @@ enum class ScanMode {
   kRolling,          ///< every shot from the pose at its own instant
   kFrozen,           ///< all shots from the pose at the stamp, but with the times of each shot
   kFrozenUnstamped,  ///< all shots from the pose at the stamp, without per-point times
-  kOfficial,         ///< as kFrozenUnstamped, and every range too short by the minimum range
+  kFrozenRamp,  ///< all shots from the pose at the stamp; times are a ramp over the points, see
+                ///< ramp_s
+  kOfficial,    ///< as kFrozenUnstamped, and every range too short by the minimum range
 };
 constexpr auto enum_names(ScanMode) {
-  return std::array{std::pair{"rolling", ScanMode::kRolling},
-                    std::pair{"frozen", ScanMode::kFrozen},
-                    std::pair{"frozen_unstamped", ScanMode::kFrozenUnstamped},
-                    std::pair{"official", ScanMode::kOfficial}};
+  return std::array{
+      std::pair{"rolling", ScanMode::kRolling}, std::pair{"frozen", ScanMode::kFrozen},
+      std::pair{"frozen_unstamped", ScanMode::kFrozenUnstamped},
+      std::pair{"frozen_ramp", ScanMode::kFrozenRamp}, std::pair{"official", ScanMode::kOfficial}};
 }
 
 /// A tone of the airframe's vibration, as felt by the IMU: on each axis a sine with a phase of its
@@ -211,6 +213,7 @@ struct SensorConfig {
   NoiseConfig noise;
   ReturnConfig returns;
   ScanMode mode = ScanMode::kRolling;
+  double ramp_s = 0.05;
   Pose body_from_lidar = Pose::Identity();
   MountConfig mount{};
   std::optional<ImuConfig> imu;
@@ -239,6 +242,10 @@ struct SensorConfig {
     v("returns", self.returns, "",
       "which of a shot's echoes are reported, and the kind of intensity");
     v("mode", self.mode, "", "rolling; or a fault of earlier simulators, for comparison");
+    v("ramp_s", self.ramp_s, "s",
+      "mean length of the ramp of times in mode frozen_ramp; that of each scan is drawn from half "
+      "to one and a half of it",
+      between(0.001, 1));
     v("body_from_lidar", self.body_from_lidar, "m, quaternion",
       "x y z qx qy qz qw; mount turns and moves it further");
     v("mount", self.mount, "", "another mounting, in angles; the IMU inside moves along");

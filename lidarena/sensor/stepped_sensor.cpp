@@ -87,6 +87,7 @@ void SteppedSensor::cast_frozen(const world::Surfaces& world, const PoseAt& worl
 }
 
 void SteppedSensor::finish_scan() {
+  lidar_.put_ramp(index_, scan_);
   waiting_.push_back(std::move(scan_));
   ++index_;
   next_shot_ = 0;

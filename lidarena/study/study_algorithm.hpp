@@ -14,13 +14,14 @@ struct StudyAlgorithm {
   std::string as;
   Json set = Json::object();
   int parts = 0;
+  std::vector<std::string> sensors;
 
   StudyAlgorithm() = default;
   StudyAlgorithm(std::string text) : name(std::move(text)) {}
   StudyAlgorithm(const char* text) : name(text) {}
 
   /// Whether it is a name alone.
-  bool is_plain() const { return as.empty() && set.empty() && parts == 0; }
+  bool is_plain() const { return as.empty() && set.empty() && parts == 0 && sensors.empty(); }
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -32,6 +33,10 @@ struct StudyAlgorithm {
     v("parts", self.parts, "",
       "scans in which each sweep is handed over, as run --parts; 0: as the preset has it",
       between(0, 100));
+    v("sensors", self.sensors, "",
+      "sensors of the study with which it is flown; none = all. Settings that differ from sensor "
+      "to "
+      "sensor are two such methods with one name (as)");
   }
 
   static StudyAlgorithm from(const ConfigNode& node);

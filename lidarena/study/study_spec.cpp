@@ -84,6 +84,21 @@ std::string name_of(const PlannedRun& cell) {
                      cell.preset.empty() ? "" : "-", cell.preset, cell.method_part);
 }
 
+/// Whether the study flies the method with the sensor.
+bool is_flown(const StudyAlgorithm& method, const std::string& sensor) {
+  return method.sensors.empty() ||
+         std::ranges::find(method.sensors, stem(sensor)) != method.sensors.end();
+}
+
+void check_sensors_of(const StudyAlgorithm& method, const std::vector<std::string>& sensors) {
+  for (const std::string& name : method.sensors) {
+    if (std::ranges::find(sensors, name, stem) != sensors.end()) continue;
+    throw InputError(
+        "study", "flies " + method.name + " with the sensor '" + name + "', which it does not name",
+        "add it to sensors, or remove it there");
+  }
+}
+
 void check_names_differ(const std::vector<PlannedRun>& cells) {
   std::vector<std::string> names;
   for (const PlannedRun& cell : cells) names.push_back(cell.name);
@@ -202,6 +217,7 @@ std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::Confi
   for (const results::Expectation& expectation : spec.expect)
     results::check(expectation, names_of(spec), "study");
   const std::vector<StudyAlgorithm> methods = methods_of(spec);
+  for (const StudyAlgorithm& method : methods) check_sensors_of(method, spec.sensors);
   const std::vector<Variation> variations = variations_of(spec);
   CellSettings settings(spec, methods, configs);
 
@@ -217,12 +233,14 @@ std::vector<PlannedRun> planned_cells(const StudySpec& spec, const stages::Confi
   for (const StudyScene& scene : spec.scenes) {
     configs.resolve("worlds", scene.world);
     configs.resolve("flights", scene.flight);
-    for (const std::uint64_t seed : spec.seeds) {
+    for (const std::uint64_t seed : scene.seeds.empty() ? spec.seeds : scene.seeds) {
       for (const std::optional<sensor::ScanMode> mode : modes) {
         for (const Variation& variation : variations) {
           for (const std::string& sensor : spec.sensors) {
-            for (const StudyAlgorithm& method : methods)
-              add(cell_of(spec, scene, seed, mode, sensor, method), variation);
+            for (const StudyAlgorithm& method : methods) {
+              if (is_flown(method, sensor))
+                add(cell_of(spec, scene, seed, mode, sensor, method), variation);
+            }
           }
         }
       }

@@ -25,6 +25,7 @@ struct StudyScene {
   std::string flight;
   double seconds = 0.0;  ///< 0 = the whole flight
   bool allow_missing = false;
+  std::vector<std::uint64_t> seeds{};  ///< empty = those of the study
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -33,6 +34,7 @@ struct StudyScene {
     v("seconds", self.seconds, "s", "length of the flight, 0 = all of it", at_least(0));
     v("allow_missing", self.allow_missing, "",
       "load an SDF world without the models and meshes that cannot be found");
+    v("seeds", self.seeds, "", "seeds of this scene alone; none = those of the study");
   }
 };
 

@@ -167,6 +167,29 @@ TEST(SplineFlight, AStraightLineTakesTheTimeOfAccelerationCruiseAndBrake) {
   EXPECT_NEAR(figures.length_m, length, 1e-9);
 }
 
+TEST(SplineFlight, AnotherSpeedIsTheSameFlightInAnotherTime) {
+  for (const HeadingMode mode : {HeadingMode::kAlongPath, HeadingMode::kFixed}) {
+    FlightConfig config;
+    config.heading.mode = mode;
+    config.hover_s = 1.0;
+    const SplineFlight base(crooked(), config, "test");
+    for (const double speed : {0.5, 0.8, 1.1}) {
+      config.speed = speed;
+      const SplineFlight flight(crooked(), config, "test");
+      const double moving = to_seconds(base.duration()) - 2.0;
+      EXPECT_NEAR(to_seconds(flight.duration()), 2.0 + moving / speed, 1e-6);
+      for (double t = 0.0; t < moving; t += 0.05) {
+        const Motion a = base.at(from_seconds(1.0 + t));
+        const Motion b = flight.at(from_seconds(1.0 + t / speed));
+        // The hover shifts the spline's knots along the path, by less than one of them.
+        EXPECT_LT((a.world_from_body.translation() - b.world_from_body.translation()).norm(), 0.01);
+        EXPECT_LT((speed * a.velocity_world - b.velocity_world).norm(), 0.06) << speed;
+      }
+    }
+    config.speed = 1.0;
+  }
+}
+
 TEST(SplineFlight, ARightAngleIsFlownAtTheSpeedThatItsArcAllows) {
   FlightConfig config;
   config.limits.max_yaw_rate = 100.0;

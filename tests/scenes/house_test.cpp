@@ -186,6 +186,49 @@ TEST(House, DoorsAreAsWideAsAskedAndPassWallsOfRealThickness) {
   }
 }
 
+HouseConfig open_house() {
+  HouseConfig config = coarse_house();
+  config.passage_width_m = 2.4;
+  config.furnishing = 0.3;
+  config.panes = false;
+  return config;
+}
+
+TEST(House, PassagesAreHighWideHolesAndMoveNothingElse) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    const HousePlan doors = plan_house(coarse_house(), seed);
+    const HousePlan plan = plan_house(open_house(), seed);
+    double width = 0.0;
+    ASSERT_EQ(plan.doors.size(), doors.doors.size());
+    for (std::size_t i = 0; i < plan.doors.size(); ++i) {
+      EXPECT_EQ(plan.doors[i].center, doors.doors[i].center);
+      EXPECT_GE(plan.doors[i].width, doors.doors[i].width);
+      EXPECT_LE(plan.doors[i].width, 2.4);
+      EXPECT_EQ(plan.doors[i].head, open_house().story_height_m - 0.3);
+      width += plan.doors[i].width / static_cast<double>(plan.doors.size());
+    }
+    EXPECT_GT(width, 1.6) << "more often wide than not, seed " << seed;
+    for (std::size_t i = 0; i < plan.rooms.size(); ++i)
+      EXPECT_TRUE(plan.rooms[i].floor.isApprox(doors.rooms[i].floor));
+  }
+}
+
+TEST(House, ThePassagesAreThereInTheMesh) {
+  const HouseConfig config = open_house();
+  const world::World world(make_house(config, 3).mesh, "house");
+  for (const Opening& door : plan_house(config, 3).doors) {
+    const Eigen::Vector3f side =
+        door.axis == 0 ? Eigen::Vector3f::UnitX() : Eigen::Vector3f::UnitY();
+    const Vector3d p = door.point(0.0, 1.0);
+    const std::array<world::Ray, 3> rays{world::Ray{p, side}, world::Ray{p, -side},
+                                         world::Ray{p, Eigen::Vector3f::UnitZ()}};
+    std::array<world::Hit, 3> hits;
+    world.cast(rays, 100, hits);
+    EXPECT_NEAR(hits[0].range + hits[1].range, door.width, 1e-5);
+    EXPECT_NEAR(hits[2].range, door.head - 1.0, 1e-5);
+  }
+}
+
 TEST(House, RouteIsAClosedTourOfAllRoomsAndDoors) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const HouseConfig config;
@@ -233,6 +276,14 @@ void expect_clear_route(const HouseConfig& config, std::uint64_t seed) {
 
 TEST(House, RouteKeepsClearOfEverySurface) {
   for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_clear_route(coarse_house(), seed);
+}
+
+TEST(House, RouteKeepsClearWithPassages) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) expect_clear_route(open_house(), seed);
+  for (HouseConfig config : extreme_houses()) {
+    config.passage_width_m = 2.4;
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) expect_clear_route(config, seed);
+  }
 }
 
 TEST(House, RouteKeepsClearInTheSmallestAndTheLargestHouse) {
@@ -360,8 +411,9 @@ TEST(House, NothingFloats) {
 TEST(House, ThingsDoNotStandInOneAnotherOrInDoors) {
   // Rugs lie under objects, chairs are partly under tables, and the parts of the gallery touch.
   const std::set<std::string> shared{"rug", "chair", "stool", "stairs", "gallery", "column"};
-  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-    const HouseConfig config = coarse_house();
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    HouseConfig config = coarse_house();
+    if (seed > 6) config.passage_width_m = 2.4;
     const HousePlan plan = plan_house(config, seed);
     const auto objects = furnish_house(plan, config, seed);
     for (std::size_t i = 0; i < objects.size(); ++i) {

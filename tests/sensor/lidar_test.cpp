@@ -181,6 +181,69 @@ TEST(Lidar, OnlyRollingAndFrozenScansCarryTimes) {
   }
 }
 
+TEST(Lidar, ARampOfTimesRisesEvenlyOverThePointsAndItsLengthIsAnotherInEachScan) {
+  const world::World world(box_mesh({-5, -5, -5}, {5, 5, 5}));
+  const SwingingFlight flight(10.0);
+  SensorConfig config = mid360();
+  config.mode = ScanMode::kFrozenRamp;
+  config.ramp_s = 0.08;
+  const Lidar lidar = make_lidar(config);
+  config.mode = ScanMode::kFrozenUnstamped;
+  const Lidar unstamped = make_lidar(config);
+  double shortest = 1.0, longest = 0.0, sum = 0.0;
+  constexpr int kScans = 40;
+  for (std::uint64_t k = 0; k < kScans; ++k) {
+    const Scan scan = lidar.measure(world, flight, k, kOneThread);
+    EXPECT_TRUE(scan.timed);
+    const double step_ns = scan.points.back().dt_ns / 19'999.0;
+    for (std::size_t i = 0; i < scan.points.size(); i += 777)
+      EXPECT_NEAR(scan.points[i].dt_ns, step_ns * static_cast<double>(i), 2.0);
+    const double length = 1e-9 * step_ns * 20'000.0;
+    EXPECT_GE(lidar.last_firing(k), scan.stamp + Time{scan.points.back().dt_ns});
+    shortest = std::min(shortest, length);
+    longest = std::max(longest, length);
+    sum += length;
+    const Scan same = unstamped.measure(world, flight, k, kOneThread);
+    ASSERT_EQ(same.points.size(), scan.points.size());
+    EXPECT_EQ(same.points.back().position, scan.points.back().position);
+    EXPECT_EQ(lidar.measure(world, flight, k, kOneThread).points.back().dt_ns,
+              scan.points.back().dt_ns);
+  }
+  EXPECT_GT(shortest, 0.04 - 1e-6);
+  EXPECT_LT(shortest, 0.05);
+  EXPECT_GT(longest, 0.11);
+  EXPECT_LT(longest, 0.12 + 1e-6);
+  EXPECT_NEAR(sum / kScans, 0.08, 4.0 * 0.08 / std::sqrt(12.0 * kScans));  // four sigma
+}
+
+TEST(Lidar, AShotWithoutReturnIsAPointAtTheOriginIfAskedFor) {
+  const world::World world(wall_mesh(30.0));  // before the sensor; nothing behind it
+  const auto flight = rest(Pose::Identity());
+  SensorConfig config = mid360();
+  config.body_from_lidar.setIdentity();
+  const Scan returns = make_lidar(config).measure(world, flight, 3, kOneThread);
+  config.returns.misses = MissedShots::kOrigin;
+  for (const int bounces : {0, 1}) {  // by the short way from hits to points, and by the long one
+    config.noise.bounces = bounces;
+    std::vector<PointTruth> truth;
+    const Scan all = make_lidar(config).measure(world, flight, 3, kOneThread, &truth);
+    ASSERT_EQ(all.points.size(), 20'000U);
+    ASSERT_EQ(truth.size(), all.points.size());
+    std::vector<Point> far;
+    for (std::size_t i = 0; i < all.points.size(); ++i) {
+      const Point& point = all.points[i];
+      const bool is_miss = point.position.norm() < 1e-5F;
+      EXPECT_FALSE(point.position.isZero(0.0F)) << "readers would drop it";
+      EXPECT_EQ(point.dt_ns, static_cast<std::int32_t>(5000 * i));
+      EXPECT_EQ(is_miss, truth[i].triangle == kGhost);
+      if (!is_miss) far.push_back(point);
+    }
+    ASSERT_EQ(far.size(), returns.points.size());
+    for (std::size_t i = 0; i < far.size(); ++i)
+      EXPECT_EQ(far[i].position, returns.points[i].position);
+  }
+}
+
 TEST(Lidar, ASteadyYawSpinSweepsAWallInClosedForm) {
   const double distance = 8.0;
   const double rate = 2.5;

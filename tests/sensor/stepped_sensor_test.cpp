@@ -100,7 +100,8 @@ TEST(SteppedSensor, StepsGiveTheEventsOfTheSimulationInItsOrder) {
 TEST(SteppedSensor, FrozenScansAreThoseOfTheSimulation) {
   const world::World world = small_room();
   const SwingingFlight flight(0.4);
-  for (const ScanMode mode : {ScanMode::kFrozen, ScanMode::kFrozenUnstamped, ScanMode::kOfficial}) {
+  for (const ScanMode mode : {ScanMode::kFrozen, ScanMode::kFrozenUnstamped, ScanMode::kFrozenRamp,
+                              ScanMode::kOfficial}) {
     SensorConfig config = mid360();
     config.mode = mode;
     const Lidar lidar = make_lidar(config, 1);

@@ -77,6 +77,45 @@ TEST(Plan, EveryCellOfTheMatrixIsPlannedOnceUnderANameOfItsOwn) {
   EXPECT_EQ(datasets.size(), 2U) << "one flight per seed, shared by sensors and algorithms";
 }
 
+TEST(Plan, ASceneMayHaveSeedsOfItsOwn) {
+  StudySpec spec = small_spec();
+  spec.sensors = {"livox_mid360"};
+  spec.algorithms = {"kiss_icp"};
+  spec.scenes.push_back({"cave", "cave", 5.0});
+  spec.scenes.back().seeds = {7};
+  std::vector<std::string> datasets;
+  for (const PlannedRun& cell : planned_cells(spec, configs())) datasets.push_back(cell.dataset);
+  EXPECT_EQ(datasets,
+            (std::vector<std::string>{"house-house-s1", "house-house-s2", "cave-cave-s7"}));
+}
+
+TEST(Plan, AMethodIsFlownWithItsSensorsAlone) {
+  StudySpec spec = small_spec();
+  spec.seeds = {1};
+  StudyAlgorithm near("kiss_icp"), far("kiss_icp");
+  near.as = far.as = "kiss";
+  near.set = {{"max_range_m", 40}};
+  near.sensors = {"livox_mid360"};
+  far.set = {{"max_range_m", 100}};
+  far.sensors = {"ouster_os0_128"};
+  spec.algorithms = {near, far, "ct_icp"};
+  const std::vector<PlannedRun> cells = planned_cells(spec, configs());
+  ASSERT_EQ(cells.size(), 4U);
+  EXPECT_EQ(cells[0].name, "house-house-s1-livox_mid360-kiss-indoor");
+  EXPECT_EQ(cells[0].settings, Json({{"max_range_m", 40}}));
+  EXPECT_EQ(cells[2].name, "house-house-s1-ouster_os0_128-kiss-indoor");
+  EXPECT_EQ(cells[2].settings, Json({{"max_range_m", 100}}));
+  EXPECT_EQ(StudyAlgorithm::from(near.json(), "test").sensors, near.sensors);
+
+  spec.algorithms[0].sensors = {"livox_mid306"};
+  try {
+    planned_cells(spec, configs());
+    FAIL();
+  } catch (const InputError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("flies kiss_icp with the sensor 'livox_mid306'"));
+  }
+}
+
 TEST(Plan, EveryStudyShippedCanBePlanned) {
   for (const std::string& name : configs().names("studies")) {
     const auto spec = load_study(configs().resolve("studies", name));

@@ -367,6 +367,24 @@ TEST_F(Cli, TheTimingModesDifferInMotionAndStampsAlone) {
   EXPECT_EQ(counts("rolling").at("untimed_scans"), 0);
   EXPECT_EQ(counts("frozen").at("untimed_scans"), 0);
   EXPECT_EQ(counts("frozen_unstamped").at("untimed_scans"), 20);
+  EXPECT_EQ(counts("frozen_ramp").at("untimed_scans"), 0);
+}
+
+TEST_F(Cli, PointsAtTheOriginForShotsWithoutAReturnAreStoredAndReadAgain) {
+  const std::string room = write("room.obj", room_obj());
+  const std::string flight = write("flight.yaml", kRoomFlight);
+  const auto points = [&](const std::string& misses) {
+    const Outcome made = call("simulate --seconds 1 --world " + room + " --flight " + flight +
+                              " --sensor livox_mid360 --set sensor.max_range_m=4" +
+                              " --set sensor.returns.misses=" + misses + " --out " + path(misses));
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    const Outcome info = call("info --json " + path(misses));
+    return nlohmann::json::parse(info.out)["topics"]["livox_mid360/points"]["points"].get<int>();
+  };
+  const int returns = points("left_out");
+  EXPECT_GT(returns, 0);
+  EXPECT_LT(returns, 190'000);
+  EXPECT_EQ(points("origin"), 10 * 20'000);
 }
 
 TEST_F(Cli, SameSeedSameBytesAndATruncatedDatasetIsNeverTakenForWhole) {

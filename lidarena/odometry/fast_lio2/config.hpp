@@ -21,6 +21,7 @@ struct Config {
   double gyro_bias_variance = 1e-4;
   double accel_bias_variance = 1e-4;
   bool keep_all_scans = true;
+  bool azimuth_times = false;
 
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
@@ -49,6 +50,9 @@ struct Config {
     v("keep_all_scans", self.keep_all_scans, "",
       "count the memory of all points of all scans, which the program keeps for a file at the end "
       "(pcd_save_en)");
+    v("azimuth_times", self.azimuth_times, "",
+      "points of scans without times get times from their azimuth, as the program's input for a "
+      "Velodyne makes them up (lidar_type 2); false: the scan is instantaneous");
   }
 };
 

@@ -22,6 +22,7 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
                    Parallel parallel)
     : config_(config),
       is_livox_(lidar.kind == "rosette"),
+      rate_hz_(lidar.rate_hz),
       world_from_start_(imu.body_from_imu),
       imu_from_body_(imu.body_from_imu.inverse()),
       imu_from_lidar_(imu_from_body_ * lidar.body_from_lidar),
@@ -32,7 +33,10 @@ FastLio2::FastLio2(const Config& config, const LidarInfo& lidar, const ImuInfo& 
 ScanResult FastLio2::track(const Scan& scan) {
   registered_scan_.clear();
   track_.clear();
-  const Scan selected = selected_points(scan, config_, is_livox_);
+  const Scan selected =
+      config_.azimuth_times && !scan.timed
+          ? selected_points(with_azimuth_times(scan, rate_hz_), config_, is_livox_)
+          : selected_points(scan, config_, is_livox_);
   const Time end = clock_.end_of(selected);
   if (!started_) {
     start(end);

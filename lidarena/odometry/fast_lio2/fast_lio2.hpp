@@ -46,6 +46,7 @@ class FastLio2 : public Odometry {
 
   Config config_;
   bool is_livox_;
+  double rate_hz_;         ///< scans per second
   Pose world_from_start_;  ///< body's frame at the start, from the IMU's at the start
   Pose imu_from_body_;
   Pose imu_from_lidar_;  ///< as given

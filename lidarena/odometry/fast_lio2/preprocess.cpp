@@ -3,7 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/time.hpp"
 
 namespace lidarena::odometry::fast_lio2 {
@@ -34,6 +38,33 @@ void move_earliest_again(const Scan& selected, const estimation::ImuTrack& track
 }
 
 }  // namespace
+
+Scan with_azimuth_times(const Scan& scan, double rate_hz) {
+  struct Ring {
+    double first_deg = 0.0;
+    double last_ms = 0.0;
+  };
+  std::map<std::uint16_t, Ring> rings;
+  const double deg_per_ms = 0.361 * rate_hz;
+  Scan timed = scan;
+  timed.timed = true;
+  for (Point& point : timed.points) {
+    const Eigen::Vector3d p = point.position.cast<double>();
+    const double azimuth_deg = std::atan2(p.y(), p.x()) / kDegree;
+    const auto [found, is_first] = rings.try_emplace(point.ring, Ring{azimuth_deg});
+    if (is_first) {
+      point.position.setConstant(std::numeric_limits<float>::quiet_NaN());
+      continue;
+    }
+    Ring& ring = found->second;
+    const double turned = ring.first_deg - azimuth_deg;
+    double ms = (turned >= 0.0 ? turned : turned + 360.0) / deg_per_ms;
+    if (ms < ring.last_ms) ms += 360.0 / deg_per_ms;
+    ring.last_ms = ms;
+    point.dt_ns = static_cast<std::int32_t>(1e6 * ms);
+  }
+  return timed;
+}
 
 Scan selected_points(const Scan& scan, const Config& config, bool is_livox) {
   Scan selected{.stamp = scan.stamp, .points = {}, .timed = scan.timed};

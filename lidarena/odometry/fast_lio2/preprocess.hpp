@@ -12,6 +12,13 @@
 
 namespace lidarena::odometry::fast_lio2 {
 
+/// The scan with times made up from the azimuth of its points, by a rule that is right for a sensor
+/// that turns clockwise and sends its points in the order of their firing: a point is later than
+/// the first one of its ring by the angle from there, clockwise, at 361 degrees in a scan's period;
+/// by a revolution more where that is earlier than the point before it. The first point of each
+/// ring is not used; it stays as one that is not finite, so that the count of points goes on.
+Scan with_azimuth_times(const Scan& scan, double rate_hz);
+
 /// Every n-th point of the message in its order, without those that are too near or not finite.
 /// The program never uses the first point of a Livox message: `is_livox`.
 Scan selected_points(const Scan& scan, const Config& config, bool is_livox);

@@ -3,9 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <initializer_list>
 #include <limits>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/base/so3.hpp"
 #include "lidarena/base/time.hpp"
 
@@ -38,6 +40,43 @@ TEST(FastLio2Preprocess, TakesEveryNthPointOfTheMessageAndNeverTheFirstOfALivox)
   const Scan scan = scan_at({0, 1, 2, 3, 4, 5, 6, 7});
   EXPECT_EQ(ranges(selected_points(scan, config, false)), (std::vector<float>{2, 5, 8}));
   EXPECT_EQ(ranges(selected_points(scan, config, true)), (std::vector<float>{5, 8}));
+}
+
+/// Two rings that fire together at these azimuths (degrees), without times.
+Scan scan_of_azimuths(const std::vector<double>& azimuths_deg) {
+  Scan scan{.stamp = kStamp, .points = {}, .timed = false};
+  for (const double deg : azimuths_deg) {
+    for (std::uint16_t ring = 0; ring < 2; ++ring) {
+      Point point;
+      const double rad = deg * kDegree;
+      point.position = {static_cast<float>(5.0 * std::cos(rad)),
+                        static_cast<float>(5.0 * std::sin(rad)), static_cast<float>(ring)};
+      point.ring = ring;
+      scan.points.push_back(point);
+    }
+  }
+  return scan;
+}
+
+TEST(FastLio2Preprocess, TimesFromTheAzimuthAreRightForASensorThatTurnsClockwise) {
+  std::vector<double> azimuths;
+  for (int column = 0; column < 72; ++column) azimuths.push_back(170.0 - 5.0 * column);
+  const Scan timed = with_azimuth_times(scan_of_azimuths(azimuths), 10.0);
+  EXPECT_TRUE(timed.timed);
+  EXPECT_TRUE(timed.points[0].position.hasNaN() && timed.points[1].position.hasNaN());
+  EXPECT_FALSE(timed.points[2].position.hasNaN());
+  for (std::size_t i = 2; i < timed.points.size(); ++i)  // 361 degrees in 100 ms
+    EXPECT_NEAR(1e-6 * timed.points[i].dt_ns, 5.0 * static_cast<double>(i / 2) / 3.61, 1e-4);
+  // A run of every second point begins with the dropped first one.
+  const Config config{.point_stride = 2, .min_range_m = 0.5};
+  EXPECT_EQ(selected_points(timed, config, false).points.size(), 71U);
+}
+
+TEST(FastLio2Preprocess, TimesFromTheAzimuthFallInASecondRevolutionIfTheSensorTurnsTheOtherWay) {
+  const Scan timed = with_azimuth_times(scan_of_azimuths({-180, -170, -160, -150}), 10.0);
+  EXPECT_NEAR(1e-6 * timed.points[2].dt_ns, 350.0 / 3.61, 1e-4);
+  EXPECT_NEAR(1e-6 * timed.points[4].dt_ns, (340.0 + 360.0) / 3.61, 1e-4);
+  EXPECT_NEAR(1e-6 * timed.points[6].dt_ns, (330.0 + 360.0) / 3.61, 1e-4);
 }
 
 TEST(FastLio2Preprocess, LeavesOutWhatIsTooNearOrNotFinite) {
