@@ -56,6 +56,17 @@ Eigen::Vector3d digitized(const Eigen::Vector3d& value, double range, double res
 
 }  // namespace
 
+ImuConfig with_error_factor(ImuConfig imu) {
+  for (double* error : {&imu.gyro_noise_density, &imu.accel_noise_density, &imu.gyro_bias_walk,
+                        &imu.accel_bias_walk, &imu.gyro_turn_on_bias, &imu.accel_turn_on_bias,
+                        &imu.gyro_scale_error, &imu.accel_scale_error, &imu.gyro_misalignment,
+                        &imu.accel_misalignment, &imu.gyro_g_sensitivity, &imu.gyro_nonlinearity,
+                        &imu.accel_nonlinearity})
+    *error *= imu.error_factor;
+  imu.error_factor = 1.0;
+  return imu;
+}
+
 ImuSample perfect_imu(const flight::Motion& motion, const Pose& body_from_imu, double gravity) {
   const Eigen::Vector3d gravity_world(0.0, 0.0, -gravity);
   const Eigen::Vector3d& rate = motion.angular_rate_body;

@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "lidarena/base/angle.hpp"
+#include "lidarena/sensor/coverage.hpp"
 #include "lidarena/sensor/lidar_block.hpp"
 
 namespace lidarena::sensor {

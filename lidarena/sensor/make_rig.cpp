@@ -4,6 +4,7 @@
 #include <numbers>
 #include <set>
 
+#include "lidarena/base/angle.hpp"
 #include "lidarena/sensor/ouster.hpp"
 #include "lidarena/sensor/simulate.hpp"
 
@@ -81,6 +82,19 @@ ImuInfo describe_imu(const SensorConfig& sensor, const std::string& id) {
 }
 
 }  // namespace
+
+Pose mounted(const SensorConfig& sensor) {
+  const MountConfig& mount = sensor.mount;
+  Pose pose = sensor.body_from_lidar;
+  if (mount.pitch_deg != 0.0 || mount.yaw_deg != 0.0) {
+    const Eigen::Quaterniond turn =
+        Eigen::AngleAxisd(kDegree * mount.yaw_deg, Eigen::Vector3d::UnitZ()) *
+        Eigen::AngleAxisd(kDegree * mount.pitch_deg, Eigen::Vector3d::UnitY());
+    pose.linear() = (turn * pose.linear()).eval();
+  }
+  pose.translation().z() += mount.up_m;
+  return pose;
+}
 
 Rig make_rig(const std::vector<SensorConfig>& sensors) {
   Rig rig;

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <string>
 
-#include "lidarena/base/angle.hpp"
 #include "lidarena/base/error.hpp"
 
 namespace lidarena::sensor {
@@ -91,30 +90,6 @@ fs::path base_file(const ConfigNode& base, const fs::path& file, const fs::path&
 }
 
 }  // namespace
-
-ImuConfig with_error_factor(ImuConfig imu) {
-  for (double* error : {&imu.gyro_noise_density, &imu.accel_noise_density, &imu.gyro_bias_walk,
-                        &imu.accel_bias_walk, &imu.gyro_turn_on_bias, &imu.accel_turn_on_bias,
-                        &imu.gyro_scale_error, &imu.accel_scale_error, &imu.gyro_misalignment,
-                        &imu.accel_misalignment, &imu.gyro_g_sensitivity, &imu.gyro_nonlinearity,
-                        &imu.accel_nonlinearity})
-    *error *= imu.error_factor;
-  imu.error_factor = 1.0;
-  return imu;
-}
-
-Pose mounted(const SensorConfig& sensor) {
-  const MountConfig& mount = sensor.mount;
-  Pose pose = sensor.body_from_lidar;
-  if (mount.pitch_deg != 0.0 || mount.yaw_deg != 0.0) {
-    const Eigen::Quaterniond turn =
-        Eigen::AngleAxisd(kDegree * mount.yaw_deg, Eigen::Vector3d::UnitZ()) *
-        Eigen::AngleAxisd(kDegree * mount.pitch_deg, Eigen::Vector3d::UnitY());
-    pose.linear() = (turn * pose.linear()).eval();
-  }
-  pose.translation().z() += mount.up_m;
-  return pose;
-}
 
 SpinningHead load_spinning_head(const fs::path& file) {
   const ConfigNode node = ConfigNode::load(file);
