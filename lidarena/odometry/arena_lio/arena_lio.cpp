@@ -104,7 +104,7 @@ ScanResult ArenaLio::track(const Scan& scan) {
                                    {"matches", found.match.agreement.on_planes},
                                    {"near_planes", found.match.agreement.near_planes},
                                    {"iterations", found.match.update.evaluations},
-                                   {"slices", found.turns.size()},
+                                   {"slices", slices},
                                    {"map_points", world_.map.fine().size()},
                                    {"standing", filter_.still.scans() > 0}});
   result.revised = std::move(revised);
@@ -172,7 +172,9 @@ void ArenaLio::begin_again(OpeningScan latest) {
 
 Filter ArenaLio::predict(Filter filter,
                          const std::vector<estimation::ImuInterval>& intervals) const {
-  return predicted(std::move(filter), intervals, measured_noise_.at_least(noise_));
+  estimation::ImuNoise noise = measured_noise_.at_least(noise_);
+  noise.gyro_density = std::max(noise.gyro_density, std::sqrt(filter.turn_noise_power));
+  return predicted(std::move(filter), intervals, noise);
 }
 
 ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
@@ -199,9 +201,14 @@ ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Fi
   for (const Slice& slice : slices) {
     all.predicted = predict(std::move(filter), slice.intervals);
     Match found = match(slice.points, all.predicted, world_.map);
-    const State& before = all.predicted.estimate.state;
-    all.turns.push_back({all.predicted.turn, so3::log(before.rotation().transpose() *
-                                                      found.update.estimate.state.rotation())});
+    const auto& [before, covariance] = all.predicted.estimate;
+    const State& after = found.update.estimate.state;
+    if (!slice.intervals.empty()) {
+      all.turns.push_back({all.predicted.turn,
+                           so3::log(before.rotation().transpose() * after.rotation()),
+                           covariance.block<3, 3>(State::kRotation, State::kRotation).trace() / 3.0,
+                           to_seconds(slice.intervals.back().end - slice.intervals.front().begin)});
+    }
     filter = all.predicted;
     filter.estimate = found.update.estimate;
     found.update.points += all.match.update.points;
@@ -236,8 +243,8 @@ Filter ArenaLio::correct(Registration found, const ScanImu& imu, bool tracked) c
   const bool reliable = imu.longest_gap_s == 0.0 && imu.saturated == 0;
   const bool still = filter.still.scans() > 0;
   if (!config_.calibrate_gyro || !tracked || !reliable || still) return filter;
-  for (const auto& [turn, missed] : found.turns)
-    filter.gyro.observe(turn.turned, turn.rate_change, missed);
+  for (const auto& [turn, missed, variance, seconds] : found.turns)
+    filter = with_turn(std::move(filter), turn, missed, variance, seconds);
   return filter;
 }
 

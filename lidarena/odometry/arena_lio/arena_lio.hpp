@@ -86,10 +86,12 @@ class ArenaLio : public Odometry {
     Agreement agreement;
     std::size_t keypoints = 0;
   };
-  /// How a slice turned by the gyro, and what its update has added to that (rotation vector, rad).
+  /// How a slice turned by the gyro, and what its update has added to that.
   struct CorrectedTurn {
     ScanTurn turn;
-    Eigen::Vector3d missed;
+    Eigen::Vector3d missed;  ///< rotation vector, rad
+    double variance = 0.0;   ///< rad^2, of each component by the prediction
+    double seconds = 0.0;
   };
   /// A scan's slices, registered one after the other.
   struct Registration {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/filter.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "lidarena/base/so3.hpp"
@@ -10,6 +11,7 @@ namespace {
 
 using State = estimation::InertialState;
 
+constexpr double kTurnNoiseMean_s = 2.0;         // over which the noise of turns is a mean
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, of the held first pose
@@ -75,6 +77,15 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
   state.nav.world_from_imu = orthonormalized(state.nav.world_from_imu);
   state.imu_from_lidar = orthonormalized(state.imu_from_lidar);
   if (!intervals.empty()) filter.turn = turn_over(intervals, map_from_begin, state, filter.turn);
+  return filter;
+}
+
+Filter with_turn(Filter filter, const ScanTurn& turn, const Eigen::Vector3d& missed,
+                 double variance, double seconds) {
+  const Eigen::Vector3d rest = filter.gyro.observe(turn.turned, turn.rate_change, missed, variance);
+  const double share = std::min(1.0, seconds / kTurnNoiseMean_s);
+  filter.turn_noise_power +=
+      share * (rest.squaredNorm() / (3.0 * seconds) - filter.turn_noise_power);
   return filter;
 }
 

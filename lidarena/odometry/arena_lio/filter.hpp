@@ -29,6 +29,7 @@ struct Filter {
   std::vector<estimation::FilterStep> steps;  ///< the predictions along `track`
   ScanTurn turn;
   estimation::GyroCalibration gyro;
+  double turn_noise_power = 0.0;       ///< (rad/s)^2/Hz, of the turns that no calibration explains
   double accel_scale = 1.0;            ///< factor from the IMU's accelerations to m/s^2
   Pose first_pose = Pose::Identity();  ///< of the IMU, at the initialization
   StillDetector still;
@@ -47,6 +48,13 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
 
 /// The filter with another track, which leads to its estimate by the IMU backwards.
 Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& intervals);
+
+/// The filter after an update that has added the rotation `missed` (rotation vector, rad; variance
+/// by the prediction, rad^2) to a turn of `seconds`: with a new calibration of the gyro, and the
+/// power of what that does not explain (covariance matching: A. Sage, G. Husa, "Adaptive filtering
+/// with unknown prior statistics", 1969, for the rotation alone).
+Filter with_turn(Filter filter, const ScanTurn& turn, const Eigen::Vector3d& missed,
+                 double variance, double seconds);
 
 /// The filter with its track bent to its estimate, which is that of the instant `end`.
 Filter bent(Filter filter, Time end);
