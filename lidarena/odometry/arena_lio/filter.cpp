@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/arena_lio/filter.hpp"
 
-#include <algorithm>
 #include <utility>
 
 #include "lidarena/base/so3.hpp"
@@ -11,7 +10,6 @@ namespace {
 
 using State = estimation::InertialState;
 
-constexpr double kTurnNoiseMean_s = 2.0;         // over which the noise of turns is a mean
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, of the held first pose
@@ -80,12 +78,12 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
   return filter;
 }
 
-Filter with_turn(Filter filter, const ScanTurn& turn, const Eigen::Vector3d& missed,
-                 double variance, double seconds) {
-  const Eigen::Vector3d rest = filter.gyro.observe(turn.turned, turn.rate_change, missed, variance);
-  const double share = std::min(1.0, seconds / kTurnNoiseMean_s);
-  filter.turn_noise_power +=
-      share * (rest.squaredNorm() / (3.0 * seconds) - filter.turn_noise_power);
+Filter informed(Filter filter, const Correction& correction) {
+  const Eigen::Vector3d unexplained =
+      filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation,
+                          correction.rotation_variance);
+  filter.gyro_noise.add(unexplained, correction.seconds);
+  filter.accel_noise.add(correction.velocity, correction.seconds);
   return filter;
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
 
 #include "lidarena/base/random.hpp"
@@ -19,33 +20,26 @@ Filter after_turns(double sigma, double stated, double scale, int scans, double 
   SequentialRandom random(5, 1);
   Filter filter;
   for (int i = 0; i < scans; ++i) {
-    ScanTurn turn;
-    turn.turned = estimation::random_vector(random, turn_sigma);
-    const Eigen::Vector3d missed = scale * turn.turned - filter.gyro.correction() * turn.turned +
-                                   estimation::random_vector(random, sigma);
-    filter = with_turn(std::move(filter), turn, missed, stated * stated, kScan_s);
+    Correction correction;
+    correction.seconds = kScan_s;
+    Eigen::Vector3d& turned = correction.turn.turned;
+    turned = estimation::random_vector(random, turn_sigma);
+    correction.rotation = scale * turned - filter.gyro.correction() * turned +
+                          estimation::random_vector(random, sigma);
+    correction.rotation_variance = stated * stated;
+    filter = informed(std::move(filter), correction);
   }
   return filter;
 }
 
-TEST(TurnNoise, IsThatOfTheCorrections) {
-  const double sigma = 5e-3;
-  double mean = 0.0;  // of the last instants: a running mean over 2 s scatters by a fifth
-  for (int scans = 400; scans < 700; ++scans) {
-    if (scans % 20 != 0) continue;
-    mean += after_turns(sigma, sigma, 0.0, scans).turn_noise_power / 15.0;
-  }
-  EXPECT_NEAR(mean, sigma * sigma / kScan_s, 0.15 * sigma * sigma / kScan_s);
-}
-
-TEST(TurnNoise, HasNoPartThatTheCalibrationExplains) {
+TEST(InformedFilter, TheNoiseOfTurnsHasNoPartThatTheCalibrationExplains) {
   // 1 % of 0.15 rad is 1.5 mrad a scan.
   const Filter filter = after_turns(2e-4, 2e-4, 0.01, 200);
-  EXPECT_LT(filter.turn_noise_power, 3e-4 * 3e-4 / kScan_s);
+  EXPECT_LT(filter.gyro_noise.density(), 3e-4 / std::sqrt(kScan_s));
   EXPECT_LT((filter.gyro.correction() - 0.01 * Eigen::Matrix3d::Identity()).norm(), 2e-3);
 }
 
-TEST(TurnNoise, SlowNoisyTurnsCalibrateLittle) {
+TEST(InformedFilter, SlowNoisyTurnsCalibrateLittle) {
   // 5 mrad of 20 mrad a scan: 50 scans know an element of the correction to 0.035, the prior to
   // 0.01.
   const Filter trusted = after_turns(5e-3, 0.0, 0.0, 50, 0.02);
