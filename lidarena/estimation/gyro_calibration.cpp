@@ -12,17 +12,20 @@ GyroCalibration::Matrix GyroCalibration::prior() {
   return sigma.cwiseAbs2().asDiagonal();
 }
 
-void GyroCalibration::observe(const Eigen::Vector3d& turned, const Eigen::Vector3d& change,
-                              const Eigen::Vector3d& missed) {
+Eigen::Vector3d GyroCalibration::observe(const Eigen::Vector3d& turned,
+                                         const Eigen::Vector3d& change,
+                                         const Eigen::Vector3d& missed, double variance) {
   Eigen::Matrix<double, 3, 10> by_estimate;
   by_estimate << turned.x() * Eigen::Matrix3d::Identity(), turned.y() * Eigen::Matrix3d::Identity(),
       turned.z() * Eigen::Matrix3d::Identity(), change;
   const Eigen::Matrix<double, 10, 3> seen = covariance_ * by_estimate.transpose();
   Eigen::Matrix3d innovation = by_estimate * seen;
-  innovation.diagonal().array() += kRotationSigma * kRotationSigma;
+  innovation.diagonal().array() += kRotationSigma * kRotationSigma + variance;
   const Eigen::Matrix<double, 10, 3> gain = innovation.ldlt().solve(seen.transpose()).transpose();
-  estimate_ += gain * missed;
+  const Vector step = gain * missed;
+  estimate_ += step;
   covariance_ -= gain * seen.transpose();
+  return missed - by_estimate * step;
 }
 
 Eigen::Vector3d GyroCalibration::turned() const {

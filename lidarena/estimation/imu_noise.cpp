@@ -52,4 +52,17 @@ ImuNoise MeasuredNoise::at_least(ImuNoise stated) const {
   return stated;
 }
 
+void CorrectionNoise::add(const Eigen::Vector3d& correction, double seconds) {
+  constexpr double kMean_s = 2.0;
+  sum_ += correction;
+  sum_s_ += seconds;
+  if (sum_s_ < span_s_) return;
+  const double share = std::min(1.0, sum_s_ / kMean_s);
+  power_ += share * (sum_.squaredNorm() / (3.0 * sum_s_) - power_);
+  sum_.setZero();
+  sum_s_ = 0.0;
+}
+
+double CorrectionNoise::density() const { return std::sqrt(power_); }
+
 }  // namespace lidarena::estimation

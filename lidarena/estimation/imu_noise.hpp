@@ -42,4 +42,24 @@ class MeasuredNoise {
   double accel_power_ = 0.0;    ///< the same of the accelerometer
 };
 
+/// The white noise of an IMU that the corrections of its predictions show, as a running mean over
+/// two seconds (covariance matching in the steady state: A. Sage, G. Husa, "Adaptive filtering with
+/// unknown prior statistics", 1969). It begins at zero, since the first corrections are those of an
+/// uncertain start. Corrections are summed over `span` (s) first. Over a longer
+/// one, less of the noise of the updates themselves is taken for the IMU's.
+class CorrectionNoise {
+ public:
+  explicit CorrectionNoise(double span_s = 0.0) : span_s_(span_s) {}
+  /// `correction`: what an update adds to a quantity that the IMU was integrated to over `seconds`.
+  void add(const Eigen::Vector3d& correction, double seconds);
+  /// Of each axis, in that unit times 1/sqrt(s): rad/s/sqrt(Hz) of rotations.
+  double density() const;
+
+ private:
+  double span_s_;
+  Eigen::Vector3d sum_ = Eigen::Vector3d::Zero();
+  double sum_s_ = 0.0;  ///< over which `sum_` runs
+  double power_ = 0.0;  ///< square of the density, mean of the axes
+};
+
 }  // namespace lidarena::estimation

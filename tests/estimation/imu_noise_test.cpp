@@ -75,5 +75,41 @@ TEST(MeasuredNoise, AStepAcrossAGapIsNoNoise) {
   EXPECT_LT(measured.at_least({}).accel_density, 1e-12);
 }
 
+TEST(CorrectionNoise, IsThatOfTheCorrections) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> axis(0.0, 5e-3);
+  CorrectionNoise noise;
+  EXPECT_EQ(noise.density(), 0.0);
+  double mean_power = 0.0;  // over 50 s; a mean over 2 s scatters
+  for (int i = 0; i < 520; ++i) {
+    noise.add({axis(random), axis(random), axis(random)}, 0.1);
+    if (i >= 20) mean_power += noise.density() * noise.density() / 500.0;
+  }
+  EXPECT_NEAR(mean_power, 5e-3 * 5e-3 / 0.1, 0.1 * 5e-3 * 5e-3 / 0.1);
+}
+
+TEST(CorrectionNoise, OfAnUpdatesOwnNoiseLittleIsLeftOverALongSpan) {
+  // Corrections by a position with white noise: differences of it, which cancel over the span.
+  std::mt19937 random(3);
+  std::normal_distribution<double> axis(0.0, 0.01);
+  CorrectionNoise each, half_second(0.5);
+  Eigen::Vector3d last = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 100; ++i) {
+    const Eigen::Vector3d now(axis(random), axis(random), axis(random));
+    each.add(now - last, 0.1);
+    half_second.add(now - last, 0.1);
+    last = now;
+  }
+  EXPECT_LT(half_second.density(), 0.6 * each.density());  // 1 / sqrt(5) expected
+}
+
+TEST(CorrectionNoise, GrowsAndFadesOverTwoSeconds) {
+  CorrectionNoise noise;
+  noise.add({3e-3, 0.0, 0.0}, 0.1);
+  EXPECT_NEAR(noise.density(), std::sqrt(0.05 * 3e-3 * 3e-3 / (3.0 * 0.1)), 1e-12);
+  for (int i = 0; i < 200; ++i) noise.add(Eigen::Vector3d::Zero(), 0.1);
+  EXPECT_LT(noise.density(), 1e-4);
+}
+
 }  // namespace
 }  // namespace lidarena::estimation

@@ -20,6 +20,9 @@ constexpr double kConvergence = 1e-3;  // m, rad, m/s: largest step of a converg
 // Of a start in motion:
 constexpr std::size_t kOpeningScans = 5;  // that are registered again with each that follows
 constexpr int kFirstPasses = 5;           // over the first two scans
+// Corrections of the velocity count as the accelerometer's noise beyond so many times the other
+// noise.
+constexpr double kAccelSurprise = 10.0;
 constexpr int kStandingScansMapped = 20;  // in a standstill; more of them add nothing but noise
 
 /// The data sheet's noise, with a factor for each of the two sensors.
@@ -48,6 +51,19 @@ double position_sigma(const estimation::StateEstimate& estimate) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(
       estimate.covariance.topLeftCorner<3, 3>(), Eigen::EigenvaluesOnly);
   return std::sqrt(std::max(0.0, directions.eigenvalues()[2]));
+}
+
+/// What the update of a slice has added to its prediction.
+Correction correction(const Filter& predicted, const estimation::InertialState& updated,
+                      const Slice& slice) {
+  using State = estimation::InertialState;
+  const auto& [state, covariance] = predicted.estimate;
+  return {
+      .turn = predicted.turn,
+      .rotation = so3::log(state.rotation().transpose() * updated.rotation()),
+      .rotation_variance = covariance.block<3, 3>(State::kRotation, State::kRotation).trace() / 3.0,
+      .velocity = updated.nav.velocity - state.nav.velocity,
+      .seconds = to_seconds(slice.intervals.back().end - slice.intervals.front().begin)};
 }
 
 }  // namespace
@@ -104,7 +120,7 @@ ScanResult ArenaLio::track(const Scan& scan) {
                                    {"matches", found.match.agreement.on_planes},
                                    {"near_planes", found.match.agreement.near_planes},
                                    {"iterations", found.match.update.evaluations},
-                                   {"slices", found.turns.size()},
+                                   {"slices", slices},
                                    {"map_points", world_.map.fine().size()},
                                    {"standing", filter_.still.scans() > 0}});
   result.revised = std::move(revised);
@@ -170,9 +186,18 @@ void ArenaLio::begin_again(OpeningScan latest) {
   if (opening.scans.size() == kOpeningScans) start_.opening.reset();
 }
 
+estimation::ImuNoise ArenaLio::noise_by(const Filter& filter) const {
+  estimation::ImuNoise noise = measured_noise_.at_least(noise_);
+  noise.gyro_density = std::max(noise.gyro_density, filter.gyro_noise.density());
+  const double accel = filter.accel_noise.density();
+  if (accel > kAccelSurprise * noise.accel_density) noise.accel_density = accel;
+  return noise;
+}
+
 Filter ArenaLio::predict(Filter filter,
                          const std::vector<estimation::ImuInterval>& intervals) const {
-  return predicted(std::move(filter), intervals, measured_noise_.at_least(noise_));
+  const estimation::ImuNoise noise = noise_by(filter);
+  return predicted(std::move(filter), intervals, noise);
 }
 
 ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
@@ -190,8 +215,7 @@ ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
 
 int ArenaLio::slices_of(const Scan& usable, const ScanImu& imu, Time end) const {
   if (!usable.timed || end <= usable.stamp || world_.map.empty()) return 1;
-  const double density = measured_noise_.at_least(noise_).accel_density;
-  return slices_needed(imu.intervals, density, config_.max_slice_error_m);
+  return slices_needed(imu.intervals, noise_by(filter_).accel_density, config_.max_slice_error_m);
 }
 
 ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Filter filter) const {
@@ -199,9 +223,8 @@ ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Fi
   for (const Slice& slice : slices) {
     all.predicted = predict(std::move(filter), slice.intervals);
     Match found = match(slice.points, all.predicted, world_.map);
-    const State& before = all.predicted.estimate.state;
-    all.turns.push_back({all.predicted.turn, so3::log(before.rotation().transpose() *
-                                                      found.update.estimate.state.rotation())});
+    if (!slice.intervals.empty())
+      all.corrections.push_back(correction(all.predicted, found.update.estimate.state, slice));
     filter = all.predicted;
     filter.estimate = found.update.estimate;
     found.update.points += all.match.update.points;
@@ -236,8 +259,8 @@ Filter ArenaLio::correct(Registration found, const ScanImu& imu, bool tracked) c
   const bool reliable = imu.longest_gap_s == 0.0 && imu.saturated == 0;
   const bool still = filter.still.scans() > 0;
   if (!config_.calibrate_gyro || !tracked || !reliable || still) return filter;
-  for (const auto& [turn, missed] : found.turns)
-    filter.gyro.observe(turn.turned, turn.rate_change, missed);
+  for (const Correction& correction : found.corrections)
+    filter = informed(std::move(filter), correction);
   return filter;
 }
 

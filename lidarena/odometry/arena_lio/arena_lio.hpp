@@ -86,16 +86,11 @@ class ArenaLio : public Odometry {
     Agreement agreement;
     std::size_t keypoints = 0;
   };
-  /// How a slice turned by the gyro, and what its update has added to that (rotation vector, rad).
-  struct CorrectedTurn {
-    ScanTurn turn;
-    Eigen::Vector3d missed;
-  };
   /// A scan's slices, registered one after the other.
   struct Registration {
     Filter predicted;  ///< before the update by the last slice
     Match match;       ///< the last update, and the sums over all slices
-    std::vector<CorrectedTurn> turns;
+    std::vector<Correction> corrections;
   };
   /// A scan that the next one revises.
   struct LastScan {
@@ -122,6 +117,8 @@ class ArenaLio : public Odometry {
 
   // The steps: each returns what it changes.
 
+  /// The noise of the IMU as it is stated, or as samples and corrections show where that is more.
+  estimation::ImuNoise noise_by(const Filter& filter) const;
   /// The state at the end of the intervals.
   Filter predict(Filter filter, const std::vector<estimation::ImuInterval>& intervals) const;
   /// The iterated update of the filter's prediction with averages of the scan's points.

@@ -78,6 +78,15 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
   return filter;
 }
 
+Filter informed(Filter filter, const Correction& correction) {
+  const Eigen::Vector3d unexplained =
+      filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation,
+                          correction.rotation_variance);
+  filter.gyro_noise.add(unexplained, correction.seconds);
+  filter.accel_noise.add(correction.velocity, correction.seconds);
+  return filter;
+}
+
 Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& intervals) {
   filter.track = track_before(intervals, filter.estimate.state, filter.accel_scale);
   return filter;

@@ -9,6 +9,7 @@
 #include "lidarena/estimation/filter_steps.hpp"
 #include "lidarena/estimation/gyro_calibration.hpp"
 #include "lidarena/estimation/imu_buffer.hpp"
+#include "lidarena/estimation/imu_noise.hpp"
 #include "lidarena/estimation/imu_track.hpp"
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/odometry/arena_lio/initialization.hpp"
@@ -22,6 +23,19 @@ struct ScanTurn {
   std::optional<Eigen::Vector3d> mean_rate;               ///< rad/s, in the map's axes
 };
 
+/// What an update has added to a prediction.
+struct Correction {
+  ScanTurn turn;                                       ///< by the gyro
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< rotation vector, rad
+  double rotation_variance = 0.0;                      ///< rad^2, of each axis, predicted
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
+  double seconds = 0.0;                                ///< that were predicted
+};
+
+/// Velocity corrections are summed over so many seconds: 1 mm of noise of a position is 10 cm/s of
+/// the velocity over 10 ms, 2 mm/s over half a second.
+inline constexpr double kVelocitySpan_s = 0.5;
+
 /// What is known at the end of a scan: a value, which each step takes and returns as it then is.
 struct Filter {
   estimation::StateEstimate estimate;  ///< in the map's frame
@@ -29,6 +43,8 @@ struct Filter {
   std::vector<estimation::FilterStep> steps;  ///< the predictions along `track`
   ScanTurn turn;
   estimation::GyroCalibration gyro;
+  estimation::CorrectionNoise gyro_noise;  ///< of turns that no calibration explains
+  estimation::CorrectionNoise accel_noise{kVelocitySpan_s};  ///< of velocities
   double accel_scale = 1.0;            ///< factor from the IMU's accelerations to m/s^2
   Pose first_pose = Pose::Identity();  ///< of the IMU, at the initialization
   StillDetector still;
@@ -47,6 +63,10 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
 
 /// The filter with another track, which leads to its estimate by the IMU backwards.
 Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& intervals);
+
+/// The filter with what a correction shows: of the gyro's calibration, of the noise of turns that
+/// no calibration explains, and of that of the velocity.
+Filter informed(Filter filter, const Correction& correction);
 
 /// The filter with its track bent to its estimate, which is that of the instant `end`.
 Filter bent(Filter filter, Time end);
