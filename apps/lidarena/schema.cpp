@@ -15,6 +15,7 @@
 #include "lidarena/scenes/world_config.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
 #include "lidarena/stages/check_recording.hpp"
+#include "lidarena/study/improvement.hpp"
 #include "lidarena/study/study_spec.hpp"
 
 namespace lidarena {
@@ -31,6 +32,8 @@ std::map<std::string, std::function<Json()>> schemas() {
       {"study", [] { return schema_document<study::StudySpec>("A study of Lidarena"); }},
       {"recording",
        [] { return schema_document<study::StudyRecording>("A recording of a study"); }},
+      {"steps",
+       [] { return schema_document<study::ImprovementSteps>("Steps of lidarena improve"); }},
       {"run", [] { return schema_document<dataset::RunManifest>("manifest.json of a run"); }},
       {"dataset",
        [] { return schema_document<dataset::DatasetManifest>("manifest.json of a dataset"); }},
@@ -72,7 +75,7 @@ void add_schema(CLI::App& app, Common& common, int& exit_code) {
   auto kind = std::make_shared<std::string>();
   auto out = std::make_shared<std::string>();
   verb->add_option("kind", *kind,
-                   "world, flight, sensor, beams, study, external, recording, run, dataset, "
+                   "world, flight, sensor, beams, study, external, recording, steps, run, dataset, "
                    "metrics, report, check, or an algorithm");
   verb->add_option("--out", *out, "Folder to write all schemas to, as KIND.schema.json");
   set_verb(

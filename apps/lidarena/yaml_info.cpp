@@ -9,6 +9,7 @@
 #include "lidarena/flight/flight_config.hpp"
 #include "lidarena/odometry/factory.hpp"
 #include "lidarena/sensor/sensor_config.hpp"
+#include "lidarena/study/improvement.hpp"
 #include "lidarena/study/study_spec.hpp"
 
 namespace lidarena {
@@ -81,11 +82,12 @@ Json study_info(const fs::path& file, const stages::ConfigFolder& configs) {
                          const std::vector<std::string>& kinds) {
   const std::string keys = fmt::format("{}", fmt::join(node.keys(), ", "));
   if (kinds.empty()) {
-    throw InputError(file.string(),
-                     "what it describes does not follow from its keys (" + keys +
-                         "): tried as world, flight, sensor, beams, study, recording, external "
-                         "program and settings of each algorithm",
-                     "lidarena schema KIND prints the keys of a kind");
+    throw InputError(
+        file.string(),
+        "what it describes does not follow from its keys (" + keys +
+            "): tried as world, flight, sensor, beams, study, recording, steps, external "
+            "program and settings of each algorithm",
+        "lidarena schema KIND prints the keys of a kind");
   }
   throw InputError(file.string(),
                    fmt::format("what it describes does not follow from its keys ({}), which fit "
@@ -130,6 +132,9 @@ Json yaml_info(const fs::path& file, const stages::ConfigFolder& configs,
   if (kind == "sensor") return sensor_info(configs.load_sensor(file.string()));
   if (kind == "beams") return beams_info(sensor::load_spinning_head(file));
   if (kind == "study") return study_info(file, configs);
+  if (kind == "steps")
+    return {{"kind", kind},
+            {"steps", to_json(load_config<study::ImprovementSteps>(file))["steps"]}};
   if (kind == "recording")
     return {{"kind", kind}, {"recording", to_json(load_config<study::StudyRecording>(file))}};
   if (kind == "flight")

@@ -34,6 +34,8 @@ def schema(kind):
 
 def kind_of(file):
     folder = file.parent.name
+    if file.parent == CONFIGS:
+        return "steps"
     if folder == "odometry":
         return "ct_icp" if file.stem.startswith("ct_icp") else "kiss_icp"
     return {"worlds": "world", "flights": "flight", "sensors": "sensor", "studies": "study",
