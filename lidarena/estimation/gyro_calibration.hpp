@@ -24,10 +24,9 @@ class GyroCalibration {
   /// `turned`: rotation vector (rad) of the calibrated rates over a scan, much less than half a
   /// turn; `change`: of the mean rate (rad/s) since the scan before; `missed`: the rotation vector
   /// that leads from there to the rotation that was estimated. All in the axes of the scan's end.
-  /// `variance` (rad^2): of each component of `missed`, as far as no calibration explains it, in
-  /// addition to kRotationSigma. Returns what of `missed` the calibration does not explain.
+  /// Returns what of `missed` the calibration does not explain.
   Eigen::Vector3d observe(const Eigen::Vector3d& turned, const Eigen::Vector3d& change,
-                          const Eigen::Vector3d& missed, double variance = 0.0);
+                          const Eigen::Vector3d& missed);
 
   Eigen::Matrix3d correction() const { return estimate_.head<9>().reshaped(3, 3); }  ///< A
   /// The rotation vector (rad) of A, its part that is no scale and no skew of the axes: by how much

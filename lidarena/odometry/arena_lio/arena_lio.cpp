@@ -57,13 +57,11 @@ double position_sigma(const estimation::StateEstimate& estimate) {
 Correction correction(const Filter& predicted, const estimation::InertialState& updated,
                       const Slice& slice) {
   using State = estimation::InertialState;
-  const auto& [state, covariance] = predicted.estimate;
-  return {
-      .turn = predicted.turn,
-      .rotation = so3::log(state.rotation().transpose() * updated.rotation()),
-      .rotation_variance = covariance.block<3, 3>(State::kRotation, State::kRotation).trace() / 3.0,
-      .velocity = updated.nav.velocity - state.nav.velocity,
-      .seconds = to_seconds(slice.intervals.back().end - slice.intervals.front().begin)};
+  const State& state = predicted.estimate.state;
+  return {.turn = predicted.turn,
+          .rotation = so3::log(state.rotation().transpose() * updated.rotation()),
+          .velocity = updated.nav.velocity - state.nav.velocity,
+          .seconds = to_seconds(slice.intervals.back().end - slice.intervals.front().begin)};
 }
 
 }  // namespace

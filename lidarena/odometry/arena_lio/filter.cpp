@@ -80,8 +80,7 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
 
 Filter informed(Filter filter, const Correction& correction) {
   const Eigen::Vector3d unexplained =
-      filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation,
-                          correction.rotation_variance);
+      filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation);
   filter.gyro_noise.add(unexplained, correction.seconds);
   filter.accel_noise.add(correction.velocity, correction.seconds);
   return filter;

@@ -27,7 +27,6 @@ struct ScanTurn {
 struct Correction {
   ScanTurn turn;                                       ///< by the gyro
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< rotation vector, rad
-  double rotation_variance = 0.0;                      ///< rad^2, of each axis, predicted
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s
   double seconds = 0.0;                                ///< that were predicted
 };
