@@ -16,28 +16,7 @@ from evalio.datasets.loaders import (LidarDensity, LidarFormatParams, LidarMajor
                                      LidarStamp)
 from evalio.types import SE3, SO3, ImuParams, LidarParams, Stamp, Trajectory
 
-
-def rotation(q):
-    """Matrix of the quaternion x, y, z, w."""
-    x, y, z, w = q
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - z * w), 2 * (x * z + y * w)],
-                     [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
-                     [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
-
-
-def product(p, q):
-    """Quaternion x, y, z, w of the rotation q followed by p."""
-    a, b, c, d = p
-    e, f, g, h = q
-    return [d * e + a * h + b * g - c * f, d * f - a * g + b * h + c * e,
-            d * g + a * f - b * e + c * h, d * h - a * e - b * f - c * g]
-
-
-def imu_from_lidar(lidar, imu):
-    """Position and quaternion of the LiDAR in the IMU's frame, from those of both in the body's."""
-    back = [-imu[3], -imu[4], -imu[5], imu[6]]
-    position = rotation(back) @ (np.array(lidar[:3]) - np.array(imu[:3]))
-    return position, product(back, lidar[3:])
+from parameters import a_from_b  # in this folder
 
 
 class LidarenaRecording(Dataset):
@@ -67,8 +46,8 @@ class LidarenaRecording(Dataset):
 
     def imu_T_lidar(self):
         lidar, imu = self.rig()
-        position, q = imu_from_lidar(lidar["body_from_lidar"], imu["body_from_imu"])
-        return SE3(SO3(qx=q[0], qy=q[1], qz=q[2], qw=q[3]), position)
+        x, y, z, qx, qy, qz, qw = a_from_b(imu["body_from_imu"], lidar["body_from_lidar"])
+        return SE3(SO3(qx=qx, qy=qy, qz=qz, qw=qw), np.array([x, y, z]))
 
     def imu_T_gt(self):
         return SE3.identity()

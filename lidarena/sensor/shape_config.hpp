@@ -20,9 +20,8 @@ struct ShapeConfig {
   template <class Self, class V>
   static void visit(Self& self, V&& v) {
     v("shots_per_second", self.shots_per_second, "Hz",
-      "the lasers fire more or less often, while all that turns does so as before: the same "
-      "pattern "
-      "with more or fewer shots, 0 = as many as the product",
+      "the lasers fire more or less often at the same turn rates of prisms and head: the same "
+      "pattern with more or fewer shots, 0 = as many as the product",
       between(0, 1e8));
     v("fov_height_deg", self.fov_height_deg, "deg",
       "all shots in a field of view of this height: elevations are scaled about the middle of "
