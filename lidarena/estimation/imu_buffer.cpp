@@ -12,8 +12,8 @@ constexpr Time kMaxPause = std::chrono::seconds(1);  // no IMU pauses longer and
 constexpr double kMinGyroRange = 2.1;    // rad/s
 constexpr double kMinAccelRange = 18.6;  // m/s^2
 
-bool repeats(const Eigen::Vector3d& previous, const Eigen::Vector3d& value, double min_range) {
-  return ((previous.array() == value.array()) && (value.array().abs() > min_range)).any();
+Axes repeated(const Eigen::Vector3d& previous, const Eigen::Vector3d& value, double min_range) {
+  return (previous.array() == value.array()) && (value.array().abs() > min_range);
 }
 
 auto first_after(const std::deque<ImuSample>& samples, Time t) {
@@ -22,11 +22,6 @@ auto first_after(const std::deque<ImuSample>& samples, Time t) {
 }
 
 }  // namespace
-
-bool is_saturated(const ImuSample& previous, const ImuSample& sample, double accel_scale) {
-  return repeats(previous.gyro, sample.gyro, kMinGyroRange) ||
-         repeats(previous.accel, sample.accel, kMinAccelRange / accel_scale);
-}
 
 double longest_gap_s(const std::vector<ImuInterval>& intervals) {
   double longest = 0.0;
@@ -47,7 +42,7 @@ double longest_pause_s(const std::vector<ImuSample>& samples, Time end) {
 std::size_t count_saturated(const std::vector<ImuInterval>& intervals) {
   return static_cast<std::size_t>(
       std::count_if(intervals.begin(), intervals.end(),
-                    [](const ImuInterval& interval) { return interval.saturated; }));
+                    [](const ImuInterval& interval) { return interval.saturated(); }));
 }
 
 bool ImuBuffer::add(const ImuSample& sample) {
@@ -85,10 +80,21 @@ bool ImuBuffer::is_gap(Time t) const {
   return after->stamp - (after - 1)->stamp > max_gap_;
 }
 
-bool ImuBuffer::is_saturated_at(Time t) const {
-  const auto after = first_after(samples_, t);
-  if (after == samples_.begin() || after == samples_.end()) return false;
-  return is_saturated(*(after - 1), *after, accel_scale_);
+ImuInterval ImuBuffer::with_clipped(ImuInterval interval) const {
+  const auto after = first_after(samples_, interval.begin);
+  if (after == samples_.begin() || after == samples_.end()) return interval;
+  // A run of equal values may end with the interval's first sample, or begin with its second one.
+  auto previous = after - 1;
+  if (previous != samples_.begin()) --previous;
+  const auto end = after + 1 == samples_.end() ? samples_.end() : after + 2;
+  for (auto sample = previous + 1; sample != end; previous = sample++) {
+    interval.gyro_clipped =
+        interval.gyro_clipped || repeated(previous->gyro, sample->gyro, kMinGyroRange);
+    interval.accel_clipped =
+        interval.accel_clipped ||
+        repeated(previous->accel, sample->accel, kMinAccelRange / accel_scale_);
+  }
+  return interval;
 }
 
 std::vector<ImuInterval> ImuBuffer::between(Time begin, Time end) const {
@@ -101,9 +107,11 @@ std::vector<ImuInterval> ImuBuffer::between(Time begin, Time end) const {
     const Time cut = after == samples_.end() ? end : std::min(end, after->stamp);
     ImuSample b = at(cut);
     b.stamp = cut;
-    intervals.push_back({a.stamp, cut, 0.5 * (a.gyro + b.gyro), 0.5 * (a.accel + b.accel),
-                         is_gap(after == samples_.end() ? cut : a.stamp),
-                         is_saturated_at(a.stamp)});
+    intervals.push_back(with_clipped({.begin = a.stamp,
+                                      .end = cut,
+                                      .gyro = 0.5 * (a.gyro + b.gyro),
+                                      .accel = 0.5 * (a.accel + b.accel),
+                                      .gap = is_gap(after == samples_.end() ? cut : a.stamp)}));
     a = b;
   }
   return intervals;

@@ -10,6 +10,9 @@
 
 namespace lidarena::estimation {
 
+/// One flag for each of the axes x, y, z.
+using Axes = Eigen::Array<bool, 3, 1>;
+
 /// Rate and specific force between two instants, held constant: the mean of the values at both.
 struct ImuInterval {
   Time begin{0};
@@ -17,8 +20,10 @@ struct ImuInterval {
   Eigen::Vector3d gyro = Eigen::Vector3d::Zero();   ///< rad/s
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
   bool gap = false;                                 ///< too far from any sample to be reliable
-  bool saturated = false;  ///< one of its samples is at the end of its range
+  Axes gyro_clipped = Axes::Constant(false);        ///< one of its samples is at the range's end
+  Axes accel_clipped = Axes::Constant(false);       ///< likewise
   double seconds() const { return to_seconds(end - begin); }
+  bool saturated() const { return gyro_clipped.any() || accel_clipped.any(); }
 };
 /// Duration of the longest gap, s; 0 if there is none.
 double longest_gap_s(const std::vector<ImuInterval>& intervals);
@@ -26,12 +31,9 @@ double longest_gap_s(const std::vector<ImuInterval>& intervals);
 double longest_pause_s(const std::vector<ImuSample>& samples, Time end);
 std::size_t count_saturated(const std::vector<ImuInterval>& intervals);
 
-/// Whether the sensor is at the end of its range: an axis repeats a large value to the last bit,
-/// which noise hardly ever does. (Few data sheets give the range that a maker has set.)
-/// `accel_scale` converts the samples' accelerations to m/s^2.
-bool is_saturated(const ImuSample& previous, const ImuSample& sample, double accel_scale);
-
 /// The most recent IMU samples, which can be queried repeatedly for any span of time.
+/// A sensor is at the end of its range where an axis repeats a large value to the last bit, which
+/// noise hardly ever does. (Few data sheets give the range that a maker has set.)
 class ImuBuffer {
  public:
   explicit ImuBuffer(double max_gap_s) : max_gap_(from_seconds(max_gap_s)) {}
@@ -59,7 +61,7 @@ class ImuBuffer {
  private:
   ImuSample at(Time t) const;
   bool is_gap(Time t) const;
-  bool is_saturated_at(Time t) const;
+  ImuInterval with_clipped(ImuInterval interval) const;
 
   Time max_gap_;
   double accel_scale_ = 1.0;

@@ -230,7 +230,9 @@ std::string results_csv(const StudyResults& results) {
                 "mode", "seed",  "status", "reason", "coverage_percent", "ended_at_s"};
   for (const Figure& figure : figures()) table.head.push_back(column_of(figure));
   const std::vector<std::string> varied = varied_keys(results.rows);
-  if (!varied.empty()) table.head.emplace_back("variation");
+  const bool varies =
+      std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.variation.empty(); });
+  if (varies) table.head.emplace_back("variation");
   table.head.insert(table.head.end(), varied.begin(), varied.end());
   const bool has_keys =
       std::ranges::any_of(results.rows, [](const RunRecord& run) { return !run.key.empty(); });
@@ -244,7 +246,7 @@ std::string results_csv(const StudyResults& results) {
     row.push_back(exact(coverage_of(r)));
     row.push_back(exact(ended_at_s(r)));
     for (const Figure& figure : figures()) row.push_back(exact(value_of(r, figure)));
-    if (!varied.empty()) row.push_back(word(r.variation));
+    if (varies) row.push_back(word(r.variation));
     for (const std::string& key : varied) {
       const Json value = r.varied.value(key, Json());
       row.push_back(word(value.is_null()     ? ""

@@ -119,9 +119,12 @@ TEST(ImuBuffer, ALargeValueRepeatedToTheLastBitIsSaturation) {
   for (const double rate : rates) buffer.add(sample(t += 5.0, {0.0, rate, 0.0}));
   const auto intervals = buffer.between(ms(5.0), ms(30.0));
   ASSERT_EQ(intervals.size(), 5U);
-  for (std::size_t i = 0; i < intervals.size(); ++i) EXPECT_EQ(intervals[i].saturated, i == 1) << i;
-  EXPECT_EQ(count_saturated(intervals), 1U);
-  EXPECT_TRUE(buffer.between(ms(12.0), ms(13.0)).front().saturated) << "also of a part of it";
+  for (std::size_t i = 0; i < intervals.size(); ++i) {
+    EXPECT_EQ(intervals[i].gyro_clipped.y(), i <= 2) << i << ": one of its samples is 3.0";
+    EXPECT_FALSE(intervals[i].gyro_clipped.x() || intervals[i].accel_clipped.any()) << i;
+  }
+  EXPECT_EQ(count_saturated(intervals), 3U);
+  EXPECT_TRUE(buffer.between(ms(12.0), ms(13.0)).front().saturated()) << "also of a part of it";
 
   ImuBuffer in_g(0.02);
   in_g.set_accel_scale(9.8);

@@ -213,7 +213,9 @@ ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
 
 int ArenaLio::slices_of(const Scan& usable, const ScanImu& imu, Time end) const {
   if (!usable.timed || end <= usable.stamp || world_.map.empty()) return 1;
-  return slices_needed(imu.intervals, noise_by(filter_).accel_density, config_.max_slice_error_m);
+  const double density = imu.saturated > 0 ? estimation::kCoastingNoise.accel_density
+                                           : noise_by(filter_).accel_density;
+  return slices_needed(imu.intervals, density, config_.max_slice_error_m);
 }
 
 ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Filter filter) const {
@@ -221,8 +223,11 @@ ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Fi
   for (const Slice& slice : slices) {
     all.predicted = predict(std::move(filter), slice.intervals);
     Match found = match(slice.points, all.predicted, world_.map);
-    if (!slice.intervals.empty())
+    if (!slice.intervals.empty()) {
       all.corrections.push_back(correction(all.predicted, found.update.estimate.state, slice));
+      all.predicted =
+          beyond_range(std::move(all.predicted), slice.intervals, all.corrections.back());
+    }
     filter = all.predicted;
     filter.estimate = found.update.estimate;
     found.update.points += all.match.update.points;

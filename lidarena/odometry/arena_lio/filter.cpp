@@ -28,6 +28,27 @@ ScanTurn turn_over(const std::vector<estimation::ImuInterval>& intervals,
   return turn;
 }
 
+/// The values of the given axes, else zero.
+Eigen::Vector3d on(const estimation::Axes& axes, const Eigen::Vector3d& values) {
+  return axes.select(values.array(), 0.0);
+}
+
+/// What is added to a step's noise: an axis at the end of its range tells as little as a gap.
+State::Matrix clipped_noise(const estimation::ImuInterval& interval,
+                            const Eigen::Matrix3d& rotation) {
+  constexpr estimation::ImuNoise kUnknown = estimation::kCoastingNoise;
+  const auto variances = [&](const estimation::Axes& axes, double density) {
+    return on(axes, Eigen::Vector3d::Constant(density * density * interval.seconds()));
+  };
+  State::Matrix noise = State::Matrix::Zero();
+  noise.block<3, 3>(State::kRotation, State::kRotation) =
+      variances(interval.gyro_clipped, kUnknown.gyro_density).asDiagonal();
+  noise.block<3, 3>(State::kVelocity, State::kVelocity) =
+      rotation * variances(interval.accel_clipped, kUnknown.accel_density).asDiagonal() *
+      rotation.transpose();
+  return noise;
+}
+
 }  // namespace
 
 Filter initial_filter(const Initialization& found, const Eigen::Matrix3d& map_from_start) {
@@ -56,19 +77,20 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
     constexpr auto kIntegration = estimation::Integration::kSecondOrder;
     const double dt = interval.seconds();
     const estimation::ImuBias bias = state.nav.bias;
-    const Eigen::Vector3d rate = filter.gyro.calibrated(interval.gyro - bias.gyro);
+    const Eigen::Vector3d rate = filter.gyro.calibrated(interval.gyro - bias.gyro) +
+                                 on(interval.gyro_clipped, filter.beyond_range);
     const Eigen::Vector3d gyro = rate + bias.gyro;
     const Eigen::Matrix3d rotation = estimation::rotation_in_step(state, gyro, dt, kIntegration);
     Eigen::Vector3d force = filter.accel_scale * interval.accel - bias.accel;
     if (interval.gap) force = -rotation.transpose() * state.gravity;  // constant velocity
     filter.track.push_back({interval.begin, state.world_from_imu(), state.nav.velocity,
                             rotation * force + state.gravity, rate});
-    const bool unreliable = interval.gap || interval.saturated;
     estimation::FilterStep step{filter.estimate, {}};
     const State::Matrix& f = step.transition =
         estimation::propagate(state, gyro, force + bias.accel, dt, kIntegration);
     covariance = f * covariance * f.transpose() +
-                 estimation::step_noise(unreliable ? estimation::kCoastingNoise : noise, dt);
+                 estimation::step_noise(interval.gap ? estimation::kCoastingNoise : noise, dt) +
+                 clipped_noise(interval, rotation);
     step.predicted = filter.estimate;
     filter.steps.push_back(std::move(step));
   }
@@ -83,6 +105,17 @@ Filter informed(Filter filter, const Correction& correction) {
       filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation);
   filter.gyro_noise.add(unexplained, correction.seconds);
   filter.accel_noise.add(correction.velocity, correction.seconds);
+  return filter;
+}
+
+Filter beyond_range(Filter filter, const std::vector<estimation::ImuInterval>& intervals,
+                    const Correction& correction) {
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  // of the turn, on the clipped axes
+  for (const estimation::ImuInterval& interval : intervals)
+    direction += on(interval.gyro_clipped, interval.gyro);
+  const Eigen::Array3d sign = direction.array().sign();
+  const Eigen::Vector3d rate = filter.beyond_range + correction.rotation / correction.seconds;
+  filter.beyond_range = sign * (sign * rate.array()).max(0.0);
   return filter;
 }
 

@@ -42,6 +42,8 @@ struct Filter {
   std::vector<estimation::FilterStep> steps;  ///< the predictions along `track`
   ScanTurn turn;
   estimation::GyroCalibration gyro;
+  /// Rate (rad/s) by which the body turns faster than the gyro's range, on each clipped axis.
+  Eigen::Vector3d beyond_range = Eigen::Vector3d::Zero();
   estimation::CorrectionNoise gyro_noise;  ///< of turns that no calibration explains
   estimation::CorrectionNoise accel_noise{kVelocitySpan_s};  ///< of velocities
   double accel_scale = 1.0;            ///< factor from the IMU's accelerations to m/s^2
@@ -66,6 +68,10 @@ Filter tracked_back(Filter filter, const std::vector<estimation::ImuInterval>& i
 /// The filter with what a correction shows: of the gyro's calibration, of the noise of turns that
 /// no calibration explains, and of that of the velocity.
 Filter informed(Filter filter, const Correction& correction);
+
+/// The filter with what a correction over the intervals shows of the rate beyond the gyro's range.
+Filter beyond_range(Filter filter, const std::vector<estimation::ImuInterval>& intervals,
+                    const Correction& correction);
 
 /// The filter with its track bent to its estimate, which is that of the instant `end`.
 Filter bent(Filter filter, Time end);
