@@ -99,7 +99,8 @@ enum Effects {
   kAir,
   kBounces,
   kBlooming,
-  kMovers
+  kMovers,
+  kHarsh  // bias, clock, drift, shaking and movers together
 };
 
 sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
@@ -123,16 +124,17 @@ sensor::SensorConfig config_of(Sensor sensor, Effects effects) {
     config.noise.beam = {.sub_rays = 7, .width_deg = 0.35, .height_deg = 0.35};
     config.returns.count = 2;
   }
-  if (effects == kBias) config.noise.bias = {0.01, 0.01, 0.01, 0.01, 0.01};
-  if (effects == kClock) config.noise.clock = {0.001, 1e-5, 1e-4, true};
-  if (effects == kDrift) config.noise.drift = {0.02, 0.0, 0.001, 10.0, 1200.0};
+  const bool harsh = effects == kHarsh;
+  if (effects == kBias || harsh) config.noise.bias = {0.01, 0.01, 0.01, 0.01, 0.01};
+  if (effects == kClock || harsh) config.noise.clock = {0.001, 1e-5, 1e-4, true};
+  if (effects == kDrift || harsh) config.noise.drift = {0.02, 0.0, 0.001, 10.0, 1200.0};
   if (effects == kAir) {
     config.noise.air = {.visibility_m = 200.0, .rain_mm_h = 10.0};
     config.noise.beam.width_deg = config.noise.beam.height_deg = 0.2;
   }
   if (effects == kBounces) config.noise.bounces = 2;
   if (effects == kBlooming) config.noise.blooming = {0.005, 1.5, 8};
-  if (effects == kShake) {
+  if (effects == kShake || harsh) {
     sensor::ImuConfig& imu = config.imu.emplace();
     imu.vibration_moves_lidar = true;
     imu.broadband.accel_rms = {2, 2, 2};
@@ -227,7 +229,7 @@ const world::World& glossy_room() {
 }
 
 const world::Surfaces& world_for(Effects effects, const world::Surfaces& living) {
-  if (effects == kMovers) return living;
+  if (effects == kMovers || effects == kHarsh) return living;
   return effects == kBounces || effects == kBlooming ? glossy_room() : Stage::get().world;
 }
 
@@ -265,7 +267,7 @@ void register_rows() {
       {"sheet_clock", kClock},      {"sheet_shake", kShake},
       {"sheet_movers", kMovers},    {"sheet_drift", kDrift},
       {"sheet_air", kAir},          {"sheet_bounces", kBounces},
-      {"sheet_blooming", kBlooming}};
+      {"sheet_blooming", kBlooming}, {"sheet_harsh", kHarsh}};
   for (const auto& sensor : sensors) {
     for (const auto& effect : effects) {
       const std::string name = std::string("measure/") + sensor.first + "/" + effect.first;
