@@ -18,7 +18,7 @@ struct Config {
   PlaneMapConfig map{.cell_size_m = 0.2};
 
   int max_passes = 2;
-  double first_kernel_scale_m = 0.1;
+  double first_kernel_scale_m = 0.2;
   double kernel_scale_m = 0.05;
   double point_variance_m2 = 4e-4;  // (2 cm)^2 of the data sheets
   TrackingConfig tracking;
