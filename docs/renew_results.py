@@ -176,7 +176,13 @@ BENCHMARKED = {"mid360": "Mid-360", "os0_128_2048": "OS0-128, 2048 x 10"}
 EFFECTS = {"geometry": "geometry, rolling", "frozen": "geometry, frozen (no motion)",
            "range_noise": "+ range noise",
            "sheet": "+ near and weak-signal noise, angles, rounding, dropouts",
-           "split_beam": "+ seven rays a beam, two echoes"}
+           "split_beam": "+ seven rays a beam, two echoes",
+           **{"sheet_" + effect: "the line with dropouts + " + what for effect, what in {
+               "bias": "bias of ranges and directions", "clock": "clock of the LiDAR",
+               "shake": "vibration that moves the LiDAR", "movers": "five people",
+               "drift": "warm-up", "air": "fog and rain", "bounces": "a wet floor, two bounces",
+               "blooming": "blooming beside signs",
+               "harsh": "bias, clock, vibration, warm-up and people"}.items()}}
 LAYOUTS = {"si": "ours, 24 bytes per point", "driver": "the driver's"}
 
 
