@@ -38,6 +38,7 @@ import shutil
 import statistics
 import sys
 
+import paper_protocol
 import ratios
 
 DOCS = pathlib.Path(__file__).resolve().parent
@@ -418,8 +419,11 @@ def check():
         page = file.read_text()
         if renewed(page) != page:
             faults.append(f"{file.name}: differs from docs/results/data, run docs/renew_results.py")
+        if paper_protocol.BLOCK.search(page) and paper_protocol.renewed(page) != page:
+            faults.append(f"{file.name}: differs from docs/results/data/paper, run docs/paper_protocol.py --page")
         if file.name != "performance.md":  # it also has figures of other programs
-            by_hand = re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])", BLOCK.sub("", page))
+            text = paper_protocol.BLOCK.sub("", BLOCK.sub("", page))
+            by_hand = re.findall(r"(?<![\w.])\d+\.\d+(?![\w.])", text)
             faults += [f"{file.name}: {number} was typed by hand" for number in by_hand]
     return faults
 
