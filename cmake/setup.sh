@@ -30,6 +30,8 @@ if [ "${1:-run}" = test ]; then
   optional+=(python3-pyflakes)
   # browser for tests of the HTML pages; without it the tests of the view are reported as skipped
   optional+=(chromium)
+  # makes the wheel's libraries find each other; without it the test of the wheel is reported as skipped
+  optional+=(patchelf)
   # the other implementation of DDS, beside which live topics are tested; without it that is skipped
   optional+=(libfastrtps-dev)
   # plots and notebooks of the Python module; without them their tests are reported as skipped

@@ -17,13 +17,29 @@ and keep their owner alive. Long calls release the GIL. Bad input raises InputEr
 which names place and remedy; messages go to logging.getLogger("lidarena").
 """
 import csv as _csv
+import importlib.machinery as _machinery
 import os as _os
 import pathlib as _pathlib
+import re as _re
+import sys as _sys
 
-import numpy as _numpy
 
-from . import _core
-from ._core import (  # noqa: F401
+def _check_python():
+    """Fails if the module beside this file is for another Python, as in a wheel for any Python."""
+    names = [file.name for file in _pathlib.Path(__file__).parent.glob("_core.cpython-*.so")]
+    if names and not any(name == "_core" + suffix for name in names for suffix in _machinery.EXTENSION_SUFFIXES):
+        made_for = ".".join(_re.match(r"_core\.cpython-(\d)(\d+)", names[0]).groups())
+        raise ImportError(f"lidarena: the module is for Python {made_for} and this is Python "
+                          f"{_sys.version_info[0]}.{_sys.version_info[1]}; use Python {made_for}, "
+                          "or the command lidarena, which needs no module")
+
+
+_check_python()
+
+import numpy as _numpy  # noqa: E402
+
+from . import _core  # noqa: E402
+from ._core import (  # noqa: E402, F401
     POINT, ConfigFolder, Dataset, DatasetWriter, Error, EventSource, Flight, ImuInfo, ImuSample,
     InputError, Lidar, LidarInfo, MemoryUse, Motion, Odometry, OdometryTraits, Rig, RunResult, Scan,
     ScanResult, Sensor, Trajectory, World, __version__, evaluate, list_algorithms, load_truth,
