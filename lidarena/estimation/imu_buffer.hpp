@@ -21,7 +21,7 @@ struct ImuInterval {
   Eigen::Vector3d accel = Eigen::Vector3d::Zero();  ///< m/s^2
   bool gap = false;                                 ///< too far from any sample to be reliable
   Axes gyro_clipped = Axes::Constant(false);        ///< one of its samples is at the range's end
-  Axes accel_clipped = Axes::Constant(false);       ///< likewise
+  Axes accel_clipped = Axes::Constant(false);       ///< the same of the accelerometer
   double seconds() const { return to_seconds(end - begin); }
   bool saturated() const { return gyro_clipped.any() || accel_clipped.any(); }
 };
