@@ -6,6 +6,7 @@ how well all other cells are then predicted.
 usage: paper_protocol.py fit         the speed, from docs/results/data/paper/speeds.csv
        paper_protocol.py NAME        one of the tables: fit, table2, table4, table5, scores, turns, two_speeds,
                                      findings, arms
+       paper_protocol.py --draw FILE draws the cells of the three tables, ours against the paper's (SVG, PNG)
        paper_protocol.py --page FILE renews the tables between `<!-- protocol NAME -->` and
                                      `<!-- end protocol -->` of a page
 
@@ -68,8 +69,10 @@ def read_paper(file=PAPER):
                 for row in rows if row["figure"] in units and row["world"]}
 
 
-def read_runs(name):
+def read_runs(name, optional=False):
     file = DATA / (name + ".csv")
+    if optional and not file.exists():
+        return []
     if not file.exists():
         raise SystemExit(f"{file} is missing: fly the study, and copy its results.csv there")
     with file.open(newline="") as lines:
@@ -267,22 +270,35 @@ def table_values(paper, full, column):
 
 def table_scores(paper, full, fitted):
     rows = [["table", "predictor", "cells", "rank correlation", "median factor", "within 2", "within 3",
-             "chance", "chance within rows", "chance within columns"]]
+             "chance", "chance within rows", "chance within columns", "verdict"]]
     for table, column in TABLES.items():
         cells, ours, theirs = compare(medians_of(full, column), paper, column,
                                       (fitted,) if column == DRIFT else ())
         predictors = {"ours": ours,
                       "the paper's row mean": [mean_of(paper, column, c, False) for c in cells],
                       "the paper's column mean": [mean_of(paper, column, c, True) for c in cells]}
+        scores = {which: (rank_correlation(values, theirs), median_factor(values, theirs))
+                  for which, values in predictors.items()}
         for predictor, values in predictors.items():
-            chances = ["", "", ""]
+            judged = [""] * 4
             if predictor == "ours":
-                chances = [f"{chance(values, theirs, groups):.4f}" for groups in
+                chances = [chance(values, theirs, groups) for groups in
                            ([0] * len(cells), [c[:2] for c in cells], [c[2] for c in cells])]
-            rows.append([table[5:], predictor, str(len(cells)), f"{rank_correlation(values, theirs):.2f}",
-                         f"{median_factor(values, theirs):.2f}", share_within(values, theirs, 2),
-                         share_within(values, theirs, 3), *chances])
+                judged = [*[f"{p:.4f}" for p in chances], verdict_of_table(scores, chances[0])]
+            rank, factor = scores[predictor]
+            rows.append([table[5:], predictor, str(len(cells)), f"{rank:.2f}", f"{factor:.2f}",
+                         share_within(values, theirs, 2), share_within(values, theirs, 3), *judged])
     return rows
+
+
+def verdict_of_table(scores, chance_of_rank):
+    """The protocol's rule of success. `scores`: {predictor: (rank correlation, median factor)}, with ours."""
+    others = [pair for which, pair in scores.items() if which != "ours"]
+    rank, factor = scores["ours"]
+    failed = [what for what, holds in (("rank correlation", all(rank > r for r, _ in others)),
+                                       ("median factor", all(factor < f for _, f in others)),
+                                       ("chance", chance_of_rank < 0.01)) if not holds]
+    return "fails by " + " and ".join(failed) if failed else "succeeds"
 
 
 def predicted(curves, speed_of):
@@ -403,20 +419,33 @@ def judged_in(finding, runs, seeds, replaced=()):
                   figures_of([r for r in replaced if r["seed"] == seed])) for seed in seeds]
 
 
+def verdict_of(judged, arms, saving):
+    """The protocol's word on a finding: `judged` in each pair of worlds, `saving` the arms with which it holds."""
+    most = 0.9 * len(judged)
+    if judged.count(True) >= most:
+        return "confirmed"
+    if judged.count(False) < most:
+        return "depends on the world"
+    if not arms:
+        return "fails; the arms are not flown"
+    return "fails, but for an arm" if saving else "contradicted"
+
+
 def table_findings(full, arms, ramp):
-    """In how many pairs of worlds each holds, and the arms with which it holds in most of theirs."""
+    """In how many pairs of worlds each holds, the arms with which it holds in most of theirs, and the verdict."""
     seeds = sorted({run["seed"] for run in full}, key=int)
     few = sorted({run["seed"] for run in arms + ramp}, key=int)
-    rows = [["finding", "holds", "does not", "cannot be judged", "holds with the base arm in the worlds of the arms",
-             "arms with which it holds in most of them"]]
+    flown = arm_runs(arms, ramp)
+    rows = [["finding", "verdict", "holds", "does not", "cannot be judged",
+             "holds with the base arm in the worlds of the arms", "arms with which it holds in most of them"]]
     for finding in FINDINGS:
         judged = judged_in(finding, full, seeds)
-        found = [label for label, runs in arm_runs(arms, ramp).items()
+        found = [label for label, runs in flown.items()
                  if 2 * judged_in(finding, full, few, runs).count(True) > len(few)]
-        rows.append([finding, *[f"{judged.count(answer)} of {len(seeds)}" for answer in (True, False, None)],
-                     f"{judged_in(finding, full, few).count(True)} of {len(few)}",
-                     f"all {len(found)}" if found and len(found) == len(arm_runs(arms, ramp)) else
-                     "; ".join(found) or "none"])
+        rows.append([finding, verdict_of(judged, flown, found),
+                     *[f"{judged.count(answer)} of {len(seeds)}" for answer in (True, False, None)],
+                     f"{judged_in(finding, full, few).count(True)} of {len(few)}" if few else "-",
+                     f"all {len(found)}" if found and len(found) == len(flown) else "; ".join(found) or "none"])
     return rows
 
 
@@ -444,6 +473,9 @@ def table_arms(paper, full, arms, ramp, fitted):
     base = medians_of([run for run in full if run["seed"] in seeds], DRIFT)
     rows = [["arm", "cells replaced", "rank correlation", "median factor", "cell: base, arm (paper)"]]
 
+    if not seeds:
+        raise SystemExit(f"no arm is flown: {DATA} has neither arms.csv nor ramp.csv")
+
     def row(label, replaced):
         cells, values, theirs = compare(base | replaced, paper, DRIFT, (fitted,))
         shown = "; ".join(f"{name(c)} {text(base.get(c))}, {text(replaced[c])} ({paper[DRIFT, c]:g})"
@@ -469,13 +501,47 @@ def block(what):
               "scores": lambda: table_scores(paper, read_runs("full"), fitted()),
               "turns": lambda: table_turns(paper, read_runs("speeds")),
               "two_speeds": lambda: table_two_speeds(paper, read_runs("speeds")),
-              "findings": lambda: table_findings(read_runs("full"), read_runs("arms"), read_runs("ramp")),
-              "arms": lambda: table_arms(paper, read_runs("full"), read_runs("arms"), read_runs("ramp"), fitted())}
+              "findings": lambda: table_findings(read_runs("full"), read_runs("arms", True), read_runs("ramp", True)),
+              "arms": lambda: table_arms(paper, read_runs("full"), read_runs("arms", True), read_runs("ramp", True),
+                                         fitted())}
     makers |= {table: lambda column=column: table_values(paper, read_runs("full"), column)
                for table, column in TABLES.items()}
     if what not in makers:
         raise SystemExit(f"there is no table '{what}'; there are {', '.join(makers)}")
     return markdown(makers[what]())
+
+
+def draw(file):
+    """Each cell's median and range over the worlds against the paper's value. A run that ended itself stands at the upper edge."""
+    import matplotlib
+    matplotlib.use("Agg")
+    matplotlib.rcParams["svg.hashsalt"] = "lidarena"
+    import matplotlib.pyplot as plt
+    paper, full = read_paper(), read_runs("full")
+    colors = dict(zip(METHODS, ("#1f77b4", "#d62728", "#9467bd", "#2ca02c", "#ff7f0e")))
+    marks = {("cave", MID): "o", ("cave", OS0): "s", ("house", MID): "^", ("house", OS0): "D"}
+    titles = ("Table 2: drift, cm per m", "Table 4: points beyond 20 cm, %", "Table 5: RMSE of the map, cm")
+    figure, places = plt.subplots(1, 3, figsize=(14, 5.2))
+    for place, (column, title) in zip(places, zip(TABLES.values(), titles)):
+        cells = {cell: [floored(v, column) for v in some] for cell, some in values_of(full, column).items()}
+        theirs = [floored(paper[column, cell], column) for cell in cells]
+        known = theirs + [v for some in cells.values() for v in some if math.isfinite(v)]
+        low, high = min(known) / 1.6, max(known) * 2.5
+        for factor, style in ((1, "-"), (2, ":"), (0.5, ":")):
+            place.plot([low, high], [low * factor, high * factor], style, color="#999999", lw=1, zorder=0)
+        for cell, x in zip(cells, theirs):
+            shown = [min(v, high) for v in cells[cell]]
+            place.plot([x, x], [min(shown), max(shown)], "-", color=colors[cell[2]], lw=1, alpha=0.5)
+            place.plot(x, min(statistics.median(cells[cell]), high), marks[cell[:2]], color=colors[cell[2]], ms=6, clip_on=False)
+        place.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), title=title,
+                  xlabel="the paper", ylabel="made anew, median and range")
+        place.set_aspect("equal")
+    keys = [plt.Line2D([], [], marker="o", ls="", color=c, label=NAMES[m]) for m, c in colors.items()]
+    keys += [plt.Line2D([], [], marker=m, ls="", color="#444444", label=f"{NAMES[w]}, {NAMES[s]}")
+             for (w, s), m in marks.items()]
+    figure.legend(handles=keys, loc="lower center", ncol=9, frameon=False, fontsize=8)
+    figure.tight_layout(rect=(0, 0.06, 1, 1))
+    figure.savefig(file, metadata={"Date": None} if file.suffix == ".svg" else None)
 
 
 BLOCK = re.compile(r"(<!-- protocol (\w+) -->\n)(.*?)(<!-- end protocol -->)", re.DOTALL)
@@ -489,8 +555,11 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("table", nargs="?")
     parser.add_argument("--page", type=pathlib.Path)
+    parser.add_argument("--draw", type=pathlib.Path)
     arguments = parser.parse_args()
-    if arguments.page:
+    if arguments.draw:
+        draw(arguments.draw)
+    elif arguments.page:
         arguments.page.write_text(renewed(arguments.page.read_text()))
     elif arguments.table == "fit":
         cell, speed = fit(curves_of(read_runs("speeds")), read_paper())

@@ -131,9 +131,10 @@ class Scores(unittest.TestCase):
                 self.assertEqual(row[3:7], ["1.00", "1.00", f"{cells} of {cells}", f"{cells} of {cells}"])
                 self.assertLess(float(row[7]), 0.001)
                 self.assertLess(float(row[8]), 0.01)
+                self.assertEqual(row[10], "succeeds")
             else:
                 self.assertLess(float(row[3]), 1.0)
-                self.assertEqual(row[7:], ["", "", ""])
+                self.assertEqual(row[7:], [""] * 4)
 
     def test_random_figures_score_nothing(self):
         random.seed(4)
@@ -141,6 +142,7 @@ class Scores(unittest.TestCase):
         row = protocol.table_scores(PAPER, runs, protocol.FIT_ORDER[0])[1]
         self.assertLess(abs(float(row[3])), 0.5)
         self.assertGreater(float(row[7]), 0.02)
+        self.assertEqual(row[10], "fails by rank correlation and median factor and chance")
 
     def test_a_map_without_outliers_counts_as_the_least_share(self):
         cell = protocol.CELLS[0]
@@ -209,7 +211,7 @@ class Findings(unittest.TestCase):
 
     def test_all_hold_on_the_papers_own_figures(self):
         for row in protocol.table_findings(papers_runs(), [], [])[1:]:
-            self.assertEqual(row[1:4], ["1 of 1", "0 of 1", "0 of 1"], row[0])
+            self.assertEqual(row[1:5], ["confirmed", "1 of 1", "0 of 1", "0 of 1"], row[0])
 
     def test_each_can_fail(self):
         """Each fails when the methods', the sensors' or the worlds' figures are exchanged."""
@@ -240,7 +242,7 @@ class Findings(unittest.TestCase):
             if row["algorithm"] == "ct_icp":
                 row["status"] = "diverged"
         rows = {row[0]: row[1:] for row in protocol.table_findings(good + bad + lost, [], [])}
-        self.assertEqual(rows[finding][:3], ["1 of 3", "1 of 3", "1 of 3"])
+        self.assertEqual(rows[finding][:4], ["depends on the world", "1 of 3", "1 of 3", "1 of 3"])
 
     def test_an_arm_that_saves_a_finding_is_named(self):
         finding = "KISS-ICP has the highest drift"
@@ -253,9 +255,12 @@ class Findings(unittest.TestCase):
             return [run((world, sensor, "kiss_from_5m"), 99.0, seed) for seed in seeds
                     for world in ("cave", "house") for sensor in (MID, OS0)]
         other = [run(("cave", MID, "ct_icp_driving"), 1.5, seed) for seed in (101, 102, 103)]
-        for seeds, named in (((101, 102), "KISS-ICP, points from 5 m on"), ((101,), "none")):
+        for seeds, named, verdict in (((101, 102), "KISS-ICP, points from 5 m on", "fails, but for an arm"),
+                                      ((101,), "none", "contradicted")):
             rows = {row[0]: row[1:] for row in protocol.table_findings(full, of_arm(seeds) + other, [])}
-            self.assertEqual(rows[finding], ["0 of 3", "3 of 3", "0 of 3", "0 of 3", named])
+            self.assertEqual(rows[finding], [verdict, "0 of 3", "3 of 3", "0 of 3", "0 of 3", named])
+        rows = {row[0]: row[1:] for row in protocol.table_findings(full, [], [])}
+        self.assertEqual(rows[finding][0], "fails; the arms are not flown")
 
 
 class Files(unittest.TestCase):
