@@ -4,8 +4,7 @@
 how well all other cells are then predicted.
 
 usage: paper_protocol.py fit         the speed, from docs/results/data/paper/speeds.csv
-       paper_protocol.py NAME        one of the tables: fit, table2, table4, table5, scores, turns, two_speeds,
-                                     findings, arms
+       paper_protocol.py NAME        one of the tables: fit, cells, scores, turns, two_speeds, findings, arms
        paper_protocol.py --draw FILE draws the cells of the three tables, ours against the paper's (SVG, PNG)
        paper_protocol.py --page FILE renews the tables between `<!-- protocol NAME -->` and
                                      `<!-- end protocol -->` of a page
@@ -255,16 +254,20 @@ def table_fit(paper, speeds):
     return rows
 
 
-def table_values(paper, full, column):
-    values = values_of(full, column)
-    rows = [["cell", "paper", "median of the worlds", "range", "runs that ended well"]]
+def table_cells(paper, full):
+    """Each cell of the three tables: the paper's value, and our median with the range of the runs that ended well."""
+    rows = [["cell", *[head for table in TABLES for head in (f"table {table[5:]}, paper", "anew")], "runs that ended well"]]
+    values = {column: values_of(full, column) for column in TABLES.values()}
     for cell in CELLS:
-        if cell in values:
-            some = values[cell]
-            kept = [value for value in some if math.isfinite(value)]
-            spread = f"{text(min(kept))} to {text(max(kept))}" if kept else "-"
-            rows.append([name(cell), f"{paper[column, cell]:g}", text(statistics.median(some)), spread,
-                         f"{len(kept)} of {len(some)}"])
+        if cell in values[DRIFT]:
+            row = [name(cell)]
+            for column in TABLES.values():
+                some = values[column][cell]
+                kept = [value for value in some if math.isfinite(value)]
+                spread = f" ({text(min(kept))} to {text(max(kept))})" if kept else ""
+                row += [f"{paper[column, cell]:g}", text(statistics.median(some)) + spread]
+            kept = [value for value in values[DRIFT][cell] if math.isfinite(value)]
+            rows.append([*row, f"{len(kept)} of {len(values[DRIFT][cell])}"])
     return rows
 
 
@@ -498,14 +501,13 @@ def block(what):
     paper = read_paper()
     fitted = lambda: fit(curves_of(read_runs("speeds")), paper)[0]
     makers = {"fit": lambda: table_fit(paper, read_runs("speeds")),
+              "cells": lambda: table_cells(paper, read_runs("full")),
               "scores": lambda: table_scores(paper, read_runs("full"), fitted()),
               "turns": lambda: table_turns(paper, read_runs("speeds")),
               "two_speeds": lambda: table_two_speeds(paper, read_runs("speeds")),
               "findings": lambda: table_findings(read_runs("full"), read_runs("arms", True), read_runs("ramp", True)),
               "arms": lambda: table_arms(paper, read_runs("full"), read_runs("arms", True), read_runs("ramp", True),
                                          fitted())}
-    makers |= {table: lambda column=column: table_values(paper, read_runs("full"), column)
-               for table, column in TABLES.items()}
     if what not in makers:
         raise SystemExit(f"there is no table '{what}'; there are {', '.join(makers)}")
     return markdown(makers[what]())

@@ -181,10 +181,10 @@ class Tables(unittest.TestCase):
         cell = protocol.CELLS[0]
         runs = [run(cell, v, seed) for seed, v in ((101, 3.0), (102, 1.0), (103, 2.0))]
         runs.append(run(cell, "", 104, status="diverged"))
-        row = protocol.table_values(PAPER, runs, DRIFT)[1]
-        self.assertEqual(row[1:], ["1.78", "2.5", "1 to 3", "3 of 4"])
+        row = protocol.table_cells(PAPER, runs)[1]
+        self.assertEqual(row[1:3] + row[-1:], ["1.78", "2.5 (1 to 3)", "3 of 4"])
         runs += [run(cell, "", seed, status="failed") for seed in (105, 106)] + [run(cell, "", 107)]
-        self.assertEqual(protocol.table_values(PAPER, runs, DRIFT)[1][2], "ended")
+        self.assertEqual(protocol.table_cells(PAPER, runs)[1][2], "ended (1 to 3)")
 
     def test_an_arm_replaces_its_cells_and_no_others(self):
         arms = [run(("cave", OS0, "kiss_fixed"), 9.0), run(("cave", GPU, "ct_icp"), 5.0),
@@ -273,9 +273,9 @@ class Files(unittest.TestCase):
                     writer = csv.DictWriter(file, runs[0])
                     writer.writeheader()
                     writer.writerows(runs)
-                page = "a\n<!-- protocol table5 -->\nold\n<!-- end protocol -->\nb\n"
+                page = "a\n<!-- protocol cells -->\nold\n<!-- end protocol -->\nb\n"
                 renewed = protocol.renewed(page)
-                self.assertIn("| Cave, Mid-360: CT-ICP | 20.06 | 20.1 |", renewed)
+                self.assertIn("| 20.06 | 20.1 (20.1 to 20.1) | 1 of 1 |", renewed)
                 self.assertNotIn("old", renewed)
                 self.assertEqual(protocol.renewed(renewed), renewed)
                 with self.assertRaises(SystemExit):

@@ -23,7 +23,7 @@ follow, for a table of these alone, without ranges), between
 beside the final one).
 `<!-- ratio NAME KIND SENSOR METHOD SENSOR METHOD WORLD -->` is how many times the figure of the second cell
 is that of the first, with the interval at 95 % (docs/ratios.py; WORLD `none`: over all), and
-`<!-- ratios METHOD METHOD -->` the table of such ratios of the drift in all studies.
+`<!-- ratios METHOD METHOD STUDY ... -->` the table of such ratios of the drift in studies.
 docs/results/data/speed.json has the figures of lidar_benchmark: `<!-- speed measure -->`
 and `<!-- speed simulate -->` are tables of them, `<!-- speed ROW FIGURE -->1.2<!-- end -->` is one,
 `<!-- speed machine -->` the processor. `<!-- costs ci -->` is the table of docs/results/data/costs.tsv.
@@ -156,11 +156,10 @@ def ratio_text(study, kind, first, second, world):
     return f"{shown[0]} ({shown[1]} to {shown[2]})" if interval else shown[0]
 
 
-def ratios_table(second, first):
+def ratios_table(second, first, *studies):
     """Markdown: in each study, world and sensor the drift of `second` over that of `first`."""
     lines = ["| study | world, sensor | pairs | final | live |", "|---|---|---:|---:|---:|"]
-    for file in sorted(DATA.glob("*.csv")):
-        study = file.stem
+    for study in studies:
         both = [{(run["world"], run["sensor"]) for run in runs_of(study)
                  if run["algorithm"] == method and run["preset"] in ("", "indoor")}
                 for method in (first, second)]
