@@ -2,7 +2,9 @@
 # Functions that declare a module and a test. Compiler flags for our own build only (warnings,
 # sanitizers) are PRIVATE.
 add_library(lidarena_flags INTERFACE)
-target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-psabi)
+# -ffp-contract=off: every operation is rounded. GCC fuses multiplications with additions where the processor can (arm64),
+# in one loop and not in another, so that equal sums would differ.
+target_compile_options(lidarena_flags INTERFACE -Wall -Wextra -Wconversion -Wshadow -Wno-psabi -ffp-contract=off)
 if(LIDARENA_PRECOMPILED_HEADERS AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 falsely warns of std::string's own header (GCC bug 105651), with precompiled headers even
   # though it is a system header
