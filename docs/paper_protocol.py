@@ -5,7 +5,6 @@ how well all other cells are then predicted.
 
 usage: paper_protocol.py fit         the speed, from docs/results/data/paper/speeds.csv
        paper_protocol.py NAME        one of the tables: fit, cells, scores, turns, two_speeds, findings, arms
-       paper_protocol.py --draw FILE draws the cells of the three tables, ours against the paper's (SVG, PNG)
        paper_protocol.py --page FILE renews the tables between `<!-- protocol NAME -->` and
                                      `<!-- end protocol -->` of a page
 
@@ -513,39 +512,6 @@ def block(what):
     return markdown(makers[what]())
 
 
-def draw(file):
-    """Each cell's median and range over the worlds against the paper's value. A run that ended itself stands at the upper edge."""
-    import matplotlib
-    matplotlib.use("Agg")
-    matplotlib.rcParams["svg.hashsalt"] = "lidarena"
-    import matplotlib.pyplot as plt
-    paper, full = read_paper(), read_runs("full")
-    colors = dict(zip(METHODS, ("#1f77b4", "#d62728", "#9467bd", "#2ca02c", "#ff7f0e")))
-    marks = {("cave", MID): "o", ("cave", OS0): "s", ("house", MID): "^", ("house", OS0): "D"}
-    titles = ("Table 2: drift, cm per m", "Table 4: points beyond 20 cm, %", "Table 5: RMSE of the map, cm")
-    figure, places = plt.subplots(1, 3, figsize=(14, 5.2))
-    for place, (column, title) in zip(places, zip(TABLES.values(), titles)):
-        cells = {cell: [floored(v, column) for v in some] for cell, some in values_of(full, column).items()}
-        theirs = [floored(paper[column, cell], column) for cell in cells]
-        known = theirs + [v for some in cells.values() for v in some if math.isfinite(v)]
-        low, high = min(known) / 1.6, max(known) * 2.5
-        for factor, style in ((1, "-"), (2, ":"), (0.5, ":")):
-            place.plot([low, high], [low * factor, high * factor], style, color="#999999", lw=1, zorder=0)
-        for cell, x in zip(cells, theirs):
-            shown = [min(v, high) for v in cells[cell]]
-            place.plot([x, x], [min(shown), max(shown)], "-", color=colors[cell[2]], lw=1, alpha=0.5)
-            place.plot(x, min(statistics.median(cells[cell]), high), marks[cell[:2]], color=colors[cell[2]], ms=6, clip_on=False)
-        place.set(xscale="log", yscale="log", xlim=(low, high), ylim=(low, high), title=title,
-                  xlabel="the paper", ylabel="made anew, median and range")
-        place.set_aspect("equal")
-    keys = [plt.Line2D([], [], marker="o", ls="", color=c, label=NAMES[m]) for m, c in colors.items()]
-    keys += [plt.Line2D([], [], marker=m, ls="", color="#444444", label=f"{NAMES[w]}, {NAMES[s]}")
-             for (w, s), m in marks.items()]
-    figure.legend(handles=keys, loc="lower center", ncol=9, frameon=False, fontsize=8)
-    figure.tight_layout(rect=(0, 0.06, 1, 1))
-    figure.savefig(file, metadata={"Date": None} if file.suffix == ".svg" else None)
-
-
 BLOCK = re.compile(r"(<!-- protocol (\w+) -->\n)(.*?)(<!-- end protocol -->)", re.DOTALL)
 
 
@@ -557,11 +523,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
     parser.add_argument("table", nargs="?")
     parser.add_argument("--page", type=pathlib.Path)
-    parser.add_argument("--draw", type=pathlib.Path)
     arguments = parser.parse_args()
-    if arguments.draw:
-        draw(arguments.draw)
-    elif arguments.page:
+    if arguments.page:
         arguments.page.write_text(renewed(arguments.page.read_text()))
     elif arguments.table == "fit":
         cell, speed = fit(curves_of(read_runs("speeds")), read_paper())
