@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // Times of the single steps of arena_lio with its own settings, in a box of 16 x 12 x 4 m:
-// propagation, de-skewing, averages, the iterated update and one evaluation of it, insertion, and a
-// scan as a whole.
+// propagation, de-skewing, averages, the iterated update and one evaluation of it, whether a
+// direction is open, insertion, and a scan as a whole.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -98,6 +98,16 @@ void evaluate_residuals(benchmark::State& state) {
   state.counters["points"] = static_cast<double>(points.size());
 }
 BENCHMARK(evaluate_residuals)->Unit(benchmark::kMillisecond);
+
+void judge_directions(benchmark::State& state) {
+  const map::LocalPlanes map = map_of_box();
+  const std::vector<Eigen::Vector3f> points = averages(positions(scan_of(20'000, 2)));
+  for (auto _ : state) {
+    const auto contacts = contacts_of(points, {0, 0, 0}, map, config().kernel_scale_m);
+    benchmark::DoNotOptimize(leaves_a_direction_open(contacts, 5.0));
+  }
+}
+BENCHMARK(judge_directions)->Unit(benchmark::kMillisecond);
 
 void update(benchmark::State& state) {
   const map::LocalPlanes map = map_of_box();

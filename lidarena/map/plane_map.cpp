@@ -3,6 +3,7 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <cmath>
 
 #include "lidarena/base/error.hpp"
 
@@ -101,6 +102,10 @@ void PlaneMap::fit(Cell& cell, const Sensor& sensor) const {
   if (sensor && cell.plane.normal.dot(*sensor - cell.plane.center) < 0.0F)
     cell.plane.normal = -cell.plane.normal;
   cell.plane.variance = static_cast<float>(std::max(0.0, spread[0]));
+  // The slope of a line through n points, three of which are taken by the plane.
+  const double slope = std::sqrt(cell.plane.variance / (std::max(n - 3.0, 1.0) * spread[1]));
+  const double excess = std::max(0.0, spread[0] - options_.noise * options_.noise);
+  cell.plane.normal_error = static_cast<float>(4.0 * slope + std::sqrt(excess / spread[1]));
   cell.has_plane = spread[1] >= options_.min_width * options_.min_width &&
                    spread[0] <= options_.max_thickness * options_.max_thickness;
   cell.next_fit = std::min(cell.count + std::max(1U, cell.count / 10),

@@ -20,6 +20,9 @@ struct MapPlane {
   Eigen::Vector3f normal =
       Eigen::Vector3f::Zero();  ///< unit length; towards the sensor, if it was told
   float variance = 0.0F;        ///< m^2, mean squared distance of the points from the plane
+  /// rad, bound on the error of the normal: four standard deviations by the noise of the points,
+  /// and what is thicker than noise, which does not average out, such as a corner.
+  float normal_error = 0.0F;
 };
 
 /// A map of planes: a hash table of cubic cells that each keep the number, the sum and the products
@@ -41,6 +44,7 @@ class PlaneMap {
                               ///< narrower direction; a line of points fits any plane through it
     double max_thickness = 0.06;  ///< m, of a plane: standard deviation of its points from it; what
                                   ///< is thicker is a cloud: dust, leaves
+    double noise = 0.02;          ///< m, of a point: what is thicker is not flat
     GridAxes axes = GridAxes::kRotated;
   };
 

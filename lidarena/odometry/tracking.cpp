@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #include "lidarena/odometry/tracking.hpp"
 
-#include <Eigen/Eigenvalues>
-
 namespace lidarena::odometry {
 namespace {
 
@@ -11,16 +9,13 @@ constexpr double kShareMemory = 0.1;  // weight of a scan in the usual share of 
 
 }  // namespace
 
-ScanStatus Tracking::judge(double inliers, const Eigen::Matrix3d& information) {
+ScanStatus Tracking::judge(double inliers, bool leaves_open) {
   const double usual = usual_share_.value_or(inliers);
   const bool contradicts = inliers < config_.min_inlier_share * usual;
   contradicting_scans_ = contradicts ? contradicting_scans_ + 1 : 0;
   if (contradicts) return ScanStatus::kDegenerate;
   usual_share_ = usual * (1.0 - kShareMemory) + kShareMemory * inliers;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> directions(information,
-                                                                  Eigen::EigenvaluesOnly);
-  const double weakest = directions.eigenvalues()[0] / directions.eigenvalues().sum();
-  return weakest < kDegenerate ? ScanStatus::kDegenerate : ScanStatus::kTracked;
+  return leaves_open ? ScanStatus::kDegenerate : ScanStatus::kTracked;
 }
 
 void Tracking::give_up() { contradicting_scans_ = kLostScans + 1; }

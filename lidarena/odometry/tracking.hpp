@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 #pragma once
 
-#include <Eigen/Core>
 #include <optional>
 
 #include "lidarena/base/config.hpp"
 #include "lidarena/odometry/odometry.hpp"
 
 namespace lidarena::odometry {
-
-/// Share of a direction in the information about the position, below which it is not observed;
-/// isotropic: 1/3.
-inline constexpr double kDegenerate = 0.01;
 
 struct TrackingConfig {
   double min_inlier_share = 0.75;
@@ -31,10 +26,9 @@ class Tracking {
  public:
   explicit Tracking(const TrackingConfig& config) : config_(config) {}
 
-  /// Status of a scan of which the share `inliers` of points lies in the map, and which has this
-  /// `information` about the position: degenerate if the scan contradicts the map or does not
-  /// observe each direction.
-  ScanStatus judge(double inliers, const Eigen::Matrix3d& information);
+  /// Status of a scan of which the share `inliers` of points lies in the map: degenerate if it
+  /// contradicts the map or leaves a direction open.
+  ScanStatus judge(double inliers, bool leaves_open);
   /// From now on tracking is lost.
   void give_up();
   /// Whether the last scan contradicts the map, or tracking is lost.

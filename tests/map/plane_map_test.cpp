@@ -52,6 +52,50 @@ TEST(PlaneMap, FindsTheWallInItsCells) {
   EXPECT_EQ(map.plane_at({0.0F, 0.0F, 0.0F}), nullptr);
 }
 
+/// Inserts points of a square patch of a cell, 0.26 m wide, with 1 cm of noise, and its heights.
+template <class Height>
+const MapPlane& patch(PlaneMap& map, int count, SequentialRandom& random, Height&& height) {
+  Points points;
+  for (int i = 0; i < count; ++i) {
+    const double x = 0.02 + 0.26 * random.uniform();
+    const double y = 0.02 + 0.26 * random.uniform();
+    points.push_back(Eigen::Vector3d(x, y, height(x) + 0.01 * random.normal()).cast<float>());
+    map.insert({&points.back(), 1});
+  }
+  return *map.plane_at(points.front());
+}
+
+TEST(PlaneMap, BoundsTheErrorOfANormalByFourStandardDeviations) {
+  for (const int count : {30, 300}) {
+    SequentialRandom random(6, 1);
+    double stated = 0.0;
+    double squared_error = 0.0;
+    constexpr int kDraws = 500;
+    for (int draw = 0; draw < kDraws; ++draw) {
+      PlaneMap map({.axes = GridAxes::kParallel});
+      const MapPlane& plane = patch(map, count, random, [](double) { return 0.15; });
+      const double error = plane.normal.head<2>().norm();
+      EXPECT_LT(error, 1.5 * plane.normal_error) << "the normal has two such errors";
+      stated += plane.normal_error / kDraws;
+      squared_error += error * error / 2.0 / kDraws;
+    }
+    // The narrower of the two spreads counts, and the fit is of up to a tenth fewer points.
+    EXPECT_GT(stated, 4.0 * 0.95 * std::sqrt(squared_error)) << count;
+    EXPECT_LT(stated, 4.0 * 1.3 * std::sqrt(squared_error)) << count;
+  }
+}
+
+TEST(PlaneMap, TheNormalOfACornerStaysUnknownWithAnyNumberOfPoints) {
+  SequentialRandom random(7, 1);
+  const auto corner = [](double x) { return x < 0.15 ? 0.1 : 0.2; };
+  PlaneMap few({.axes = GridAxes::kParallel});
+  PlaneMap many({.axes = GridAxes::kParallel});
+  const double of_few = patch(few, 40, random, corner).normal_error;
+  const double of_many = patch(many, 400, random, corner).normal_error;
+  EXPECT_GT(of_many, 0.2);
+  EXPECT_GT(of_many, 0.5 * of_few);
+}
+
 /// The same by sorting all points into cells and fitting each at once, in double precision.
 TEST(PlaneMap, HasThePlanesOfAllPointsOfACell) {
   const PlaneMap::Options options{.cell_size = 0.5, .axes = GridAxes::kParallel};

@@ -208,7 +208,7 @@ ArenaLio::Match ArenaLio::match(const Scan& usable, const Filter& predicted,
   const estimation::IteratedUpdate update = estimation::iterated_update(
       predicted.estimate, std::ref(residuals),
       {config_.max_iterations + residuals.narrowing(), kConvergence, config_.point_variance_m2});
-  return {update, residuals.agreement(update.estimate.state), reduced.size()};
+  return {update, residuals.agreement(update.estimate.state), reduced.size(), usable.points.size()};
 }
 
 int ArenaLio::slices_of(const Scan& usable, const ScanImu& imu, Time end) const {
@@ -234,6 +234,7 @@ ArenaLio::Registration ArenaLio::registered(const std::vector<Slice>& slices, Fi
     found.update.evaluations += all.match.update.evaluations;
     found.agreement += all.match.agreement;
     found.keypoints += all.match.keypoints;
+    found.returns += all.match.returns;
     all.match = std::move(found);
   }
   return all;
@@ -249,9 +250,8 @@ ScanStatus ArenaLio::judge(const Match& found) {
   if (world_.map.empty()) return ScanStatus::kInitializing;
   if (tracking_.is_lost()) return ScanStatus::kDiverged;  // permanently
   if (agreement.near_planes == 0 && !tracking_.contradicts()) return ScanStatus::kTooFewPoints;
-  // The block of the position is the weighted sum of n n^T over all normals n.
-  const ScanStatus status =
-      tracking_.judge(agreement.share(), found.update.points.hessian.topLeftCorner<3, 3>());
+  const ScanStatus status = tracking_.judge(
+      agreement.share(), leaves_a_direction_open(agreement.contacts, found.returns_per_keypoint()));
   const bool opens = start_.opening && status == ScanStatus::kTracked;
   return opens ? ScanStatus::kInitializing : status;
 }

@@ -84,7 +84,12 @@ class ArenaLio : public Odometry {
   struct Match {
     estimation::IteratedUpdate update;
     Agreement agreement;
-    std::size_t keypoints = 0;
+    std::size_t keypoints = 0;  ///< averages
+    std::size_t returns = 0;
+
+    double returns_per_keypoint() const {
+      return static_cast<double>(returns) / static_cast<double>(keypoints);
+    }
   };
   /// A scan's slices, registered one after the other.
   struct Registration {

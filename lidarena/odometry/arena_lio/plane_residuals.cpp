@@ -107,6 +107,8 @@ Agreement PlaneResiduals::agreement(const estimation::InertialState& state) {
     if (is_near && std::abs(distance(*planes_[i], in_map_[i])) < config_.kernel_scale_m)
       ++agreement.on_planes;
   }
+  const Eigen::Vector3f sensor = state.world_from_lidar().translation().cast<float>();
+  agreement.contacts = contacts_of(in_map_, sensor, map_, config_.kernel_scale_m);
   agreement.expected = knew_the_place_ ? agreement.near_planes : agreement.points;
   return agreement;
 }

@@ -9,6 +9,7 @@
 #include "lidarena/estimation/iterated_update.hpp"
 #include "lidarena/map/local_planes.hpp"
 #include "lidarena/odometry/arena_lio/config.hpp"
+#include "lidarena/odometry/contacts.hpp"
 
 namespace lidarena::odometry::arena_lio {
 
@@ -20,6 +21,7 @@ struct Agreement {
   /// Of these or of all points, which should lie on planes: of all if the prior's position was less
   /// certain than the kernel's scale; then points in unknown cells speak against the estimate.
   std::size_t expected = 0;
+  std::vector<Contact> contacts{};
 
   /// Share of the expected points that lie on planes.
   double share() const {
@@ -30,6 +32,7 @@ struct Agreement {
     near_planes += other.near_planes;
     on_planes += other.on_planes;
     expected += other.expected;
+    contacts.insert(contacts.end(), other.contacts.begin(), other.contacts.end());
     return *this;
   }
 };

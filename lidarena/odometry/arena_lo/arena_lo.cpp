@@ -45,7 +45,7 @@ ScanResult ArenaLo::track(const Scan& scan) {
   if (scans_mapped_ == 1) begin_again(slices, times.last);
   const Registration found = align(slices, times.last);
   const Measurement& measurement = found.measurement;
-  const ScanStatus status = status_of(measurement, count_points(slices));
+  const ScanStatus status = status_of(found, count_points(slices));
   const bool used = is_used(status);
   const bool moves_on = used || map_.empty();
   const Steps steps = moves_on ? found.steps : coasted(slices, times.last);
@@ -103,14 +103,17 @@ Registration ArenaLo::align(const std::vector<Slice>& slices, Time end) const {
           0};
 }
 
-ScanStatus ArenaLo::status_of(const Measurement& measurement, std::size_t points) {
+ScanStatus ArenaLo::status_of(const Registration& found, std::size_t points) {
+  const Measurement& measurement = found.measurement;
   if (points == 0) return ScanStatus::kTooFewPoints;
   if (map_.empty()) return ScanStatus::kInitializing;
   if (measurement.near_planes < kMinMatches) return ScanStatus::kTooFewPoints;
   const double share =
       static_cast<double>(measurement.on_planes) / static_cast<double>(measurement.near_planes);
+  const double returns_per_average =
+      static_cast<double>(points) / static_cast<double>(measurement.points);
   const ScanStatus status =
-      tracking_.judge(share, measurement.equations.hessian.topLeftCorner<3, 3>());
+      tracking_.judge(share, leaves_a_direction_open(found.contacts, returns_per_average));
   return tracking_.is_lost() ? ScanStatus::kDiverged : status;
 }
 

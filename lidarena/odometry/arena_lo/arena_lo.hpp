@@ -55,7 +55,7 @@ class ArenaLo : public Odometry {
   void begin_again(const std::vector<Slice>& second, Time end);
   /// The scan against the map; the first one, which has none, stands still at the origin.
   Registration align(const std::vector<Slice>& slices, Time end) const;
-  ScanStatus status_of(const Measurement& measurement, std::size_t points);
+  ScanStatus status_of(const Registration& found, std::size_t points);
   /// Whether a scan with this status enters the map.
   bool is_used(ScanStatus status) const;
   /// The last motion, which continues, but slows down.

@@ -146,6 +146,13 @@ Registration register_slices(const Known& before, std::span<const Slice> slices,
       scale = std::min(whole.sum_of_scales / static_cast<double>(whole.points), kMaxScale);
     scale = std::max(kNarrowing * scale, config.kernel_scale_m);
   }
+  for (std::size_t i = 0; i < slices.size(); ++i) {
+    const Pose& map_from_lidar = found.motion[i].state.pose;
+    const Eigen::Vector3f sensor = map_from_lidar.translation().cast<float>();
+    const std::vector<Contact> part =
+        contacts_of(transformed(map_from_lidar, points[i]), sensor, map, config.kernel_scale_m);
+    found.contacts.insert(found.contacts.end(), part.begin(), part.end());
+  }
   return found;
 }
 

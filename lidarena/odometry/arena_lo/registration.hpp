@@ -11,6 +11,7 @@
 #include "lidarena/map/local_planes.hpp"
 #include "lidarena/odometry/arena_lo/config.hpp"
 #include "lidarena/odometry/arena_lo/slices.hpp"
+#include "lidarena/odometry/contacts.hpp"
 
 namespace lidarena::odometry::arena_lo {
 
@@ -53,6 +54,7 @@ struct Registration {
   Motion motion;
   Measurement measurement;  ///< in the last pass, of all slices
   std::size_t passes = 0;
+  std::vector<Contact> contacts{};  ///< of all slices
 };
 
 /// Aligns a scan with the map. Each pass filters the slices in their order and smooths them: an

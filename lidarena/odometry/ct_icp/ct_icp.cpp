@@ -12,6 +12,7 @@ namespace {
 
 constexpr int kRigidScans = 2;          // at the start, registered without motion within the scan
 constexpr int kInitialIterations = 15;  // at least, for the first initial_scans
+constexpr double kDegenerate = 0.01;    // share of a direction in the information; isotropic: 1/3
 
 }  // namespace
 
