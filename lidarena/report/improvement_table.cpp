@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <set>
 
+#include "lidarena/report/change_tables.hpp"
 #include "lidarena/results/lost.hpp"
 #include "lidarena/results/statistics.hpp"
 
@@ -63,17 +63,8 @@ std::vector<Effect> effects_on(const results::StudyResults& results,
   return effects;
 }
 
-std::string signed_text(double value) {
-  const std::string text = results::number(value).text;
-  return value > 0.0 && std::isfinite(value) ? "+" + text : text;
-}
-
 TableCell effect_cell(const Effect& effect) {
-  if (effect.paired.pairs == 0) return {};
-  TableCell cell = results::number(effect.paired.median_difference);
-  cell.text = signed_text(effect.paired.median_difference);
-  if (const auto& interval = effect.paired.difference_95)
-    cell.spread = signed_text(interval->low) + " to " + signed_text(interval->high);
+  TableCell cell = difference_cell(effect.paired);
   cell.bold = effect.helps;
   return cell;
 }

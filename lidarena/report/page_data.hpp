@@ -241,6 +241,28 @@ struct PageContributions {
   }
 };
 
+/// What one variation does to a figure, see results/changes.hpp.
+struct PageChange {
+  static constexpr const char* kTitle = "Change";
+  std::string world, sensor, method, figure, variation;
+  std::size_t flights = 0;
+  double value = 0.0;
+  std::optional<double> low, high;
+
+  template <class Self, class V>
+  static void visit(Self& self, V&& v) {
+    v("world", self.world, "", "");
+    v("sensor", self.sensor, "", "");
+    v("method", self.method, "", "with its preset");
+    v("figure", self.figure, "", "its key");
+    v("variation", self.variation, "", "");
+    v("flights", self.flights, "", "flown with the base as well");
+    v("value", self.value, "", "median of the differences from the base, in the figure's unit");
+    v("low", self.low, "", "of the interval at 95 %");
+    v("high", self.high, "", "");
+  }
+};
+
 struct ReportData {
   std::string title, version;
   std::vector<std::string> made_on;
@@ -249,6 +271,7 @@ struct ReportData {
   PageDecision decision;
   CellClaims claims;
   std::vector<PageContributions> contributions;
+  std::vector<PageChange> changes;
   std::vector<results::ReferenceFigure> reference;
   std::vector<EventKind> event_kinds;
   std::vector<results::Table> tables;
@@ -264,6 +287,7 @@ struct ReportData {
     v("decision", self.decision, "", "");
     v("claims", self.claims, "", "");
     v("contributions", self.contributions, "", "of a study with all combinations of changes");
+    v("changes", self.changes, "", "of a study that varies settings");
     v("reference", self.reference, "", "published figures");
     v("event_kinds", self.event_kinds, "", "");
     v("tables", self.tables, "", "");

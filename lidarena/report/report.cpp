@@ -5,6 +5,7 @@
 
 #include "lidarena/dataset/json_file.hpp"
 #include "lidarena/dataset/part_file.hpp"
+#include "lidarena/report/change_tables.hpp"
 #include "lidarena/report/contribution_tables.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/figure_tables.hpp"
@@ -26,6 +27,7 @@ std::vector<results::Table> comparison_tables(const results::StudyResults& resul
     std::ranges::move(more, std::back_inserter(tables));
   };
   add(contribution_tables(shown_contributions(results)));
+  add(change_tables(shown_changes(results)));
   add(sweep_tables(results));
   for (const std::string& world : results::StudyCells(results, "").worlds())
     tables.push_back(decision_table(results, world));

@@ -11,6 +11,7 @@
 #include <span>
 
 #include "lidarena/dataset/run_events.hpp"
+#include "lidarena/report/change_tables.hpp"
 #include "lidarena/report/contribution_tables.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/run_command.hpp"
@@ -282,6 +283,29 @@ std::vector<PageContributions> page_contributions(const results::StudyResults& r
   return list;
 }
 
+std::vector<PageChange> page_changes(const results::StudyResults& results) {
+  std::vector<PageChange> list;
+  for (const results::Change& c : shown_changes(results)) {
+    if (!std::isfinite(c.paired.median_difference)) continue;  // most runs are lost
+    PageChange page{.world = c.world,
+                    .sensor = c.sensor,
+                    .method = c.method,
+                    .figure = c.figure->key,
+                    .variation = c.variation,
+                    .flights = c.paired.pairs,
+                    .value = c.paired.median_difference,
+                    .low = {},
+                    .high = {}};
+    const auto& interval = c.paired.difference_95;
+    if (interval && std::isfinite(interval->low) && std::isfinite(interval->high)) {
+      page.low = interval->low;
+      page.high = interval->high;
+    }
+    list.push_back(std::move(page));
+  }
+  return list;
+}
+
 /// The machines and versions of lidarena that the runs were made with.
 std::vector<std::string> made_on(const results::StudyResults& results) {
   std::set<std::string> machines;
@@ -306,6 +330,7 @@ ReportData report_data(const results::StudyResults& results,
                   .decision = decision_of(results),
                   .claims = claims_of(results),
                   .contributions = page_contributions(results),
+                  .changes = page_changes(results),
                   .reference = results.reference,
                   .event_kinds = event_kinds(),
                   .tables = tables,

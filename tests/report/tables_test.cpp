@@ -7,6 +7,7 @@
 #include <set>
 
 #include "lidarena/dataset/run_events.hpp"
+#include "lidarena/report/change_tables.hpp"
 #include "lidarena/report/contribution_tables.hpp"
 #include "lidarena/report/decision.hpp"
 #include "lidarena/report/figure_tables.hpp"
@@ -447,6 +448,37 @@ TEST(ContributionTables, SayOfEachChangeWhatItsIntervalCarries) {
   ASSERT_FALSE(data.contributions.empty());
   EXPECT_EQ(data.contributions.front().parts.front().name, "field");
   EXPECT_NEAR(data.contributions.front().parts.front().value, -2.0, 1e-9);
+}
+
+TEST(ChangeTables, RankVariationsAndSayWhatTheirIntervalsCarry) {
+  results::StudyResults results;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const double noise = seed % 2 == 0 ? 0.4 : -0.4;
+    const std::vector<std::pair<std::string, double>> drifts{
+        {"", 5.0}, {"cheap IMU", 6.0}, {"paint", 5.0 + noise}, {"shots", 3.0}};
+    for (const auto& [variation, drift] : drifts) {
+      results.rows.push_back(row("house", "mid360", "arena_lio", drift, 1.0, seed));
+      results.rows.back().variation = variation;
+      if (!variation.empty()) results.rows.back().differs = {variation};
+    }
+  }
+  const auto tables = change_tables(shown_changes(results));
+  ASSERT_FALSE(tables.empty());
+  const results::Table& drift = tables.front();
+  EXPECT_EQ(drift.id, "ranking-rpe_1m_at_poses_translation-house");
+  ASSERT_EQ(drift.rows.size(), 3U);
+  EXPECT_EQ(drift.rows[0][0].text, "shots");
+  EXPECT_EQ(drift.rows[0][1].text, "-2");
+  EXPECT_TRUE(drift.rows[0][1].bold);
+  EXPECT_EQ(drift.rows[1][0].text, "paint");
+  EXPECT_FALSE(drift.rows[1][1].bold);
+  EXPECT_EQ(drift.rows[2][1].text, "+1");
+  EXPECT_THAT(drift.note, HasSubstr("better: shots; worse: cheap IMU; neither is shown: paint."));
+
+  const ReportData data = report_data(results, tables, ".");
+  ASSERT_FALSE(data.changes.empty());
+  EXPECT_EQ(data.changes.front().flights, 8U);
+  EXPECT_LT(data.changes.front().low.value(), data.changes.front().high.value() + 1e-9);
 }
 
 TEST(ImprovementTable, SaysWhichStepsHelpAndWhichHelpOnlyTogether) {

@@ -16,7 +16,8 @@ export interface Figure {
 
 type Options = Record<string, unknown>;
 const FONT = "sans-serif";
-const LEGEND_ENTRY_PX = 165;
+const LEGEND_MARK_PX = 45;
+const LEGEND_LETTER_PX = 6.5;
 const LEGEND_ROW_PX = 18;
 
 /** Blue for the Mid-360, red for the OS0-128; for others a color by their order. */
@@ -105,7 +106,8 @@ export interface Panels extends Described {
 
 export function panels({ id, title, caption, world, names, legend, width, height, series, ...p }: Panels): Figure {
   const columns = Math.min(names.length, p.columns);
-  const legendRows = Math.ceil((legend.length * LEGEND_ENTRY_PX) / (columns * width));
+  const legendPx = legend.reduce((sum, entry) => sum + LEGEND_MARK_PX + LEGEND_LETTER_PX * entry.length, 0);
+  const legendRows = Math.ceil(legendPx / (columns * width - 60));
   const top = 52 + LEGEND_ROW_PX * legendRows;
   const grid = names.map((_, i) => ({
     left: 56 + (i % columns) * width,

@@ -20,6 +20,7 @@ import {
 } from "./data";
 import { base, binAxis, groups, legendOf, line, panels, sensorColor, timeAxis, valueAxis, type Figure } from "./figure_parts";
 import type { DistanceHistogram } from "./page";
+import { rankingsOf } from "./ranking";
 import { responsesOf } from "./responses";
 import { waterfallsOf } from "./waterfall";
 
@@ -303,6 +304,7 @@ export function figuresOf(data: ReportData, all: Run[]): Figure[] {
   const runs = baseOf(all);
   const ofWorld = (world: string) => [
     ...waterfallsOf(data, world),
+    ...rankingsOf(data, world),
     ...responsesOf(data, all, world),
     histograms(runs, world, "own_map"),
     histograms(runs, world, "all_returns"),

@@ -12,6 +12,8 @@ export interface ReportData {
   claims: Claims;
   /** of a study with all combinations of changes */
   contributions: Contributions[];
+  /** of a study that varies settings */
+  changes: Change[];
   /** published figures */
   reference: ReferenceFigure[];
   event_kinds: EventKind[];
@@ -116,6 +118,23 @@ export interface Contribution {
   name: string;
   /** in the unit of the figure */
   value: number;
+  low: number | null;
+  high: number | null;
+}
+
+export interface Change {
+  world: string;
+  sensor: string;
+  /** with its preset */
+  method: string;
+  /** its key */
+  figure: string;
+  variation: string;
+  /** flown with the base as well */
+  flights: number;
+  /** median of the differences from the base, in the figure's unit */
+  value: number;
+  /** of the interval at 95 % */
   low: number | null;
   high: number | null;
 }

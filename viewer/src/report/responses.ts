@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: BSD-3-Clause
-// What a study's varied keys do to its figures: curves of one key, heat maps of two.
+// What a study's varied keys do to its figures: curves of one key, heat maps of two, and how many runs keep track.
 import {
   distinct,
   DRIFT,
@@ -16,12 +16,14 @@ import {
   type ReportData,
   type Run,
 } from "./data";
+import { RUN_COLORS } from "../view/colors";
 import { line, panels, sensorColor, valueAxis, type Figure } from "./figure_parts";
 
 const SETS = "sets"; // in place of a key: the names of sets
 const SHOWN = [DRIFT, LIVE_DRIFT, OWN_RMSE, MAP_RMSE];
 const LOG_FROM_RATIO = 20; // of the largest value to the smallest: a logarithmic axis
 const LOST = { visualMap: false, itemStyle: { color: "#c9ced6" }, label: { formatter: "lost" } };
+const NAMES_OF_SETS = { axisLabel: { rotate: 40, interval: 0, fontSize: 9, width: 120, overflow: "truncate" } };
 const HEAT_COLORS = ["#f4f8ee", "#f7c873", "#d1453b", "#5c1a33"];
 
 type Value = string | number | boolean | null;
@@ -97,6 +99,11 @@ function cellsOf(same: Run[], values: Value[], of: (run: Run) => Value, place: (
   return { medians: spreads.map(({ x, median }) => [x, median]), ranges };
 }
 
+const leaveRoomForNames = (drawn: Figure) =>
+  (drawn.option.grid as { height: number }[]).forEach((grid) => {
+    grid.height -= 70;
+  });
+
 /** A figure against the values of one key, or by the names of sets: a panel per method, a line per sensor. */
 function curve(runs: Run[], world: string, key: string, of: (run: Run) => Value, figure: FigureOf): Figure | null {
   const isSets = key === SETS;
@@ -126,14 +133,76 @@ function curve(runs: Run[], world: string, key: string, of: (run: Run) => Value,
     width: isSets ? 400 : 290,
     height: isSets ? 300 : 230,
     tooltip: { trigger: "item" },
-    xAxis: (i) => ({
-      ...axis(i),
-      ...(isSets ? { axisLabel: { rotate: 40, interval: 0, fontSize: 9, width: 120, overflow: "truncate" } } : {}),
-    }),
+    xAxis: (i) => ({ ...axis(i), ...(isSets ? NAMES_OF_SETS : {}) }),
     yAxis: (i, isLeft) => valueAxis(i, isLeft ? figure.info.unit : "", { nameGap: 40, min: 0 }),
     series,
   });
-  if (isSets) (drawn.option.grid as { height: number }[]).forEach((grid) => (grid.height -= 70));
+  if (isSets) leaveRoomForNames(drawn);
+  return drawn;
+}
+
+/** How many of the runs keep track, in percent, with Wilson's interval at 95 % (E. Wilson, 1927). */
+function survivalOf(runs: Run[]): { share: number; low: number; high: number } {
+  const n = runs.length;
+  const share = keptOf(runs).length / n;
+  const z2 = 1.96 ** 2 / n;
+  const half = Math.sqrt(z2 * share * (1 - share) + z2 ** 2 / 4);
+  const [low, high] = [-half, half].map((side) => (100 * (share + z2 / 2 + side)) / (1 + z2));
+  return { share: 100 * share, low, high };
+}
+
+/** The share of runs that keep track against the values of one key: a panel per sensor, a line per method. */
+function survival(runs: Run[], world: string, key: string, of: (run: Run) => Value): Figure | null {
+  const isSets = key === SETS;
+  const values = isSets ? distinct(runs, of) : valuesOf(runs, key);
+  if (values.length < 2 || keptOf(runs).length === runs.length) return null;
+  const methods = distinct(runs, label);
+  const sensors = distinct(runs, (run) => run.sensor);
+  const { axis, place } = axisOf(values, isSets ? "" : key);
+  const series = sensors.flatMap((sensor, panel) =>
+    methods.flatMap((method, i) => {
+      const same = runs.filter((run) => label(run) === method && run.sensor === sensor);
+      const cells = grouped(same, (run) => textOf(of(run)));
+      const shares = values.flatMap((value) => {
+        const cell = cells.get(textOf(value));
+        return cell ? [{ x: place(value), ...survivalOf(cell) }] : [];
+      });
+      const color = RUN_COLORS[i % RUN_COLORS.length];
+      const joined = isSets ? { lineStyle: { width: 0 } } : {};
+      const more = { xAxisIndex: panel, yAxisIndex: panel, symbol: "circle", symbolSize: 6, ...joined };
+      return [
+        line(
+          method,
+          color,
+          shares.map(({ x, share }) => [x, share]),
+          more,
+        ),
+        whiskers(
+          method,
+          color,
+          panel,
+          shares.map(({ x, low, high }) => [x, low, high]),
+        ),
+      ];
+    }),
+  );
+  const drawn = panels({
+    id: `survival-${world}-${key}`,
+    title: isSets ? `Runs that keep track by variation, ${world}` : `Runs that keep track against ${key}, ${world}`,
+    world,
+    caption: `Share of runs that are not lost, of all flights and seeds; bars: Wilson's interval at 95 %. ${isSets ? "Base: nothing varied." : "All other keys as in the base."}`,
+    names: sensors,
+    legend: methods,
+    columns: 2,
+    width: 520,
+    height: 300,
+    tooltip: { trigger: "item" },
+    xAxis: (i) => ({ ...axis(i), ...(isSets ? NAMES_OF_SETS : {}) }),
+    yAxis: (i, isLeft) => valueAxis(i, isLeft ? "%" : "", { nameGap: 40, min: 0, max: 100 }),
+    series,
+  });
+  if (isSets) leaveRoomForNames(drawn);
+  drawn.columns = [isSets ? "index of the variation" : key, "%", "high"];
   return drawn;
 }
 
@@ -195,6 +264,8 @@ export function responsesOf(data: ReportData, runs: Run[], world: string): (Figu
   const here = runs.filter((run) => run.world === world);
   const sets = here.filter((run) => run.differs.every((name) => name === run.variation));
   return [
+    survival(sets, world, SETS, (run) => run.variation || "base"),
+    ...keys.map((key) => survival(within(here, [key]), world, key, (run) => valueOf(run, key))),
     ...figures.map((figure) => curve(sets, world, SETS, (run) => run.variation || "base", figure)),
     ...keys.flatMap((key) => figures.map((figure) => curve(within(here, [key]), world, key, (run) => valueOf(run, key), figure))),
     ...pairs.flatMap((pair) => figures.map((figure) => heatMap(runs, world, pair, figure))),
