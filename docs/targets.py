@@ -1,0 +1,142 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: BSD-3-Clause
+"""Judges our methods on the development set against the targets that were set for them.
+
+usage: targets.py                    each target: met or missed, from the rows of dev_kinds and dev_harsh
+       targets.py --page FILE        renews the block <!-- targets --> of a page; --check instead of writing it
+
+The rows are docs/history/development_set/data/kinds.csv and harsh.csv. Ratios are of medians over the seeds, but where a
+flight is named. A lost run counts as infinite.
+"""
+import csv
+import math
+import pathlib
+import re
+import statistics
+import sys
+
+DATA = pathlib.Path(__file__).resolve().parent / "history" / "development_set" / "data"
+FINAL, LIVE, CLOCK = "rpe_1m_at_poses_translation_cm", "live_rpe_1m_at_poses_translation_cm", "rpe_1m_at_lidar_clock_cm"
+LOST_CM = 100.0
+WORLDS = {"test_house": "House", "test_cave": "Cave", "dev_mine": "mine", "dev_forest": "forest", "dev_hall": "hall",
+          "dev_office": "office"}
+SENSORS = {"livox_mid360": "Mid-360", "ouster_os0_128": "OS0-128"}
+
+
+def read(*names):
+    rows = []
+    for name in names:
+        with (DATA / (name + ".csv")).open(newline="") as file:
+            rows += csv.DictReader(file)
+    return rows
+
+
+def is_lost(row):
+    return row["status"] != "ok" or float(row[FINAL]) > LOST_CM
+
+
+def value(row, column):
+    return math.inf if is_lost(row) or not row[column] else float(row[column])
+
+
+class Runs:
+    """Figures by world, sensor and method."""
+
+    def __init__(self, rows):
+        self.rows = rows
+
+    def of(self, method, column, world=None, sensor=None):
+        """{(world, sensor, seed): figure}"""
+        return {(r["world"], r["sensor"], r["seed"]): value(r, column) for r in self.rows
+                if r["algorithm"] == method and world in (None, r["world"]) and sensor in (None, r["sensor"])}
+
+    def median(self, method, column, world, sensor):
+        return statistics.median(self.of(method, column, world, sensor).values())
+
+    def cells(self):
+        """(world, sensor) with an ideal sensor, in the order of WORLDS."""
+        found = {(r["world"], r["sensor"]) for r in self.rows}
+        return [(w, s) for w in WORLDS for s in SENSORS if (w, s) in found]
+
+
+def named(cell):
+    return f"{WORLDS[cell[0]]}, {SENSORS[cell[1]]}"
+
+
+def spread(ratios):
+    """Text of the smallest and the largest, {cell: ratio}."""
+    low, high = min(ratios, key=ratios.get), max(ratios, key=ratios.get)
+    return f"{ratios[low]:.2f} ({named(low)}) to {ratios[high]:.2f} ({named(high)})"
+
+
+def limited(ratios, limit):
+    """(whether all are below the limit, text)"""
+    missed = [f"{named(cell)} {ratio:.2f}" for cell, ratio in ratios.items() if not ratio <= limit]
+    return not missed, spread(ratios) + (f"; above: {', '.join(missed)}" if missed else "")
+
+
+def lost_runs(runs, method):
+    figures = runs.of(method, FINAL)
+    lost = [f"{WORLDS[w]}, {SENSORS.get(s, s)}, {seed}" for (w, s, seed), v in figures.items() if math.isinf(v)]
+    return len(lost), len(figures), "; ".join(lost)
+
+
+def judged(ideal, harsh):
+    """[(target, met, text)]"""
+    cells = ideal.cells()
+    ratio = lambda a, b, of=FINAL: {c: ideal.median(a, of, *c) / ideal.median(b, of, *c) for c in cells}
+    rows = []
+    for method, share in (("arena_lio", 0.0), ("arena_lo", 0.05)):
+        lost, flown, which = lost_runs(Runs(ideal.rows + harsh.rows), method)
+        rows.append((f"`{method}` loses no flight" if share == 0.0 else f"`{method}` loses at most one flight in twenty",
+                     lost <= share * flown, f"{lost} of {flown}" + (f" ({which})" if which else "")))
+    live = {c: ideal.median("arena_lio", LIVE, *c) / ideal.median("arena_lio", FINAL, *c) for c in cells}
+    rows.append(("`arena_lio` live at most 1.3 times final", *limited(live, 1.3)))
+    final = ratio("arena_lio", "fast_lio2")
+    rows.append(("final at most half of `tuned` FAST-LIO2", *limited(final, 0.5)))
+    two = {c: r for c, r in final.items() if c[0] in ("test_house", "test_cave")}
+    rows.append(("in House and Cave at most a third", *limited(two, 1 / 3)))
+    rows.append(("live ahead of it in each cell", *limited(ratio("arena_lio", "fast_lio2", LIVE), 1.0)))
+    flights = {}
+    for flight, own in ideal.of("arena_lio", FINAL).items():
+        cell = flight[:2]
+        if cell in cells:
+            flights[cell] = max(flights.get(cell, 0.0), own / ideal.of("fast_lio2", FINAL)[flight])
+    rows.append(("no flight more than a tenth worse than it; the worst flight of each cell", *limited(flights, 1.1)))
+    rows.append(("an IMU never makes it worse than `arena_lo`", *limited(ratio("arena_lio", "arena_lo"), 1.0)))
+    for column, what in ((FINAL, "at true time"), (CLOCK, "at the LiDAR's clock")):
+        grown = {(w, s): harsh.median("arena_lio", column, w, s + "_harsh") / ideal.median("arena_lio", FINAL, w, s)
+                 for w, s in cells if w in ("test_house", "test_cave")}
+        rows.append((f"all errors at most three times ideal, {what}", *limited(grown, 3.0)))
+    return rows
+
+
+def table():
+    harsh = read("harsh")
+    ideal = Runs(read("kinds") + [r for r in harsh if not r["sensor"].endswith("_harsh")])
+    lines = ["| target | | medians over seeds |", "|---|---|---|"]
+    for target, met, text in judged(ideal, Runs([r for r in harsh if r["sensor"].endswith("_harsh")])):
+        lines.append(f"| {target} | {'met' if met else '**missed**'} | {text} |")
+    return "\n".join(lines)
+
+
+BLOCK = re.compile(r"(<!-- targets -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def main():
+    if len(sys.argv) == 1:
+        print(table())
+        return
+    if len(sys.argv) != 3 or sys.argv[1] not in ("--page", "--check"):
+        raise SystemExit(__doc__)
+    page = pathlib.Path(sys.argv[2])
+    text = page.read_text()
+    renewed = BLOCK.sub(lambda found: f"{found[1]}\n{table()}\n\n{found[2]}", text)
+    if sys.argv[1] == "--page":
+        page.write_text(renewed)
+    elif renewed != text:
+        raise SystemExit(f"{page}: the block of targets is not that of the rows: docs/targets.py --page {page}")
+
+
+if __name__ == "__main__":
+    main()
