@@ -2,11 +2,12 @@
 #include "lidarena/report/change_tables.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "lidarena/report/table_parts.hpp"
 
 namespace lidarena::report {
 namespace {
@@ -53,11 +54,8 @@ std::string words_of(const std::string& column, const std::vector<const Change*>
     if (column_name(*change) != column) continue;
     (is_better(*change) ? better : is_worse(*change) ? worse : open).push_back(change->variation);
   }
-  const auto text = [](const std::vector<std::string>& names) {
-    return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-  };
-  return fmt::format(" {}: better: {}; worse: {}; neither is shown: {}.", column, text(better),
-                     text(worse), text(open));
+  return fmt::format(" {}: better: {}; worse: {}; neither is shown: {}.", column,
+                     names_text(better), names_text(worse), names_text(open));
 }
 
 /// Of one world and figure; `changes` from the best to the worst.
@@ -106,18 +104,8 @@ std::vector<Change> shown_changes(const results::StudyResults& results) {
 }
 
 std::vector<Table> change_tables(const std::vector<Change>& changes) {
-  std::vector<std::vector<const Change*>> groups;
-  for (const Change& change : changes) {
-    const auto group = std::ranges::find_if(groups, [&](const auto& g) {
-      return g.front()->world == change.world && g.front()->figure == change.figure;
-    });
-    if (group != groups.end())
-      group->push_back(&change);
-    else
-      groups.push_back({&change});
-  }
   std::vector<Table> tables;
-  for (auto& group : groups) {
+  for (std::vector<const Change*> group : by_world_and_figure(changes)) {
     const std::string column = column_name(*group.front());
     std::ranges::stable_sort(group, {}, [&](const Change* change) {
       const bool is_first = column_name(*change) == column;

@@ -9,6 +9,8 @@
 #include <span>
 #include <utility>
 
+#include "lidarena/report/table_parts.hpp"
+
 namespace lidarena::report {
 namespace {
 
@@ -29,10 +31,6 @@ TableCell contribution_cell(const Contribution& part) {
     cell.bold = part.value_95->low > 0.0 || part.value_95->high < 0.0;
   }
   return cell;
-}
-
-std::string names_text(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
 }
 
 /// What the intervals say, and no more.
@@ -96,18 +94,9 @@ std::vector<Contributions> shown_contributions(const results::StudyResults& resu
 }
 
 std::vector<Table> contribution_tables(const std::vector<Contributions>& contributions) {
-  std::vector<std::vector<const Contributions*>> groups;
-  for (const Contributions& c : contributions) {
-    const auto group = std::ranges::find_if(groups, [&](const auto& g) {
-      return g.front()->world == c.world && g.front()->figure == c.figure;
-    });
-    if (group != groups.end())
-      group->push_back(&c);
-    else
-      groups.push_back({&c});
-  }
   std::vector<Table> tables;
-  for (const auto& group : groups) tables.push_back(contribution_table(group));
+  for (const auto& group : by_world_and_figure(contributions))
+    tables.push_back(contribution_table(group));
   return tables;
 }
 

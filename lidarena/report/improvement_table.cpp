@@ -9,6 +9,7 @@
 #include <set>
 
 #include "lidarena/report/change_tables.hpp"
+#include "lidarena/report/table_parts.hpp"
 #include "lidarena/results/lost.hpp"
 #include "lidarena/results/statistics.hpp"
 
@@ -79,10 +80,6 @@ std::string step_verdict(const std::vector<const Effect*>& effects) {
   return any(&Effect::may_help) ? "may help" : "no gain seen";
 }
 
-std::string steps_text(const std::vector<std::string>& names) {
-  return names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "));
-}
-
 }  // namespace
 
 Improvement improvement_of(const results::StudyResults& results,
@@ -140,11 +137,11 @@ Improvement improvement_of(const results::StudyResults& results,
     else
       harming.push_back(variations[i]);
   }
-  made.words.push_back("helps: " + steps_text(helping));
+  made.words.push_back("helps: " + names_text(helping));
   if (!helping.empty()) made.words.push_back("cheapest step that helps: " + helping.front());
-  made.words.push_back("may help, more flights (--seeds) would show: " + steps_text(maybe));
-  made.words.push_back("no gain seen: " + steps_text(useless));
-  if (!harming.empty()) made.words.push_back("harms some figure: " + steps_text(harming));
+  made.words.push_back("may help, more flights (--seeds) would show: " + names_text(maybe));
+  made.words.push_back("no gain seen: " + names_text(useless));
+  if (!harming.empty()) made.words.push_back("harms some figure: " + names_text(harming));
   for (std::size_t i = steps.size(); i < variations.size(); ++i) {
     const auto& both = parts[variations[i]];
     if (verdicts[variations[i]] == "helps" &&

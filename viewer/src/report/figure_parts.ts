@@ -27,6 +27,14 @@ export function sensorColor(sensor: string, sensors: string[]): string {
   return RUN_COLORS[(2 + sensors.indexOf(sensor)) % RUN_COLORS.length];
 }
 
+const [BETTER, WORSE, OPEN] = ["#2f855a", "#d1453b", "#b8c0cb"];
+
+/** Of a change with its interval: gray where that contains zero, since the figures do not carry more. */
+export function changeColor({ low, high }: { low: number | null; high: number | null }, moreIsBetter: boolean): string {
+  if (low === null || high === null || (low <= 0 && high >= 0)) return OPEN;
+  return low > 0 === moreIsBetter ? BETTER : WORSE;
+}
+
 export const base = (title: string) => ({
   animation: false,
   backgroundColor: theme.paper,

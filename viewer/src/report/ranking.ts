@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // What each variation alone changes in a figure, from the best to the worst.
 import { distinct, figureOf, type Change, type ReportData } from "./data";
-import { panels, valueAxis, type Figure } from "./figure_parts";
+import { changeColor, panels, valueAxis, type Figure } from "./figure_parts";
 
-const [BETTER, WORSE, OPEN] = ["#2f855a", "#d1453b", "#b8c0cb"];
 const ROW_PX = 17;
 const NAMES_PX = 210;
 
 const columnOf = ({ sensor, method }: Change) => `${sensor}, ${method}`;
-
-/** Gray where the interval contains zero: the figures do not carry more. */
-function colorOf({ low, high }: Change, moreIsBetter: boolean): string {
-  if (low === null || high === null || (low <= 0 && high >= 0)) return OPEN;
-  return low > 0 === moreIsBetter ? BETTER : WORSE;
-}
 
 type Api = { value: (i: number) => number; coord: (point: number[]) => number[]; size: (range: number[]) => number[] };
 
@@ -30,7 +23,7 @@ const series = (changes: Change[], names: string[], panel: number, moreIsBetter:
     const [value, low, high] = [1, 2, 3].map((k) => api.coord([api.value(k), row])[0]);
     const height = 0.6 * api.size([0, 1])[1];
     const shape = { x: Math.min(zero, value), y: y - height / 2, width: Math.max(1, Math.abs(value - zero)), height };
-    const fill = colorOf(changes[dataIndex], moreIsBetter);
+    const fill = changeColor(changes[dataIndex], moreIsBetter);
     const interval = { type: "line", shape: { x1: low, y1: y, x2: high, y2: y }, style: { stroke: "#1f2933", lineWidth: 1.2 } };
     return { type: "group", children: [{ type: "rect", shape, style: { fill } }, ...(low === high ? [] : [interval])] };
   },

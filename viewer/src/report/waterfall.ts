@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: BSD-3-Clause
 // From one sensor to another: what each change contributes to a figure.
-import { figureOf, type Contribution, type Contributions, type ReportData } from "./data";
-import { panels, valueAxis, type Figure } from "./figure_parts";
+import { figureOf, type Contributions, type ReportData } from "./data";
+import { changeColor, panels, valueAxis, type Figure } from "./figure_parts";
 
-const [WHOLE, BETTER, WORSE, OPEN] = ["#64748b", "#2f855a", "#d1453b", "#b8c0cb"];
+const WHOLE = "#64748b";
 
 /** A bar from `from` to `to`, and the interval of its end. */
 interface Bar {
@@ -14,19 +14,13 @@ interface Bar {
   interval?: [number, number];
 }
 
-/** Gray where the interval contains zero: the figures do not carry more. */
-function colorOf({ low, high }: Contribution, moreIsBetter: boolean): string {
-  if (low === null || high === null || (low <= 0 && high >= 0)) return OPEN;
-  return low > 0 === moreIsBetter ? BETTER : WORSE;
-}
-
 function barsOf({ base, all, parts }: Contributions, moreIsBetter: boolean): Bar[] {
   const bars: Bar[] = [{ name: "base", from: 0, to: base, color: WHOLE }];
   let at = base;
   for (const part of parts) {
     const { name, value, low, high } = part;
     const interval: [number, number] | undefined = low !== null && high !== null ? [at + low, at + high] : undefined;
-    bars.push({ name, from: at, to: at + value, color: colorOf(part, moreIsBetter), interval });
+    bars.push({ name, from: at, to: at + value, color: changeColor(part, moreIsBetter), interval });
     at += value;
   }
   return [...bars, { name: "all", from: 0, to: all, color: WHOLE }];
