@@ -14,13 +14,13 @@ GyroCalibration::Matrix GyroCalibration::prior() {
 
 Eigen::Vector3d GyroCalibration::observe(const Eigen::Vector3d& turned,
                                          const Eigen::Vector3d& change,
-                                         const Eigen::Vector3d& missed) {
+                                         const Eigen::Vector3d& missed, double sigma) {
   Eigen::Matrix<double, 3, 10> by_estimate;
   by_estimate << turned.x() * Eigen::Matrix3d::Identity(), turned.y() * Eigen::Matrix3d::Identity(),
       turned.z() * Eigen::Matrix3d::Identity(), change;
   const Eigen::Matrix<double, 10, 3> seen = covariance_ * by_estimate.transpose();
   Eigen::Matrix3d innovation = by_estimate * seen;
-  innovation.diagonal().array() += kRotationSigma * kRotationSigma;
+  innovation.diagonal().array() += sigma * sigma;
   const Eigen::Matrix<double, 10, 3> gain = innovation.ldlt().solve(seen.transpose()).transpose();
   const Vector step = gain * missed;
   estimate_ += step;

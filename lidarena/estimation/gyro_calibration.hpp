@@ -23,10 +23,10 @@ class GyroCalibration {
 
   /// `turned`: rotation vector (rad) of the calibrated rates over a scan, much less than half a
   /// turn; `change`: of the mean rate (rad/s) since the scan before; `missed`: the rotation vector
-  /// that leads from there to the rotation that was estimated. All in the axes of the scan's end.
-  /// Returns what of `missed` the calibration does not explain.
+  /// that leads from there to the rotation that was estimated; `sigma`: of that (rad). All in the
+  /// axes of the scan's end. Returns what of `missed` the calibration does not explain.
   Eigen::Vector3d observe(const Eigen::Vector3d& turned, const Eigen::Vector3d& change,
-                          const Eigen::Vector3d& missed);
+                          const Eigen::Vector3d& missed, double sigma);
 
   Eigen::Matrix3d correction() const { return estimate_.head<9>().reshaped(3, 3); }  ///< A
   /// The rotation vector (rad) of A, its part that is no scale and no skew of the axes: by how much
@@ -38,7 +38,6 @@ class GyroCalibration {
  private:
   static constexpr double kPriorSigma = 0.01;       ///< of each element of A
   static constexpr double kPriorDelaySigma = 0.02;  ///< s
-  static constexpr double kRotationSigma = 1e-3;    ///< rad, of the estimated rotations
 
   using Vector = Eigen::Matrix<double, 10, 1>;
   using Matrix = Eigen::Matrix<double, 10, 10>;

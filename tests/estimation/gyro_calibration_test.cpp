@@ -10,6 +10,8 @@
 namespace lidarena::estimation {
 namespace {
 
+constexpr double kSigma = 1e-3;  // rad, of the observed rotations
+
 /// Scans of 0.1 s at constant rates of up to some rad/s, of which a gyro sees M times the truth.
 GyroCalibration calibrated_with(const Eigen::Matrix3d& m, double rotation_sigma, int scans) {
   SequentialRandom random(3, 1);
@@ -20,7 +22,7 @@ GyroCalibration calibrated_with(const Eigen::Matrix3d& m, double rotation_sigma,
     const Eigen::Matrix3d estimated =
         so3::exp(0.1 * truth) * so3::exp(random_vector(random, rotation_sigma));
     calibration.observe(turned, Eigen::Vector3d::Zero(),
-                        so3::log(so3::exp(turned).transpose() * estimated));
+                        so3::log(so3::exp(turned).transpose() * estimated), kSigma);
   }
   return calibration;
 }
@@ -38,7 +40,7 @@ TEST(GyroCalibration, FindsScaleFactorsAndMisalignments) {
 TEST(GyroCalibration, ChangesNothingWithoutTurns) {
   GyroCalibration calibration;
   for (int i = 0; i < 100; ++i)
-    calibration.observe({1e-6, 0.0, 0.0}, {1e-6, 0.0, 0.0}, {1e-3, 1e-3, -1e-3});
+    calibration.observe({1e-6, 0.0, 0.0}, {1e-6, 0.0, 0.0}, {1e-3, 1e-3, -1e-3}, kSigma);
   EXPECT_LT(calibration.correction().norm(), 1e-4);
   EXPECT_EQ(GyroCalibration().calibrated({1.0, 2.0, 3.0}), Eigen::Vector3d(1.0, 2.0, 3.0));
 }
@@ -52,7 +54,7 @@ TEST(GyroCalibration, FindsTheDelayOfTheClock) {
     const Eigen::Vector3d change = random_vector(random, 1.0);
     const Eigen::Vector3d missed = (kDelay - calibration.delay_s()) * change -
                                    calibration.correction() * turned;  // the truth has no such
-    calibration.observe(turned, change, missed + random_vector(random, 3e-4));
+    calibration.observe(turned, change, missed + random_vector(random, 3e-4), kSigma);
   }
   EXPECT_NEAR(calibration.delay_s(), kDelay, 2e-4);
   EXPECT_LT(calibration.correction().cwiseAbs().maxCoeff(), 2e-3);

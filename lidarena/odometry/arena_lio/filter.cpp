@@ -13,6 +13,11 @@ using State = estimation::InertialState;
 constexpr double kStillSpeedSigma = 0.01;        // m/s, of the zero velocity at a standstill
 constexpr double kStillTranslationSigma = 1e-4;  // m, of the held first pose
 constexpr double kStillRotationSigma = 1e-5;     // rad, of the held first pose
+// rad, of corrections as observations of the gyro's calibration. The first ones are also those of a
+// map of few scans and of biases that are not known yet.
+constexpr double kCorrectionSigma = 1e-3;
+constexpr double kFirstCorrectionSigma = 3e-3;
+constexpr double kSettling_s = 2.0;  // of motion
 
 /// The rotation over the intervals, from the rotation `map_from_begin` to that of `state`.
 ScanTurn turn_over(const std::vector<estimation::ImuInterval>& intervals,
@@ -101,8 +106,10 @@ Filter predicted(Filter filter, const std::vector<estimation::ImuInterval>& inte
 }
 
 Filter informed(Filter filter, const Correction& correction) {
-  const Eigen::Vector3d unexplained =
-      filter.gyro.observe(correction.turn.turned, correction.turn.rate_change, correction.rotation);
+  filter.moved_s += correction.seconds;
+  const double sigma = filter.moved_s < kSettling_s ? kFirstCorrectionSigma : kCorrectionSigma;
+  const Eigen::Vector3d unexplained = filter.gyro.observe(
+      correction.turn.turned, correction.turn.rate_change, correction.rotation, sigma);
   filter.gyro_noise.add(unexplained, correction.seconds);
   filter.accel_noise.add(correction.velocity, correction.seconds);
   return filter;

@@ -50,6 +50,7 @@ struct Filter {
   Pose first_pose = Pose::Identity();  ///< of the IMU, at the initialization
   StillDetector still;
   bool has_moved = false;
+  double moved_s = 0.0;  ///< of corrections in motion
 };
 
 /// The filter after an initialization in axes of the map, which `map_from_start` leads to.

@@ -203,7 +203,7 @@ TEST(ArenaLioRobustness, AClockThatIsOffIsFound) {
 
 TEST(ArenaLioRobustness, ALidarThatIsMountedOtherwiseThanToldIsSurvivedAndTold) {
   const Recording recording{
-      .motion = lively, .seconds = 9.0, .points_per_scan = kPoints, .repeating = false};
+      .motion = lively, .seconds = 11.0, .points_per_scan = kPoints, .repeating = false};
   constexpr double kDegree = 0.0174533;
   const Pose misplaced =
       make_pose(so3::exp(kDegree * Eigen::Vector3d(1.2, -1.2, 1.1)), {0.012, -0.010, 0.012});
