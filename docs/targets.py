@@ -3,7 +3,8 @@
 """Judges our methods on the development set against the targets that were set for them.
 
 usage: targets.py                    each target: met or missed, from the rows of dev_kinds and dev_harsh
-       targets.py --page FILE        renews the block <!-- targets --> of a page; --check instead of writing it
+       targets.py --page FILE        renews the blocks of a page: <!-- targets -->, and tables of the rows,
+                                     <!-- kinds --> and <!-- harsh -->; --check instead of writing it
 
 The rows are docs/history/development_set/data/kinds.csv and harsh.csv. Ratios are of medians over the seeds, but where a
 flight is named. A lost run counts as infinite.
@@ -120,7 +121,33 @@ def table():
     return "\n".join(lines)
 
 
-BLOCK = re.compile(r"(<!-- targets -->\n).*?(<!-- end -->)", re.DOTALL)
+def cell(rows):
+    """Text of the drift of some runs: median final / live; at the LiDAR's clock (range of the final one)."""
+    finals = [value(r, FINAL) for r in rows]
+    median = lambda column: f"{statistics.median(value(r, column) for r in rows):.3g}"
+    clock = f"; {median(CLOCK)}" if all(r[CLOCK] for r in rows) else ""
+    return f"{median(FINAL)} / {median(LIVE)}{clock} ({min(finals):.3g} to {max(finals):.3g})"
+
+
+def drift(name):
+    rows = read(name)
+    lines = ["| world, sensor | `arena_lio` | `arena_lo` | FAST-LIO2 `tuned` | seeds |", "|---|---|---|---|---|"]
+    for world in WORLDS:
+        for sensor in sorted({r["sensor"] for r in rows if r["world"] == world}):
+            of = {m: [r for r in rows if (r["world"], r["sensor"], r["algorithm"]) == (world, sensor, m)]
+                  for m in ("arena_lio", "arena_lo", "fast_lio2")}
+            plain = sensor.removesuffix("_harsh")
+            title = named((world, plain)) if sensor == plain else "the same, harsh"
+            lines.append(f"| {title} | {' | '.join(map(cell, of.values()))} | {len(of['arena_lio'])} |")
+    return "\n".join(lines)
+
+
+BLOCK = re.compile(r"(<!-- (targets|kinds|harsh) -->\n).*?(<!-- end -->)", re.DOTALL)
+
+
+def renewed_block(found):
+    content = table() if found[2] == "targets" else drift(found[2])
+    return f"{found[1]}\n{content}\n\n{found[3]}"
 
 
 def main():
@@ -131,11 +158,11 @@ def main():
         raise SystemExit(__doc__)
     page = pathlib.Path(sys.argv[2])
     text = page.read_text()
-    renewed = BLOCK.sub(lambda found: f"{found[1]}\n{table()}\n\n{found[2]}", text)
+    renewed = BLOCK.sub(renewed_block, text)
     if sys.argv[1] == "--page":
         page.write_text(renewed)
     elif renewed != text:
-        raise SystemExit(f"{page}: the block of targets is not that of the rows: docs/targets.py --page {page}")
+        raise SystemExit(f"{page}: a block is not that of the rows: docs/targets.py --page {page}")
 
 
 if __name__ == "__main__":
